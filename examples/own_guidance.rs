@@ -4,10 +4,10 @@
 
 use patrol::Patrol;
 use staya_plot::motion_pictures;
+use staya_record::recording::RunRecorder;
 use staya_sim::engine::simulate_own;
 use staya_sim::record::{Options, Recorder};
 use staya_sim::scenario::{Overrides, Scenario};
-use staya_view::recording::RunRecorder;
 use std::path::{Path, PathBuf};
 use std::{error::Error, f64::consts::TAU, fs, ops::ControlFlow};
 

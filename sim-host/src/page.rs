@@ -3,14 +3,13 @@
 use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
-use staya_console::{Ended, Global, Progress, Stop, print, print_json};
-use staya_hil::ScenarioArgs;
+use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, print, print_json};
+use staya_record::page;
+use staya_record::recording::{Reader, RecordingError, RunRecorder};
 use staya_sim::engine::{Moment, simulate};
 use staya_sim::file::{MAP, read};
 use staya_sim::record::{RobotRow, write_atomically};
 use staya_sim::scenario::Scenario;
-use staya_view::page;
-use staya_view::recording::{Reader, RecordingError, RunRecorder};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 

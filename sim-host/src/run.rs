@@ -3,21 +3,20 @@
 mod also;
 mod checkpoint;
 
+pub use also::Observer;
 use also::{Also, AlsoArgs};
 use anyhow::{Context as _, Result, anyhow};
 use checkpoint::{CheckpointArgs, Checkpoints};
 use clap::Args;
-use staya_console::{Ended, Global, Progress, Stop, print, print_json};
-use staya_hil::{ScenarioArgs, WatchArgs};
+use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
 use staya_plot::{motion_pictures, run_pictures};
+use staya_record::recording::RecordingError;
 use staya_sim::checkpoint::{Checkpoint, Place};
 use staya_sim::engine::{Moment, Outcome, Unable, simulate, simulate_from};
 use staya_sim::expected::Expected;
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::Scenario;
 use staya_sim::summary::Summary;
-use staya_view::recording::RecordingError;
-use staya_view::watch::Watcher;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -43,12 +42,41 @@ pub struct RunArgs {
     page: WatchArgs,
 }
 
+/// Makes the observers that the options of a run ask for.
+pub type Observers<'a> = dyn Fn(&RunArgs, &Scenario) -> Result<Vec<Box<dyn Observer>>> + 'a;
+
 impl RunArgs {
-    /// Runs the command.
+    /// Whether an option asks for an observer that only `staya-view` has: an MCAP file or a live page.
+    #[must_use]
+    pub fn needs_view(&self) -> bool {
+        self.mcap().is_some() || self.page.address().is_some()
+    }
+
+    /// The MCAP file, and ticks from one of its moments to the next.
+    #[must_use]
+    pub fn mcap(&self) -> Option<(&Path, u32)> {
+        self.also.mcap()
+    }
+
+    /// Whether a page shows the run.
+    #[must_use]
+    pub const fn watch(&self) -> &WatchArgs {
+        &self.page
+    }
+
+    /// Runs the command without an MCAP file or a live page.
+    ///
+    /// # Errors
+    /// See [`RunArgs::run_with`].
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        self.run_with(global, &|_, _| Ok(Vec::new()))
+    }
+
+    /// Runs the command with more observers.
     ///
     /// # Errors
     /// A scenario that cannot be read or is wrong, results that cannot be written.
-    pub fn run(&self, global: &Global) -> Result<Ended> {
+    pub fn run_with(&self, global: &Global, observers: &Observers<'_>) -> Result<Ended> {
         let scenario = self.scenario.load()?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&scenario.name));
         let stop = Stop::on_ctrl_c()?;
@@ -63,10 +91,10 @@ impl RunArgs {
             let place = Place::new(out.with_added_extension("checkpoint"), &scenario);
             Checkpoints::new(every, place, before_seconds)
         });
-        let page = self.page.watcher(&scenario)?;
+        let observers = observers(self, &scenario)?;
         let task =
             Task { scenario: &scenario, out: &out, keeps_robots: !self.no_trace, from, checkpoints, stop: &stop };
-        let summary = run(task, &self.also, page, global)?;
+        let summary = run(task, &self.also, observers, global)?;
         if global.json {
             print_json(&summary)?;
         } else {
@@ -94,8 +122,8 @@ struct Task<'a> {
 }
 
 /// Runs a scenario and leaves everything about it in its folder; what was there before stays until all of it is written.
-fn run(task: Task<'_>, also: &AlsoArgs, page: Option<Watcher>, global: &Global) -> Result<Summary> {
-    let also = Also::begin(also, task.scenario, page)?;
+fn run(task: Task<'_>, also: &AlsoArgs, observers: Vec<Box<dyn Observer>>, global: &Global) -> Result<Summary> {
+    let also = Also::begin(also, task.scenario, observers)?;
     let out = task.out;
     let results = Results::begin(out)?;
     let whole = run_into(task, results.dir(), also, global).and_then(|summary| {
@@ -142,7 +170,7 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
     files.extend(also.paths());
     let mut summary = Summary::new(scenario, &outcome, files);
-    summary.version = staya_sweep::VERSION;
+    summary.version = staya_console::VERSION;
     summary.arrivals = summary.arrivals.filter(|_| keeps_robots);
     summary.wall_seconds = wall_seconds;
     summary.interrupted = stop.is_requested();

@@ -3,9 +3,8 @@
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand, ValueEnum};
 use serde::Serialize;
-use staya_console::{Ended, Global, print, print_json};
+use staya_console::{Ended, Global, options, print, print_json};
 use staya_controller::grid::Norm;
-use staya_papers::options;
 use staya_plot::terrain::{draw, scale_for};
 use staya_sim::terrain::generate::{ByMetrics, Hills, LandPlan, by_metrics, natural_by, uniform};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};

@@ -16,6 +16,19 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
+/// The program `staya` in the profile of this test.
+///
+/// # Panics
+/// When it has not been built: cargo builds no program of another package for a test.
+#[must_use]
+pub fn program() -> PathBuf {
+    let own = std::env::current_exe().expect("a test knows its file");
+    let folder = own.ancestors().nth(2).expect("a target folder");
+    let program = folder.join(format!("staya{}", std::env::consts::EXE_SUFFIX));
+    assert!(program.is_file(), "{} is missing; `cargo build --workspace` builds it", program.display());
+    program
+}
+
 /// A scenario of `scenarios/` by its name, with at most `ticks` ticks.
 ///
 /// # Panics

@@ -1,9 +1,9 @@
 //! Golden tables of swaps, doorways and other crossings, as the commands print them.
 
 use staya_controller::agent::SafetyKind;
-use staya_papers::crossing::cases::{self, Case};
-use staya_papers::crossing::{Conditions, doorway, swap};
-use staya_papers::experiment::Experiment as _;
+use staya_lab::crossing::cases::{self, Case};
+use staya_lab::crossing::{Conditions, doorway, swap};
+use staya_lab::experiment::Experiment as _;
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{golden, root, run};
 use std::fs;

@@ -3,10 +3,10 @@
 
 use staya_controller::agent::SafetyKind;
 use staya_controller::names::Named as _;
-use staya_papers::experiment::Experiment as _;
-use staya_papers::flock::closing::Closing;
-use staya_papers::flock::{Case, Plan, Reference};
-use staya_papers::goals;
+use staya_lab::experiment::Experiment as _;
+use staya_lab::flock::closing::Closing;
+use staya_lab::flock::{Case, Plan, Reference};
+use staya_lab::goals;
 use staya_sim::metrics::flock::{FlockMeter, polarisation};
 use staya_sim::nearby::Space;
 use staya_sim::record::RobotRow;

@@ -2,7 +2,7 @@
 //! breaks. `cargo xtask bless golden` rewrites them.
 
 use staya_controller::robot::Mode;
-use staya_papers::orca::Sample;
+use staya_fvm::orca::Sample;
 use staya_sim::engine::Outcome;
 use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::{RobotRow, TickRow};

@@ -2,8 +2,8 @@
 //! paper's window the numbers of robots that arrive are pinned.
 
 use staya_controller::cost::Gain;
-use staya_papers::experiment::Experiment as _;
-use staya_papers::movingai::{Answer, Benchmark, Learning, Plan, Report, Robots, Sight};
+use staya_lab::experiment::Experiment as _;
+use staya_lab::movingai::{Answer, Benchmark, Learning, Plan, Report, Robots, Sight};
 use std::path::{Path, PathBuf};
 
 /// Largest deviation from an optimal length, percent. sqrt 2 as 99/70 is off by 0.005 %.

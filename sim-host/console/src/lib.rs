@@ -2,12 +2,15 @@
 //!
 //! Results go to standard output, progress and errors to standard error.
 
+pub mod options;
 mod progress;
+mod scenario;
 
 pub use progress::{Progress, Stop};
+pub use scenario::{ScenarioArgs, WatchArgs};
 
 use anyhow::{Context as _, Result};
-use clap::Args;
+use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
 use std::io::{self, ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -42,6 +45,31 @@ impl Global {
         }
         Ok(())
     }
+}
+
+/// The version of this program, as results have it: `0.1.0`, and what `build.rs` knows of the commit, as in
+/// `0.1.0+298ef29bca11` or, for sources that differ from that commit, `0.1.0+298ef29bca11.5f0c2d9a`.
+pub const VERSION: &str = env!("STAYA_VERSION");
+
+/// The command line of each program: the options of every command, and the commands `C` of this program.
+///
+/// Every program calls itself `staya`, since `staya` hands its own command line over unchanged.
+#[derive(Debug, Parser)]
+#[command(name = "staya", bin_name = "staya", version = VERSION, propagate_version = true)]
+pub struct Line<C: Subcommand> {
+    /// The options of every command.
+    #[command(flatten)]
+    pub global: Global,
+    /// The command.
+    #[command(subcommand)]
+    pub command: C,
+}
+
+/// The whole of a program: parses the command line, runs the command and reports its errors.
+#[must_use]
+pub fn main<C: Subcommand>(run: impl FnOnce(&C, &Global) -> Result<Ended>) -> ExitCode {
+    let Line { global, command } = Line::parse();
+    exit("staya", global.begin().and_then(|()| run(&command, &global)))
 }
 
 /// How a command that did not fail came to its end.

@@ -1,6 +1,7 @@
-//! `staya voxel build | draw | evaluate | measure | swarm`.
+//! The command line of `staya-voxel`: `staya voxel build | draw | evaluate | measure | swarm`, `staya orca table | draw`.
 
 mod options;
+mod orca;
 
 use crate::draw::{m_images, sheet};
 use crate::swarm::{Models, Outcome, Source, Swap};
@@ -16,6 +17,28 @@ use staya_sim::record::prepare_dir;
 use staya_voxel::{Header, Local, Model, VoxelNeighbor};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+
+/// Commands about tables of functions.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Draw what ORCA forbids two robots, and measure the table that it can be looked up in.
+    Orca(orca::OrcaArgs),
+    /// Make, draw and measure functional voxel models: functions as tables for a microcontroller.
+    Voxel(VoxelArgs),
+}
+
+impl Command {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Those of the command.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        match self {
+            Self::Orca(args) => args.run(global),
+            Self::Voxel(args) => args.run(global),
+        }
+    }
+}
 
 /// Functional voxel models: any function of two or three variables as a table of local planes for a microcontroller.
 #[derive(Args, Clone, Debug)]

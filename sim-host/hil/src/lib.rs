@@ -30,7 +30,8 @@
 //!
 //! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. docs/own.md has all of it.
 
-mod args;
+pub mod cli;
+mod command;
 mod devices;
 mod firmware;
 mod options;
@@ -39,7 +40,6 @@ mod pace;
 mod run;
 mod summary;
 
-pub use args::{ScenarioArgs, WatchArgs};
 pub use options::DeviceArgs;
 pub use own::{Own, Package};
 pub use run::{HilArgs, run};

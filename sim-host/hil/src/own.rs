@@ -1,12 +1,11 @@
 //! Robots by a guidance law of the caller's own, some of them on devices.
 
-use crate::args::WatchArgs;
 use crate::firmware::{Made, Program};
 use crate::options::DeviceArgs;
 use crate::run::{HilArgs, Swarm, drive};
 use anyhow::{Context as _, Result};
 use clap::{CommandFactory as _, FromArgMatches as _};
-use staya_console::{Ended, Global};
+use staya_console::{Ended, Global, WatchArgs};
 use staya_controller::agent::Guidance;
 use staya_controller::scalar::Q16;
 use staya_link::own::{LinkedLaw, OwnLarge, OwnSmall};

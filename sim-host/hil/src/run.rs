@@ -1,6 +1,5 @@
 //! `staya hil SCENARIO`: some of the robots run as firmware on emulated parts or boards, in lockstep with the rest.
 
-use crate::args::{ScenarioArgs, WatchArgs};
 use crate::devices::{Log, OnDevices};
 use crate::firmware::{self, Made, Program};
 use crate::options::{DeviceArgs, emulated_parts};
@@ -8,14 +7,14 @@ use crate::pace::Pace;
 use crate::summary::Summary;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
-use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
 use staya_controller::formation::published::FormationLaw;
 use staya_runner::{Options, Shadows};
 use staya_sim::engine::{ExternalController, Moment, Outcome, Watch, simulate_with};
 use staya_sim::expected::Expected;
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
-use staya_view::watch::{About, DeviceFigures, Insight};
+use staya_view::watch::{About, DeviceFigures, Insight, Watcher};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -171,7 +170,7 @@ fn simulate(
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), by.global);
     let count = scenario.robots.len();
     let mut pace = by.devices.real_time.then(|| Pace::new(scenario.tick_s()));
-    let mut page = by.page.watcher(scenario)?;
+    let mut page = Watcher::by_options(by.page, scenario)?;
     let mut expected = Expected::new(scenario.ticks);
     let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
         let mut robots = robots.inspect(|robot| expected.see(robot));

@@ -5,6 +5,7 @@
 //! opens any number of them and gives whole frames, [`Tlog`] keeps them; [`geo`] is where metres become degrees.
 
 pub mod bridge;
+pub mod cli;
 pub mod companion;
 mod endpoint;
 pub mod formation;

@@ -7,7 +7,7 @@ use mpi::request::{WaitGuard, scope};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, CommunicatorCollectives as _, Destination as _, Source as _};
 use staya_console::Stop;
-use staya_sim::engine::ranks::{Exchange, Lost};
+use staya_mpi::ranks::{Exchange, Lost};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 

@@ -5,11 +5,11 @@ use anyhow::{Result, anyhow};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, Stop, print, print_json};
-use staya_plot::{motion_pictures, run_pictures};
-use staya_sim::checkpoint::{Checkpoint, Every, Place};
-use staya_sim::engine::ranks::{
+use staya_mpi::ranks::{
     Ended as RunEnded, Exchange as _, RankError, Sharing, Traffic, check, remark, simulate_on, simulate_on_from,
 };
+use staya_plot::{motion_pictures, run_pictures};
+use staya_sim::checkpoint::{Checkpoint, Every, Place};
 use staya_sim::engine::{Moment, Watch};
 use staya_sim::record::{History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario, Setting};

@@ -8,7 +8,8 @@ mod formation;
 mod formations;
 pub mod waits;
 
-pub(crate) use formation::in_cells;
+#[doc(hidden)]
+pub use formation::in_cells;
 pub use formation::{FORMED_AFTER_S, FormationMeter, Keeping, PlaceError, free_formation_s};
 pub use formations::{FormationKept, FormationMeters};
 
@@ -47,12 +48,12 @@ impl Arrivals {
     }
 
     /// A robot comes from another rank, behind those that are here.
-    pub(crate) fn admit(&mut self) {
+    pub fn admit(&mut self) {
         self.at.push(None);
     }
 
     /// Robot number `index` goes to another rank; the last one takes its place.
-    pub(crate) fn dismiss(&mut self, index: usize) {
+    pub fn dismiss(&mut self, index: usize) {
         self.set(index, None);
         self.at.swap_remove(index);
     }

@@ -4,14 +4,10 @@ use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 use staya_plot::movie::{self, Look};
+use staya_record::recording::{RecordingError, RunRecorder};
 use staya_sim::engine::Moment;
 use staya_sim::record::{History, RobotRow, write_atomically};
 use staya_sim::scenario::Scenario;
-use staya_view::frame::{FrameData, Framer};
-use staya_view::mcap::McapWriter;
-use staya_view::recording::{RecordingError, RunRecorder};
-use staya_view::scene::{Mode, Scene};
-use staya_view::watch::Watcher;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -44,23 +40,37 @@ impl AlsoArgs {
     pub const fn begins_anew(&self) -> bool {
         self.record.is_some() || self.mcap.is_some()
     }
+
+    /// The MCAP file, and ticks from one of its moments to the next.
+    pub fn mcap(&self) -> Option<(&Path, u32)> {
+        self.mcap.as_deref().map(|path| (path, self.record_every))
+    }
 }
 
-/// The files under way, and the page.
+/// Looks at a run while it goes on.
+pub trait Observer {
+    /// Whether it wants the robots' lines of the next moment.
+    fn is_due(&mut self) -> bool;
+
+    /// Takes a moment, with the robots' lines.
+    ///
+    /// # Errors
+    /// Its file cannot be written.
+    fn tick(&mut self, moment: &Moment<'_>, rows: &[RobotRow]) -> Result<()>;
+
+    /// The run is over.
+    ///
+    /// # Errors
+    /// Its file cannot be written.
+    fn finish(self: Box<Self>) -> Result<()>;
+}
+
+/// The files under way, and the observers.
 pub struct Also<'a> {
     args: &'a AlsoArgs,
     scenario: &'a Scenario,
     recording: Option<RunRecorder<File>>,
-    mcap: Option<Mcap>,
-    page: Option<Watcher>,
-}
-
-/// An MCAP file, and the latest moment.
-struct Mcap {
-    writer: McapWriter<File>,
-    framer: Framer,
-    frame: FrameData,
-    is_written: bool,
+    observers: Vec<Box<dyn Observer>>,
 }
 
 impl<'a> Also<'a> {
@@ -68,30 +78,23 @@ impl<'a> Also<'a> {
     ///
     /// # Errors
     /// One cannot be written.
-    pub fn begin(args: &'a AlsoArgs, scenario: &'a Scenario, page: Option<Watcher>) -> Result<Self> {
+    pub fn begin(args: &'a AlsoArgs, scenario: &'a Scenario, observers: Vec<Box<dyn Observer>>) -> Result<Self> {
         let recording = match &args.record {
             Some(path) => Some(RunRecorder::new(create(path)?, path, scenario, args.record_every)?),
-            None => None,
-        };
-        let mcap = match &args.mcap {
-            Some(path) => Some(Mcap {
-                writer: McapWriter::create(path, &Scene::new(scenario, Mode::Recording))?,
-                framer: Framer::new(scenario),
-                frame: FrameData::default(),
-                is_written: true,
-            }),
             None => None,
         };
         if let Some(path) = &args.gif {
             // Better now than after the run.
             write_atomically(path, b"")?;
         }
-        Ok(Self { args, scenario, recording, mcap, page })
+        Ok(Self { args, scenario, recording, observers })
     }
 
-    /// Whether anybody wants to know where robots are at this tick. Hears what pages say.
+    /// Whether the robots' lines of this moment are wanted.
     pub fn wants_rows(&mut self) -> bool {
-        self.recording.is_some() || self.mcap.is_some() || self.page.as_mut().is_some_and(Watcher::is_due)
+        // Every observer is asked: a page reads its messages then.
+        let due = self.observers.iter_mut().map(|observer| observer.is_due()).filter(|is_due| *is_due).count();
+        self.recording.is_some() || due > 0
     }
 
     /// What is written.
@@ -108,17 +111,7 @@ impl<'a> Also<'a> {
         if let Some(recording) = &mut self.recording {
             recording.tick(moment, rows.iter().copied())?;
         }
-        if let Some(Mcap { writer, framer, frame, is_written }) = &mut self.mcap {
-            framer.fill(frame, moment, rows.iter().copied());
-            *is_written = moment.row.tick.is_multiple_of(self.args.record_every);
-            if *is_written {
-                writer.frame(frame)?;
-            }
-        }
-        if let Some(page) = &mut self.page {
-            page.tick(moment, &mut rows.iter().copied());
-        }
-        Ok(())
+        self.observers.iter_mut().try_for_each(|observer| observer.tick(moment, rows))
     }
 
     /// Writes what is in memory when something else went wrong; best effort.
@@ -136,12 +129,7 @@ impl<'a> Also<'a> {
         if let Some(recording) = self.recording {
             recording.finish(summary)?;
         }
-        if let Some(mut mcap) = self.mcap {
-            if !mcap.is_written {
-                mcap.writer.frame(&mcap.frame)?;
-            }
-            mcap.writer.finish()?;
-        }
+        self.observers.into_iter().try_for_each(Observer::finish)?;
         if let Some(path) = &self.args.gif {
             let look = Look { width: self.args.gif_width, seconds: self.args.gif_seconds };
             write_atomically(path, &movie::of_run(self.scenario, history, look)?)?;

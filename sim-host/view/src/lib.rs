@@ -1,12 +1,13 @@
-//! Runs to look at: what a page in the browser is told, live or from a recording. `PROTOCOL.md` says how.
+#![doc = include_str!("../README.md")]
 
-pub mod frame;
+pub mod cli;
+mod command;
 pub mod mcap;
+mod observers;
 pub mod pace;
-pub mod page;
 pub mod playback;
-pub mod recording;
-pub mod scene;
 pub mod server;
 pub mod session;
 pub mod watch;
+
+use staya_record::{frame, page, recording, scene};

@@ -4,12 +4,14 @@
 //! then, and makes a picture only if a page wants one.
 
 use crate::frame::{FrameData, Framer, NO_WAIT, NOBODY};
+use crate::page;
 use crate::scene::{Mode, Scene};
 use crate::server::{Client, FromPage, Server};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use staya_console::WatchArgs;
 use staya_sim::engine::{Known, Moment};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
@@ -112,6 +114,19 @@ pub struct Watcher {
 }
 
 impl Watcher {
+    /// Serves a page as the options of a command ask, and prints its address on standard error; `None`: no page is wanted.
+    ///
+    /// # Errors
+    /// The address cannot be listened on.
+    pub fn by_options(options: &WatchArgs, scenario: &Scenario) -> anyhow::Result<Option<Self>> {
+        let Some(address) = options.address() else {
+            return Ok(None);
+        };
+        let watcher = Self::new(Server::start(address, page::served()?)?, scenario)?;
+        eprintln!("{}", watcher.server().url());
+        Ok(Some(watcher))
+    }
+
     /// For the run of a scenario.
     ///
     /// # Errors

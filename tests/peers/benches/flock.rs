@@ -4,7 +4,7 @@
 //! denser flock than the other. Times are per step of the whole flock.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use staya_papers::boids::Flock;
+use staya_lab::boids::Flock;
 use staya_peers::flockers::{Peer, flock, plan};
 use staya_sim::nearby::{Cells, Space};
 use std::time::{Duration, Instant};

@@ -11,7 +11,7 @@ use staya_controller::flock::boids::BoidsParams;
 use staya_controller::geom::{Torus, Vec2, Vec3};
 use staya_controller::neighbor::Nearby;
 use staya_controller::robot::{Mode, RobotId};
-use staya_papers::boids::{Flock, Plan};
+use staya_lab::boids::{Flock, Plan};
 use std::any::Any;
 use std::cell::RefCell;
 use std::fmt;

@@ -22,7 +22,7 @@ const TAKEN: u8 = 1;
 const RING_M: f64 = 1.5;
 
 /// What it is doing.
-pub(super) struct Attacker {
+pub struct Attacker {
     attack: Attack,
     cell_m: f64,
     tick_us: u32,
@@ -84,7 +84,8 @@ impl Attacker {
         RobotId(u32::MAX - 1 - u32::try_from(index).unwrap_or(u32::MAX / 2))
     }
 
-    pub(super) fn place_m(&self) -> [f64; 2] {
+    #[doc(hidden)]
+    pub fn place_m(&self) -> [f64; 2] {
         self.attack.place_m
     }
 

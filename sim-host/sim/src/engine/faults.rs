@@ -11,7 +11,7 @@ where
 {
     /// Takes computers down whose fault begins; who comes up again has forgotten everything but its
     /// number, its parameters and its task.
-    pub(super) fn apply_faults(&mut self) {
+    pub fn apply_faults(&mut self) {
         for at in 0..self.faults.len() {
             let fault = self.faults[at];
             let Some(index) = self.index_of(fault.robot) else {

@@ -20,15 +20,17 @@ use std::collections::BTreeMap;
 
 /// Bodies that hold a cell each.
 pub struct Grid {
-    pub(super) world: World,
+    #[doc(hidden)]
+    pub world: World,
     kinematics: Kinematics,
     robots: Vec<Robot>,
-    pub(super) meter: Option<FormationMeters>,
+    #[doc(hidden)]
+    pub meter: Option<FormationMeters>,
     changed: Changed,
     /// What robots know of land that they do not see.
-    pub(super) scouts: Option<Scouts>,
+    pub scouts: Option<Scouts>,
     /// The number of each body's robot.
-    pub(super) numbers: Vec<u32>,
+    pub numbers: Vec<u32>,
     radius: u8,
     tick_us: u32,
 }
@@ -64,7 +66,7 @@ impl Grid {
 
 impl Grid {
     /// Robots take note of what they have seen in this tick.
-    pub(super) fn look(&mut self) {
+    pub fn look(&mut self) {
         if let Some(scouts) = &mut self.scouts {
             let bodies = self.world.bodies();
             scouts.observe(self.world.terrain(), |index| Some(bodies[index].cell));

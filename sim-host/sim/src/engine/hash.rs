@@ -10,10 +10,11 @@ const START: u32 = 0x0048_0001;
 
 /// One robot's hash of everything it did: a chain of its states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Chain(u64);
+pub struct Chain(u64);
 
 impl Chain {
-    pub(super) const fn new(robot: RobotId) -> Self {
+    #[doc(hidden)]
+    pub const fn new(robot: RobotId) -> Self {
         Self(Rng::keyed(0, START, robot.0, 0).next_u64())
     }
 
@@ -36,7 +37,7 @@ pub(super) fn grid_words(tick: u32, body: &Body, mode: Mode) -> [u64; 2] {
 }
 
 /// The hash of a swarm: a sum, so that the order of robots plays no part.
-pub(super) fn sum(chains: &[Chain]) -> u64 {
+pub fn sum(chains: &[Chain]) -> u64 {
     chains.iter().fold(0, |sum, chain| sum.wrapping_add(chain.0))
 }
 

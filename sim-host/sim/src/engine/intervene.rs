@@ -47,7 +47,7 @@ where
     A: Safety<f32> + Send,
 {
     /// Changes the land as the scenario has it for this tick.
-    pub(super) fn change_land(&mut self) {
+    pub fn change_land(&mut self) {
         for (number, rule) in self.changes.iter().enumerate().filter(|(_, rule)| rule.is_due(self.tick)) {
             let due = self.ground.terrain().map(|land| rule.due(number, self.seed, self.tick, land));
             if let Some(cells) = due.filter(|cells| !cells.is_empty()) {
@@ -58,7 +58,7 @@ where
     }
 
     /// Does what the scenario has for this tick.
-    pub(super) fn apply_interventions(&mut self) {
+    pub fn apply_interventions(&mut self) {
         while let Some((_, what)) = self.interventions.front().filter(|(tick, _)| *tick <= self.tick) {
             let what = what.clone();
             // What nobody has a use for was said to whoever did it by hand, and is as void when it is repeated.

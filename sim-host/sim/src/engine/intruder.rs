@@ -14,7 +14,7 @@ use staya_controller::wire::{Beacon, Format, Header, Message, Wire as _};
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 /// Its radio.
-pub(super) struct Intruder {
+pub struct Intruder {
     pub id: RobotId,
     /// Where it is, metres.
     pub position_m: [f64; 2],

@@ -14,7 +14,7 @@ const AGAIN_TICKS: u32 = 5;
 const ROUNDS: u32 = 20;
 
 /// The operator's radio.
-pub(super) struct Keeper {
+pub struct Keeper {
     wire: OperatorWire<{ radio::PEERS }>,
     place_m: [f64; 2],
     robots: Vec<RobotId>,
@@ -31,7 +31,7 @@ pub(super) struct Keeper {
 
 /// What [`Keeper::state`] gave.
 #[derive(Deserialize)]
-pub(super) struct KeeperState {
+pub struct KeeperState {
     wire: Box<OperatorWire<{ radio::PEERS }>>,
     rolls_left: usize,
     revoked: BTreeSet<RobotId>,
@@ -67,7 +67,8 @@ impl Keeper {
         RobotId(u32::MAX - 1_000_000)
     }
 
-    pub(super) const fn place_m(&self) -> [f64; 2] {
+    #[doc(hidden)]
+    pub const fn place_m(&self) -> [f64; 2] {
         self.place_m
     }
 

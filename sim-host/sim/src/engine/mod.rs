@@ -15,7 +15,8 @@ mod external;
 mod faults;
 mod grid;
 mod ground;
-mod hash;
+#[doc(hidden)]
+pub mod hash;
 mod inspect;
 mod intervene;
 mod intruder;
@@ -24,7 +25,6 @@ mod operator;
 mod others;
 mod own;
 mod plane;
-pub mod ranks;
 mod report;
 mod simulate;
 mod state;
@@ -41,6 +41,8 @@ pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
 pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own, simulate_own_with};
 pub use plane::{PlaneGround, Senses};
+#[doc(hidden)]
+pub use simulate::{GuidanceOf, SafetyOf, agents};
 pub use simulate::{Moment, Outcome, Unable, WIDE, Watch, simulate, simulate_from, simulate_with};
 pub use state::{Saves, State, StateError};
 pub use status::Status;
@@ -74,7 +76,7 @@ const BATCH: usize = 64;
 
 /// A robot's computer.
 #[derive(Debug)]
-struct Computer<G: Guidance<f32>, A> {
+pub struct Computer<G: Guidance<f32>, A> {
     /// `None`: elsewhere.
     agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
     /// What the last step sent: no longer than that.
@@ -141,48 +143,65 @@ impl<W: Ground> Tick<'_, W> {
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
 /// A scenario in motion on ground `W`. `G` is the guidance law of all its robots, `A` their safety layer.
+///
+/// What is public of it beside its functions is for the crate `staya-mpi`, which steps one part of a world in each process.
 pub struct Engine<W, G: Guidance<f32>, A> {
     seed: u64,
     format: Format,
     key: Option<Key>,
     claims: Claims<f32>,
     tick_us: u32,
-    tick: u32,
+    #[doc(hidden)]
+    pub tick: u32,
     /// All of the scenario, by rising number.
-    robots: Vec<Robot>,
+    pub robots: Vec<Robot>,
     /// Which of them are here: their places in `robots`, in the order of everything below that is of one robot. All of them in
     /// order, unless other ranks have the others.
-    here: Vec<u32>,
+    pub here: Vec<u32>,
     faults: Vec<Fault>,
     /// How the land changes.
     changes: Vec<LandChange>,
     /// What is still to be done to the run, by rising tick.
-    interventions: VecDeque<(u32, Intervention)>,
+    pub interventions: VecDeque<(u32, Intervention)>,
     tuned: Vec<Tuned>,
     /// The robots of each formation, whose goals move together.
     shapes: Vec<Range<usize>>,
     brains: Brains<G, A>,
-    ground: W,
-    radio: Radio,
-    computers: Vec<Computer<G, A>>,
-    commands: Vec<Command<f32>>,
-    statuses: Vec<Status>,
-    chains: Vec<Chain>,
+    #[doc(hidden)]
+    pub ground: W,
+    #[doc(hidden)]
+    pub radio: Radio,
+    #[doc(hidden)]
+    pub computers: Vec<Computer<G, A>>,
+    #[doc(hidden)]
+    pub commands: Vec<Command<f32>>,
+    #[doc(hidden)]
+    pub statuses: Vec<Status>,
+    #[doc(hidden)]
+    pub chains: Vec<Chain>,
     /// Of the robots, then of the attackers, of the intruders and of the keeper of keys.
-    positions_m: Vec<[f64; 2]>,
-    attackers: Vec<Attacker>,
-    intruders: Vec<Intruder>,
-    keeper: Option<Keeper>,
+    pub positions_m: Vec<[f64; 2]>,
+    #[doc(hidden)]
+    pub attackers: Vec<Attacker>,
+    #[doc(hidden)]
+    pub intruders: Vec<Intruder>,
+    #[doc(hidden)]
+    pub keeper: Option<Keeper>,
     /// Keys of robots on other ranks that attackers take in this tick.
-    taken: HashMap<RobotId, Ring>,
+    pub taken: HashMap<RobotId, Ring>,
     master: Option<Key>,
     external: Option<External>,
     keeps_events: bool,
-    arrivals: Arrivals,
-    waits: Waits,
-    collisions: u64,
-    packets: PacketCounts,
-    throttled: u64,
+    #[doc(hidden)]
+    pub arrivals: Arrivals,
+    #[doc(hidden)]
+    pub waits: Waits,
+    #[doc(hidden)]
+    pub collisions: u64,
+    #[doc(hidden)]
+    pub packets: PacketCounts,
+    #[doc(hidden)]
+    pub throttled: u64,
 }
 
 impl<W, G, A> Engine<W, G, A>
@@ -200,7 +219,7 @@ where
 
     /// The same with these robots alone, by their places in [`Scenario::robots`]; `ground` has their bodies in this order. Who is no
     /// robot and has a radio is here or on another rank.
-    fn part(
+    pub fn part(
         scenario: &Scenario,
         ground: W,
         brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
@@ -299,7 +318,8 @@ where
         self.computer(Some(agent), boot)
     }
 
-    fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>, boot: u8) -> Computer<G, A> {
+    #[doc(hidden)]
+    pub fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>, boot: u8) -> Computer<G, A> {
         Computer {
             agent,
             outbox: Vec::new(),
@@ -353,7 +373,7 @@ where
     }
 
     /// Puts on the air what everybody here sends.
-    fn send(&mut self) -> radio::Counts {
+    pub fn send(&mut self) -> radio::Counts {
         let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
         let keeper = self.keeper.as_ref().map_or(&[][..], Keeper::outbox);
         let outbox = |index: usize| match computers.get(index) {
@@ -367,7 +387,7 @@ where
     }
 
     /// Takes note of a tick's packets.
-    fn count(&mut self, refused: PacketCounts, carried: radio::Counts) -> PacketCounts {
+    pub fn count(&mut self, refused: PacketCounts, carried: radio::Counts) -> PacketCounts {
         let packets = PacketCounts {
             sent: carried.sent,
             delivered: carried.delivered,
@@ -381,7 +401,7 @@ where
     }
 
     /// Phase one: everybody decides. Returns how many frames were refused, and nothing else.
-    fn decide(&mut self) -> PacketCounts {
+    pub fn decide(&mut self) -> PacketCounts {
         self.send_out();
         let mut refused = self.decide_here();
         refused.rejected += self.collect();
@@ -450,7 +470,7 @@ where
     }
 
     /// Takes note of where everybody is after phase two.
-    fn observe(&mut self) {
+    pub fn observe(&mut self) {
         let (ground, tick, statuses) = (&self.ground, self.tick, &self.statuses);
         let chains = self.chains.par_iter_mut().enumerate().with_min_len(BATCH);
         chains.for_each(|(index, chain)| chain.extend(&ground.words(index, tick, &statuses[index])));

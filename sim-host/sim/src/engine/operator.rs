@@ -101,8 +101,7 @@ pub trait Operated: Send {
 pub fn operated(scenario: &Scenario) -> Result<Box<dyn Operated>, Misplaced> {
     Ok(match AnyEngine::new(scenario)? {
         AnyEngine::Plane(engine) => boxed(scenario, *engine),
-        AnyEngine::Narrow(engine) => boxed(scenario, *engine),
-        AnyEngine::Wide(engine) => boxed(scenario, *engine),
+        AnyEngine::Cells(engine) => boxed(scenario, *engine),
     })
 }
 

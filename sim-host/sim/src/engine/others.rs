@@ -14,7 +14,7 @@ where
     A: Safety<f32> + Send,
 {
     /// Attackers hear and speak, as robots do.
-    pub(super) fn attack(&mut self) {
+    pub fn attack(&mut self) {
         let robots = self.computers.len();
         for at in 0..self.attackers.len() {
             if let Some(taken) = self.attackers[at].takes(self.tick)
@@ -27,13 +27,13 @@ where
     }
 
     /// The keys that a robot has that is here.
-    pub(super) fn ring_of(&self, robot: RobotId) -> Option<Ring> {
+    pub fn ring_of(&self, robot: RobotId) -> Option<Ring> {
         let agent = self.computers[self.index_of(robot)?].agent.as_ref()?;
         ring(agent.wire()).cloned()
     }
 
     /// Whoever has the master hears and speaks.
-    pub(super) fn keep_keys(&mut self) {
+    pub fn keep_keys(&mut self) {
         let at = self.computers.len() + self.attackers.len() + self.intruders.len();
         if let Some(keeper) = &mut self.keeper {
             keeper.act(self.tick, self.radio.inbox(at));
@@ -41,7 +41,7 @@ where
     }
 
     /// Intruders say where they are.
-    pub(super) fn intrude(&mut self) {
+    pub fn intrude(&mut self) {
         let now = Instant::from_micros(self.tick.wrapping_mul(self.tick_us));
         let first = self.computers.len() + self.attackers.len();
         let positions_m = self.positions_m.iter_mut().skip(first);

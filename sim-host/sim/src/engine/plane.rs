@@ -37,21 +37,24 @@ const WALLS: usize = 16;
 
 /// Bodies that move in the plane or in space.
 pub struct PlaneGround {
-    pub(super) plane: Plane,
+    #[doc(hidden)]
+    pub plane: Plane,
     setup: PlaneSetup,
-    pub(super) clearance: Clearance,
+    #[doc(hidden)]
+    pub clearance: Clearance,
     /// After the last tick, metres.
-    pub(super) gap_m: Option<f64>,
-    pub(super) meter: Option<FormationMeters>,
+    pub gap_m: Option<f64>,
+    #[doc(hidden)]
+    pub meter: Option<FormationMeters>,
     changed: Changed,
     /// Whom robots see, if they have eyes.
     sight: Option<Sight>,
     is_mute: bool,
     /// What robots know of land that they do not see.
-    pub(super) scouts: Option<Scouts>,
+    pub scouts: Option<Scouts>,
     robots: Vec<Robot>,
     /// The number of each body's robot.
-    pub(super) numbers: Vec<u32>,
+    pub numbers: Vec<u32>,
     radius: u8,
     tick_us: u32,
     delay_us: u32,
@@ -184,7 +187,7 @@ impl PlaneGround {
     }
 
     /// The body of a robot at its start.
-    pub(super) fn disc_of(&self, number: usize, id: RobotId) -> Disc {
+    pub fn disc_of(&self, number: usize, id: RobotId) -> Disc {
         disc(id, &self.setup, number)
     }
 

@@ -19,7 +19,7 @@ where
     }
 
     /// The swarm's line of the record, with `packets` of the tick that is over.
-    pub(super) fn row(&self, keeping: Option<Keeping>, packets: PacketCounts) -> TickRow {
+    pub fn row(&self, keeping: Option<Keeping>, packets: PacketCounts) -> TickRow {
         TickRow {
             tick: self.tick,
             time_s: self.seconds(),
@@ -47,7 +47,7 @@ where
     }
 
     /// What a watcher sees of the swarm, with its line of the record.
-    pub(crate) fn moment<'a>(&'a self, row: &'a TickRow) -> Moment<'a> {
+    pub fn moment<'a>(&'a self, row: &'a TickRow) -> Moment<'a> {
         Moment {
             row,
             arrived: self.arrivals.count(),

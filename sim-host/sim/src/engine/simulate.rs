@@ -11,8 +11,8 @@ use crate::terrain::Terrain;
 use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
-    AnyGuidance, AnySafety, CELLS, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, NeighborTracking, Safety,
-    TEMPLATE, VISITS, WAYPOINTS,
+    AnyGuidance, AnySafety, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, NeighborTracking, Safety, TEMPLATE,
+    VISITS, WAYPOINTS,
 };
 use std::collections::HashMap;
 use std::ops::ControlFlow;
@@ -20,8 +20,6 @@ use thiserror::Error;
 
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
 pub const WIDE: usize = 1225;
-/// The largest radius for which [`CELLS`] suffices.
-pub(super) const NARROW_RADIUS: u8 = 5;
 
 /// The swarm after a tick, or (tick 0) before the first one.
 #[derive(Clone, Copy, Debug)]
@@ -109,8 +107,7 @@ pub fn simulate_with(
 ) -> Result<Outcome, Misplaced> {
     Ok(match AnyEngine::new(scenario)? {
         AnyEngine::Plane(engine) => go(scenario, *engine, external, watch),
-        AnyEngine::Narrow(engine) => go(scenario, *engine, external, watch),
-        AnyEngine::Wide(engine) => go(scenario, *engine, external, watch),
+        AnyEngine::Cells(engine) => go(scenario, *engine, external, watch),
     })
 }
 
@@ -132,24 +129,22 @@ pub enum Unable {
 pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -> Result<Outcome, Unable> {
     Ok(match AnyEngine::new(scenario)? {
         AnyEngine::Plane(engine) => go_on(scenario, *engine, state, watch)?,
-        AnyEngine::Narrow(engine) => go_on(scenario, *engine, state, watch)?,
-        AnyEngine::Wide(engine) => go_on(scenario, *engine, state, watch)?,
+        AnyEngine::Cells(engine) => go_on(scenario, *engine, state, watch)?,
     })
 }
 
-/// What a robot's agent is made of: any guidance with searches of up to `C` cells, which an operator may take over, and any safety layer.
-pub(super) type GuidanceOf<const C: usize> =
-    Commanded<f32, NeighborTracking<f32, MapSharing<AnyGuidance<f32, C, VISITS, TEMPLATE, LEARNED>, MAP_TILES>>>;
-pub(super) type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
+/// What a robot's agent is made of: any guidance law, which an operator may take over, and any safety layer.
+pub type GuidanceOf =
+    Commanded<f32, NeighborTracking<f32, MapSharing<AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>, MAP_TILES>>>;
+#[doc(hidden)]
+pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
 /// The engines that there are. Only here are they made of generic code, so that it is compiled once.
 pub(super) enum AnyEngine {
     /// In the plane or in space.
-    Plane(Box<Engine<PlaneGround, GuidanceOf<WIDE>, SafetyOf>>),
-    /// Cell by cell, with searches of the default size.
-    Narrow(Box<Engine<Grid, GuidanceOf<CELLS>, SafetyOf>>),
-    /// Cell by cell, with larger ones.
-    Wide(Box<Engine<Grid, GuidanceOf<WIDE>, SafetyOf>>),
+    Plane(Box<Engine<PlaneGround, GuidanceOf, SafetyOf>>),
+    /// Cell by cell.
+    Cells(Box<Engine<Grid, GuidanceOf, SafetyOf>>),
 }
 
 impl AnyEngine {
@@ -158,20 +153,15 @@ impl AnyEngine {
         Ok(if let Some(setup) = &scenario.plane {
             let ground = PlaneGround::new(scenario, setup);
             Self::Plane(Box::new(Engine::new(scenario, ground, agents(scenario))))
-        } else if scenario.route.params.radius <= NARROW_RADIUS {
-            let ground = Grid::new(scenario)?;
-            Self::Narrow(Box::new(Engine::new(scenario, ground, agents(scenario))))
         } else {
             let ground = Grid::new(scenario)?;
-            Self::Wide(Box::new(Engine::new(scenario, ground, agents(scenario))))
+            Self::Cells(Box::new(Engine::new(scenario, ground, agents(scenario))))
         })
     }
 }
 
 /// Guidance and safety layer of each robot.
-pub(super) fn agents<const C: usize>(
-    scenario: &Scenario,
-) -> impl Fn(usize) -> (GuidanceOf<C>, SafetyOf) + Send + Sync + 'static + use<C> {
+pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) + Send + Sync + 'static + use<> {
     let kind = |index| {
         // Cell by cell there is neither speed nor distance.
         let group = scenario.plane.as_ref().map(|setup| setup.group(index));

@@ -250,7 +250,7 @@ where
     }
 
     /// What of [`Engine::save`] stands before the robots: what is of the whole, and who else has a radio.
-    pub(super) fn save_head(&self, bytes: &mut Vec<u8>) {
+    pub fn save_head(&self, bytes: &mut Vec<u8>) {
         let whole = Whole {
             seed: self.seed,
             robots: self.robots.len(),
@@ -292,7 +292,7 @@ where
 
     /// The same for the robots that are here, of a run with so many attackers, intruders that are heard and keepers of keys. Returns the
     /// digest of all robots that was saved, and where.
-    pub(super) fn restore_part(&mut self, bytes: &[u8], others: [usize; 3]) -> Result<(usize, u64), StateError> {
+    pub fn restore_part(&mut self, bytes: &[u8], others: [usize; 3]) -> Result<(usize, u64), StateError> {
         let mut from = Reader::new(bytes);
         if self.tick > 0 || self.external.is_some() {
             return Err(StateError::new(0, "this run is under way", "restore into one before its first tick"));
@@ -367,12 +367,12 @@ where
     }
 
     /// What was restored is not what was saved.
-    pub(super) fn differs(at: usize) -> StateError {
+    pub fn differs(at: usize) -> StateError {
         StateError::new(at, "what was restored is not what was saved", SAME)
     }
 
     /// Of all agents together.
-    pub(super) fn digest(&self) -> u64 {
+    pub fn digest(&self) -> u64 {
         let agents = self.computers.par_iter().filter_map(|computer| computer.agent.as_ref());
         agents.map(Agent::digest).reduce(|| 0, u64::wrapping_add)
     }

@@ -21,7 +21,7 @@ pub struct Status {
 
 impl Status {
     /// Of a robot before its first step.
-    pub(super) const fn before(robot: &Robot) -> Self {
+    pub const fn before(robot: &Robot) -> Self {
         Self { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None }
     }
 

@@ -349,8 +349,7 @@ mod torus;
 #[test]
 fn a_robot_takes_no_more_memory_than_this() {
     use super::simulate::{GuidanceOf, SafetyOf};
-    use staya_controller::agent::CELLS;
-    let computer = size_of::<Computer<GuidanceOf<CELLS>, SafetyOf>>();
-    let parts = [computer, size_of::<GuidanceOf<CELLS>>(), size_of::<SafetyOf>(), size_of::<HostWire>()];
+    let computer = size_of::<Computer<GuidanceOf, SafetyOf>>();
+    let parts = [computer, size_of::<GuidanceOf>(), size_of::<SafetyOf>(), size_of::<HostWire>()];
     assert!(parts[0] <= 2600 && parts[1] <= 760 && parts[2] <= 100, "{parts:?}");
 }

@@ -197,7 +197,7 @@ impl FormationMeter {
 }
 
 /// A cell's middle, in cells from that of (0, 0).
-pub(crate) fn in_cells(cell: Cell) -> [f64; 2] {
+pub fn in_cells(cell: Cell) -> [f64; 2] {
     [cell.x, cell.y].map(f64::from)
 }
 

@@ -87,23 +87,23 @@ impl Waits {
     }
 
     /// A robot comes from another rank, behind those that are here.
-    pub(crate) fn admit(&mut self) {
+    pub fn admit(&mut self) {
         self.robots.push(Robot::default());
     }
 
     /// Robot number `index` goes to another rank with its account; the last one takes its place.
-    pub(crate) fn dismiss(&mut self, index: usize) {
+    pub fn dismiss(&mut self, index: usize) {
         self.set_robot(index, Robot::default());
         self.robots.swap_remove(index);
     }
 
     /// For each reason the ticks of all robots together, and of the longest time on end.
-    pub(crate) fn ticks(&self) -> Vec<(u64, u32)> {
+    pub fn ticks(&self) -> Vec<(u64, u32)> {
         self.counts.iter().map(|count| (count.robot_ticks, count.longest_ticks)).collect()
     }
 
     /// Puts them back.
-    pub(crate) fn set_ticks(&mut self, ticks: &[(u64, u32)]) {
+    pub fn set_ticks(&mut self, ticks: &[(u64, u32)]) {
         for (count, &(robot_ticks, longest_ticks)) in self.counts.iter_mut().zip(ticks) {
             (count.robot_ticks, count.longest_ticks) = (robot_ticks, longest_ticks);
         }
@@ -116,7 +116,7 @@ impl Waits {
     }
 
     /// All reasons; robots that have gone to another rank have left their ticks behind.
-    pub(crate) fn all(&self) -> &[WaitCount] {
+    pub fn all(&self) -> &[WaitCount] {
         &self.counts
     }
 

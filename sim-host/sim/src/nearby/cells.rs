@@ -1,7 +1,7 @@
 //! Lattice cells: points sorted into the squares of a uniform grid.
 
 use super::nearest::Nearest;
-use super::tree::margin;
+use super::space::margin;
 use super::{Found, Query, Real, Search, Space, numbered};
 use std::ops::Range;
 

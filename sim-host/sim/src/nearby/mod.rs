@@ -1,31 +1,20 @@
 //! Who is near whom, for everything that the host computes over whole swarms: metrics, experiments without a radio,
 //! benchmarks.
 //!
-//! Searches with one interface, [`Search`], and equal answers to the bit: [`AllPairs`] is the oracle,
-//! [`Cells`] is the one to use, [`Tree`] is a k-d tree by a library, which needs no cell size and suffers least from
-//! points that lie very unevenly. In two or three dimensions, in f32 or f64, in the open or on a torus
-//! ([`Space`]). Two more are here to be measured beside them, those that STA describes: [`MutualPairs`] looks at each pair
-//! once, [`MidpointTree`] is the tree of its listing.
+//! Searches with one interface, [`Search`], and equal answers, bit for bit: [`AllPairs`] is the reference, [`Cells`] is the one to
+//! use. In two or three dimensions, in f32 or f64, in the open or on a torus ([`Space`]).
 //!
 //! Robots never see any of this: they know what arrives as bytes.
 
 mod cells;
-mod midpoint;
-mod mutual;
 mod nearest;
 mod space;
 #[cfg(test)]
 mod tests;
-mod tree;
 
 pub use cells::Cells;
-pub use midpoint::MidpointTree;
-pub use mutual::MutualPairs;
-pub use nearest::Found;
-pub use space::{Real, Space};
-pub use tree::Tree;
-
-use nearest::Nearest;
+pub use nearest::{Found, Nearest};
+pub use space::{Real, Space, margin};
 
 /// What to look for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,7 +78,11 @@ impl<R: Real, const D: usize> Search<R, D> for AllPairs<R, D> {
     }
 }
 
-/// How many points there are.
-fn numbered<R, const D: usize>(points: &[[R; D]]) -> u32 {
+/// The number of points.
+///
+/// # Panics
+/// When there are more than 2^32 - 1.
+#[must_use]
+pub fn numbered<R, const D: usize>(points: &[[R; D]]) -> u32 {
     u32::try_from(points.len()).expect("no more than 2^32 - 1 points")
 }

@@ -3,7 +3,7 @@
 use staya_controller::scalar::Scalar;
 
 /// `f32` or `f64`: what the host computes with.
-pub trait Real: Scalar + Tree {
+pub trait Real: Scalar {
     /// The quotient; by IEEE rules also for zero.
     #[must_use]
     fn over(self, divisor: Self) -> Self;
@@ -15,52 +15,6 @@ pub trait Real: Scalar + Tree {
     /// The number minus a whole multiple of `period`: in `0..period`.
     #[must_use]
     fn modulo(self, period: Self) -> Self;
-}
-
-pub(super) use sealed::Tree;
-
-mod sealed {
-    use kiddo::SquaredEuclidean;
-    use kiddo::immutable::float::kdtree::ImmutableKdTree;
-
-    /// Points in a leaf of the k-d tree: the library's own default.
-    const LEAF: usize = 32;
-
-    /// The k-d tree over numbers of a type. The library's own bounds on them are not public.
-    pub trait Tree: Sized {
-        type Over<const D: usize>: Clone + std::fmt::Debug + Send + Sync;
-
-        fn grow<const D: usize>(points: &[[Self; D]]) -> Self::Over<D>;
-
-        /// Calls `each` with the index of every point nearer than the root of `squared`.
-        fn visit<const D: usize>(tree: &Self::Over<D>, at: &[Self; D], squared: Self, each: &mut dyn FnMut(u32));
-    }
-
-    macro_rules! impl_tree {
-        ($float:ident) => {
-            impl Tree for $float {
-                type Over<const D: usize> = ImmutableKdTree<$float, u32, D, LEAF>;
-
-                fn grow<const D: usize>(points: &[[Self; D]]) -> Self::Over<D> {
-                    ImmutableKdTree::new_from_slice(points)
-                }
-
-                fn visit<const D: usize>(
-                    tree: &Self::Over<D>,
-                    at: &[Self; D],
-                    squared: Self,
-                    each: &mut dyn FnMut(u32),
-                ) {
-                    for found in tree.within_unsorted::<SquaredEuclidean>(at, squared) {
-                        each(found.item);
-                    }
-                }
-            }
-        };
-    }
-
-    impl_tree!(f32);
-    impl_tree!(f64);
 }
 
 macro_rules! impl_real {
@@ -145,4 +99,10 @@ fn shortest<R: Real>(way: R, period: R) -> R {
     } else {
         way
     }
+}
+
+/// More than rounding can lose in differences of such coordinates.
+#[must_use]
+pub fn margin<R: Real>(coordinate: R, length: R) -> R {
+    (coordinate.abs() + length) * R::EPSILON * R::from_i32(8)
 }

@@ -6,7 +6,7 @@ use staya_controller::robot::RobotId;
 
 /// A packet on the air, for who is not where it was sent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Sent {
+pub struct Sent {
     pub(crate) sender: RobotId,
     /// Counts the sender's packets of this tick, those that its bandwidth held back included.
     pub(crate) number: u32,
@@ -30,7 +30,7 @@ impl Radio {
     }
 
     /// What was sent here, for who is elsewhere and can hear it there.
-    pub(crate) fn sent(&self, is_heard: impl Fn([f64; 2]) -> bool) -> impl Iterator<Item = Sent> {
+    pub fn sent(&self, is_heard: impl Fn([f64; 2]) -> bool) -> impl Iterator<Item = Sent> {
         self.medium.sent().filter(move |(packet, _)| is_heard(packet.from_m)).map(|(packet, bytes)| Sent {
             sender: packet.sender,
             number: packet.number,
@@ -40,7 +40,7 @@ impl Radio {
     }
 
     /// The second half of [`Radio::carry`]: everybody here receives what was sent here and elsewhere in `tick`. Returns what became of it.
-    pub(crate) fn receive(&mut self, tick: u32, positions_m: &[[f64; 2]], elsewhere: &[Sent], sent: Counts) -> Counts {
+    pub fn receive(&mut self, tick: u32, positions_m: &[[f64; 2]], elsewhere: &[Sent], sent: Counts) -> Counts {
         if !self.receivers.is_empty() {
             self.medium.add(tick, elsewhere);
         }
@@ -48,24 +48,24 @@ impl Radio {
     }
 
     /// Replaces what became of packets so far, and says what it was.
-    pub(crate) const fn replace_total(&mut self, total: Counts) -> Counts {
+    pub const fn replace_total(&mut self, total: Counts) -> Counts {
         std::mem::replace(&mut self.total, total)
     }
 
     /// Farthest distance at which a packet can be received, metres.
-    pub(crate) const fn range_m(&self) -> f64 {
+    pub const fn range_m(&self) -> f64 {
         self.medium.range_m()
     }
 
     /// A robot comes from elsewhere and is number `index`: a receiver that has heard nothing. Those behind it move up.
-    pub(crate) fn admit(&mut self, index: usize, id: RobotId) {
+    pub fn admit(&mut self, index: usize, id: RobotId) {
         let behind = self.take_from(index);
         self.push(id, None);
         behind.into_iter().for_each(|(id, end)| self.push(id, Some(end)));
     }
 
     /// Robot number `index` goes; the last of the first `robots` takes its place, and those behind it move down.
-    pub(crate) fn dismiss(&mut self, index: usize, robots: usize) {
+    pub fn dismiss(&mut self, index: usize, robots: usize) {
         let mut behind = self.take_from(robots - 1).into_iter();
         if let Some((id, end)) = behind.next()
             && index + 1 < robots

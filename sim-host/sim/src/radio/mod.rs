@@ -12,7 +12,8 @@ mod params;
 mod state;
 mod wire;
 
-pub(crate) use border::Sent;
+#[doc(hidden)]
+pub use border::Sent;
 pub use params::{Burst, RadioParams};
 pub(crate) use state::{End, Weather};
 pub use wire::{HostWire, PEERS, operator, own_wire, ring_wire, wire};

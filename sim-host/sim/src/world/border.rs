@@ -16,7 +16,7 @@ use std::collections::HashMap;
 
 /// How far beyond its own bodies a rank looks, cells; at least 2, for who wants to go where a body wants to go. More takes more bytes
 /// and leaves less open.
-pub(crate) const DEPTH: i16 = 8;
+pub const DEPTH: i16 = 8;
 
 /// Nobody knows yet whether somebody is in the cell.
 const OPEN: u32 = u32::MAX;
@@ -28,14 +28,14 @@ const NOWHERE: Cell = Cell::new(-1, -1);
 
 /// A rectangle of cells, both corners included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct CellBounds {
+pub struct CellBounds {
     pub(crate) low: Cell,
     pub(crate) high: Cell,
 }
 
 impl CellBounds {
     /// The least one around cells; `None` around none.
-    pub(crate) fn around(cells: impl Iterator<Item = Cell>) -> Option<Self> {
+    pub fn around(cells: impl Iterator<Item = Cell>) -> Option<Self> {
         cells.fold(None, |bounds: Option<Self>, cell| {
             let Self { low, high } = bounds.unwrap_or(Self { low: cell, high: cell });
             Some(Self {
@@ -51,7 +51,7 @@ impl CellBounds {
     }
 
     /// How far off another one is; 0: they have a cell in common.
-    pub(crate) fn distance_to(&self, other: &Self) -> i32 {
+    pub fn distance_to(&self, other: &Self) -> i32 {
         let off = |low: i16, high: i16, other_low: i16, other_high: i16| {
             (i32::from(low) - i32::from(other_high)).max(i32::from(other_low) - i32::from(high))
         };
@@ -63,7 +63,7 @@ impl CellBounds {
 
 /// A body of another rank, and what it wants.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Beside {
+pub struct Beside {
     pub(crate) id: RobotId,
     pub(crate) cell: Cell,
     /// Its preferred moves, if it may leave its cell in this tick.
@@ -72,7 +72,7 @@ pub(crate) struct Beside {
 
 /// What a body does in this tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Settled {
+pub struct Settled {
     pub(crate) id: RobotId,
     pub(crate) by: Dir,
 }
@@ -92,7 +92,7 @@ struct Mover {
 }
 
 /// The moves of one tick, until all are settled.
-pub(crate) struct Contest {
+pub struct Contest {
     now: u64,
     movers: Vec<Mover>,
     /// Where those beside are in `movers`.
@@ -105,13 +105,7 @@ pub(crate) struct Contest {
 
 impl World {
     /// The bodies within `depth` cells of `bounds`, with what they are told; without `commands`, with nothing.
-    pub(crate) fn near(
-        &self,
-        tick: u32,
-        bounds: &CellBounds,
-        depth: i16,
-        commands: Option<&[Command<f32>]>,
-    ) -> Vec<Beside> {
+    pub fn near(&self, tick: u32, bounds: &CellBounds, depth: i16, commands: Option<&[Command<f32>]>) -> Vec<Beside> {
         let now = u64::from(tick) * u64::from(UNIT);
         let near = self.bodies.iter().enumerate().filter(|(_, body)| bounds.distance(body.cell) <= i32::from(depth));
         near.map(|(index, body)| {
@@ -126,7 +120,7 @@ impl World {
 
     /// Begins the moves of a tick among bodies of others: all of them that are within [`DEPTH`] cells of `own`, which holds all bodies
     /// that are here.
-    pub(crate) fn contest(
+    pub fn contest(
         &mut self,
         tick: u32,
         commands: &[Command<f32>],
@@ -174,7 +168,7 @@ impl World {
     }
 
     /// Keeps these bodies alone, by their places, in this order.
-    pub(crate) fn keep(&mut self, here: &[u32]) {
+    pub fn keep(&mut self, here: &[u32]) {
         self.bodies = here.iter().map(|&index| self.bodies[index as usize]).collect();
         // New memory: pages of the map that nobody here comes to are never touched.
         self.occupancy = vec![0; self.terrain.cells().len()];
@@ -186,12 +180,12 @@ impl World {
     }
 
     /// A body comes from another rank, behind those that are here; where it is, [`World::put`] has to say.
-    pub(crate) fn admit(&mut self, id: RobotId) {
+    pub fn admit(&mut self, id: RobotId) {
         self.bodies.push(Body::at_rest(id, NOWHERE));
     }
 
     /// A body goes to another rank; the last one takes its place.
-    pub(crate) fn dismiss(&mut self, index: usize) {
+    pub fn dismiss(&mut self, index: usize) {
         let body = self.bodies.swap_remove(index);
         if let Some(at) = self.terrain.index(body.cell) {
             self.occupancy[at] = 0;
@@ -204,7 +198,7 @@ impl World {
     }
 
     /// What [`World::count_collisions`] does not see: cells that a body of another rank has, too, before all that are here.
-    pub(crate) fn count_collisions_beside(&self, beside: &[Beside]) -> u64 {
+    pub fn count_collisions_beside(&self, beside: &[Beside]) -> u64 {
         let mut least = HashMap::<Cell, RobotId>::new();
         for other in beside.iter().filter(|other| self.terrain.is_passable(other.cell)) {
             let id = least.entry(other.cell).or_insert(other.id);
@@ -234,7 +228,7 @@ impl World {
 
 impl Contest {
     /// Goes through all in order. Returns how many that are here are still open.
-    pub(crate) fn round(&mut self, world: &mut World) -> u64 {
+    pub fn round(&mut self, world: &mut World) -> u64 {
         let mut open = 0;
         for mover in &mut self.movers {
             let Some(from) = world.terrain.index(mover.cell) else {
@@ -280,21 +274,21 @@ impl Contest {
     }
 
     /// What has been settled here since this was last asked of anybody within [`DEPTH`] cells of others' bounds.
-    pub(crate) fn settled(&self, bounds: &CellBounds) -> Vec<Settled> {
+    pub fn settled(&self, bounds: &CellBounds) -> Vec<Settled> {
         let own = self.movers.iter().filter(|mover| mover.body & BESIDE == 0 && !mover.is_told);
         let near = own.filter(|mover| bounds.distance(mover.cell) <= i32::from(DEPTH));
         near.filter_map(|mover| Some(Settled { id: mover.id, by: mover.by? })).collect()
     }
 
     /// All that is settled has been told.
-    pub(crate) fn tell(&mut self) {
+    pub fn tell(&mut self) {
         for mover in &mut self.movers {
             mover.is_told = mover.by.is_some();
         }
     }
 
     /// What was settled elsewhere.
-    pub(crate) fn hear(&mut self, settled: &[Settled]) {
+    pub fn hear(&mut self, settled: &[Settled]) {
         for Settled { id, by } in settled {
             if let Some(&at) = self.beside.get(id) {
                 self.movers[at].by = Some(*by);
@@ -303,7 +297,7 @@ impl Contest {
     }
 
     /// Moves the bodies that are here, and forgets the others.
-    pub(crate) fn finish(self, world: &mut World) {
+    pub fn finish(self, world: &mut World) {
         for at in self.cells.into_iter().filter_map(|cell| world.terrain.index(cell)) {
             world.occupancy[at] = 0;
         }

@@ -4,7 +4,8 @@
 //! who moves first; here the order of a tick is drawn anew each tick from (seed, tick, robot), so that no robot has
 //! precedence for good and the order of robots in memory plays no part.
 
-pub(crate) mod border;
+#[doc(hidden)]
+pub mod border;
 pub mod plane;
 mod refusal;
 pub mod scouts;

@@ -76,17 +76,17 @@ impl Scouts {
     }
 
     /// Keeps so many bodies, before the first tick.
-    pub(crate) fn keep(&mut self, bodies: usize) {
+    pub fn keep(&mut self, bodies: usize) {
         self.memories.truncate(bodies);
     }
 
     /// A body comes, behind those that are here.
-    pub(crate) fn admit(&mut self) {
+    pub fn admit(&mut self) {
         self.memories.push(Memory::new());
     }
 
     /// A body goes; the last one takes its place.
-    pub(crate) fn dismiss(&mut self, index: usize) {
+    pub fn dismiss(&mut self, index: usize) {
         self.memories.swap_remove(index);
     }
 }

@@ -1,7 +1,7 @@
 //! One browser's connection: a request, then a file or a WebSocket.
 
-use super::File;
 use super::request::{LONGEST, Refused, Request, Rules};
+use crate::page::File;
 use mio::Registry;
 use mio::net::TcpStream;
 use std::collections::VecDeque;

@@ -7,6 +7,7 @@
 mod connection;
 mod request;
 
+use crate::page::File;
 use connection::{Connection, Outcome};
 use mio::event::Event;
 use mio::net::TcpListener;
@@ -65,17 +66,6 @@ enum ToPages {
     Seen(Client, u64),
     Dismiss(Client),
     End,
-}
-
-/// A file of the page.
-#[derive(Clone, Debug)]
-pub struct File {
-    /// Its name in the address; empty for the page itself.
-    pub name: &'static str,
-    /// Its type, as in MIME.
-    pub kind: &'static str,
-    /// What is in it; in HTML, `NONCE` stands for a number that is drawn for each answer.
-    pub text: String,
 }
 
 /// Why there is no server.

@@ -4,7 +4,7 @@
 use my_swarm::Law;
 use staya_sim::engine::simulate_own;
 use staya_sim::scenario::{Overrides, Scenario};
-use staya_view::recording::RunRecorder;
+use staya_record::recording::RunRecorder;
 use std::{error::Error, fs::File, ops::ControlFlow, path::Path};
 
 fn main() -> Result<(), Box<dyn Error>> {

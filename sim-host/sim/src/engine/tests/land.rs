@@ -299,7 +299,7 @@ fn in_the_plane_a_map_leads_to_the_door_too() {
 fn who_starts_anew_has_its_map_and_nothing_that_it_has_seen() {
     let scenario = scenario(TWO, "[scouting]\nunknown = 1\nassumed = 7\n");
     let mut engine = match super::super::simulate::AnyEngine::new(&scenario).expect("they can be placed") {
-        super::super::simulate::AnyEngine::Wide(engine) => engine,
+        super::super::simulate::AnyEngine::Cells(engine) => engine,
         _ => panic!("they plan on wide windows"),
     };
     for _ in 0..10 {

@@ -12,10 +12,8 @@ macro_rules! with_engines {
         match make() {
             AnyEngine::Plane(_) => $check(
                 &|| match make() { AnyEngine::Plane(engine) => engine, _ => unreachable!() }, $($rest),*),
-            AnyEngine::Narrow(_) => $check(
-                &|| match make() { AnyEngine::Narrow(engine) => engine, _ => unreachable!() }, $($rest),*),
-            AnyEngine::Wide(_) => $check(
-                &|| match make() { AnyEngine::Wide(engine) => engine, _ => unreachable!() }, $($rest),*),
+            AnyEngine::Cells(_) => $check(
+                &|| match make() { AnyEngine::Cells(engine) => engine, _ => unreachable!() }, $($rest),*),
         }
     }};
 }

@@ -7,40 +7,44 @@ use staya_controller::robot::RobotId;
 
 /// A body of another rank, as far as others' nearness depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Beside {
-    pub(crate) id: RobotId,
-    pub(crate) position_m: [f64; 3],
-    pub(crate) radius_m: f64,
-    pub(crate) downwash: f64,
+pub struct Beside {
+    /// The robot.
+    pub id: RobotId,
+    /// Its centre, metres.
+    pub position_m: [f64; 3],
+    /// Its radius, metres.
+    pub radius_m: f64,
+    /// How many times higher than wide its place is, for the air that it blows down.
+    pub downwash: f64,
 }
 
 impl Plane {
     /// How far apart bodies are at most that count as near, metres.
-    pub(crate) const fn reach_m(&self) -> f64 {
+    pub const fn reach_m(&self) -> f64 {
         self.reach_m
     }
 
     /// Keeps these bodies alone, by their places, in this order. What counts as near is what did before.
-    pub(crate) fn keep(&mut self, here: &[u32]) {
+    pub fn keep(&mut self, here: &[u32]) {
         self.discs = here.iter().map(|&index| self.discs[index as usize]).collect();
         self.shut = vec![Vec::new(); here.len()];
     }
 
     /// A body comes from another rank, behind those that are here.
-    pub(crate) fn admit(&mut self, disc: Disc) {
+    pub fn admit(&mut self, disc: Disc) {
         self.discs.push(disc);
         self.shut.push(Vec::new());
     }
 
     /// A body goes to another rank; the last one takes its place.
-    pub(crate) fn dismiss(&mut self, index: usize) {
+    pub fn dismiss(&mut self, index: usize) {
         self.discs.swap_remove(index);
         self.shut.swap_remove(index);
     }
 
     /// What [`Plane::clearance`], which was called before, does not see: pairs of a body here and one of another rank. An overlap is counted
     /// where the body with the lower number is.
-    pub(crate) fn clearance_beside(&self, beside: &[Beside]) -> Clearance {
+    pub fn clearance_beside(&self, beside: &[Beside]) -> Clearance {
         let mut clearance = Clearance::FREE;
         let mut found = Vec::new();
         for other in beside {

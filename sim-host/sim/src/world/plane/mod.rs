@@ -10,7 +10,8 @@ mod shape;
 mod solid;
 mod solids;
 
-pub(crate) use border::Beside;
+#[doc(hidden)]
+pub use border::Beside;
 pub use eyes::{Eyes, Sight};
 pub use shape::{FAR_M, Shape};
 pub use solid::Solid;

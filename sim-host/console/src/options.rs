@@ -1,0 +1,207 @@
+//! Options that several commands have: named values and their help, parameters of routing, coefficients.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Command};
+use staya_controller::agent::SafetyKind;
+use staya_controller::cost::Gain;
+use staya_controller::formation::{Prediction, Recovery};
+use staya_controller::grid::Norm;
+use staya_controller::names::Named;
+use staya_controller::push_out::{Evasion, Model};
+use staya_controller::route::{ExitRule, Replan, RouteParams};
+use staya_controller::shuffle::Sharpness;
+use staya_sim::terrain::generate::Hills;
+
+/// A plan as the command line makes it without any option: every default is said once, in its arguments.
+///
+/// # Panics
+/// When an option has no default.
+pub fn defaults<P: Args>() -> P {
+    let line = P::augment_args(Command::new("defaults").no_binary_name(true));
+    let matches = line.get_matches_from([""; 0]);
+    P::from_arg_matches(&matches).expect("every option has a default")
+}
+
+/// A value as it is written on the command line and in reports: its name with dashes.
+pub fn word(value: impl Named) -> String {
+    value.name().replace('_', "-")
+}
+
+/// Takes one of these values by its name, and says in `--help` what it is.
+pub fn one_of<T: Named + Send + Sync>(values: &'static [(T, &'static str)]) -> impl TypedValueParser<Value = T> {
+    let possible = values.iter().map(|(value, help)| {
+        // A few bytes for the time that the program runs.
+        let possible = PossibleValue::new(&*word(*value).leak()).alias(value.name());
+        if help.is_empty() { possible } else { possible.help(*help) }
+    });
+    PossibleValuesParser::new(possible).map(|given| T::from_name(&given).expect("one of the possible values"))
+}
+
+/// The safety layer of robots in the plane or in space.
+pub fn safety() -> impl TypedValueParser<Value = SafetyKind> {
+    one_of(&[
+        (SafetyKind::Orca, "ORCA in the plane"),
+        (SafetyKind::Fly, "ORCA in space"),
+        (SafetyKind::PushOut, "Push-out; for the goal flock"),
+        (SafetyKind::None, "Nothing"),
+    ])
+}
+
+/// The safety layer of robots that cross: ORCA, exact or looked up.
+pub fn crossing_safety() -> impl TypedValueParser<Value = SafetyKind> {
+    one_of(&[
+        (SafetyKind::Orca, ""),
+        (SafetyKind::Template2k, ""),
+        (SafetyKind::Template8k, ""),
+        (SafetyKind::Template16k, ""),
+        (SafetyKind::Template64k, ""),
+        (SafetyKind::None, ""),
+    ])
+}
+
+/// What push-out makes of a step.
+pub fn model() -> impl TypedValueParser<Value = Model> {
+    one_of(&[(Model::Radial, "1: along the radius"), (Model::Tangential, "2: turned aside")])
+}
+
+/// How many robots push-out evades at once.
+pub fn evasion() -> impl TypedValueParser<Value = Evasion> {
+    one_of(&[(Evasion::Single, "The nearest in the way"), (Evasion::Multiple, "All")])
+}
+
+/// How robots of a formation foresee each other.
+pub fn prediction() -> impl TypedValueParser<Value = Prediction> {
+    one_of(&[
+        (Prediction::Constant, "They go on as they announced"),
+        (Prediction::Reflexive, "They do what the robot itself would do in their place"),
+    ])
+}
+
+/// What the top leader does while somebody is too far behind.
+pub fn recovery() -> impl TypedValueParser<Value = Recovery> {
+    one_of(&[(Recovery::Wait, "It stands"), (Recovery::Def, "It heads for where the others are off to (def)")])
+}
+
+/// A norm of the plane.
+pub fn norm() -> impl TypedValueParser<Value = Norm> {
+    one_of(&[(Norm::Euclidean, "A diagonal move is sqrt 2 long"), (Norm::Chebyshev, "A diagonal move is 1 long")])
+}
+
+/// What natural land is taken to mean.
+pub fn hills() -> impl TypedValueParser<Value = Hills> {
+    one_of(&[
+        (Hills::Even, "Impassability falls by one each cell"),
+        (Hills::Rounded, "The same with rounded distances"),
+        (Hills::Wide, "It falls by one every second cell"),
+        (Hills::Added, "It falls by one each cell, and hills that overlap add up"),
+        (Hills::Rough, "It falls by 0 to 2 each cell, drawn for every cell"),
+    ])
+}
+
+/// How strictly the order of moves follows their costs: ticks that halve a priority, in sixteenths; 0 is greedy.
+pub fn shuffle(word: &str) -> Result<Sharpness, String> {
+    Ok(match gain(word)? {
+        Gain::ZERO => Sharpness::Greedy,
+        half => Sharpness::HalvedPer(half),
+    })
+}
+
+/// Which cells of a window's border end a route.
+fn exit() -> impl TypedValueParser<Value = ExitRule> {
+    one_of(&[
+        (ExitRule::Best, "Any border cell, by path cost and distance to the target (eq. 10)"),
+        (ExitRule::Ray, "Where the ray to the target crosses the border (algorithm 3)"),
+    ])
+}
+
+/// When to search anew.
+pub fn replan() -> impl TypedValueParser<Value = Replan> {
+    one_of(&[
+        (Replan::EachCell, "In each cell (algorithm 1)"),
+        (Replan::UntilChanged, "At the end of the planned way or when something changed on it (KUZ section 3)"),
+    ])
+}
+
+/// Route parameters; what is not given is the controller's default.
+#[derive(Args, Clone, Debug)]
+pub struct RouteOptions {
+    /// Which cells of the window's border end a route.
+    #[arg(long, default_value = "best", value_parser = exit())]
+    exit: ExitRule,
+    /// When the robot searches its way anew.
+    #[arg(long, default_value = "each-cell", value_parser = replan())]
+    pub replan: Replan,
+    /// Weight of travel time; this and the others in steps of 1/16 (0.0625) [default: the controller's].
+    #[arg(long, value_name = "NUMBER", value_parser = gain)]
+    a0: Option<Gain>,
+    /// Ticks that a cell with another robot costs [default: the controller's].
+    #[arg(long, value_name = "TICKS", value_parser = gain)]
+    a1: Option<Gain>,
+    /// Ticks per earlier visit of a cell [default: the controller's].
+    #[arg(long, value_name = "TICKS", value_parser = gain)]
+    a2: Option<Gain>,
+    /// Ticks per cell between exit and target [default: the controller's].
+    #[arg(long, value_name = "TICKS", value_parser = gain)]
+    a3: Option<Gain>,
+}
+
+impl RouteOptions {
+    /// The parameters for a window of that radius, with the default moves (Euclidean, no corner cutting).
+    pub fn params(&self, radius: u8) -> RouteParams {
+        let default = RouteParams::default();
+        RouteParams {
+            radius,
+            exit: self.exit,
+            a0: self.a0.unwrap_or(default.a0),
+            a1: self.a1.unwrap_or(default.a1),
+            a2: self.a2.unwrap_or(default.a2),
+            a3: self.a3.unwrap_or(default.a3),
+            ..default
+        }
+    }
+}
+
+/// The ticks by which a move must cost more to come first half as often; 0: the cheapest always comes first.
+#[must_use]
+pub fn shuffle_ticks(sharpness: Sharpness) -> f64 {
+    match sharpness {
+        Sharpness::Greedy => 0.0,
+        Sharpness::HalvedPer(gain) => f64::from(gain.sixteenths()) / f64::from(Gain::ONE.sixteenths()),
+    }
+}
+
+/// Reads a coefficient: a decimal number that is a whole number of sixteenths.
+pub fn gain(word: &str) -> Result<Gain, String> {
+    let value: f64 = word.parse().map_err(|_| String::from("give a decimal number, such as 2.5"))?;
+    let one = f64::from(Gain::ONE.sixteenths());
+    let largest = f64::from(u16::MAX) / one;
+    if !(0.0..=largest).contains(&value) {
+        return Err(format!("give a number from 0 to {largest}"));
+    }
+    let sixteenths = value * one;
+    let below = libm::floor(sixteenths);
+    if sixteenths != below {
+        let (low, high) = (below / one, (below + 1.0) / one);
+        return Err(format!("coefficients are whole sixteenths; give {low} or {high}"));
+    }
+    Ok(Gain::from_sixteenths(sixteenths as u16))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_are_sixteenths_or_errors_with_the_neighbours() {
+        assert_eq!(gain("3"), Ok(Gain::from_int(3)));
+        assert_eq!(gain("2.5"), Ok(Gain::from_sixteenths(40)));
+        assert_eq!(gain("0.0625"), Ok(Gain::from_sixteenths(1)));
+        assert_eq!(gain("0"), Ok(Gain::ZERO));
+        assert_eq!(gain("4095.9375"), Ok(Gain::from_sixteenths(u16::MAX)));
+        assert!(gain("0.1").unwrap_err().ends_with("give 0.0625 or 0.125"));
+        for bad in ["-1", "4096", "NaN", "inf"] {
+            assert!(gain(bad).unwrap_err().contains("from 0 to 4095.9375"), "{bad}");
+        }
+        assert!(gain("three").unwrap_err().contains("decimal number"));
+    }
+}

@@ -1,0 +1,70 @@
+//! All pairs, each looked at once.
+
+use staya_sim::nearby::{Found, Nearest, Query, Real, Search, Space, numbered};
+
+/// Every pair once: what one has found of the other is turned round for the other (STA, section 2.2: the symmetric
+/// search over all pairs).
+///
+/// Half the distances of [`AllPairs`](staya_sim::nearby::AllPairs), O(n^2) at building, and memory for every pair within the radius. It answers queries
+/// of its radius or less by the points themselves; any other is looked up among all points.
+#[derive(Clone, Debug)]
+pub struct MutualPairs<R, const D: usize> {
+    space: Space<R, D>,
+    radius: R,
+    /// Folded.
+    points: Vec<[R; D]>,
+    /// Who is near each, with the way there.
+    near: Vec<Vec<(u32, [R; D])>>,
+}
+
+impl<R: Real, const D: usize> MutualPairs<R, D> {
+    /// A search over no points yet, for queries of this radius by the points themselves.
+    #[must_use]
+    pub const fn new(space: Space<R, D>, radius: R) -> Self {
+        Self { space, radius, points: Vec::new(), near: Vec::new() }
+    }
+}
+
+impl<R: Real, const D: usize> Search<R, D> for MutualPairs<R, D> {
+    fn rebuild(&mut self, points: &[[R; D]]) {
+        let count = numbered(points);
+        self.points.clear();
+        let folded = points.iter().map(|&point| self.space.fold(point));
+        self.points.extend(folded);
+        self.near.resize(points.len(), Vec::new());
+        self.near.iter_mut().for_each(Vec::clear);
+        let limit = (self.radius * self.radius).min(R::MAX);
+        for one in 0..count {
+            let at = self.points[one as usize];
+            for (other, &point) in (one + 1..count).zip(&self.points[one as usize + 1..]) {
+                let way = self.space.offset(at, point);
+                let mut squared = R::ZERO;
+                for along in way {
+                    squared += along * along;
+                }
+                if squared <= limit {
+                    self.near[one as usize].push((other, way));
+                    self.near[other as usize].push((one, way.map(|along| -along)));
+                }
+            }
+        }
+    }
+
+    fn within(&self, query: &Query<R, D>, found: &mut Vec<Found<R, D>>) {
+        let at = self.space.fold(query.at);
+        let mut nearest = Nearest::new(query, found);
+        let asks = query.except.filter(|&own| {
+            query.radius <= self.radius && self.points.get(own as usize).is_some_and(|&point| point == at)
+        });
+        if let Some(own) = asks {
+            for &(index, way) in &self.near[own as usize] {
+                nearest.offer(index, way);
+            }
+        } else {
+            for (index, &point) in (0..).zip(&self.points) {
+                nearest.offer(index, self.space.offset(at, point));
+            }
+        }
+        nearest.finish();
+    }
+}

@@ -1,0 +1,452 @@
+//! `staya sweep PLAN`: thousands of runs of a scenario, on this machine or on many.
+
+use crate::sweep::aggregate::{self, Point};
+use crate::sweep::merge::Merged;
+use crate::sweep::plan::PlotTable;
+use crate::sweep::run::{estimate, perform};
+use crate::sweep::script::{self, Job};
+use crate::sweep::shard::{Course, Existing, files, perform_shard};
+use crate::sweep::{Plan, Shard, SweepError, pictures, schema};
+use anyhow::Result;
+use clap::{Args, Subcommand};
+use serde::Serialize;
+use staya_console::{Ended, Global, Progress, Stop, print, print_json};
+use staya_sim::record::{make_dir, write_atomically};
+use staya_stats::Summary;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The merged rows, in the folder of results.
+const ROWS: &str = "rows.csv";
+/// Their means, medians and intervals.
+const AGGREGATES: &str = "aggregates.csv";
+/// What the columns of the merged rows are.
+const SCHEMA: &str = "rows.schema.json";
+/// Most points in the table on standard output.
+const SHOWN: usize = 40;
+/// Most figures in it.
+const FIGURES: usize = 4;
+
+/// Run a scenario thousands of times, with other values in its fields.
+#[derive(Args, Clone, Debug)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub struct SweepArgs {
+    #[command(subcommand)]
+    command: Option<SweepCommand>,
+    #[command(flatten)]
+    target: TargetArgs,
+    /// Show how many runs there are, how long they will take and how much they will write; tries three of them.
+    #[arg(long)]
+    dry_run: bool,
+    /// Do one of N equal parts only, as in 3/8; `staya sweep merge` puts the parts together.
+    #[arg(long, value_name = "I/N", default_value_t = Shard::default())]
+    shard: Shard,
+    /// Do the runs that are not there yet.
+    #[arg(long)]
+    resume: bool,
+    /// Forget the rows that are there.
+    #[arg(long, conflicts_with = "resume")]
+    anew: bool,
+}
+
+/// The plan and its results.
+#[derive(Args, Clone, Debug)]
+struct TargetArgs {
+    /// The plan, a .toml file; docs/sweeps.md lists all fields.
+    #[arg(required = true)]
+    plan: Option<PathBuf>,
+    /// Folder for the results [default: out/ and the plan's name].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Subcommand, Clone, Debug)]
+enum SweepCommand {
+    /// Put the rows of all shards together, with means, intervals and pictures.
+    Merge(MergeArgs),
+    /// Draw a figure over one axis or two, of merged rows.
+    Plot(PlotArgs),
+    /// Print a job for Slurm: an array with one core a task.
+    Slurm(SlurmArgs),
+    /// Print a script for GNU parallel, on this machine or on many.
+    Parallel(ParallelArgs),
+}
+
+/// `staya sweep merge`.
+#[derive(Args, Clone, Debug)]
+struct MergeArgs {
+    #[command(flatten)]
+    target: TargetArgs,
+    /// Files of rows from elsewhere, instead of those in the folder.
+    files: Vec<PathBuf>,
+}
+
+/// `staya sweep plot`.
+#[derive(Args, Clone, Debug)]
+struct PlotArgs {
+    #[command(flatten)]
+    target: TargetArgs,
+    /// A figure that the plan measures.
+    #[arg(long, value_name = "NAME")]
+    figure: String,
+    /// The axis from left to right.
+    #[arg(long, value_name = "FIELD")]
+    over: String,
+    /// The second axis: curves if it has up to six values, else a map.
+    #[arg(long, value_name = "FIELD")]
+    and: Option<String>,
+}
+
+/// What scripts have in common.
+#[derive(Args, Clone, Debug)]
+struct ScriptArgs {
+    #[command(flatten)]
+    target: TargetArgs,
+    /// How many parts.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    tasks: u32,
+    /// At most so many at once [default: as many as there are cores].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    at_once: Option<u32>,
+    /// The program, as the hosts find it [default: this one].
+    #[arg(long, value_name = "FILE")]
+    program: Option<String>,
+}
+
+/// `staya sweep slurm`.
+#[derive(Args, Clone, Debug)]
+struct SlurmArgs {
+    #[command(flatten)]
+    script: ScriptArgs,
+    /// Time limit of a task.
+    #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u32).range(1..))]
+    minutes: Option<u32>,
+}
+
+/// `staya sweep parallel`.
+#[derive(Args, Clone, Debug)]
+struct ParallelArgs {
+    #[command(flatten)]
+    script: ScriptArgs,
+    /// A host that ssh reaches, as GNU parallel has it (8/name: eight at once; `:` is this machine); may be repeated.
+    #[arg(long = "host", value_name = "HOST")]
+    hosts: Vec<String>,
+}
+
+impl TargetArgs {
+    fn load(&self) -> Result<(Plan, PathBuf)> {
+        // clap demands it.
+        let plan = Plan::load(self.plan.as_deref().unwrap_or(Path::new("")))?;
+        let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&plan.name));
+        Ok((plan, out))
+    }
+}
+
+impl SweepArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A plan that cannot be read or is wrong, rows that do not go together, files that cannot be written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        match &self.command {
+            Some(SweepCommand::Merge(args)) => args.run(global),
+            Some(SweepCommand::Plot(args)) => args.run(global),
+            Some(SweepCommand::Slurm(args)) => {
+                let text = args.script.with(|plan, job| script::slurm(plan, job, args.minutes))?;
+                print(&text)?;
+                Ok(Ended::Done)
+            }
+            Some(SweepCommand::Parallel(args)) => {
+                let text = args.script.with(|plan, job| script::parallel(plan, job, &args.hosts))?;
+                print(&text)?;
+                Ok(Ended::Done)
+            }
+            None if self.dry_run => self.show(global),
+            None => self.perform(global),
+        }
+    }
+
+    fn show(&self, global: &Global) -> Result<Ended> {
+        let (plan, _) = self.target.load()?;
+        let cost = estimate(&plan);
+        if global.json {
+            print_json(&cost)?;
+            return Ok(Ended::Done);
+        }
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = global.threads.map_or(cores, usize::from).min(cores);
+        let mut text = format!("{} ({}), {}\n", plan.name, plan.fingerprint(), plan.path().display());
+        for axis in plan.axes() {
+            let values = plan.values(axis).unwrap_or_default();
+            let shown = values.iter().take(6).map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            let dots = if values.len() > 6 { ", ..." } else { "" };
+            writeln!(text, "  {axis}: {} values, {shown}{dots}", values.len())?;
+        }
+        let (runs, seeds) = (plan.runs(), plan.seeds());
+        writeln!(
+            text,
+            "  {runs} runs: {} points, {seeds} seeds each; {} figures",
+            runs / seeds,
+            plan.measures().len()
+        )?;
+        let most = if cost.is_whole { "about" } else { "at most" };
+        writeln!(
+            text,
+            "  {most} {} of processor time, {} on {threads} cores (tried {} runs); {} of rows",
+            duration(cost.seconds),
+            duration(cost.seconds / threads as f64),
+            cost.tried,
+            size(cost.bytes)
+        )?;
+        print(&text)?;
+        Ok(Ended::Done)
+    }
+
+    fn perform(&self, global: &Global) -> Result<Ended> {
+        let (plan, out) = self.target.load()?;
+        let stop = Stop::on_ctrl_c()?;
+        let existing = match (self.resume, self.anew) {
+            (true, _) => Existing::Resume,
+            (_, true) => Existing::Forget,
+            _ => Existing::Refuse,
+        };
+        let since = Instant::now();
+        let mut bar = Progress::new("runs", 0, global);
+        let progress = |done, total| {
+            bar.of(total);
+            bar.set(done, String::new);
+        };
+        let goes_on = || !stop.is_requested();
+        let job = |(): &mut (), run| perform(&plan, run, goes_on);
+        let course = perform_shard(&plan, self.shard, &out, existing, job, progress);
+        bar.finish();
+        let course = course?;
+        tell(&course);
+        let mut report = Report::new(&plan, &out);
+        report.wall_seconds = Some(since.elapsed().as_secs_f64());
+        (report.runs, report.done_before, report.done_now) = (course.runs, course.found, course.done);
+        report.interrupted = stop.is_requested();
+        if self.shard.is_whole() && course.missing() == 0 {
+            let merged = Merged::read(&plan, &files(&out)?)?;
+            report.take(&merged)?;
+        }
+        report.print(global)?;
+        Ok(if course.missing() > 0 { Ended::by(&stop) } else { Ended::Done })
+    }
+}
+
+/// Says what was unusual.
+fn tell(course: &Course) {
+    if course.torn > 0 {
+        eprintln!("{} bytes of a row that had been cut off are gone; its run was done again", course.torn);
+    }
+    if let Some((count, why)) = &course.impossible {
+        eprintln!("{count} runs are impossible and have no figures; the first: {why}");
+    }
+}
+
+impl MergeArgs {
+    fn run(&self, global: &Global) -> Result<Ended> {
+        let (plan, out) = self.target.load()?;
+        let (sources, place) = match &self.files[..] {
+            [] => (files(&out)?, out.join("shards")),
+            given => (given.to_vec(), out.clone()),
+        };
+        let fills = format!(
+            "`staya sweep {} --out {} --resume` does them, if all shards are in {}",
+            plan.path().display(),
+            out.display(),
+            out.join("shards").display()
+        );
+        let merged = Merged::read(&plan, &sources)?.whole(&plan, &place, &fills)?;
+        let mut report = Report::new(&plan, &out);
+        report.runs = plan.runs();
+        report.done_before = plan.runs();
+        report.doubles = merged.doubles;
+        report.take(&merged)?;
+        report.print(global)?;
+        Ok(Ended::Done)
+    }
+}
+
+impl PlotArgs {
+    fn run(&self, global: &Global) -> Result<Ended> {
+        let (plan, out) = self.target.load()?;
+        let plot = PlotTable { figure: self.figure.clone(), over: self.over.clone(), and: self.and.clone() };
+        plan.check_plot(&plot)
+            .map_err(|(field, what, remedy)| SweepError::new(format_args!("--{field}"), what, remedy))?;
+        let merged = Merged::reread(&plan, &out.join(ROWS))?;
+        let files = pictures::draw(&plan, &merged, &plot, &out.join("plots"))?;
+        if global.json {
+            print_json(&BTreeMap::from([("files", &files)]))?;
+        } else {
+            let lines = files.iter().map(|file| format!("{}\n", file.display()));
+            print(&lines.collect::<String>())?;
+        }
+        Ok(Ended::Done)
+    }
+}
+
+impl ScriptArgs {
+    fn with(&self, make: impl FnOnce(&Plan, &Job<'_>) -> Result<String, SweepError>) -> Result<String> {
+        let (plan, out) = self.target.load()?;
+        // Jobs begin in folders of their own.
+        let absolute = |path: &Path| std::path::absolute(path);
+        let program = match &self.program {
+            Some(program) => program.clone(),
+            None => std::env::current_exe()?.display().to_string(),
+        };
+        let (file, out) = (absolute(plan.path())?, absolute(&out)?);
+        let job = Job { program: &program, plan: &file, out: &out, tasks: self.tasks, at_once: self.at_once };
+        Ok(make(&plan, &job)?)
+    }
+}
+
+/// What came of a sweep, for programs and for readers.
+#[derive(Debug, Serialize)]
+struct Report<'a> {
+    plan: &'a str,
+    fingerprint: String,
+    /// Of the plan or the shard.
+    runs: u64,
+    done_before: u64,
+    done_now: u64,
+    /// Rows that stood in two files, alike.
+    doubles: u64,
+    interrupted: bool,
+    wall_seconds: Option<f64>,
+    points: Vec<PointFigures>,
+    files: Vec<PathBuf>,
+    #[serde(skip)]
+    out: &'a Path,
+    #[serde(skip)]
+    source: &'a Plan,
+}
+
+/// A point and its figures.
+#[derive(Debug, Serialize)]
+struct PointFigures {
+    runs: usize,
+    axes: BTreeMap<String, String>,
+    figures: BTreeMap<String, Option<Summary>>,
+    #[serde(skip)]
+    values: Vec<String>,
+}
+
+impl<'a> Report<'a> {
+    fn new(plan: &'a Plan, out: &'a Path) -> Self {
+        Self {
+            plan: &plan.name,
+            fingerprint: plan.fingerprint(),
+            runs: 0,
+            done_before: 0,
+            done_now: 0,
+            doubles: 0,
+            interrupted: false,
+            wall_seconds: None,
+            points: Vec::new(),
+            files: Vec::new(),
+            out,
+            source: plan,
+        }
+    }
+
+    /// Writes rows, aggregates and pictures.
+    fn take(&mut self, merged: &Merged) -> Result<()> {
+        let (plan, out) = (self.source, self.out);
+        make_dir(out)?;
+        let points = aggregate::points(plan, merged);
+        let aggregates = aggregate::text(plan, &points);
+        for (name, text) in [(ROWS, merged.text(plan)), (SCHEMA, schema(plan)), (AGGREGATES, aggregates)] {
+            write_atomically(&out.join(name), text.as_bytes())?;
+            self.files.push(out.join(name));
+        }
+        for plot in pictures::plots(plan) {
+            self.files.extend(pictures::draw(plan, merged, &plot, &out.join("plots"))?);
+        }
+        let of = |point: &Point| PointFigures {
+            runs: point.runs,
+            axes: plan.axes().map(str::to_owned).zip(point.values.iter().cloned()).collect(),
+            figures: plan.measures().iter().cloned().zip(point.figures.iter().copied()).collect(),
+            values: point.values.clone(),
+        };
+        self.points = points.iter().map(of).collect();
+        Ok(())
+    }
+
+    fn print(&self, global: &Global) -> Result<()> {
+        if global.json { print_json(self) } else { print(&self.table()?) }
+    }
+
+    fn table(&self) -> Result<String, std::fmt::Error> {
+        let (plan, out) = (self.source, self.out.display());
+        let mut text = String::new();
+        let done = self.done_before + self.done_now;
+        write!(text, "{} ({}): {done} of {} runs", self.plan, self.fingerprint, self.runs)?;
+        if let Some(seconds) = self.wall_seconds {
+            write!(text, ", {} of them now, in {seconds:.1} s", self.done_now)?;
+        }
+        text.push('\n');
+        if self.doubles > 0 {
+            writeln!(text, "{} rows stood in two files, alike", self.doubles)?;
+        }
+        if done < self.runs {
+            let file = plan.path().display();
+            writeln!(text, "stopped early; `staya sweep {file} --out {out} --resume` does the others")?;
+        }
+        if !self.points.is_empty() && self.points.len() <= SHOWN {
+            self.points_table(&mut text)?;
+        }
+        if self.files.is_empty() {
+            return Ok(text);
+        }
+        writeln!(text, "written to {out}")?;
+        for file in &self.files {
+            writeln!(text, "  {}", file.strip_prefix(self.out).unwrap_or(file).display())?;
+        }
+        Ok(text)
+    }
+
+    /// The first figures of each point: mean and half the width of its 95 % interval.
+    fn points_table(&self, text: &mut String) -> std::fmt::Result {
+        let plan = self.source;
+        let measures = &plan.measures()[..plan.measures().len().min(FIGURES)];
+        let mut lines = vec![plan.axes().map(str::to_owned).chain(measures.iter().cloned()).collect::<Vec<_>>()];
+        for point in &self.points {
+            let figures = measures.iter().map(|name| match point.figures.get(name).copied().flatten() {
+                None => "-".to_owned(),
+                Some(Summary { mean, mean_error95: Some(error), .. }) => format!("{mean:.4} +- {error:.4}"),
+                Some(summary) => format!("{:.4}", summary.mean),
+            });
+            lines.push(point.values.iter().cloned().chain(figures).collect());
+        }
+        let columns = lines[0].len();
+        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..columns).map(width).collect();
+        for line in &lines {
+            let cells = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:>width$}"));
+            writeln!(text, "  {}", cells.collect::<Vec<_>>().join("  "))?;
+        }
+        Ok(())
+    }
+}
+
+/// Seconds as a person says them.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// Bytes as a person says them.
+fn size(bytes: u64) -> String {
+    match bytes {
+        b if b < 10_000 => format!("{b} bytes"),
+        b if b < 10_000_000 => format!("{:.0} kB", b as f64 / 1e3),
+        b => format!("{:.0} MB", b as f64 / 1e6),
+    }
+}

@@ -1,0 +1,151 @@
+//! Robots that get in each other's way as badly as can be: [`swap`] over a circle, [`doorway`] through a gap, and
+//! fourteen other [`cases`].
+//!
+//! Every robot is a whole controller behind ORCA and knows of the others what the radio delivers: places rounded to a
+//! millimetre, one tick old. Plain ORCA jams in all of these.
+
+pub mod cases;
+pub mod doorway;
+mod report;
+pub mod swap;
+
+use crate::sweep::Value;
+use anyhow::{Result, ensure};
+use serde::Serialize;
+use staya_console::options::word;
+use staya_controller::agent::SafetyKind;
+use staya_controller::grid::UNIT;
+use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::PushOutParams;
+use staya_plot::flock::Sheet;
+use staya_plot::motion_sheet;
+use staya_sim::engine::{Outcome, simulate};
+use staya_sim::radio::RadioParams;
+use staya_sim::record::{Options, Recorder, RobotRow};
+use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
+use staya_sim::world::plane::Abilities;
+use std::ops::ControlFlow;
+
+/// What the runs have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Conditions {
+    /// Time from one decision to the next, seconds: overlaps depend on it.
+    pub step_s: f64,
+    /// Highest speed, m/s.
+    pub speed_mps: f64,
+    /// How far the radio reaches, metres. Robots that head for each other must hear of each other a horizon before they meet.
+    pub range_m: f64,
+    /// Share of packets that get lost.
+    pub loss: f64,
+    /// What keeps robots apart.
+    pub safety: SafetyKind,
+}
+
+impl Default for Conditions {
+    /// 0.05 s, 0.5 m/s, 3 m, no losses, ORCA.
+    fn default() -> Self {
+        Self { step_s: 0.05, speed_mps: 0.5, range_m: 3.0, loss: 0.0, safety: SafetyKind::Orca }
+    }
+}
+
+impl Conditions {
+    /// Whether robots can be run so, and start so far off.
+    fn check(&self, noise_m: f64) -> Result<()> {
+        for (name, value, low, high) in [
+            ("--noise", noise_m, 0.0, 100.0),
+            ("--step", self.step_s, 0.001, 10.0),
+            ("--speed", self.speed_mps, 0.01, 32.0),
+            ("--range", self.range_m, 0.0, 1e6),
+            ("--loss", self.loss, 0.0, 1.0),
+        ] {
+            ensure!((low..=high).contains(&value), "{name} {value} is out of range: give {low} to {high}");
+        }
+        Ok(())
+    }
+
+    /// The same as parameters of rows.
+    fn given(&self, noise_m: f64) -> Vec<(&'static str, Value)> {
+        let Self { step_s, speed_mps, range_m, loss, safety } = *self;
+        vec![
+            ("noise_m", noise_m.into()),
+            ("step_s", step_s.into()),
+            ("speed_mps", speed_mps.into()),
+            ("range_m", range_m.into()),
+            ("loss", loss.into()),
+            ("safety", word(safety).into()),
+        ]
+    }
+
+    /// Robots of a size that go to places, and count as being there at a distance; metres.
+    fn group(&self, radius_m: f64, tolerance_m: f64) -> RobotGroup {
+        self.group_at(self.speed_mps, radius_m, tolerance_m)
+    }
+
+    /// The same of another highest speed, m/s.
+    fn group_at(&self, max_speed_mps: f64, radius_m: f64, tolerance_m: f64) -> RobotGroup {
+        let abilities = Abilities { max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
+        let group = RobotGroup::new(abilities, radius_m).to_places(tolerance_m);
+        group.behind(self.safety, AvoidParams::default(), PushOutParams::new(1.0))
+    }
+
+    /// The scenario of one run that is given `longest_s` seconds.
+    fn scenario(&self, name: &str, seed: u64, longest_s: f64, setup: PlaneSetup) -> Scenario {
+        let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
+        let ticks = libm::ceil(longest_s / self.step_s) as u32;
+        Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
+    }
+
+    /// Seconds after which each robot had arrived, and stayed.
+    fn arrivals_s(&self, outcome: &Outcome) -> Vec<Option<f64>> {
+        let seconds = |units: u64| units as f64 / f64::from(UNIT) * self.step_s;
+        let times = outcome.arrival_times.iter();
+        times.map(|time| time.map(seconds)).collect()
+    }
+}
+
+/// Runs a scenario until all that have a goal have arrived; `see` sees the robots before the first tick and after each.
+/// `None` when `goes_on` says so before its end.
+fn run(
+    scenario: &Scenario,
+    goes_on: &dyn Fn() -> bool,
+    mut see: impl FnMut(&mut dyn Iterator<Item = RobotRow>),
+) -> Option<Outcome> {
+    let mut stopped = false;
+    let starts = scenario.plane.iter().flat_map(|plane| &plane.starts);
+    let sent = starts.filter(|start| !start.places.is_empty()).count();
+    let outcome = simulate(scenario, |moment, robots| {
+        see(robots);
+        if moment.arrived >= sent {
+            ControlFlow::Break(())
+        } else if goes_on() {
+            ControlFlow::Continue(())
+        } else {
+            stopped = true;
+            ControlFlow::Break(())
+        }
+    });
+    let outcome = outcome.expect("bodies in the plane can start anywhere");
+    (!stopped).then_some(outcome)
+}
+
+/// Four moments of a run, with this title.
+fn picture(title: &str, scenario: &Scenario) -> Sheet {
+    let in_memory = "a recorder without files cannot fail";
+    let mut recorder = Recorder::in_memory(Options::default());
+    let outcome = simulate(scenario, |moment, robots| {
+        recorder.tick(moment.row, robots).expect(in_memory);
+        ControlFlow::Continue(())
+    });
+    let _ = outcome.expect("bodies in the plane can start anywhere");
+    let history = recorder.finish().expect(in_memory);
+    let setup = scenario.plane.as_ref().expect("it was made in the plane");
+    motion_sheet(title, setup, None, &history)
+}
+
+/// Least gap of a run, metres; `None` when nobody came near.
+fn gap(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+#[cfg(test)]
+mod tests;

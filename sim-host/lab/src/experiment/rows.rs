@@ -1,0 +1,397 @@
+//! The rows of experiments: what a sweep writes of its runs ([`crate::sweep::row`]), by the same machine.
+
+use super::{Experiment, GoesOn};
+use crate::sweep::design::Design;
+use crate::sweep::merge::Merged;
+use crate::sweep::row::{Outcome, Row};
+use crate::sweep::run::Finished;
+use crate::sweep::shard::{Course, Existing, files, perform_shard};
+use crate::sweep::{Figure, Shard, Value, aggregate, jobs, schema};
+use anyhow::{Result, ensure};
+use clap::Args;
+use staya_controller::digest::{chained, digest};
+use staya_sim::record::{Error, write_atomically};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+/// The merged rows, in the folder of results; there when all runs are done.
+const ROWS: &str = "rows.csv";
+/// Their means, medians and intervals.
+const AGGREGATES: &str = "aggregates.csv";
+/// Changes when the same plan would mean other rows.
+const FORMAT: u64 = 1;
+
+/// What is shown of each figure: its name, what it says, where it stands.
+pub type Each<'a> = dyn FnMut(&'static str, &'static str, &mut dyn Cell) + 'a;
+
+/// What a job gives, as figures of a row.
+pub trait Record: Send {
+    /// Shows all figures, always the same ones in the same order. What is written there is what a row says.
+    fn figures(&mut self, each: &mut Each<'_>);
+
+    /// The fingerprint of the run's trace; `None`: no run of the engine.
+    fn trace_hash(&mut self) -> Option<&mut u64> {
+        None
+    }
+}
+
+/// A figure of a record.
+pub trait Cell {
+    /// What it is; `None`: there is none.
+    fn get(&self) -> Option<f64>;
+    /// Makes it so. `false`: it cannot be that.
+    fn set(&mut self, value: Option<f64>) -> bool;
+}
+
+/// Beyond this, not every whole number is a double.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+macro_rules! whole_cells {
+    ($($kind:ty),*) => {$(
+        impl Cell for $kind {
+            fn get(&self) -> Option<f64> {
+                Some(*self as f64)
+            }
+
+            fn set(&mut self, value: Option<f64>) -> bool {
+                let whole = value.filter(|value| (0.0..=EXACT).contains(value) && libm::trunc(*value) == *value);
+                whole.map(|value| *self = value as $kind).is_some()
+            }
+        }
+    )*};
+}
+
+whole_cells!(u32, u64, usize);
+
+impl Cell for f64 {
+    fn get(&self) -> Option<f64> {
+        Some(*self)
+    }
+
+    fn set(&mut self, value: Option<f64>) -> bool {
+        value.map(|value| *self = value).is_some()
+    }
+}
+
+impl Cell for bool {
+    fn get(&self) -> Option<f64> {
+        Some(f64::from(u8::from(*self)))
+    }
+
+    fn set(&mut self, value: Option<f64>) -> bool {
+        let is_truth = value == Some(0.0) || value == Some(1.0);
+        *self = value == Some(1.0);
+        is_truth
+    }
+}
+
+impl<T: Cell + Default> Cell for Option<T> {
+    fn get(&self) -> Option<f64> {
+        self.as_ref().and_then(Cell::get)
+    }
+
+    fn set(&mut self, value: Option<f64>) -> bool {
+        let mut inner = T::default();
+        let fits = value.is_none() || inner.set(value);
+        *self = value.map(|_| inner);
+        fits
+    }
+}
+
+/// What to do about rows: the options of all experiments.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Keeping {
+    /// Do the runs that are not there yet.
+    #[arg(long, global = true)]
+    pub resume: bool,
+    /// Forget the rows that are there.
+    #[arg(long, global = true, conflicts_with = "resume")]
+    pub anew: bool,
+    /// Do one of N equal parts only, as in 3/8; with all parts in the folder, --resume reports.
+    #[arg(long, global = true, value_name = "I/N", default_value_t = Shard::default())]
+    pub shard: Shard,
+}
+
+impl Keeping {
+    /// What becomes of rows that are there. Those of a sweep that came to its end are replaced, as any results are; those of one
+    /// that was cut short are somebody's hours.
+    fn existing(&self, out: &Path) -> Existing {
+        let is_whole = || self.shard.is_whole() && out.join(ROWS).is_file();
+        match (self.resume, self.anew) {
+            (true, _) => Existing::Resume,
+            (_, true) => Existing::Forget,
+            _ if is_whole() => Existing::Forget,
+            _ => Existing::Refuse,
+        }
+    }
+}
+
+/// A plan as a design of runs.
+pub(crate) struct Sheet<'a, E> {
+    plan: &'a E,
+    fingerprint: u64,
+    parameters: Vec<&'static str>,
+    /// Names, and what they say.
+    figures: Vec<(&'static str, &'static str)>,
+}
+
+impl<'a, E: Experiment> Sheet<'a, E> {
+    /// Of a plan that was checked.
+    pub fn new(plan: &'a E) -> Self {
+        let (mut figures, mut parameters) = (Vec::new(), Vec::new());
+        if plan.points() > 0 {
+            plan.blank(0, 0).figures(&mut |name, meaning, _| figures.push((name, meaning)));
+            parameters.extend(plan.given(0).iter().map(|(name, _)| *name));
+        }
+        let mut fingerprint = chained(FORMAT, digest(E::NAME.as_bytes()));
+        let mut add = |text: &str| fingerprint = chained(fingerprint, digest(text.as_bytes()));
+        parameters.iter().for_each(|name| add(name));
+        figures.iter().for_each(|(name, _)| add(name));
+        for point in 0..plan.points() {
+            plan.given(point).iter().for_each(|(_, value)| add(&format!("{value:?}")));
+            add(&format!("{} {}", plan.runs(), plan.seed(point, 0)));
+        }
+        Self { plan, fingerprint, parameters, figures }
+    }
+
+    /// Point, and number of the run there.
+    fn place(&self, run: u64) -> (usize, u32) {
+        let runs = self.runs_per_point();
+        ((run / runs) as usize, (run % runs) as u32)
+    }
+
+    fn row(&self, number: u64, run: &mut E::Run) -> Row {
+        let mut figures = Vec::new();
+        run.figures(&mut |_, _, cell| figures.push(Figure(cell.get())));
+        let trace_hash = run.trace_hash().map_or(String::new(), |hash| format!("{hash:016x}"));
+        Row { run: number, outcome: Outcome::Done, figures, trace_hash }
+    }
+
+    /// Writes what a row says into a run; `false`: no run gives such a row.
+    fn read(&self, row: &Row, run: &mut E::Run) -> bool {
+        let (mut cells, mut fits) = (row.figures.iter(), true);
+        run.figures(&mut |_, _, cell| fits &= cells.next().is_some_and(|figure| cell.set(figure.0)));
+        if let Some(hash) = run.trace_hash() {
+            let read = u64::from_str_radix(&row.trace_hash, 16);
+            fits &= read.is_ok();
+            *hash = read.unwrap_or_default();
+        }
+        fits
+    }
+}
+
+impl<E: Experiment> Design for Sheet<'_, E> {
+    fn name(&self) -> &str {
+        E::NAME
+    }
+
+    fn fingerprint(&self) -> String {
+        format!("{:016x}", self.fingerprint)
+    }
+
+    fn runs(&self) -> u64 {
+        self.plan.points() as u64 * self.runs_per_point()
+    }
+
+    fn runs_per_point(&self) -> u64 {
+        u64::from(self.plan.runs()).max(1)
+    }
+
+    fn parameters(&self) -> Vec<String> {
+        self.parameters.iter().map(ToString::to_string).collect()
+    }
+
+    fn values(&self, run: u64) -> Vec<String> {
+        let cell = |(_, value): (_, Value)| value.to_string().replace([',', '"', '\n'], "_");
+        self.plan.given(self.place(run).0).into_iter().map(cell).collect()
+    }
+
+    fn seed(&self, run: u64) -> u64 {
+        let (point, run) = self.place(run);
+        self.plan.seed(point, run)
+    }
+
+    fn figures(&self) -> Vec<String> {
+        self.figures.iter().map(|(name, _)| (*name).to_owned()).collect()
+    }
+
+    fn meaning(&self, figure: &str) -> String {
+        let known = self.figures.iter().find(|(name, _)| *name == figure);
+        known.map_or(String::new(), |(_, meaning)| (*meaning).to_owned())
+    }
+
+    fn at_once(&self) -> usize {
+        if E::ALONE { 1 } else { usize::MAX }
+    }
+
+    /// All points in step, so that an early end leaves about equally many runs of each.
+    fn turn(&self, run: u64) -> u64 {
+        let (point, run) = self.place(run);
+        u64::from(run) * self.plan.points() as u64 + point as u64
+    }
+}
+
+/// The runs of an experiment that are to be made, and where their rows go.
+pub struct Jobs<'a, E> {
+    sheet: Sheet<'a, E>,
+    goes_on: &'a GoesOn<'a>,
+    /// Folder and options; `None`: rows are not kept.
+    place: Option<(&'a Path, &'a Keeping)>,
+    course: Mutex<Option<Course>>,
+}
+
+impl<'a, E: Experiment> Jobs<'a, E> {
+    /// Of a plan that was checked. `goes_on` is told how many are done, and asked again and again, from any thread.
+    pub(crate) fn new(plan: &'a E, goes_on: &'a GoesOn<'a>, place: Option<(&'a Path, &'a Keeping)>) -> Self {
+        Self { sheet: Sheet::new(plan), goes_on, place, course: Mutex::new(None) }
+    }
+
+    /// The folder of results, where more than rows can be kept of a run; `None`: nothing is kept.
+    #[must_use]
+    pub fn folder(&self) -> Option<&Path> {
+        self.place.map(|(out, _)| out)
+    }
+
+    /// Whether to go on with a run that is under way.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        (self.goes_on)(0)
+    }
+
+    /// Makes the runs that are not there yet: `job` is told its point and the number of its run; `None` ends everything.
+    /// Returned is what is there now: of each point its runs from the first one to the first that is missing.
+    ///
+    /// A job must not depend on what its scratch memory holds.
+    ///
+    /// # Errors
+    /// That of the first job that fails; rows that do not go with the plan, or cannot be written.
+    pub fn each<S: Default>(
+        &self,
+        job: impl Fn(&mut S, usize, u32) -> Result<Option<E::Run>> + Sync,
+    ) -> Result<Vec<Vec<E::Run>>> {
+        let sheet = &self.sheet;
+        let (made, wrong) = (Mutex::new(BTreeMap::new()), Mutex::new(None));
+        let one = |scratch: &mut S, number: u64| {
+            if !self.goes_on() {
+                return None;
+            }
+            let since = Instant::now();
+            let (point, run) = sheet.place(number);
+            match job(scratch, point, run) {
+                Ok(run) => {
+                    let mut run = run?;
+                    let row = sheet.row(number, &mut run);
+                    made.lock().unwrap_or_else(PoisonError::into_inner).insert(number, run);
+                    Some(Finished { row, seconds: since.elapsed().as_secs_f64(), refusal: None })
+                }
+                Err(error) => {
+                    let mut wrong = wrong.lock().unwrap_or_else(PoisonError::into_inner);
+                    // Of several the first, whoever was quicker.
+                    if wrong.as_ref().is_none_or(|(before, _)| sheet.turn(number) < *before) {
+                        *wrong = Some((sheet.turn(number), error));
+                    }
+                    None
+                }
+            }
+        };
+        let rows = match self.place {
+            Some((out, keeping)) => {
+                let progress = |done, _| _ = (self.goes_on)(done as usize);
+                let course = perform_shard(sheet, keeping.shard, out, keeping.existing(out), one, progress)?;
+                *self.course.lock().unwrap_or_else(PoisonError::into_inner) = Some(course);
+                Merged::read(sheet, &files(out)?)?.rows
+            }
+            None => in_memory(sheet, self.goes_on, one),
+        };
+        if let Some((_, error)) = wrong.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
+        let mut made = made.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut by_point: Vec<Vec<E::Run>> = (0..sheet.plan.points()).map(|_| Vec::new()).collect();
+        for row in rows {
+            let (point, number) = sheet.place(row.run);
+            let mut run = made.remove(&row.run).unwrap_or_else(|| sheet.plan.blank(point, number));
+            // Figures are computed of what the rows say, whoever made them.
+            ensure!(sheet.read(&row, &mut run), "run {} has a row that no run gives; begin --anew", row.run);
+            if by_point[point].len() == number as usize {
+                by_point[point].push(run);
+            }
+        }
+        Ok(by_point)
+    }
+
+    /// How the runs went, if rows are kept.
+    pub(crate) fn course(&self) -> Option<Course> {
+        self.course.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Removes the files that say that all is done, when it will no longer be so.
+    ///
+    /// # Errors
+    /// A file cannot be removed.
+    pub(crate) fn clear(&self) -> Result<(), Error> {
+        let Some((out, keeping)) = self.place else {
+            return Ok(());
+        };
+        if keeping.existing(out) != Existing::Forget || !keeping.shard.is_whole() {
+            return Ok(());
+        }
+        // Rows before the file that says that they are whole: whoever is killed here finds results to replace.
+        for file in files(out)?.into_iter().chain([AGGREGATES, ROWS].map(|name| out.join(name))) {
+            if file.exists() {
+                std::fs::remove_file(&file).map_err(Error::new("remove", &file))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes all rows in order, what their columns are, and their means; names the files.
+    ///
+    /// # Errors
+    /// A file cannot be read or written.
+    pub(crate) fn write(&self) -> Result<Vec<PathBuf>> {
+        let Some((out, _)) = self.place else {
+            return Ok(Vec::new());
+        };
+        let merged = Merged::read(&self.sheet, &files(out)?)?;
+        let mut texts = vec![("rows.schema.json", schema(&self.sheet)), (ROWS, merged.text(&self.sheet))];
+        // Means of one are the rows again.
+        if self.sheet.runs_per_point() > 1 {
+            let points = aggregate::points(&self.sheet, &merged);
+            texts.insert(0, (AGGREGATES, aggregate::text(&self.sheet, &points)));
+        }
+        let mut written = Vec::new();
+        for (name, text) in texts {
+            write_atomically(&out.join(name), text.as_bytes())?;
+            written.push(out.join(name));
+        }
+        Ok(written)
+    }
+}
+
+/// The same without files: the rows in order.
+fn in_memory<S: Default>(
+    sheet: &dyn Design,
+    goes_on: &GoesOn<'_>,
+    one: impl Fn(&mut S, u64) -> Option<Finished> + Sync,
+) -> Vec<Row> {
+    let mut order: Vec<u64> = (0..sheet.runs()).collect();
+    order.sort_by_key(|&run| sheet.turn(run));
+    let mut rows = Vec::new();
+    let take = |_, finished: Option<Finished>| {
+        let Some(finished) = finished else {
+            return ControlFlow::Break(());
+        };
+        rows.push(finished.row);
+        if goes_on(rows.len()) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    jobs::each(order.len(), sheet.at_once(), |scratch, index| one(scratch, order[index]), take);
+    rows.sort_by_key(|row| row.run);
+    rows
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,352 @@
+//! The goal flock of V. E. Pavlovsky and V. V. Pavlovsky ("Mathematical model of a two-dimensional homogeneous flock of
+//! robots", PAV): 225 robots, three goals, and how much of a group they are over K1 / K2 and R_nbh.
+//!
+//! Robots start at random in a square, go to the middle of the goals together, and there each draws one of them. As
+//! the paper has it, each knows all within R_nbh ([`Knowledge::All`]) and push-out keeps them apart; `--knows
+//! packets` makes them agents with sixteen neighbours each, behind any safety layer. The paper sweeps K1 from 0 to
+//! 150 at R_MinDist = 10 and R_nbh = 40 and tells neither K2 nor K3, nor distances: here K2 = 50 and K3 = 100, goals
+//! are 614 to 950 m away, robots go at 10 m/s.
+//!
+//! **Group order as numbers**, all over the way to the middle (until a tenth of the robots were there; from then on
+//! they part): company (how many others are within four R_MinDist of a robot), the share of robots in the largest
+//! group (linked within two R_MinDist), polarisation (length of the mean direction), and the crowd's radius (root
+//! mean square) over that of its start. A robot has gathered once it was as near to the middle as half as much again
+//! as the lattice of those who go to one goal.
+//!
+//! **What a group is compared with.** K2 = 0 makes robots that are independent of each other, but for not touching:
+//! the company that they have comes from the start and from the common goal, and not from K2. Points are compared
+//! with those of K2 = 0 and all else equal, K1 / K3 too. So compared, company rises with K2 and with R_nbh and comes
+//! to nothing where K1 is far above K2, as the paper says, whatever robots know and whatever is behind the flock.
+//!
+//! **What does not show it** is the share of the largest group from a dense start (`--start-side 2`), which was
+//! measured here first: such robots are one group already, 0.99 of them, without any K2, and what K2 does is to draw
+//! them together locally, into clumps, so that more of it makes several groups of one.
+
+mod direct;
+mod pictures;
+mod report;
+mod scene;
+mod setting;
+mod threshold;
+pub mod tune;
+mod watch;
+
+pub use report::{Point, Report};
+pub use setting::{Knowledge, Setting};
+pub use threshold::Threshold;
+pub use watch::Run;
+
+use crate::arena::Arena;
+use crate::experiment::rows::Jobs;
+use crate::experiment::{Experiment, check_runs};
+use crate::sweep::Value;
+use anyhow::{Result, ensure};
+use clap::Args;
+use scene::Scene;
+use staya_console::options::{self, word};
+use staya_controller::agent::{GuidanceSetup, SafetyKind};
+use staya_controller::orca::AvoidParams;
+use staya_controller::push_out::{Evasion, Model, PushOutParams};
+use staya_controller::rand::Rng;
+use staya_sim::engine::simulate;
+use staya_sim::scenario::{Order, Scenario};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use watch::Watch;
+
+/// Purpose of the random numbers that give each run its starts; those after it: draws of goals, obstacles, places of
+/// goals.
+const STARTS: u32 = 0x0047_0101;
+
+/// What to do: the goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order over K1 / K2 and
+/// R_nbh.
+///
+/// All lists are crossed with each other.
+#[derive(Args, Clone, Debug, PartialEq)]
+#[command(allow_negative_numbers = true)]
+pub struct Plan {
+    /// Gains of the pull to the goal.
+    #[arg(long, value_name = "K1,...", value_delimiter = ',', default_value = "0,5,15,30,50,100,150")]
+    pub k1: Vec<f64>,
+    /// Gains of the pull to the middle of the neighbours; 0: independent robots, to compare with.
+    #[arg(long, value_name = "K2,...", value_delimiter = ',', default_value = "0,50")]
+    pub k2: Vec<f64>,
+    /// Gains of the push away from robots that are too near.
+    #[arg(long, value_name = "K3,...", value_delimiter = ',', default_value = "100")]
+    pub k3: Vec<f64>,
+    /// How far neighbours are seen (R_nbh), two least distances or more.
+    #[arg(long = "neighborhood", value_name = "METRES,...", value_delimiter = ',', default_value = "20,40,80")]
+    pub neighborhoods_m: Vec<f64>,
+    /// Least distance of robots (R_MinDist); bodies have 0.3 of it as radius.
+    #[arg(long = "min-distance", value_name = "METRES", default_value_t = 10.0)]
+    pub min_distance_m: f64,
+    /// Numbers of robots.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "225")]
+    pub robots: Vec<u32>,
+    /// Numbers of goals, 1 to 4.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "3")]
+    pub goals: Vec<u32>,
+    /// Places of the goals are drawn, other ones in each run.
+    #[arg(long)]
+    pub random_goals: bool,
+    /// Speeds of all goals, to the north.
+    #[arg(long = "goal-speed", value_name = "MPS,...", value_delimiter = ',', default_value = "0")]
+    pub goal_speeds_mps: Vec<f64>,
+    /// The operator moves the first goal after a quarter of the time.
+    #[arg(long = "move-goal")]
+    pub moves_goal: bool,
+    /// Sides of the square in which robots start at random, in R_MinDist and per root of their number. At 2 they are
+    /// one group from the start.
+    #[arg(long = "start-side", value_name = "SIDE,...", value_delimiter = ',', default_value = "4")]
+    pub start_sides: Vec<f64>,
+    /// Numbers of round obstacles at random between the start and the goals.
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "0")]
+    pub obstacles: Vec<u32>,
+    /// What robots know of each other.
+    #[arg(
+        long,
+        value_name = "WORD,...",
+        value_delimiter = ',',
+        default_value = "all",
+        value_parser = setting::knowledge()
+    )]
+    pub knows: Vec<Knowledge>,
+    /// Safety layers behind the flock; with none, robots overlap where they crowd around the goals.
+    #[arg(
+        long = "safety",
+        value_name = "WORD,...",
+        value_delimiter = ',',
+        default_value = "push-out",
+        value_parser = options::safety()
+    )]
+    pub safeties: Vec<SafetyKind>,
+    /// What push-out makes of a step.
+    #[arg(
+        long = "model",
+        value_name = "WORD,...",
+        value_delimiter = ',',
+        default_value = "radial",
+        value_parser = options::model()
+    )]
+    pub models: Vec<Model>,
+    /// How many robots push-out evades at once.
+    #[arg(
+        long = "evasion",
+        value_name = "WORD,...",
+        value_delimiter = ',',
+        default_value = "multiple",
+        value_parser = options::evasion()
+    )]
+    pub evasions: Vec<Evasion>,
+    /// Runs per point, with different starts.
+    #[arg(long = "seeds", default_value_t = 1)]
+    pub runs: u32,
+    /// Length of each run.
+    #[arg(long, default_value_t = 240.0)]
+    pub seconds: f64,
+    /// Length of a tick.
+    #[arg(long = "step", value_name = "SECONDS", default_value_t = 0.1)]
+    pub step_s: f64,
+    /// Equal seeds give equal results. What is chosen here (start, gains, measures) was chosen on seed 1.
+    #[arg(long, default_value_t = 11)]
+    pub seed: u64,
+    /// Folder for rows and pictures.
+    #[arg(long, value_name = "DIR", default_value = "out/experiment-goals")]
+    pub out: PathBuf,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        options::defaults()
+    }
+}
+
+impl Plan {
+    /// Radius of a body, metres.
+    #[must_use]
+    pub fn radius_m(&self) -> f64 {
+        0.3 * self.min_distance_m
+    }
+
+    /// Speed of the robots, m/s: R_MinDist in a second.
+    fn speed_mps(&self) -> f64 {
+        self.min_distance_m
+    }
+
+    /// The seed of a run's scenario.
+    fn run_seed(&self, run: u32) -> u64 {
+        Rng::keyed(self.seed, STARTS + 1, run, 0).next_u64()
+    }
+
+    /// The run of agents.
+    fn scenario(&self, setting: &Setting, scene: &Scene, run: u32) -> Scenario {
+        let (unit, speed_mps, seed) = (self.min_distance_m, self.speed_mps(), self.run_seed(run));
+        let params = setting.params(unit, speed_mps);
+        let arena = Arena {
+            name: "goals",
+            seed,
+            step_s: self.step_s,
+            seconds: self.seconds,
+            radius_m: self.radius_m(),
+            max_speed_mps: speed_mps,
+            range_m: setting.neighborhood_m,
+            loss: 0.0,
+            sight_m: 2.0 * unit,
+            guidance: GuidanceSetup::GoalFlock { params, arrival_m: (setting.arrival() * unit) as f32, seed },
+            safety: setting.safety,
+            // Beacons are a step old.
+            orca: AvoidParams { margin_m: (unit / 50.0) as f32, ..AvoidParams::default() },
+            push_out: PushOutParams {
+                model: setting.model,
+                evasion: setting.evasion,
+                // A step more than bodies need.
+                min_distance_m: (2.0 * self.radius_m() + speed_mps * self.step_s) as f32,
+            },
+            solids: scene.solids.clone(),
+        };
+        let mut setup = arena.setup(scene.starts.clone());
+        setup.orders.extend(scene.order().map(|(tick, target)| Order { tick, index: 0, target }));
+        arena.scenario(setup)
+    }
+
+    /// Run `number` of a setting; `draws`: with moments to draw.
+    fn run(&self, setting: &Setting, number: u32, draws: bool) -> Result<Run> {
+        let scene = Scene::new(self, setting, number)?;
+        let mut watch = Watch::new(self, setting, &scene, draws);
+        if setting.knows != Knowledge::Packets {
+            let hash = direct::run(self, setting, &scene, self.run_seed(number), &mut watch)?;
+            return Ok(watch.finish(hash));
+        }
+        let outcome = simulate(&self.scenario(setting, &scene, number), |moment, robots| {
+            let motions = robots.map(|robot| robot.motion);
+            let two = |[x, y, _]: [f64; 3]| [x, y];
+            let (places_m, velocities_mps) =
+                motions.map(|motion| (two(motion.position_m), two(motion.velocity_mps))).unzip();
+            watch.look(moment.row.tick, places_m, velocities_mps);
+            ControlFlow::Continue(())
+        })?;
+        Ok(watch.finish(outcome.trace_hash))
+    }
+}
+
+impl Experiment for Plan {
+    const NAME: &'static str = "goals";
+    const UNIT: &'static str = "runs";
+    type Run = Run;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        check_runs(self.runs, "of each point")?;
+        let steps = self.seconds / self.step_s;
+        ensure!((1.0..=1e6).contains(&steps), "{} s; a run has 1 to 1,000,000 steps", self.seconds);
+        self.check_settings()?;
+        let mut scenes: Vec<Setting> = Vec::new();
+        for setting in self.settings() {
+            if !scenes.contains(&setting.scene()) {
+                Scene::new(self, &setting, 0)?;
+                scenes.push(setting.scene());
+            }
+        }
+        Ok(())
+    }
+
+    fn points(&self) -> usize {
+        self.settings().len()
+    }
+
+    fn runs(&self) -> u32 {
+        self.runs
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let mut given = self.settings()[point].given();
+        given.extend(self.common());
+        given
+    }
+
+    /// That of the robots' draws; starts are a function of the first seed and the run's number.
+    fn seed(&self, _: usize, run: u32) -> u64 {
+        self.run_seed(run)
+    }
+
+    fn blank(&self, _: usize, _: u32) -> Run {
+        Run::default()
+    }
+
+    /// Rows have no moments to draw: those runs that are drawn are made again for them.
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
+        let settings = self.settings();
+        let mut runs = jobs.each(|(): &mut (), point, run| self.run(&settings[point], run, false).map(Some))?;
+        for point in pictures::drawn(&settings) {
+            if let Some(first) = runs[point].first_mut().filter(|_| jobs.goes_on()) {
+                let again = self.run(&settings[point], 0, true)?;
+                ensure!(again.hash == first.hash, "a run is not that of its row; begin --anew");
+                *first = again;
+            }
+        }
+        Ok(runs)
+    }
+
+    fn report(&self, runs: &[Vec<Run>]) -> Report {
+        Report::of(self, runs)
+    }
+
+    fn draw(&self, _: &[Vec<Run>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
+        Ok(report.draw(dir)?)
+    }
+}
+
+impl Plan {
+    /// What all points have in common, as rows have it.
+    fn common(&self) -> Vec<(&'static str, Value)> {
+        vec![
+            ("min_distance_m", self.min_distance_m.into()),
+            ("random_goals", Value::Truth(self.random_goals)),
+            ("moves_goal", Value::Truth(self.moves_goal)),
+            ("seconds", self.seconds.into()),
+            ("step_s", self.step_s.into()),
+            ("first_seed", self.seed.to_string().into()),
+        ]
+    }
+}
+
+impl Setting {
+    /// As rows and reports have it.
+    #[must_use]
+    pub fn given(&self) -> Vec<(&'static str, Value)> {
+        // By name, so that a new field is not forgotten.
+        let Self {
+            k1,
+            k2,
+            k3,
+            neighborhood_m,
+            robots,
+            goals,
+            goal_speed_mps,
+            obstacles,
+            start_side,
+            knows,
+            safety,
+            model,
+            evasion,
+        } = *self;
+        vec![
+            ("k1", k1.into()),
+            ("k2", k2.into()),
+            ("k3", k3.into()),
+            ("neighborhood_m", neighborhood_m.into()),
+            ("robots", robots.into()),
+            ("goals", goals.into()),
+            ("goal_speed_mps", goal_speed_mps.into()),
+            ("obstacles", obstacles.into()),
+            ("start_side", start_side.into()),
+            ("knows", word(knows).into()),
+            ("safety", word(safety).into()),
+            ("model", word(model).into()),
+            ("evasion", word(evasion).into()),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,324 @@
+//! The queries of a Moving AI benchmark (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding", IEEE TCIAIG 2012).
+//!
+//! With a window as large as the map the controller must find the optimal lengths that the benchmark states; with a
+//! small one the question is how many robots get out of the dead ends that they cannot see, and how late. What gets them out
+//! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map
+//! that is too large for the router's search is answered by the planner ([`optimal`]).
+
+mod groups;
+mod report;
+
+pub use groups::{GroupPlan, GroupPoint, GroupReport};
+pub use report::{Answer, Report};
+
+use crate::experiment::Experiment;
+use crate::experiment::rows::Jobs;
+use crate::optimal;
+use crate::route::decimal;
+use crate::sweep::Value;
+use crate::walk::{Task, Walker, holds};
+use anyhow::{Context as _, Result, ensure};
+use clap::ValueEnum;
+use staya_console::options::word;
+use staya_controller::digest::digest;
+use staya_controller::grid::UNIT;
+use staya_controller::route::{Replan, RouteParams};
+use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
+use staya_sim::terrain::{Terrain, read};
+use std::path::{Path, PathBuf};
+
+/// Cells of the largest search, border included: 255 x 255, as many as 16-bit numbers can tell apart.
+const CELLS: usize = 255 * 255;
+
+/// How far the robot sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sight {
+    /// So many cells in each direction, 1 or more.
+    Radius(u8),
+    /// All of the map.
+    Map,
+}
+
+/// How many cells the robot's visit memory holds: 6 bytes each on the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[expect(missing_docs, reason = "the numbers say it")]
+pub enum Memory {
+    #[value(name = "16")]
+    Cells16,
+    #[default]
+    #[value(name = "64")]
+    Cells64,
+    #[value(name = "256")]
+    Cells256,
+    #[value(name = "1024")]
+    Cells1024,
+}
+
+impl Memory {
+    /// The number of cells.
+    #[must_use]
+    pub const fn cells(self) -> usize {
+        match self {
+            Self::Cells16 => 16,
+            Self::Cells64 => 64,
+            Self::Cells256 => 256,
+            Self::Cells1024 => 1024,
+        }
+    }
+}
+
+/// How many costs the robot learns: 8 bytes each on the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[expect(missing_docs, reason = "the numbers say it")]
+pub enum Learning {
+    #[value(name = "0")]
+    None,
+    #[value(name = "64")]
+    Cells64,
+    #[default]
+    #[value(name = "256")]
+    Cells256,
+}
+
+impl Learning {
+    /// The number of cells.
+    #[must_use]
+    pub const fn cells(self) -> usize {
+        match self {
+            Self::None => 0,
+            Self::Cells64 => 64,
+            Self::Cells256 => 256,
+        }
+    }
+}
+
+/// The robots that answer the queries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Robots {
+    /// How far they see.
+    pub sight: Sight,
+    /// How much they remember of their way.
+    pub memory: Memory,
+    /// How much they learn of the costs of ways.
+    pub learning: Learning,
+    /// What they take ways to cost. Radius and moves do not count: [`Robots::sight`] is the radius, and moves
+    /// are those of the benchmark (diagonals are sqrt 2 long and cut no corners).
+    pub params: RouteParams,
+    /// When they search anew.
+    pub replan: Replan,
+}
+
+impl Robots {
+    /// Robots with the controller's defaults.
+    #[must_use]
+    pub fn new(sight: Sight) -> Self {
+        Self {
+            sight,
+            memory: Memory::default(),
+            learning: Learning::default(),
+            params: RouteParams::default(),
+            replan: Replan::default(),
+        }
+    }
+}
+
+/// A map and what to do on it.
+#[derive(Clone, Debug)]
+pub struct Benchmark {
+    /// The map's file.
+    pub map: PathBuf,
+    /// The land; swamp is ground, as the benchmark has it.
+    pub land: Terrain,
+    /// Starts, goals and optimal lengths.
+    pub queries: Vec<Query>,
+}
+
+impl Benchmark {
+    /// Reads a scenario and its map, by default the one beside it that it names.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a scenario without queries or for another map; naming file and remedy.
+    pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self> {
+        let at = scen.display();
+        let queries = parse_scen(&read(scen)?, scen)?;
+        let first =
+            queries.first().with_context(|| format!("{at}: no queries; each line after the first one is a query"))?;
+        let beside = scen.with_file_name(Path::new(&first.map).file_name().unwrap_or_default());
+        let map = map.map_or(beside.clone(), Path::to_owned);
+        ensure!(
+            map != beside || map.is_file(),
+            "{at}: its map {} is not beside it ({} does not exist); put it there, or name it by --map",
+            first.map,
+            map.display()
+        );
+        let land = parse_map(&read(&map)?, &map, 1)?;
+        let name = map.display();
+        let (width, height) = (land.width(), land.height());
+        for (query, number) in queries.iter().zip(1..) {
+            ensure!(
+                (query.width, query.height) == (width, height),
+                "{at}: query {number} is for a map of {} x {} cells, but {name} has {width} x {height}; \
+                 name the right one by --map",
+                query.width,
+                query.height
+            );
+            ensure!(
+                land.is_passable(query.start) && land.is_passable(query.goal),
+                "{at}: query {number} starts or ends in a wall of {name}; name the right map by --map"
+            );
+        }
+        Ok(Self { map, land, queries })
+    }
+}
+
+/// What to do: a benchmark's queries, answered by robots.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Map and queries.
+    pub benchmark: Benchmark,
+    /// Who answers them.
+    pub robots: Robots,
+}
+
+impl Plan {
+    fn params(&self) -> RouteParams {
+        let default = RouteParams::default();
+        RouteParams {
+            radius: match self.robots.sight {
+                Sight::Radius(radius) => radius,
+                Sight::Map => u8::MAX,
+            },
+            norm: default.norm,
+            corner_cutting: default.corner_cutting,
+            ..self.robots.params
+        }
+    }
+
+    /// The answer of a planner that sees all of a map that is too large for the router's search.
+    fn planned(&self, query: &Query) -> Answer {
+        let RouteParams { norm, corner_cutting, .. } = self.params();
+        let route = optimal::route(&self.benchmark.land, query.start, query.goal, norm, corner_cutting);
+        Answer {
+            optimal_cells: query.optimal_length,
+            arrived: route.is_some(),
+            length_cells: route.as_ref().map_or(0.0, |route| cells(route.length(norm) as f64)),
+            priced_cells: route.map(|route| cells(route.cost as f64)),
+        }
+    }
+
+    fn answers<const M: usize>(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Answer>>> {
+        match self.robots.learning {
+            Learning::None => self.answer::<M, 0>(jobs),
+            Learning::Cells64 => self.answer::<M, 64>(jobs),
+            Learning::Cells256 => self.answer::<M, 256>(jobs),
+        }
+    }
+
+    fn answer<const M: usize, const L: usize>(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Answer>>> {
+        let (land, robots, params) = (&self.benchmark.land, &self.robots, self.params());
+        jobs.each(|walker: &mut Walker<CELLS, M, L>, index, _| {
+            let query = &self.benchmark.queries[index];
+            if robots.sight == Sight::Map && !holds(CELLS, land) {
+                return Ok(Some(self.planned(query)));
+            }
+            let task = Task { land, parked: &[], from: query.start, to: query.goal };
+            let walk = walker.walk(&task, &params, robots.replan);
+            let priced = match robots.sight {
+                Sight::Map => walker.price(land, &params, query.start, query.goal),
+                Sight::Radius(_) => None,
+            };
+            Ok(Some(Answer {
+                optimal_cells: query.optimal_length,
+                arrived: walk.arrived,
+                length_cells: cells(walk.length as f64),
+                priced_cells: priced.map(cells),
+            }))
+        })
+    }
+}
+
+impl Experiment for Plan {
+    const NAME: &'static str = "movingai";
+    const UNIT: &'static str = "queries";
+    type Run = Answer;
+    type Report = Report;
+
+    fn check(&self) -> Result<()> {
+        let land = &self.benchmark.land;
+        // A window that reaches beyond the map holds no more than the map.
+        let sees_all = self.robots.sight != Sight::Map && self.params().radius > 126;
+        ensure!(
+            holds(CELLS, land) || !sees_all,
+            "a map of {} x {} cells is more than the controller can see at once: no side over 256, and at most \
+             {CELLS} cells with a border of one around them; choose a smaller radius, or \"map\"",
+            land.width(),
+            land.height()
+        );
+        Ok(())
+    }
+
+    fn points(&self) -> usize {
+        self.benchmark.queries.len()
+    }
+
+    fn runs(&self) -> u32 {
+        1
+    }
+
+    fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
+        let Benchmark { map, land, queries } = &self.benchmark;
+        let Robots { sight, memory, learning, params: _, replan } = self.robots;
+        let RouteParams { radius, exit, norm, corner_cutting, a0, a1, a2, a3 } = self.params();
+        let query = &queries[point];
+        let mut given: Vec<(_, Value)> = vec![
+            ("query", (point as u32 + 1).into()),
+            ("map", map.file_name().unwrap_or_default().to_string_lossy().into_owned().into()),
+            ("land", format!("{:016x}", digest(land.cells())).into()),
+        ];
+        let [start, goal] = [query.start, query.goal].map(|at| [at.x, at.y].map(|c| Value::Whole(c.into())));
+        given.extend(["start_x", "start_y"].into_iter().zip(start));
+        given.extend(["goal_x", "goal_y"].into_iter().zip(goal));
+        given.extend([
+            ("optimal_cells", query.optimal_length.into()),
+            ("radius_cells", if sight == Sight::Map { "map".into() } else { u32::from(radius).into() }),
+            ("visits", (memory.cells() as u32).into()),
+            ("learned", (learning.cells() as u32).into()),
+            ("exit", word(exit).into()),
+            ("replan", word(replan).into()),
+            ("norm", word(norm).into()),
+            ("corner_cutting", corner_cutting.into()),
+        ]);
+        given.extend([("a0", a0), ("a1", a1), ("a2", a2), ("a3", a3)].map(|(name, a)| (name, decimal(a).into())));
+        given
+    }
+
+    /// Nothing is drawn.
+    fn seed(&self, _: usize, _: u32) -> u64 {
+        0
+    }
+
+    fn blank(&self, point: usize, _: u32) -> Answer {
+        let optimal_cells = self.benchmark.queries[point].optimal_length;
+        Answer { optimal_cells, arrived: false, length_cells: 0.0, priced_cells: None }
+    }
+
+    fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Answer>>> {
+        match self.robots.memory {
+            Memory::Cells16 => self.answers::<16>(jobs),
+            Memory::Cells64 => self.answers::<64>(jobs),
+            Memory::Cells256 => self.answers::<256>(jobs),
+            Memory::Cells1024 => self.answers::<1024>(jobs),
+        }
+    }
+
+    fn report(&self, answers: &[Vec<Answer>]) -> Report {
+        Report::of(&self.benchmark, &self.robots, &answers.concat())
+    }
+}
+
+fn cells(units: f64) -> f64 {
+    units / f64::from(UNIT)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,71 @@
+//! Means, medians and intervals of the runs of each point.
+
+use crate::sweep::design::Design;
+use crate::sweep::merge::Merged;
+use crate::sweep::value::Figure;
+use staya_stats::Summary;
+
+/// The figures of one point.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its number.
+    pub number: u64,
+    /// The value of each parameter.
+    pub values: Vec<String>,
+    /// Runs of it that there are.
+    pub runs: usize,
+    /// Of each measure; `None`: no run has a value, or one is infinite.
+    pub figures: Vec<Option<Summary>>,
+}
+
+/// All points of which there are runs, in order. O(rows).
+#[must_use]
+pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
+    let seeds = plan.runs_per_point();
+    let by_point = merged.rows.chunk_by(|a, b| a.run / seeds == b.run / seeds);
+    let point = |rows: &[crate::sweep::row::Row]| {
+        let run = rows[0].run;
+        let figure = |index: usize| {
+            let values: Vec<f64> = rows.iter().filter_map(|row| row.figures[index].0).collect();
+            Summary::of(&values)
+        };
+        let figures = (0..plan.figures().len()).map(figure).collect();
+        Point { number: run / seeds, values: plan.values(run), runs: rows.len(), figures }
+    };
+    by_point.map(point).collect()
+}
+
+/// As CSV: a line for each point and figure. `low95` and `high95` are the ends of the 95 % interval of the mean (Student).
+#[must_use]
+pub fn text(plan: &dyn Design, points: &[Point]) -> String {
+    let statistics = "figure,runs,values,mean,low95,high95,median,deviation,min,max";
+    let mut names = vec!["point".to_owned()];
+    names.extend(plan.parameters());
+    names.push(statistics.to_owned());
+    let mut text = names.join(",") + "\n";
+    let figures = plan.figures();
+    for point in points {
+        for (name, summary) in figures.iter().zip(&point.figures) {
+            let mut cells = vec![point.number.to_string()];
+            cells.extend(point.values.iter().cloned());
+            cells.extend([name.clone(), point.runs.to_string()]);
+            cells.push(summary.map_or(0, |summary| summary.count).to_string());
+            // One value has no interval.
+            let ends = summary.filter(|s| s.mean_error95.is_some()).map(|s| s.mean_interval95());
+            let of = |figure: fn(&Summary) -> f64| summary.as_ref().map(figure);
+            let figures = [
+                of(|s| s.mean),
+                ends.map(|[low, _]| low),
+                ends.map(|[_, high]| high),
+                of(|s| s.median),
+                of(|s| s.deviation),
+                of(|s| s.min),
+                of(|s| s.max),
+            ];
+            cells.extend(figures.map(|figure| Figure(figure).to_string()));
+            text.push_str(&cells.join(","));
+            text.push('\n');
+        }
+    }
+    text
+}

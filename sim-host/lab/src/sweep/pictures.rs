@@ -1,0 +1,235 @@
+//! A figure over one axis, or over two.
+
+use crate::sweep::merge::Merged;
+use crate::sweep::plan::{Plan, PlotTable};
+use crate::sweep::value::{Figure, Value};
+use staya_plot::{Chart, HeatMap, Series};
+use staya_sim::record::Error;
+use staya_stats::Summary;
+use std::path::{Path, PathBuf};
+
+/// Most values of an axis that are shown one by one; more are gathered in parts.
+const MOST: usize = 24;
+/// Least and most equal parts of an axis with more values.
+const PARTS: [usize; 2] = [4, 12];
+/// Runs that a part, or a square of two, has on average if there are enough.
+const RUNS: usize = 4;
+/// Most curves in one picture.
+const CURVES: usize = 6;
+/// Most pictures that nobody asked for.
+const UNASKED: usize = 8;
+
+/// The pictures of a plan: those that it asks for, else its first figures over its first two axes.
+#[must_use]
+pub fn plots(plan: &Plan) -> Vec<PlotTable> {
+    if !plan.plots.is_empty() {
+        return plan.plots.clone();
+    }
+    let varies = |axis: &&str| plan.values(axis).is_some_and(|values| values.iter().any(|value| value != &values[0]));
+    let mut axes = plan.axes().filter(varies).map(str::to_owned);
+    let (Some(over), and) = (axes.next(), axes.next()) else {
+        return Vec::new();
+    };
+    let plot = |figure: &String| PlotTable { figure: figure.clone(), over: over.clone(), and: and.clone() };
+    if plan.measures().len() <= UNASKED {
+        return plan.measures().iter().map(plot).collect();
+    }
+    let usual = ["arrived", "arrival_last_seconds", "collisions", "formation_error_per_agent", "least_gap_m"];
+    plan.measures().iter().filter(|name| usual.contains(&name.as_str())).map(plot).collect()
+}
+
+/// Draws a picture into a folder, as SVG and PNG.
+///
+/// # Errors
+/// A file cannot be written.
+///
+/// # Panics
+/// When the plan has no such figure or axis: see [`Plan::check_plot`].
+pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let figure = plan.measures().iter().position(|name| *name == plot.figure).expect("a figure that was checked");
+    let find = |axis: &String| plan.find(axis).expect("an axis that was checked");
+    let over = find(&plot.over);
+    let and = plot.and.as_ref().map(find);
+    let values = |run: u64, axis: usize| plan.run(run).values[axis].clone();
+    let rows: Vec<(Value, Option<Value>, f64)> = merged
+        .rows
+        .iter()
+        .filter_map(|row| {
+            let value = row.figures[figure].0.filter(|value| value.is_finite())?;
+            Some((values(row.run, over), and.map(|axis| values(row.run, axis)), value))
+        })
+        .collect();
+    let parts = if and.is_some() { (rows.len() / RUNS).isqrt() } else { rows.len() / RUNS };
+    let levels = |axis| Levels::new(plan, axis, parts.clamp(PARTS[0], PARTS[1]));
+    let (x, y) = (levels(over), and.map(levels));
+    let picture = Picture { plan, plot, rows, x, y };
+    let stem = folder.join(picture.file_name());
+    match &picture.y {
+        Some(y) if y.is_parts || y.names.len() > CURVES || picture.x.numbers.is_none() => {
+            picture.heat_map(y).draw().write(&stem)
+        }
+        _ => picture.chart().write(&stem),
+    }
+}
+
+/// The values of an axis as a picture has them.
+struct Levels {
+    /// What each is called.
+    names: Vec<String>,
+    /// Where each is; `None`: they are words.
+    numbers: Option<Vec<f64>>,
+    /// Each stands for a part of the axis.
+    is_parts: bool,
+    is_log: bool,
+    /// The first and the last value.
+    ends: [f64; 2],
+}
+
+impl Levels {
+    fn new(plan: &Plan, axis: usize, parts: usize) -> Self {
+        let name = plan.axes().nth(axis).unwrap_or_default();
+        let mut values: Vec<Value> = plan.values(name).unwrap_or_default().to_vec();
+        let is_log = plan.is_log(axis);
+        let numbers: Option<Vec<f64>> = values.iter().map(Value::number).collect();
+        let Some(mut numbers) = numbers else {
+            // In the order of the plan.
+            let mut names: Vec<String> = Vec::new();
+            for value in values.drain(..).map(|value| value.to_string()) {
+                if !names.contains(&value) {
+                    names.push(value);
+                }
+            }
+            return Self { names, numbers: None, is_parts: false, is_log: false, ends: [0.0; 2] };
+        };
+        numbers.sort_by(f64::total_cmp);
+        numbers.dedup();
+        let ends = [numbers[0], numbers[numbers.len() - 1]];
+        let is_parts = numbers.len() > MOST;
+        if is_parts {
+            let at = |share: f64| {
+                let [low, high] = ends;
+                if is_log { low * libm::pow(high / low, share) } else { low + (high - low) * share }
+            };
+            numbers = (0..parts).map(|part| at((part as f64 + 0.5) / parts as f64)).collect();
+        }
+        let name = |number: &f64| if is_parts { short(*number) } else { Figure(Some(*number)).to_string() };
+        Self { names: numbers.iter().map(name).collect(), numbers: Some(numbers), is_parts, is_log, ends }
+    }
+
+    /// Which of them a value belongs to.
+    fn of(&self, value: &Value) -> usize {
+        let Some((number, numbers)) = value.number().zip(self.numbers.as_ref()) else {
+            let name = value.to_string();
+            return self.names.iter().position(|known| *known == name).unwrap_or_default();
+        };
+        if !self.is_parts {
+            return numbers.iter().position(|known| *known == number).unwrap_or_default();
+        }
+        let [low, high] = self.ends;
+        let share =
+            if self.is_log { libm::log(number / low) / libm::log(high / low) } else { (number - low) / (high - low) };
+        ((share * self.names.len() as f64) as usize).min(self.names.len() - 1)
+    }
+}
+
+/// Four digits at most.
+fn short(number: f64) -> String {
+    let rounded: f64 = format!("{number:.2e}").parse().unwrap_or(number);
+    Figure(Some(rounded)).to_string()
+}
+
+struct Picture<'a> {
+    plan: &'a Plan,
+    plot: &'a PlotTable,
+    /// Value on the first axis, on the second, figure.
+    rows: Vec<(Value, Option<Value>, f64)>,
+    x: Levels,
+    y: Option<Levels>,
+}
+
+impl Picture<'_> {
+    fn file_name(&self) -> String {
+        let PlotTable { figure, over, and } = self.plot;
+        let and = and.as_ref().map_or(String::new(), |and| format!("-and-{and}"));
+        format!("{figure}-over-{over}{and}").replace('[', ".").replace(']', "")
+    }
+
+    fn title(&self) -> String {
+        let PlotTable { figure, over, and } = self.plot;
+        let and = and.as_ref().map_or(String::new(), |and| format!(" and {and}"));
+        format!("{}: {figure} over {over}{and}", self.plan.name)
+    }
+
+    fn note(&self, what: &str) -> String {
+        let others = self.plan.axes().filter(|axis| *axis != self.plot.over && Some(*axis) != self.plot.and.as_deref());
+        let others: Vec<_> = others.collect();
+        let over =
+            if others.is_empty() { String::new() } else { format!(", over all values of {}", others.join(", ")) };
+        format!("{what} of {} runs{over}", self.rows.len())
+    }
+
+    /// The figures of the runs at level `x`, and at level `y` if there is a second axis.
+    fn summary(&self, x: usize, y: Option<usize>) -> Option<Summary> {
+        let is_here = |(over, and, _): &&(Value, Option<Value>, f64)| {
+            let at_y = self.y.as_ref().zip(and.as_ref()).map(|(levels, value)| levels.of(value));
+            self.x.of(over) == x && (y.is_none() || at_y == y)
+        };
+        let figures: Vec<f64> = self.rows.iter().filter(is_here).map(|(.., figure)| *figure).collect();
+        Summary::of(&figures)
+    }
+
+    /// Means with intervals; with a second axis a curve for each of its values.
+    fn chart(&self) -> Chart {
+        let PlotTable { figure, over, and } = self.plot;
+        let mut chart = Chart::new(self.title(), over, figure).note(self.note("means with 95 % intervals"));
+        if self.x.is_log {
+            chart = chart.log_x();
+        }
+        let point = |at: f64, summary: &Summary| {
+            let [low, high] = summary.mean_interval95();
+            [at, summary.mean, low, high]
+        };
+        let Some(numbers) = &self.x.numbers else {
+            for (index, name) in self.x.names.iter().enumerate() {
+                let points = self.summary(index, None).map(|summary| point(index as f64 + 1.0, &summary));
+                chart = chart.with(Series::intervals(name, points));
+            }
+            return chart;
+        };
+        let curve = |y: Option<usize>| {
+            let points = numbers.iter().enumerate().filter_map(|(x, &at)| Some(point(at, &self.summary(x, y)?)));
+            points.collect::<Vec<_>>()
+        };
+        match (&self.y, and) {
+            (Some(levels), Some(and)) => {
+                for (y, name) in levels.names.iter().enumerate() {
+                    chart = chart.with(Series::intervals(format!("{and} = {name}"), curve(Some(y))).joined());
+                }
+            }
+            _ => {
+                if self.x.is_parts {
+                    let each = self.rows.iter().filter_map(|(over, _, figure)| Some([over.number()?, *figure]));
+                    chart = chart.with(Series::points("runs", each).colour(staya_plot::colour::MUTED));
+                }
+                chart = chart.with(
+                    Series::intervals(if self.x.is_parts { "parts of the axis" } else { "" }, curve(None)).joined(),
+                );
+            }
+        }
+        chart
+    }
+
+    fn heat_map(&self, levels: &Levels) -> HeatMap {
+        let columns = self.x.names.len();
+        let value = |index: usize| Some(self.summary(index % columns, Some(index / columns))?.mean);
+        HeatMap {
+            title: self.title(),
+            note: self.note("means"),
+            x_label: self.plot.over.clone(),
+            y_label: self.plot.and.clone().unwrap_or_default(),
+            columns: self.x.names.clone(),
+            rows: levels.names.clone(),
+            values: (0..columns * levels.names.len()).map(value).collect(),
+        }
+    }
+}

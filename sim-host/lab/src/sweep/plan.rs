@@ -1,0 +1,426 @@
+//! Plans: which fields of a scenario have which values in which run.
+
+mod axes;
+mod check;
+mod table;
+
+use crate::sweep::SweepError;
+use crate::sweep::design::Design;
+use crate::sweep::value::Value;
+use axes::Axis;
+use staya_controller::digest::{chained, digest};
+use staya_sim::file::{MAP, TEXT, read, read_text};
+use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+pub use table::PlotTable;
+use table::{PlanFile, SeedRange, Seeds};
+
+/// Where the fields of plans are listed.
+const LIST: &str = "docs/sweeps.md";
+/// Most runs of a plan: some hundred megabytes of rows.
+const MOST: u64 = 1_000_000;
+/// Changes when the same plan would mean other runs.
+const FORMAT: u64 = 1;
+
+/// A checked plan. Its runs are numbered; what a run is is a function of plan and number.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Its name; its results go to `out/NAME`.
+    pub name: String,
+    path: PathBuf,
+    scenario: PathBuf,
+    /// The scenario with what the plan sets for all runs.
+    base: toml::Table,
+    axes: Vec<Axis>,
+    /// Axes that advance together, as ranges of `axes`; one such group is crossed with the next.
+    groups: Vec<Range<usize>>,
+    /// One or more.
+    seeds: Vec<u64>,
+    measures: Vec<String>,
+    /// What to draw; empty: what suggests itself.
+    pub plots: Vec<PlotTable>,
+    fingerprint: u64,
+}
+
+/// A run as the plan has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run<'a> {
+    /// Its number.
+    pub number: u64,
+    /// The number of its point: runs of one point differ in their seeds only.
+    pub point: u64,
+    /// The value of each axis.
+    pub values: Vec<&'a Value>,
+    /// The seed.
+    pub seed: u64,
+}
+
+impl Plan {
+    /// Reads a plan, and checks it with its scenario (`plan/check.rs`).
+    ///
+    /// # Errors
+    /// The file, line and field that are wrong, and what to do.
+    pub fn load(path: &Path) -> Result<Self, SweepError> {
+        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
+        Self::parse(&text, path)
+    }
+
+    /// As [`Plan::load`], of a text that stands (or might stand) in the file `path`.
+    ///
+    /// # Errors
+    /// See [`Plan::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, SweepError> {
+        let source = Source::new(path, text)?;
+        let file: PlanFile = toml::from_str(text).map_err(|error| source.serde_error(&error, LIST))?;
+        let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if file.name.is_empty() || file.name.len() > 100 || !file.name.chars().all(allowed) {
+            let what = format!("{:?} cannot name a folder of results", file.name);
+            return Err(source.error("name", what, "use 1 to 100 letters, digits, - and _").into());
+        }
+        let scenario = source.folder().join(&file.scenario);
+        let scenario_text = read_text(&scenario, TEXT).map_err(|error| {
+            source.error(
+                "scenario",
+                format!("{}: {error}", scenario.display()),
+                "names are relative to the plan's file",
+            )
+        })?;
+        let mut base: toml::Table = match scenario_text.parse() {
+            Ok(base) => base,
+            // With the words for it.
+            Err(_) => {
+                return Err(Scenario::parse(&scenario_text, &scenario, &Overrides::default())
+                    .map(drop)
+                    .err()
+                    .map_or_else(|| source.error("scenario", "it is not TOML", "name a scenario").into(), Into::into));
+            }
+        };
+        let axes::Axes { axes, groups, set } = axes::read(&source, &file)?;
+        for (field, value, span) in set {
+            let wrong = |what| source.error_at(span.clone(), field.name(), what, "name a field of the scenario");
+            field.set(&mut base, value.toml()).map_err(wrong)?;
+        }
+        for axis in &axes {
+            axes::check_kind(&source, axis, axis.field.get(&base))?;
+        }
+        let seeds = match file.seeds {
+            None => vec![base.get("seed").and_then(toml::Value::as_integer).map_or(0, i64::unsigned_abs)],
+            Some(seeds) => check_seeds(&source, &seeds)?,
+        };
+        let mut plan = Self {
+            name: file.name,
+            path: path.to_owned(),
+            scenario,
+            base,
+            axes,
+            groups,
+            seeds,
+            measures: Vec::new(),
+            plots: Vec::new(),
+            fingerprint: 0,
+        };
+        if plan.count().is_none_or(|count| count > MOST) {
+            let what = "more than a million runs";
+            return Err(source
+                .error("axes", what, "give fewer values, samples or seeds, or make several plans")
+                .into());
+        }
+        let known = check::check(&plan, &source)?;
+        plan.measures = check_measures(&source, file.measures, known)?;
+        plan.plots = check_plots(&source, &plan, file.plot)?;
+        plan.fingerprint = plan.digest();
+        Ok(plan)
+    }
+
+    /// Its file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// How many runs there are.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.count().unwrap_or(MOST)
+    }
+
+    /// How many runs there are of each point.
+    #[must_use]
+    pub fn seeds(&self) -> u64 {
+        self.seeds.len() as u64
+    }
+
+    fn count(&self) -> Option<u64> {
+        let values = self.groups.iter().map(|group| self.axes[group.start].values.len() as u64);
+        values.chain([self.seeds()]).try_fold(1u64, u64::checked_mul)
+    }
+
+    /// The names of the axes, in the order of the file.
+    pub fn axes(&self) -> impl Iterator<Item = &str> {
+        self.axes.iter().map(|axis| axis.field.name())
+    }
+
+    /// The values of an axis, in order; `None`: there is no such axis.
+    #[must_use]
+    pub fn values(&self, axis: &str) -> Option<&[Value]> {
+        self.find(axis).map(|index| &self.axes[index].values[..])
+    }
+
+    /// The number of an axis.
+    #[must_use]
+    pub fn find(&self, axis: &str) -> Option<usize> {
+        self.axes().position(|name| name == axis)
+    }
+
+    /// Whether the values of axis number `index` stand in equal ratios rather than in equal distances.
+    #[must_use]
+    pub fn is_log(&self, index: usize) -> bool {
+        self.axes.get(index).is_some_and(|axis| axis.is_log)
+    }
+
+    /// The figures that rows have.
+    #[must_use]
+    pub fn measures(&self) -> &[String] {
+        &self.measures
+    }
+
+    /// Whether a picture can be drawn; else which field of it is wrong, what, and what to do.
+    ///
+    /// # Errors
+    /// It names no figure or no axis of the plan.
+    pub fn check_plot(&self, plot: &PlotTable) -> Result<(), (&'static str, String, String)> {
+        let list = |names: &mut dyn Iterator<Item = &str>| match names.collect::<Vec<_>>() {
+            names if names.is_empty() => "there is none".to_owned(),
+            names => format!("give one of {}", names.join(", ")),
+        };
+        if !self.measures().contains(&plot.figure) {
+            let what = format!("{} is not measured", plot.figure);
+            let remedy = list(&mut self.measures().iter().map(String::as_str));
+            return Err(("figure", what, remedy));
+        }
+        for (field, axis) in [("over", Some(&plot.over)), ("and", plot.and.as_ref())] {
+            if let Some(axis) = axis.filter(|axis| self.find(axis).is_none()) {
+                let what = format!("{axis} is no axis of the plan");
+                return Err((field, what, list(&mut self.axes())));
+            }
+        }
+        if plot.and.as_ref() == Some(&plot.over) {
+            return Err(("and", format!("{} is both axes", plot.over), "give another one, or leave it out".to_owned()));
+        }
+        Ok(())
+    }
+
+    /// What tells plans apart that mean other runs or rows, as 16 hex digits.
+    #[must_use]
+    pub fn fingerprint(&self) -> String {
+        format!("{:016x}", self.fingerprint)
+    }
+
+    /// Run number `number`, the first one being 0. Seeds change first, then the last axis.
+    ///
+    /// # Panics
+    /// When there is no such run.
+    #[must_use]
+    pub fn run(&self, number: u64) -> Run<'_> {
+        assert!(number < self.runs(), "a run of the plan");
+        let point = number / self.seeds();
+        let mut values = vec![&Value::Whole(0); self.axes.len()];
+        let mut rest = point;
+        for group in self.groups.iter().rev() {
+            let count = self.axes[group.start].values.len() as u64;
+            let at = (rest % count) as usize;
+            rest /= count;
+            for index in group.clone() {
+                values[index] = &self.axes[index].values[at];
+            }
+        }
+        Run { number, point, values, seed: self.seeds[(number % self.seeds()) as usize] }
+    }
+
+    /// The scenario of a run. The error says what of the plan or of the scenario cannot be.
+    pub(crate) fn scenario(&self, run: &Run<'_>) -> Result<Scenario, ScenarioError> {
+        let mut table = self.base.clone();
+        for (axis, value) in self.axes.iter().zip(&run.values) {
+            axis.field.set(&mut table, value.toml()).map_err(|what| ScenarioError::Field {
+                path: self.path.clone(),
+                line: axis.line,
+                field: axis.field.name().to_owned(),
+                what,
+                remedy: "name a field of the scenario".to_owned(),
+            })?;
+        }
+        let text = toml::to_string(&table).unwrap_or_default();
+        Scenario::parse(&text, &self.scenario, &Overrides { seed: Some(run.seed), ticks: None })
+            .map_err(|error| self.said_of_plan(run, error))
+    }
+
+    /// An error of a scenario that was made of the plan, with the places that a person knows.
+    fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
+        let ScenarioError::Field { field, what, remedy, .. } = error else {
+            return error;
+        };
+        let is_below =
+            |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+        let is_meant = |axis: &&Axis| {
+            let name = axis.field.name();
+            !field.is_empty() && (is_below(name, &field) || is_below(&field, name))
+        };
+        if let Some(axis) = self.axes.iter().find(is_meant) {
+            let field = axis.field.name().to_owned();
+            // What serde says where a word belongs.
+            let is_word = axis.is_range && what.contains("string");
+            let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
+            return ScenarioError::Field { path: self.path.clone(), line: axis.line, field, what, remedy };
+        }
+        let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
+        let values = values.join(", ");
+        let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
+        // Where it stands, or would stand, in the scenario's file.
+        let text = read_text(&self.scenario, TEXT).unwrap_or_default();
+        match Source::new(&self.scenario, &text) {
+            Ok(source) => source.error(&field, what, remedy),
+            Err(error) => error,
+        }
+    }
+
+    /// Everything that a row depends on: fields, values, seeds, figures, and the files that the scenario names.
+    fn digest(&self) -> u64 {
+        let scenario = toml::to_string(&self.base).unwrap_or_default();
+        let mut all = chained(FORMAT, digest(scenario.as_bytes()));
+        let mut add = |bytes: &[u8]| all = chained(all, digest(bytes));
+        for (axis, index) in self.axes.iter().zip(0u64..) {
+            add(axis.field.name().as_bytes());
+            let group = self.groups.iter().position(|group| group.contains(&(index as usize))).unwrap_or_default();
+            add(&(group as u64).to_le_bytes());
+            axis.values.iter().for_each(|value| add(format!("{value:?}").as_bytes()));
+        }
+        self.seeds.iter().for_each(|seed| add(&seed.to_le_bytes()));
+        self.measures.iter().for_each(|name| add(name.as_bytes()));
+        self.files().iter().for_each(|file| add(&read(file, MAP).unwrap_or_default()));
+        all
+    }
+
+    /// The files that the scenario of some run names, as far as they are there.
+    fn files(&self) -> Vec<PathBuf> {
+        let mut words = Vec::new();
+        collect_words(&toml::Value::Table(self.base.clone()), &mut words);
+        for value in self.axes.iter().flat_map(|axis| &axis.values) {
+            if let Value::Word(word) = value {
+                words.push(word.clone());
+            }
+        }
+        let folder = self.scenario.parent().unwrap_or(Path::new(""));
+        let mut files: Vec<PathBuf> =
+            words.iter().map(|word| folder.join(word)).filter(|path| path.is_file()).collect();
+        // A map of ROS is two files.
+        let images = files.iter().filter(|path| path.extension().is_some_and(|ext| ext == "yaml")).filter_map(|path| {
+            let text = read_text(path, TEXT).ok()?;
+            let name = text.lines().find_map(|line| line.trim().strip_prefix("image:"))?;
+            Some(path.with_file_name(name.trim().trim_matches(['"', '\''])))
+        });
+        let images: Vec<_> = images.collect();
+        files.extend(images);
+        files
+    }
+}
+
+impl Design for Plan {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn fingerprint(&self) -> String {
+        self.fingerprint()
+    }
+
+    fn runs(&self) -> u64 {
+        self.runs()
+    }
+
+    fn runs_per_point(&self) -> u64 {
+        self.seeds()
+    }
+
+    fn parameters(&self) -> Vec<String> {
+        self.axes().map(str::to_owned).collect()
+    }
+
+    fn values(&self, run: u64) -> Vec<String> {
+        self.run(run).values.iter().map(ToString::to_string).collect()
+    }
+
+    fn seed(&self, run: u64) -> u64 {
+        self.run(run).seed
+    }
+
+    fn figures(&self) -> Vec<String> {
+        self.measures.clone()
+    }
+}
+
+fn collect_words(value: &toml::Value, words: &mut Vec<String>) {
+    match value {
+        toml::Value::String(word) => words.push(word.clone()),
+        toml::Value::Array(list) => list.iter().for_each(|value| collect_words(value, words)),
+        toml::Value::Table(table) => table.values().for_each(|value| collect_words(value, words)),
+        _ => {}
+    }
+}
+
+fn check_seeds(source: &Source<'_>, seeds: &Seeds) -> Result<Vec<u64>, ScenarioError> {
+    let most = MOST as usize;
+    let seeds: Vec<u64> = match *seeds {
+        Seeds::Count(count) => (1..=u64::from(count)).take(most + 1).collect(),
+        Seeds::Range(SeedRange { from, count }) => (from..).take((count as usize).min(most + 1)).collect(),
+        Seeds::List(ref seeds) => seeds.clone(),
+    };
+    let mut sorted = seeds.clone();
+    sorted.sort_unstable();
+    let what = if seeds.is_empty() {
+        "there is none".to_owned()
+    } else if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        format!("{} stands there twice", twice[0])
+    } else if seeds.len() > most || sorted.last().is_some_and(|&last| last > i64::MAX as u64) {
+        "there are too many, or too large ones".to_owned()
+    } else {
+        return Ok(seeds);
+    };
+    Err(source.error("seeds", what, "give a number of them, a list, or { from, count }"))
+}
+
+/// The figures that are asked for; without a choice those that every run has a place for.
+fn check_measures(
+    source: &Source<'_>,
+    measures: Option<Vec<String>>,
+    known: Vec<String>,
+) -> Result<Vec<String>, ScenarioError> {
+    let Some(measures) = measures else {
+        return Ok(known.into_iter().filter(|name| !name.starts_with("waits.")).collect());
+    };
+    for (index, name) in measures.iter().enumerate() {
+        let field = format!("measures[{index}]");
+        if !known.contains(name) {
+            let what = format!("{name} is no figure of summary.json");
+            return Err(source.error(&field, what, format!("give some of {}", known.join(", "))));
+        }
+        if measures[..index].contains(name) {
+            return Err(source.error(&field, format!("{name} stands there twice"), "leave one out"));
+        }
+    }
+    if measures.is_empty() {
+        return Err(source.error("measures", "there is none", "give some, or leave the field out for all"));
+    }
+    Ok(measures)
+}
+
+fn check_plots(source: &Source<'_>, plan: &Plan, plots: Vec<PlotTable>) -> Result<Vec<PlotTable>, ScenarioError> {
+    for (index, plot) in plots.iter().enumerate() {
+        plan.check_plot(plot)
+            .map_err(|(field, what, remedy)| source.error(&format!("plot[{index}].{field}"), what, remedy))?;
+    }
+    Ok(plots)
+}
+
+#[cfg(test)]
+mod tests;

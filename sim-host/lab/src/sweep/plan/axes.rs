@@ -1,0 +1,319 @@
+//! `axes`, `zip`, `sample` and `set` of a plan: fields and their values.
+
+use super::table::{PlanFile, RangeTable, SampleTable};
+use crate::sweep::sample::shares;
+use crate::sweep::value::Value;
+use staya_sim::scenario::Field;
+use staya_sim::scenario::{ScenarioError, Source};
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+
+/// Most values of one axis.
+const MOST: u32 = 1_000_000;
+
+/// A field and its values.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// Which one.
+    pub field: Field,
+    /// In order.
+    pub values: Vec<Value>,
+    /// Where the plan says so.
+    pub line: usize,
+    /// Whether they were asked for in equal ratios.
+    pub is_log: bool,
+    /// A range, which has no meaning where words stand.
+    pub is_range: bool,
+    span: Range<usize>,
+}
+
+/// All fields that a plan has something to say about.
+#[derive(Debug, Default)]
+pub struct Axes {
+    /// Each by itself, in the order of columns.
+    pub axes: Vec<Axis>,
+    /// Those that advance together.
+    pub groups: Vec<Range<usize>>,
+    /// The same in all runs.
+    pub set: Vec<(Field, Value, Range<usize>)>,
+}
+
+/// A field in the plan's text, and what stands behind it.
+struct Entry<'a> {
+    field: Field,
+    span: Range<usize>,
+    value: &'a toml::Value,
+}
+
+/// Reads all of them.
+pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError> {
+    let mut all = Axes::default();
+    let root = source.root();
+    for entry in entries(source, table(root, "axes", None), &file.axes)? {
+        let axis = axis(source, entry)?;
+        if let Some(twice) = twice(&axis.values) {
+            let what = format!("{twice} stands there twice");
+            return Err(source.error_at(axis.span, axis.field.name(), what, "leave one out; seeds make repetitions"));
+        }
+        all.groups.push(all.axes.len()..all.axes.len() + 1);
+        all.axes.push(axis);
+    }
+    for (index, zipped) in file.zip.iter().enumerate() {
+        let entries = entries(source, table(root, "zip", Some(index)), zipped)?;
+        let group = entries.into_iter().map(|entry| axis(source, entry)).collect::<Result<Vec<_>, _>>()?;
+        let field = format!("zip[{index}]");
+        let [first, others @ ..] = &group[..] else {
+            return Err(source.error(&field, "there are no fields", "give fields with lists of the same length"));
+        };
+        if let Some(other) = others.iter().find(|other| other.values.len() != first.values.len()) {
+            let [a, b] = [first, other].map(|axis| format!("{} values of {}", axis.values.len(), axis.field));
+            let what = format!("{a} cannot advance with {b}");
+            return Err(source.error_at(other.span.clone(), &field, what, "give all of them equally many"));
+        }
+        all.groups.push(all.axes.len()..all.axes.len() + group.len());
+        all.axes.extend(group);
+    }
+    for (index, sample) in file.sample.iter().enumerate() {
+        let field = format!("sample[{index}]");
+        if !(1..=MOST).contains(&sample.count) {
+            let what = format!("{} samples", sample.count);
+            return Err(source.error(&format!("{field}.count"), what, format!("give 1 to {MOST}")));
+        }
+        let here = table(root, "sample", Some(index)).and_then(|table| table.get("axes"));
+        let here = here.and_then(|value| as_table(value.get_ref()));
+        let entries = entries(source, here, &sample.axes)?;
+        if entries.is_empty() {
+            return Err(source.error(&field, "there are no fields", "give some in `axes`"));
+        }
+        let group = (0..).zip(entries).map(|(number, entry)| sampled(source, entry, sample, number));
+        let group = group.collect::<Result<Vec<_>, _>>()?;
+        all.groups.push(all.axes.len()..all.axes.len() + group.len());
+        all.axes.extend(group);
+    }
+    for Entry { field, span, value } in entries(source, table(root, "set", None), &file.set)? {
+        let read = Value::read(value);
+        let value = read.map_err(|what| source.error_at(span.clone(), field.name(), what, "give one value"))?;
+        all.set.push((field, value, span));
+    }
+    let fields = all.axes.iter().map(|axis| (&axis.field, &axis.span));
+    let fields: Vec<_> = fields.chain(all.set.iter().map(|(field, _, span)| (field, span))).collect();
+    for (index, (field, span)) in fields.iter().enumerate() {
+        let wrong = |what: &str, remedy: &str| Err(source.error_at((*span).clone(), field.name(), what, remedy));
+        match field.name() {
+            "seed" => return wrong("seeds are no axis", "give `seeds`"),
+            "name" => return wrong("it is a text, and no run depends on it", "leave it out"),
+            _ if fields[..index].iter().any(|(other, _)| other == field) => {
+                return wrong("it is named twice", "leave one out");
+            }
+            _ => {}
+        }
+    }
+    Ok(all)
+}
+
+/// Refuses a range where the scenario has words, or truths.
+pub fn check_kind(source: &Source<'_>, axis: &Axis, stands: Option<&toml::Value>) -> Result<(), ScenarioError> {
+    let is = match stands {
+        Some(toml::Value::String(word)) => format!("a text ({word:?})"),
+        Some(toml::Value::Boolean(_)) => "true or false".to_owned(),
+        Some(toml::Value::Array(_) | toml::Value::Table(_)) => {
+            let remedy = "name a field in it, or an element: [0]";
+            return Err(source.error_at(axis.span.clone(), axis.field.name(), "it is a list or a table", remedy));
+        }
+        _ => return Ok(()),
+    };
+    if axis.is_range {
+        let (what, remedy) = no_range(&is);
+        return Err(source.error_at(axis.span.clone(), axis.field.name(), what, remedy));
+    }
+    Ok(())
+}
+
+/// What is wrong with a range of texts, and what to do.
+pub fn no_range(is: &str) -> (String, String) {
+    (format!("it is {is}, which has no range"), "give a list of values".to_owned())
+}
+
+/// A table of the plan as it stands in the text.
+fn table<'a, 't>(root: &'a DeTable<'t>, name: &str, index: Option<usize>) -> Option<&'a DeTable<'t>> {
+    let value = root.get(name)?.get_ref();
+    match (value, index) {
+        (DeValue::Array(list), Some(index)) => as_table(list.get(index)?.get_ref()),
+        (value, None) => as_table(value),
+        _ => None,
+    }
+}
+
+fn as_table<'a, 't>(value: &'a DeValue<'t>) -> Option<&'a DeTable<'t>> {
+    match value {
+        DeValue::Table(table) => Some(table),
+        _ => None,
+    }
+}
+
+/// Fields of a table in the order of the text, those of tables in it by dotted names. A table with `from` is a range.
+fn entries<'a>(
+    source: &Source<'_>,
+    here: Option<&DeTable<'_>>,
+    table: &'a toml::Table,
+) -> Result<Vec<Entry<'a>>, ScenarioError> {
+    let mut found = Vec::new();
+    if let Some(here) = here {
+        collect(here, table, "", &mut found);
+    }
+    found.sort_by_key(|(_, span, _)| span.start);
+    let entry = |(name, span, value): (String, Range<usize>, &'a toml::Value)| match Field::read(&name) {
+        Some(field) => Ok(Entry { field, span, value }),
+        None => {
+            let remedy = "write names as in radio.loss or \"plane.group[0].count\"";
+            Err(source.error_at(span, &name, "it is no name of a field", remedy))
+        }
+    };
+    found.into_iter().map(entry).collect()
+}
+
+fn collect<'a>(
+    here: &DeTable<'_>,
+    table: &'a toml::Table,
+    prefix: &str,
+    found: &mut Vec<(String, Range<usize>, &'a toml::Value)>,
+) {
+    for (key, place) in here {
+        let Some(value) = table.get(key.get_ref().as_ref()) else {
+            continue;
+        };
+        let name = if prefix.is_empty() { key.get_ref().to_string() } else { format!("{prefix}.{}", key.get_ref()) };
+        match (place.get_ref(), value) {
+            (DeValue::Table(inner), toml::Value::Table(below)) if !below.contains_key("from") => {
+                collect(inner, below, &name, found);
+            }
+            _ => found.push((name, key.span(), value)),
+        }
+    }
+}
+
+/// An axis whose values are said.
+fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_>) -> Result<Axis, ScenarioError> {
+    let wrong = |what: String, remedy: &str| source.error_at(span.clone(), field.name(), what, remedy);
+    let (values, is_log, is_range) = match value {
+        toml::Value::Array(list) => {
+            let values = list.iter().map(Value::read).collect::<Result<Vec<_>, _>>();
+            let remedy =
+                "give numbers, true and false, or words without comma; for lists name the element, as in place_m[0]";
+            (values.map_err(|what| wrong(what, remedy))?, false, false)
+        }
+        toml::Value::Table(_) => {
+            let range = range(value).map_err(|what| wrong(what, "give { from, to, count } or { from, to, step }"))?;
+            (spread(&range).map_err(|(what, remedy)| wrong(what, remedy))?, range.log, true)
+        }
+        _ => return Err(wrong("one value is no axis".to_owned(), "give a list, a range, or put it into [set]")),
+    };
+    if values.is_empty() {
+        return Err(wrong("there are no values".to_owned(), "give one or more"));
+    }
+    let line = line_of(source, &span);
+    Ok(Axis { field, values, line, is_log, is_range, span })
+}
+
+fn line_of(source: &Source<'_>, span: &Range<usize>) -> usize {
+    1 + source.text().bytes().take(span.start).filter(|&byte| byte == b'\n').count()
+}
+
+fn range(value: &toml::Value) -> Result<RangeTable, String> {
+    let range: RangeTable = value.clone().try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+    if !(range.from.is_finite() && range.to.is_finite()) {
+        return Err(format!("{} to {} is no range", range.from, range.to));
+    }
+    Ok(range)
+}
+
+/// The values of a range.
+fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
+    let RangeTable { from, to, log, .. } = *range;
+    check_log(range)?;
+    let values: Vec<f64> = match (range.count, range.step) {
+        (Some(count), None) => {
+            if !(2..=MOST).contains(&count) {
+                return Err((format!("{count} values are no range"), "give 2 to 1000000"));
+            }
+            (0..count).map(|number| between(range, f64::from(number) / f64::from(count - 1))).collect()
+        }
+        (None, Some(step)) => {
+            let steps = libm::floor((to - from) / step + 1e-9);
+            // Neither a step of 0 nor one the wrong way leads anywhere.
+            if log || !(0.0..f64::from(MOST)).contains(&steps) {
+                let what = format!("steps of {step} do not lead from {from} to {to}");
+                return Err((what, "give a step towards `to`, at most a million times; for equal ratios give `count`"));
+            }
+            (0..=steps as u32).map(|number| neat(from + f64::from(number) * step)).collect()
+        }
+        _ => return Err(("it is not clear how many values there are".to_owned(), "give exactly one of count, step")),
+    };
+    let mut values: Vec<Value> = values.into_iter().map(|value| rounded(range, value)).collect();
+    values.dedup();
+    Ok(values)
+}
+
+fn check_log(range: &RangeTable) -> Result<(), (String, &'static str)> {
+    if range.log && !(range.from > 0.0 && range.to > 0.0) {
+        let what = format!("{} to {} has no equal ratios", range.from, range.to);
+        return Err((what, "give ends above 0, or leave out log"));
+    }
+    Ok(())
+}
+
+/// What lies at this share of the way.
+fn between(range: &RangeTable, share: f64) -> f64 {
+    let RangeTable { from, to, log, .. } = *range;
+    if share == 0.0 {
+        from
+    } else if share == 1.0 {
+        to
+    } else if log {
+        neat(from * libm::pow(to / from, share))
+    } else {
+        neat(from + (to - from) * share)
+    }
+}
+
+/// To twelve digits, as a person would write it: 0.3 and not 0.30000000000000004.
+fn neat(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+fn rounded(range: &RangeTable, value: f64) -> Value {
+    Value::of(if range.whole { libm::round(value) } else { value })
+}
+
+/// An axis whose values are drawn.
+fn sampled(
+    source: &Source<'_>,
+    Entry { field, span, value }: Entry<'_>,
+    sample: &SampleTable,
+    number: u32,
+) -> Result<Axis, ScenarioError> {
+    let shares = shares(sample.kind, sample.seed, number, sample.count);
+    let wrong = |what: String, remedy: &str| source.error_at(span.clone(), field.name(), what, remedy);
+    let is_ends = matches!(value, toml::Value::Table(_));
+    let (values, is_log) = if is_ends {
+        let range = range(value).map_err(|what| wrong(what, "give { from, to }"))?;
+        if range.count.is_some() || range.step.is_some() {
+            return Err(wrong("how many values there are is the sample's".to_owned(), "give { from, to }"));
+        }
+        check_log(&range).map_err(|(what, remedy)| wrong(what, remedy))?;
+        (shares.iter().map(|&share| rounded(&range, between(&range, share))).collect(), range.log)
+    } else {
+        let of = axis(source, Entry { field: field.clone(), span: span.clone(), value })?.values;
+        let at = |share: f64| (share * of.len() as f64) as usize;
+        (shares.iter().map(|&share| of[at(share).min(of.len() - 1)].clone()).collect(), false)
+    };
+    let line = line_of(source, &span);
+    Ok(Axis { field, values, line, is_log, is_range: is_ends, span })
+}
+
+/// A value that stands there twice. O(n log n).
+fn twice(values: &[Value]) -> Option<String> {
+    let mut texts: Vec<String> = values.iter().map(ToString::to_string).collect();
+    texts.sort_unstable();
+    texts.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0].clone())
+}

@@ -1,0 +1,77 @@
+//! Whether the runs of a plan can be done, found out before the first one is begun.
+
+use super::Plan;
+use crate::sweep::jobs;
+use staya_sim::engine::simulate;
+use staya_sim::scenario::{ScenarioError, Source};
+use staya_sim::summary::Summary;
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+
+/// Most points that are tried; of larger plans those that show each value once, and others in between.
+const MOST: u64 = 500;
+
+/// Lets the scenario's own reader check points of the plan. Returns the names of all figures.
+pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
+    let mut known = figures(plan, source)?;
+    let points: Vec<u64> = points(plan).into_iter().collect();
+    let mut wrong = None;
+    jobs::each(
+        points.len(),
+        usize::MAX,
+        |(): &mut (), index| plan.scenario(&plan.run(points[index] * plan.seeds())).map(drop),
+        |index, read| match read {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                // Of several the first, whoever was quicker.
+                if wrong.as_ref().is_none_or(|(before, _)| index < *before) {
+                    wrong = Some((index, error));
+                }
+                ControlFlow::Break(())
+            }
+        },
+    );
+    match wrong {
+        Some((_, error)) => Err(error),
+        None => Ok(std::mem::take(&mut known)),
+    }
+}
+
+/// The names of the figures, of the first run before its first tick.
+fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
+    let scenario = plan.scenario(&plan.run(0))?;
+    let outcome = simulate(&scenario, |_, _| ControlFlow::Break(())).map_err(|error| {
+        source.error(
+            "scenario",
+            format!("its robots cannot be placed: {error}"),
+            "name a scenario that `staya run` runs",
+        )
+    })?;
+    Ok(Summary::new(&scenario, &outcome, Vec::new()).figures().into_iter().map(|(name, _)| name).collect())
+}
+
+/// All points, or in large plans each value of each axis with the first ones of the others, and points between.
+fn points(plan: &Plan) -> BTreeSet<u64> {
+    let count = plan.runs() / plan.seeds();
+    if count <= MOST {
+        return (0..count).collect();
+    }
+    let mut points: BTreeSet<u64> = (0..MOST / 2).map(|number| number * (count - 1) / (MOST / 2 - 1)).collect();
+    let mut stride = 1;
+    for group in plan.groups.iter().rev() {
+        let values = plan.axes[group.start].values.len() as u64;
+        // A sample's values are too many; its ends show whether its range can be.
+        let extremes = group.clone().flat_map(|index| {
+            let by_size = |number: &u64| {
+                let value = plan.axes[index].values[*number as usize].number();
+                value.unwrap_or(0.0)
+            };
+            let order = |a: &u64, b: &u64| by_size(a).total_cmp(&by_size(b));
+            [(0..values).min_by(order), (0..values).max_by(order)].into_iter().flatten()
+        });
+        let all = if values <= MOST { 0..values } else { 0..0 };
+        points.extend(all.chain(extremes).map(|number| number * stride));
+        stride *= values;
+    }
+    points
+}

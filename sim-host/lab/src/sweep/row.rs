@@ -1,0 +1,113 @@
+//! What is written down of a run: one line of CSV, the same on every machine.
+
+use crate::sweep::design::Design;
+use crate::sweep::value::Figure;
+use staya_console::VERSION;
+
+/// A run that is over.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Its number in the plan.
+    pub run: u64,
+    /// Whether it could be done; if not, it has no figures.
+    pub outcome: Outcome,
+    /// The figures, in the order of the design.
+    pub figures: Vec<Figure>,
+    /// 16 hex digits; empty: there was no run.
+    pub trace_hash: String,
+}
+
+/// What became of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It was done.
+    Done,
+    /// Its values do not go together, or a file was not there: nothing could be simulated. It is tried again at resume.
+    Impossible,
+}
+
+impl Outcome {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Impossible => "impossible",
+        }
+    }
+}
+
+/// The first line of a file, without its end.
+#[must_use]
+pub fn header(plan: &dyn Design) -> String {
+    let own = |name: &str| name.to_owned();
+    let mut names = vec![own("run")];
+    names.extend(plan.parameters());
+    names.extend(["seed", "outcome"].map(own));
+    names.extend(plan.figures());
+    names.extend(["trace_hash", "plan", "version"].map(own));
+    names.join(",")
+}
+
+impl Row {
+    /// As a line, without its end.
+    #[must_use]
+    pub fn line(&self, plan: &dyn Design) -> String {
+        let mut cells = beginning(plan, self.run);
+        cells.push(self.outcome.name().to_owned());
+        cells.extend(self.figures.iter().map(ToString::to_string));
+        cells.extend([self.trace_hash.clone(), plan.fingerprint(), VERSION.to_owned()]);
+        cells.join(",")
+    }
+
+    /// Reads a line. The error says what is wrong with it, and what to do.
+    ///
+    /// # Errors
+    /// It is no row, or one of another plan or version.
+    pub fn read(plan: &dyn Design, line: &str) -> Result<Self, (String, String)> {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [start @ .., hash, fingerprint, version] = &cells[..] else {
+            return Err(damaged("it is no row"));
+        };
+        let is_fingerprint = fingerprint.len() == 16 && fingerprint.chars().all(|c| c.is_ascii_hexdigit());
+        if !is_fingerprint || version.is_empty() {
+            return Err(damaged("it is no row"));
+        }
+        if *fingerprint != plan.fingerprint() {
+            let what = format!("it is of another plan ({fingerprint}, this one is {})", plan.fingerprint());
+            return Err((what, elsewhere()));
+        }
+        if *version != VERSION {
+            return Err((format!("it is of version {version}, this is {VERSION}"), elsewhere()));
+        }
+        let run = start.first().and_then(|cell| cell.parse().ok()).filter(|&run| run < plan.runs());
+        let run: u64 = run.ok_or_else(|| damaged("the plan has no such run"))?;
+        let expected = beginning(plan, run);
+        let Some((own, [outcome, figures @ ..])) = start.split_at_checked(expected.len()) else {
+            return Err(damaged("it is too short"));
+        };
+        if own.iter().zip(&expected).any(|(cell, expected)| cell != expected) {
+            return Err(damaged("its values are not those of this run"));
+        }
+        let outcome = [Outcome::Done, Outcome::Impossible].into_iter().find(|known| known.name() == *outcome);
+        let outcome = outcome.ok_or_else(|| damaged("nobody knows what became of it"))?;
+        if figures.len() != plan.figures().len() {
+            return Err(damaged("it has not as many figures as the plan"));
+        }
+        let figures = figures.iter().map(|cell| Figure::read(cell)).collect::<Option<Vec<_>>>();
+        let figures = figures.ok_or_else(|| damaged("a figure is no number"))?;
+        Ok(Self { run, outcome, figures, trace_hash: (*hash).to_owned() })
+    }
+}
+
+/// Number, values and seed.
+fn beginning(plan: &dyn Design, run: u64) -> Vec<String> {
+    let (number, seed) = (run.to_string(), plan.seed(run).to_string());
+    [number].into_iter().chain(plan.values(run)).chain([seed]).collect()
+}
+
+fn damaged(what: &str) -> (String, String) {
+    (what.to_owned(), "the file is damaged: remove this line, and `--resume` does the run again".to_owned())
+}
+
+fn elsewhere() -> String {
+    "choose another folder with --out, or begin again with --anew".to_owned()
+}

@@ -1,0 +1,54 @@
+//! What the columns of rows are, for programs that read them.
+
+use crate::sweep::design::Design;
+
+/// The file `rows.schema.json`: name, unit and meaning of each column of `rows.csv`, in the form of `trace.schema.json`.
+#[must_use]
+pub fn schema(design: &dyn Design) -> String {
+    let column = |name: &str, kind: &str, unit: &str, meaning: &str| serde_json::json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning });
+    let mut columns = vec![column("run", "integer", "1", "number of the run")];
+    columns.extend(design.parameters().iter().map(|name| column(name, "value", unit(name), "a parameter")));
+    columns.push(column("seed", "integer", "1", "seed of the run"));
+    columns.push(column("outcome", "string", "", "done, or impossible: then there are no figures"));
+    let figures = design.figures();
+    columns.extend(figures.iter().map(|name| column(name, "number", unit(name), &design.meaning(name))));
+    for (name, meaning) in [
+        ("trace_hash", "fingerprint of all bytes and movements of the run; empty: there are none"),
+        ("plan", "fingerprint of the plan: rows of one plan go together"),
+        ("version", "version of the program, and its git commit where that is known"),
+    ] {
+        columns.push(column(name, "string", "", meaning));
+    }
+    let schema = serde_json::json!({
+        "file": "rows.csv",
+        "format": "CSV: one header line, comma, no quotes, lines end with \\n, an empty field is an unknown value",
+        "columns": columns,
+    });
+    format!("{schema:#}\n")
+}
+
+/// The unit that a name carries, as in `radius_m`; empty: it carries none.
+fn unit(name: &str) -> &'static str {
+    match name.rsplit('_').next().unwrap_or_default() {
+        "m" => "m",
+        "s" | "seconds" => "s",
+        "ms" => "ms",
+        "us" => "us",
+        "mps" => "m/s",
+        "cells" => "cells",
+        "ticks" => "ticks",
+        "percent" => "%",
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_carry_units() {
+        let units = ["circle_m", "last_s", "arrival_last_seconds", "speed_mps", "time_ticks", "arrived", "m"].map(unit);
+        assert_eq!(units, ["m", "s", "s", "m/s", "ticks", "", "m"]);
+    }
+}

@@ -1,0 +1,300 @@
+//! The part of a plan that one process does, and the file that it appends its rows to.
+//!
+//! A file only ever grows, by whole lines; what is cut off by a crash or a full disk is the last line. So the rows that
+//! are there are true, and the next process does what is missing.
+
+use crate::sweep::SweepError;
+use crate::sweep::design::Design;
+use crate::sweep::jobs;
+use crate::sweep::row::{Outcome, Row, header};
+use crate::sweep::run::Finished;
+use staya_sim::file::{MAP, read};
+use staya_sim::record::{Error, make_dir};
+use std::collections::BTreeSet;
+use std::fmt::{self, Display, Formatter};
+use std::fs::{self, File, TryLockError};
+use std::io::{ErrorKind, Seek as _, SeekFrom, Write as _};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+
+/// Where rows are, in a folder of results.
+pub const FOLDER: &str = "shards";
+/// Where it is written how long runs took: that differs from machine to machine, and is no part of a row.
+const TIMES: &str = "times";
+/// Least time from one wait for the disk to the next.
+const SYNC: Duration = Duration::from_secs(2);
+
+/// One of several equal parts of a plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// Which one, 1 to `of`.
+    index: u64,
+    /// Of how many.
+    of: u64,
+}
+
+impl Default for Shard {
+    /// All of it.
+    fn default() -> Self {
+        Self { index: 1, of: 1 }
+    }
+}
+
+impl Shard {
+    /// Whether it is all of the plan.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.of == 1
+    }
+
+    /// Whether a run is in it. Neighbours are in different shards, so that all take about equally long.
+    #[must_use]
+    pub fn has(&self, run: u64) -> bool {
+        run % self.of == self.index - 1
+    }
+
+    fn file_name(&self) -> String {
+        format!("{}-of-{}.csv", self.index, self.of)
+    }
+}
+
+impl Display for Shard {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.of)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let parts = text.split_once('/').and_then(|(index, of)| Some((index.parse().ok()?, of.parse().ok()?)));
+        match parts {
+            Some((index, of)) if (1..=of).contains(&index) => Ok(Self { index, of }),
+            Some((_, of)) if of > 0 => Err(format!("there is no shard {text}; give 1/{of} to {of}/{of}")),
+            _ => Err("give the number of the shard and how many there are, as in 3/8".to_owned()),
+        }
+    }
+}
+
+/// What to do with rows that are there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// Refuse to begin.
+    Refuse,
+    /// Do what is missing.
+    Resume,
+    /// Forget them.
+    Forget,
+}
+
+/// The rows of one file.
+#[derive(Debug, Default)]
+pub struct Rows {
+    /// Each with the number of its line.
+    pub rows: Vec<(usize, Row)>,
+    /// Bytes of whole lines.
+    whole: u64,
+    /// Bytes of a line that was cut off.
+    pub torn: usize,
+}
+
+/// Reads a file of rows; what is cut off at its end is left out.
+///
+/// # Errors
+/// It cannot be read, or a line is none of this plan and version: file and line.
+pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
+    let unreadable = |error: std::io::Error| {
+        let remedy = staya_sim::file::read_remedy(&error);
+        SweepError::new(path.display(), error.to_string(), remedy)
+    };
+    let bytes = read(path, MAP).map_err(unreadable)?;
+    let whole = bytes.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
+    let (lines, torn) = bytes.split_at(whole);
+    let mut rows = Rows { whole: whole as u64, torn: torn.len(), ..Rows::default() };
+    let expected = header(plan);
+    for (line, number) in lines.split_inclusive(|&byte| byte == b'\n').zip(1..) {
+        let wrong = |(what, remedy): (String, String)| {
+            SweepError::new(format_args!("{}:{number}", path.display()), what, remedy)
+        };
+        let line = std::str::from_utf8(line)
+            .map_err(|_| wrong(("it is no text".to_owned(), "is it another kind of file, or damaged?".to_owned())))?;
+        let line = line.trim_end_matches('\n');
+        if number > 1 {
+            rows.rows.push((number, Row::read(plan, line).map_err(wrong)?));
+        } else if line != expected {
+            let what = "its columns are not those of this plan".to_owned();
+            return Err(wrong((what, "choose another folder with --out, or begin again with --anew".to_owned())));
+        }
+    }
+    Ok(rows)
+}
+
+/// The files of rows in a folder of results, sorted; none if there is no such folder.
+///
+/// # Errors
+/// It cannot be read.
+pub fn files(out: &Path) -> Result<Vec<PathBuf>, Error> {
+    let folder = out.join(FOLDER);
+    let entries = match fs::read_dir(&folder) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(Error::new("read directory", &folder)(error)),
+    };
+    let mut files = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(Error::new("read directory", &folder))?;
+        if entry.file_name().to_string_lossy().ends_with(".csv") {
+            files.push(entry.path());
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// A shard's file, open and locked.
+#[derive(Debug)]
+struct Appended {
+    file: File,
+    path: PathBuf,
+    times: Option<File>,
+    synced: Instant,
+}
+
+impl Appended {
+    /// Appends lines to the shard's file; `whole` bytes of it stay.
+    fn open(plan: &dyn Design, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
+        let path = out.join(FOLDER).join(shard.file_name());
+        make_dir(&out.join(FOLDER))?;
+        make_dir(&out.join(TIMES))?;
+        let open = File::options().create(true).read(true).append(true).open(&path);
+        let mut file = open.map_err(Error::new("open", &path))?;
+        // Where files cannot be locked there is nobody to ask.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            let what = "another process is at work on it";
+            return Err(SweepError::new(path.display(), what, "wait for it, or end it"));
+        }
+        if existing == Existing::Forget {
+            file.set_len(0).map_err(Error::new("write", &path))?;
+        }
+        // By somebody else since it was looked at, or by nobody.
+        let Rows { whole, torn, .. } = read_rows(plan, &path)?;
+        file.set_len(whole).and_then(|()| file.seek(SeekFrom::End(0))).map_err(Error::new("write", &path))?;
+        let times = File::options().create(true).append(true).open(out.join(TIMES).join(shard.file_name())).ok();
+        let mut this = Self { file, path, times, synced: Instant::now() };
+        if whole == 0 {
+            this.append(&header(plan))?;
+        }
+        Ok((this, torn))
+    }
+
+    fn append(&mut self, line: &str) -> Result<(), Error> {
+        // In one piece: a process that is killed leaves all of the line or nothing.
+        let written = self.file.write_all(format!("{line}\n").as_bytes());
+        written.map_err(Error::new("write", &self.path))?;
+        if self.synced.elapsed() > SYNC {
+            self.sync()?;
+        }
+        Ok(())
+    }
+
+    fn sync(&mut self) -> Result<(), Error> {
+        self.synced = Instant::now();
+        self.file.sync_data().map_err(Error::new("write", &self.path))
+    }
+}
+
+/// How far a shard has come.
+#[derive(Clone, Debug, Default)]
+pub struct Course {
+    /// Runs of the shard.
+    pub runs: u64,
+    /// Those that were there before.
+    pub found: u64,
+    /// Those that were done now.
+    pub done: u64,
+    /// Those of them that cannot be, with the first reason.
+    pub impossible: Option<(u64, String)>,
+    /// Lines that had been cut off.
+    pub torn: usize,
+}
+
+impl Course {
+    /// Runs that are still missing.
+    #[must_use]
+    pub fn missing(&self) -> u64 {
+        self.runs - self.found - self.done
+    }
+}
+
+/// Does the runs of a shard that are not there yet, and appends their rows, each when it is done.
+///
+/// `job` makes a run on any thread, or `None` to end everything; `progress` is told how many are done of how many to do.
+///
+/// # Errors
+/// Rows of another plan or version, rows that are not to be touched, a file that cannot be written. What was done is kept.
+pub fn perform_shard<S: Default>(
+    plan: &dyn Design,
+    shard: Shard,
+    out: &Path,
+    existing: Existing,
+    job: impl Fn(&mut S, u64) -> Option<Finished> + Sync,
+    mut progress: impl FnMut(u64, u64) + Send,
+) -> Result<Course, SweepError> {
+    if existing == Existing::Forget && shard.is_whole() {
+        for file in files(out)? {
+            fs::remove_file(&file).map_err(Error::new("remove", &file))?;
+        }
+    }
+    let own = out.join(FOLDER).join(shard.file_name());
+    let mut there = BTreeSet::new();
+    for file in files(out)? {
+        if existing == Existing::Forget && file == own {
+            continue;
+        }
+        let rows = read_rows(plan, &file)?.rows;
+        if existing == Existing::Refuse && !rows.is_empty() && (file == own || shard.is_whole()) {
+            let what = format!("it has {} of {} runs", rows.len(), plan.runs());
+            return Err(SweepError::new(file.display(), what, "--resume does the others, --anew forgets these"));
+        }
+        let done = rows.into_iter().filter(|(_, row)| row.outcome == Outcome::Done);
+        there.extend(done.map(|(_, row)| row.run));
+    }
+    let (mut file, torn) = Appended::open(plan, out, shard, existing)?;
+    let mut mine: Vec<u64> = (0..plan.runs()).filter(|&run| shard.has(run)).collect();
+    mine.sort_by_key(|&run| plan.turn(run));
+    let missing: Vec<u64> = mine.iter().copied().filter(|run| !there.contains(run)).collect();
+    let mut course =
+        Course { runs: mine.len() as u64, found: (mine.len() - missing.len()) as u64, torn, ..Course::default() };
+    let mut failed = None;
+    let take = |_, finished: Option<Finished>| {
+        let Some(Finished { row, seconds, refusal }) = finished else {
+            return ControlFlow::Break(());
+        };
+        if let Err(error) = file.append(&row.line(plan)) {
+            failed = Some(error);
+            return ControlFlow::Break(());
+        }
+        if let Some(times) = &mut file.times {
+            // Nobody needs them.
+            let _ = writeln!(times, "{},{seconds:.6}", row.run);
+        }
+        if let Some(why) = refusal {
+            course.impossible.get_or_insert((0, why)).0 += 1;
+        }
+        course.done += 1;
+        progress(course.done, missing.len() as u64);
+        ControlFlow::Continue(())
+    };
+    jobs::each(missing.len(), plan.at_once(), |scratch, index| job(scratch, missing[index]), take);
+    file.sync()?;
+    match failed {
+        Some(error) => Err(error.into()),
+        None => Ok(course),
+    }
+}
+
+#[cfg(test)]
+mod tests;

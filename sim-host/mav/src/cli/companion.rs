@@ -1,0 +1,80 @@
+//! `staya companion CONFIG.toml`: the controller beside autopilots.
+
+mod page;
+
+use crate::Tlog;
+use crate::companion::{Config, Options, Sight, run};
+use anyhow::Result;
+use clap::Args;
+use page::Page;
+use staya_console::WatchArgs;
+use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_view::watch::Watcher;
+use std::path::PathBuf;
+
+/// Steer ArduPilot or PX4 vehicles as a swarm.
+#[derive(Args, Clone, Debug)]
+pub struct CompanionArgs {
+    /// The configuration, a .toml file; docs/autopilots.md lists its fields, companions/ has examples.
+    config: PathBuf,
+    /// Show the messages that would be sent, and send nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// End after this many seconds [default: at Ctrl-C].
+    #[arg(long, value_name = "N", value_parser = seconds)]
+    seconds: Option<f64>,
+    /// Write all messages of all links that are believed to a log, for mavlogdump, MAVExplorer or QGroundControl; at 256 MiB it gets `.1` behind its name, and a new one
+    /// begins.
+    #[arg(long, value_name = "FILE")]
+    tlog: Option<PathBuf>,
+    /// Seal packets between companions with the key in this file, and hear only sealed ones; instead of air.key.
+    #[arg(long, value_name = "FILE")]
+    key: Option<PathBuf>,
+    /// Sign all messages on the links with the key in this file, and hear only signed ones; instead of link_key.
+    #[arg(long, value_name = "FILE")]
+    link_key: Option<PathBuf>,
+    #[command(flatten)]
+    page: WatchArgs,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse::<f64>().ok();
+    let seconds = seconds.filter(|s| (0.0..=1e6).contains(s));
+    seconds.ok_or_else(|| String::from("give seconds, 0 to 1000000"))
+}
+
+impl CompanionArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A configuration that cannot be read or is wrong, links that cannot be opened, a log that cannot be written.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let mut config = Config::load(&self.config)?;
+        for (given, kept) in [(&self.key, &mut config.key), (&self.link_key, &mut config.link_key)] {
+            if given.is_some() {
+                kept.clone_from(given);
+            }
+        }
+        let mut options = Options {
+            dry_run: self.dry_run,
+            quiet: global.quiet,
+            seconds: self.seconds,
+            tlog: self.tlog.as_deref().map(Tlog::create).transpose()?,
+        };
+        let stop = Stop::on_ctrl_c()?;
+        let page = Watcher::by_options(&self.page, &config.scenario)?;
+        let mut page = page.map(|watcher| Page::new(watcher, &config.scenario)).transpose()?;
+        let look = |sight: &Sight<'_>| {
+            if let Some(page) = &mut page {
+                page.look(sight);
+            }
+        };
+        let report = run(&config, &mut options, || !stop.is_requested(), look)?;
+        if global.json {
+            print_json(&report)?;
+        } else {
+            print(&report.to_string())?;
+        }
+        Ok(Ended::by(&stop))
+    }
+}

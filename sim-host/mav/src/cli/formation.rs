@@ -1,0 +1,208 @@
+//! `staya formation SHAPE --to LINE`: another shape and another goal for a formation that is under way.
+
+use crate::Endpoint;
+use crate::formation::station::{Given, Members, Places, give, numbers};
+use crate::formation::{Graph, Order, Shape};
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
+use staya_console::{Ended, Global, print, print_json};
+use staya_controller::grid::{Cell, Dir};
+use staya_mavlink::signing::Signing;
+use staya_sim::key::{KeyFile, timestamp};
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::time::{Duration, SystemTime};
+
+/// Tell a swarm in formation, over MAVLink, to take another shape and to go to another place.
+///
+/// The robots that are heard at the line, or some of them, get the places of the shape, each one that is near. Exit code 1 if one of
+/// them does not say that it has its orders. Who is ordered in several calls is in several formations.
+#[derive(Args, Clone, Debug)]
+#[command(
+    allow_negative_numbers = true,
+    after_help = "Example, in two terminals:\n  \
+        staya bridge scenarios/six-robots.toml --speed 20 --mavlink udpin:127.0.0.1:14551\n  \
+        staya formation wedge --to udpout:127.0.0.1:14551 --goal 60,40"
+)]
+pub struct FormationArgs {
+    /// line, column, wedge, grid, circle, or a .toml file with `places` and `edges` as in a scenario's table robots.formation.
+    shape: String,
+    /// Where the swarm is: udpout:HOST:PORT, udpin:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or serial:PORT,baud=N.
+    #[arg(long, value_name = "LINE")]
+    to: Endpoint,
+    /// Which robots: numbers and ranges, as in 3,5,8-12 [default: all that are heard].
+    #[arg(long, value_name = "NUMBERS", value_parser = robots)]
+    robots: Option<Numbers>,
+    /// Who gets which place: nearest (the least sum of squared ways), or number (by rising numbers, the first in front).
+    #[arg(long, value_name = "BY", default_value = "nearest", value_parser = places)]
+    places: Places,
+    /// Where the front of the formation is to go, a cell of the grid: east, north [default: where robots were going].
+    #[arg(long, value_name = "X,Y", value_parser = cell)]
+    goal: Option<Cell>,
+    /// Cells between neighbours; not with a file.
+    #[arg(long, value_name = "CELLS", default_value_t = 3, value_parser = clap::value_parser!(i16).range(1..=100))]
+    spacing: i16,
+    /// Where the formation looks: E, NE, N, NW, W, SW, S or SE.
+    #[arg(long, value_name = "DIRECTION", default_value = "E", value_parser = heading)]
+    heading: Dir,
+    /// How long to wait for robots and their answers, seconds.
+    #[arg(long, value_name = "S", default_value_t = 8.0, value_parser = seconds)]
+    wait: f64,
+    /// Sign the orders: the file with the key that the bridge has.
+    #[arg(long, value_name = "FILE")]
+    key: Option<std::path::PathBuf>,
+}
+
+/// What the robots are to be.
+enum Wanted {
+    Shape(Shape),
+    Graph(Graph),
+}
+
+fn cell(text: &str) -> Result<Cell, String> {
+    let numbers: Result<Vec<i16>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y]) => Ok(Cell::new(x, y)),
+        _ => Err(String::from("two whole numbers, as in 60,40")),
+    }
+}
+
+/// A set that clap takes for one value.
+type Numbers = BTreeSet<u8>;
+
+fn robots(text: &str) -> Result<Numbers, String> {
+    let mut robots = Numbers::new();
+    for part in text.split(',').map(str::trim) {
+        let (first, last) = part.split_once('-').unwrap_or((part, part));
+        let number = |text: &str| text.trim().parse::<u8>().ok().filter(|robot| (1..=254).contains(robot));
+        match (number(first), number(last)) {
+            (Some(first), Some(last)) if first <= last => robots.extend(first..=last),
+            _ => return Err(format!("`{part}`: numbers from 1 to 254 and rising ranges of them, as in 3,5,8-12")),
+        }
+    }
+    Ok(robots)
+}
+
+fn places(text: &str) -> Result<Places, String> {
+    match text {
+        "nearest" => Ok(Places::Nearest),
+        "number" => Ok(Places::Number),
+        _ => Err(String::from("nearest or number")),
+    }
+}
+
+fn heading(text: &str) -> Result<Dir, String> {
+    let names = [
+        ("E", Dir::East),
+        ("NE", Dir::NorthEast),
+        ("N", Dir::North),
+        ("NW", Dir::NorthWest),
+        ("W", Dir::West),
+        ("SW", Dir::SouthWest),
+        ("S", Dir::South),
+        ("SE", Dir::SouthEast),
+    ];
+    let found = names.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
+    found.map(|(_, heading)| heading).ok_or_else(|| String::from("one of E, NE, N, NW, W, SW, S, SE"))
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    value.filter(|value| (1.0..=600.0).contains(value)).ok_or_else(|| String::from("a number from 1 to 600"))
+}
+
+impl FormationArgs {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A shape or file that is none, a line that cannot be opened, nobody there, robots that did not answer or objected.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        // A file is read before anybody is looked for.
+        let wanted = match Shape::from_name(&self.shape) {
+            Some(shape) => Wanted::Shape(shape),
+            None => Wanted::Graph(self.read(Path::new(&self.shape))?),
+        };
+        let graph = |robots| match wanted {
+            Wanted::Shape(shape) => shape.graph(robots, self.spacing),
+            Wanted::Graph(graph) => Ok(graph),
+        };
+        let mut signing = match &self.key {
+            Some(path) => {
+                let file = KeyFile::read(path)?;
+                file.remark.iter().for_each(|remark| eprintln!("staya: {remark}"));
+                // Another stream than a bridge's own.
+                Some(Signing::new(file.key, 2, timestamp()))
+            }
+            None => None,
+        };
+        let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        // Each call is another start of the station: robots forget what earlier ones counted.
+        let order = Order { goal: self.goal, to_all: true, boot: (since.as_millis() / 100) as u8, version: 1 };
+        let members = Members { robots: self.robots.clone(), places: self.places, heading: self.heading };
+        let wait = Duration::from_secs_f64(self.wait);
+        let given =
+            give(&self.to, signing.as_mut(), graph, &members, &order, wait).with_context(|| self.shape.clone())?;
+        if global.json {
+            print_json(&given)?;
+        } else {
+            print(&self.table(&given))?;
+        }
+        let robots = given.robots.iter().copied();
+        let silent: BTreeSet<u8> = robots
+            .filter(|robot| {
+                !given.placed.contains(robot) || (self.goal.is_some() && !given.heading_for_goal.contains(robot))
+            })
+            .collect();
+        if let Some((robot, objection)) = given.objections.first() {
+            bail!("robot {robot}: {objection}; give the scenario [robots.formation]");
+        }
+        if !silent.is_empty() {
+            bail!("no word that they have their orders from robots {}; call again", numbers(&silent));
+        }
+        Ok(Ended::Done)
+    }
+
+    fn read(&self, path: &Path) -> Result<Graph> {
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            let names = Shape::NAMES.map(|(name, _)| name).join(", ");
+            bail!("`{}` is no shape: give {names}, or a .toml file", self.shape);
+        }
+        let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        Graph::parse(&text).with_context(|| path.display().to_string())
+    }
+
+    fn table(&self, given: &Given) -> String {
+        let goal = self.goal.map_or_else(String::new, |goal| {
+            format!(", {} head for cell {}, {}", given.heading_for_goal.len(), goal.x, goal.y)
+        });
+        format!(
+            "{}: {} of {} robots have their places{goal} ({} frames sent)\n",
+            self.shape,
+            given.placed.len(),
+            given.robots.len(),
+            given.frames
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_and_headings_are_read() {
+        assert_eq!(cell("60, -4"), Ok(Cell::new(60, -4)));
+        assert_eq!((heading("nw"), heading("S")), (Ok(Dir::NorthWest), Ok(Dir::South)));
+        for bad in ["", "1", "1,2,3", "a,b", "40000,0"] {
+            assert!(cell(bad).is_err(), "{bad}");
+        }
+        assert!(heading("up").is_err());
+        assert_eq!(robots("3, 5,8-12,12"), Ok(Numbers::from([3, 5, 8, 9, 10, 11, 12])));
+        assert_eq!(numbers(&Numbers::from([1, 2, 5, 7, 8, 9])), "1, 2, 5, 7 to 9");
+        for bad in ["", "0", "255", "3-", "5-3", "a", "1;2"] {
+            let error = robots(bad).expect_err(bad);
+            assert!(error.contains("as in 3,5,8-12"), "{error}");
+        }
+        assert!(places("near").is_err());
+    }
+}

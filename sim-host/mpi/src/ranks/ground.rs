@@ -1,0 +1,253 @@
+//! What ranks ask of a world of which each has a part.
+
+use super::exchange::{RankError, decode, encode};
+use super::region::Region;
+use staya_controller::agent::Command;
+use staya_controller::grid::Cell;
+use staya_controller::robot::RobotId;
+use staya_sim::engine::{Grid, Ground, PlaneGround};
+use staya_sim::metrics::{FormationMeters, Keeping, in_cells};
+use staya_sim::world::border::{Beside, DEPTH, Settled};
+use staya_sim::world::plane::{self, Clearance};
+use staya_sim::world::scouts::Scouts;
+
+/// What ranks tell each other while bodies move.
+pub trait Talk {
+    /// The sum of everybody's numbers.
+    fn sum(&mut self, own: u64) -> Result<u64, RankError>;
+
+    /// Tells each neighbour something, and hears what they tell, with their ranks.
+    fn swap(&mut self, message: &dyn Fn(&Region) -> Vec<u8>) -> Result<Vec<(usize, Vec<u8>)>, RankError>;
+}
+
+/// A world of which this rank has some bodies and others have the rest. What is no body is the same on all ranks.
+pub trait Part: Ground {
+    /// Keeps the bodies of these robots alone, in this order.
+    fn keep(&mut self, here: &[u32]);
+
+    /// A body for a robot that comes from another rank, behind those that are here, which the world's state puts in its place.
+    fn admit(&mut self, number: u32, id: RobotId);
+
+    /// A body goes to another rank; the last one takes its place.
+    fn dismiss(&mut self, index: usize);
+
+    /// Whether bodies of two regions can be in the way of each other's moves.
+    fn hinders(&self, one: &Region, other: &Region) -> bool;
+
+    /// What a neighbour must know of bodies near `region` before they move.
+    fn wishes(&self, tick: u32, region: &Region, commands: &[Command<f32>]) -> Vec<u8>;
+
+    /// As [`Ground::advance`], among those that neighbours told of.
+    fn advance_beside(
+        &mut self,
+        tick: u32,
+        commands: &[Command<f32>],
+        own: &Region,
+        wishes: &[(usize, Vec<u8>)],
+        talk: &mut dyn Talk,
+    ) -> Result<(), RankError>;
+
+    /// Whether bodies of two regions can collide.
+    fn touches(&self, one: &Region, other: &Region) -> bool;
+
+    /// What a neighbour must know of bodies near `region` to count collisions.
+    fn bodies(&self, tick: u32, region: &Region) -> Vec<u8>;
+
+    /// Collisions with bodies of others, after [`Ground::count_collisions`].
+    fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError>;
+
+    /// Replaces what nearness has been counted, and says what it was; nothing on the grid.
+    fn replace_clearance(&mut self, clearance: Clearance) -> Clearance;
+
+    /// Whether a body is in a cell.
+    fn is_taken(&self, cell: Cell) -> bool;
+
+    /// Where a body is for [`Part::keeping_of`], cells; `None`: nobody asks.
+    fn place(&self, index: usize) -> Option<[f64; 2]>;
+
+    /// As [`Ground::keeping`], with the places of all robots.
+    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping>;
+}
+
+fn measure(meter: Option<&mut FormationMeters>, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
+    let meter = meter.filter(|_| !places.is_empty())?;
+    Some(if counts { meter.measure(places) } else { meter.look(places) })
+}
+
+impl Part for Grid {
+    fn keep(&mut self, here: &[u32]) {
+        self.world.keep(here);
+        self.scouts.iter_mut().for_each(|scouts| scouts.keep(here.len()));
+        self.numbers = here.to_vec();
+    }
+
+    fn admit(&mut self, number: u32, id: RobotId) {
+        self.world.admit(id);
+        self.scouts.iter_mut().for_each(Scouts::admit);
+        self.numbers.push(number);
+    }
+
+    fn dismiss(&mut self, index: usize) {
+        self.world.dismiss(index);
+        self.scouts.iter_mut().for_each(|scouts| scouts.dismiss(index));
+        self.numbers.swap_remove(index);
+    }
+
+    fn hinders(&self, one: &Region, other: &Region) -> bool {
+        one.is_beside_in_cells(other, DEPTH)
+    }
+
+    fn wishes(&self, tick: u32, region: &Region, commands: &[Command<f32>]) -> Vec<u8> {
+        let near = region.cells.map(|cells| self.world.near(tick, &cells, DEPTH, Some(commands)));
+        encode(&near.unwrap_or_default())
+    }
+
+    fn advance_beside(
+        &mut self,
+        tick: u32,
+        commands: &[Command<f32>],
+        own: &Region,
+        wishes: &[(usize, Vec<u8>)],
+        talk: &mut dyn Talk,
+    ) -> Result<(), RankError> {
+        self.look();
+        let mut beside = Vec::<Beside>::new();
+        for (rank, bytes) in wishes {
+            beside.extend(decode::<Vec<Beside>>(*rank, "bodies", bytes)?);
+        }
+        let mut contest = self.world.contest(tick, commands, own.cells.as_ref(), beside);
+        loop {
+            let open = contest.round(&mut self.world);
+            if talk.sum(open)? == 0 {
+                contest.finish(&mut self.world);
+                return Ok(());
+            }
+            let settled =
+                |region: &Region| encode(&region.cells.map(|cells| contest.settled(&cells)).unwrap_or_default());
+            let heard = talk.swap(&settled)?;
+            contest.tell();
+            for (rank, bytes) in heard {
+                contest.hear(&decode::<Vec<Settled>>(rank, "moves", &bytes)?);
+            }
+        }
+    }
+
+    fn touches(&self, one: &Region, other: &Region) -> bool {
+        one.is_beside_in_cells(other, 0)
+    }
+
+    fn bodies(&self, tick: u32, region: &Region) -> Vec<u8> {
+        encode(&region.cells.map(|cells| self.world.near(tick, &cells, 0, None)).unwrap_or_default())
+    }
+
+    fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError> {
+        let mut beside = Vec::<Beside>::new();
+        for (rank, bytes) in bodies {
+            beside.extend(decode::<Vec<Beside>>(*rank, "bodies", bytes)?);
+        }
+        Ok(self.world.count_collisions_beside(&beside))
+    }
+
+    fn replace_clearance(&mut self, clearance: Clearance) -> Clearance {
+        clearance
+    }
+
+    fn is_taken(&self, cell: Cell) -> bool {
+        self.world.body_at(cell).is_some()
+    }
+
+    fn place(&self, index: usize) -> Option<[f64; 2]> {
+        self.meter.as_ref().map(|_| in_cells(self.world.bodies()[index].cell))
+    }
+
+    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
+        measure(self.meter.as_mut(), places, counts)
+    }
+}
+
+impl Part for PlaneGround {
+    fn keep(&mut self, here: &[u32]) {
+        self.plane.keep(here);
+        self.scouts.iter_mut().for_each(|scouts| scouts.keep(here.len()));
+        self.numbers = here.to_vec();
+    }
+
+    fn admit(&mut self, number: u32, id: RobotId) {
+        self.plane.admit(self.disc_of(number as usize, id));
+        self.scouts.iter_mut().for_each(Scouts::admit);
+        self.numbers.push(number);
+    }
+
+    fn dismiss(&mut self, index: usize) {
+        self.plane.dismiss(index);
+        self.scouts.iter_mut().for_each(|scouts| scouts.dismiss(index));
+        self.numbers.swap_remove(index);
+    }
+
+    fn hinders(&self, _: &Region, _: &Region) -> bool {
+        false // bodies pass through each other
+    }
+
+    fn wishes(&self, _: u32, _: &Region, _: &[Command<f32>]) -> Vec<u8> {
+        Vec::new()
+    }
+
+    fn advance_beside(
+        &mut self,
+        tick: u32,
+        commands: &[Command<f32>],
+        _: &Region,
+        _: &[(usize, Vec<u8>)],
+        _: &mut dyn Talk,
+    ) -> Result<(), RankError> {
+        self.advance(tick, commands);
+        Ok(())
+    }
+
+    fn touches(&self, one: &Region, other: &Region) -> bool {
+        one.is_beside(other, self.plane.reach_m())
+    }
+
+    fn bodies(&self, _: u32, region: &Region) -> Vec<u8> {
+        let near = |at_m: [f64; 3]| region.is_near([at_m[0], at_m[1]], self.plane.reach_m());
+        let discs = self.plane.discs().iter().filter(|disc| near(disc.position_m));
+        let bodies = discs.map(|disc| plane::Beside {
+            id: disc.id,
+            position_m: disc.position_m,
+            radius_m: disc.radius_m,
+            downwash: disc.downwash,
+        });
+        encode(&bodies.collect::<Vec<_>>())
+    }
+
+    fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError> {
+        let mut beside = Vec::<plane::Beside>::new();
+        for (rank, bytes) in bodies {
+            beside.extend(decode::<Vec<plane::Beside>>(*rank, "bodies", bytes)?);
+        }
+        let now = self.plane.clearance_beside(&beside);
+        self.clearance.add(&now);
+        let gap_m = self.gap_m.map_or(now.bodies_m, |gap_m| gap_m.min(now.bodies_m));
+        self.gap_m = Some(gap_m).filter(|gap_m| gap_m.is_finite());
+        Ok(now.overlaps)
+    }
+
+    fn replace_clearance(&mut self, clearance: Clearance) -> Clearance {
+        std::mem::replace(&mut self.clearance, clearance)
+    }
+
+    fn is_taken(&self, cell: Cell) -> bool {
+        self.plane.discs().iter().any(|disc| self.plane.cell(disc.position_m) == Some(cell))
+    }
+
+    fn place(&self, index: usize) -> Option<[f64; 2]> {
+        let (_, land) = self.meter.as_ref().zip(self.plane.terrain())?;
+        let [x, y, _] = self.plane.discs()[index].position_m;
+        Some([x / land.cell_m, y / land.cell_m])
+    }
+
+    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
+        self.plane.terrain()?;
+        measure(self.meter.as_mut(), places, counts)
+    }
+}

@@ -1,0 +1,467 @@
+//! A rank's run: its ticks, and what it exchanges in them.
+
+use super::cut::{Cut, Sample};
+use super::exchange::{Exchange, RankError, Traffic, decode, encode};
+use super::ground::Part as Ground;
+use super::outcome::{Part, Row, Sums, nothing};
+use super::region::Region;
+use super::wire::Wire;
+use staya_controller::agent::{Guidance, Safety};
+use staya_controller::grid::Cell;
+use staya_controller::robot::RobotId;
+use staya_controller::wire::Ring;
+use staya_sim::engine::Every;
+use staya_sim::engine::hash;
+use staya_sim::engine::{Engine, Grid, HostLaw, Moment, Outcome, PlaneGround, Saves, State, Watch, agents};
+use staya_sim::metrics::Keeping;
+use staya_sim::radio::Sent;
+use staya_sim::record::{PacketCounts, RobotRow, TickRow};
+use staya_sim::scenario::{AttackKind, Intervention, Scenario};
+use std::time::Instant;
+
+/// How ranks share their work. No choice changes a result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sharing {
+    /// Ticks after which robots that have left their rank's block go to whose block they are in. More: fewer bytes for them, more for
+    /// the packets around those that strayed.
+    pub every_ticks: u32,
+    /// The world is cut anew when a rank has more than so many times the mean load.
+    pub above: f64,
+    /// Rank 0 hears of each robot in each tick, for its records.
+    pub records: bool,
+    /// When `watch` gets the whole run, to be saved ([`Moment::run`]), which costs as much as sending all robots to rank 0; if ever, then
+    /// also when the run is told to stop.
+    pub checkpoints: Option<Every>,
+}
+
+impl Default for Sharing {
+    fn default() -> Self {
+        Self { every_ticks: 8, above: 1.15, records: true, checkpoints: None }
+    }
+}
+
+/// What came of a run over ranks.
+#[derive(Clone, Debug)]
+pub struct Ended {
+    /// Of the whole, as one process has it; on other ranks than the first without arrival times and figures of formations.
+    pub outcome: Outcome,
+    /// What each rank has sent.
+    pub traffic: Vec<Traffic>,
+}
+
+/// Places from which a world is cut at the start.
+const SAMPLES: usize = 1 << 16;
+/// A reception costs as much as so much of a step.
+const RECEPTION: f64 = 0.1;
+
+/// Whether so many ranks can share a scenario.
+///
+/// # Errors
+/// There are more ranks than robots.
+pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
+    let robots = scenario.robots.len();
+    if ranks > 1 && scenario.torus_m().is_some() {
+        return Err(RankError::Torus { ranks });
+    }
+    if ranks > 1 && scenario.eyes.is_some() {
+        return Err(RankError::Eyes { ranks });
+    }
+    if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
+}
+
+/// Why a scenario gains little by more ranks, if it does; what comes of it is the same.
+#[must_use]
+pub fn remark(scenario: &Scenario) -> Option<String> {
+    let around = |axis: usize| {
+        let places = starts(scenario).map(|place_m| place_m[axis]);
+        let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        high - low
+    };
+    let (range_m, extent_m) = (scenario.radio.range_m, around(0).max(around(1)));
+    (range_m >= extent_m).then(|| {
+        format!(
+            "the radio reaches {range_m} m and the robots start within {extent_m:.0} m: every rank hears every packet, only the \
+             robots' own work is shared; radio.range_m is the field"
+        )
+    })
+}
+
+/// As [`simulate`](staya_sim::engine::simulate), by all ranks together; `watch` is called on rank 0, and when it breaks, one more tick is
+/// done, since the others are at it already.
+///
+/// # Errors
+/// Robots that cannot be placed, more ranks than robots, a rank that is gone.
+pub fn simulate_on(
+    scenario: &Scenario,
+    exchange: &mut dyn Exchange,
+    sharing: &Sharing,
+    watch: &mut Watch<'_>,
+) -> Result<Ended, RankError> {
+    go(scenario, None, exchange, sharing, watch)
+}
+
+/// The same from a checkpoint's state, of a run by one process or on any number of ranks. `watch` sees the ticks after it.
+///
+/// # Errors
+/// See [`simulate_on`]; the state is of another scenario or program.
+pub fn simulate_on_from(
+    scenario: &Scenario,
+    state: &[u8],
+    exchange: &mut dyn Exchange,
+    sharing: &Sharing,
+    watch: &mut Watch<'_>,
+) -> Result<Ended, RankError> {
+    go(scenario, Some(state), exchange, sharing, watch)
+}
+
+fn go(
+    scenario: &Scenario,
+    state: Option<&[u8]>,
+    exchange: &mut dyn Exchange,
+    sharing: &Sharing,
+    watch: &mut Watch<'_>,
+) -> Result<Ended, RankError> {
+    check(scenario, exchange.ranks())?;
+    match &scenario.plane {
+        Some(setup) => {
+            let ground = PlaneGround::new(scenario, setup);
+            Rank::new(scenario, exchange, sharing, ground, agents(scenario))?.run(state, watch)
+        }
+        None => Rank::new(scenario, exchange, sharing, Grid::new(scenario)?, agents(scenario))?.run(state, watch),
+    }
+}
+
+/// One rank.
+pub(super) struct Rank<'a, W, G: Guidance<f32>, A> {
+    pub(super) scenario: &'a Scenario,
+    pub(super) sharing: &'a Sharing,
+    pub(super) engine: Engine<W, G, A>,
+    pub(super) cut: Cut,
+    pub(super) wire: Wire<'a>,
+    /// Ticks since the world was cut.
+    pub(super) age: u32,
+    /// What each rank's last tick cost.
+    pub(super) loads: Vec<f64>,
+    stops: bool,
+    saved_at: Instant,
+}
+
+/// Where robots start.
+fn starts(scenario: &Scenario) -> impl Iterator<Item = [f64; 2]> + '_ {
+    scenario.robots.iter().enumerate().map(|(index, robot)| match &scenario.plane {
+        Some(plane) => {
+            let [x, y, _] = plane.starts[index].position_m;
+            [x, y]
+        }
+        None => scenario.terrain.center_m(robot.start),
+    })
+}
+
+impl<'a, W, G, A> Rank<'a, W, G, A>
+where
+    W: Ground,
+    G: HostLaw + State,
+    A: Safety<f32> + Send + State,
+{
+    fn new(
+        scenario: &'a Scenario,
+        exchange: &'a mut dyn Exchange,
+        sharing: &'a Sharing,
+        mut ground: W,
+        brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
+    ) -> Result<Self, RankError> {
+        let (rank, ranks) = (exchange.rank(), exchange.ranks());
+        let stride = scenario.robots.len().div_ceil(SAMPLES).max(1);
+        let samples = starts(scenario).step_by(stride).map(|place_m| Sample { place_m, load: 1.0 });
+        let cut = Cut::new(&mut samples.collect::<Vec<_>>(), ranks);
+        let here = (0..).zip(starts(scenario)).filter(|(_, place_m)| cut.rank(*place_m) == rank);
+        let here: Vec<u32> = here.map(|(number, _)| number).collect();
+        ground.keep(&here);
+        let engine = Engine::part(scenario, ground, brains, here, rank == 0);
+        let wire = Wire::new(exchange);
+        let mut rank = Self {
+            scenario,
+            sharing,
+            engine,
+            cut,
+            wire,
+            age: 0,
+            loads: Vec::new(),
+            stops: false,
+            saved_at: Instant::now(),
+        };
+        rank.tell_region()?;
+        Ok(rank)
+    }
+
+    fn run(mut self, state: Option<&[u8]>, watch: &mut Watch<'_>) -> Result<Ended, RankError> {
+        if let Some(state) = state {
+            self.restore(state)?;
+        }
+        let keeping = self.keeping(false)?;
+        let mut row = self.engine.row(keeping, PacketCounts::default());
+        let mut sums = self.tell_sums(PacketCounts::default(), 0.0)?;
+        // What a checkpoint was made of has been seen.
+        let mut is_seen = state.is_some();
+        loop {
+            if !is_seen {
+                self.watch(&row, &sums, watch)?;
+            }
+            is_seen = false;
+            let engine = &self.engine;
+            let is_over = engine.interventions.is_empty() && sums.arrived == engine.robots.len() as u64;
+            if sums.stops || is_over || engine.ticks() >= self.scenario.ticks {
+                return self.end();
+            }
+            (row, sums) = self.step()?;
+        }
+    }
+
+    /// One tick: what [`Engine::step`] does, and what others must know of it.
+    fn step(&mut self) -> Result<(TickRow, Sums), RankError> {
+        self.agree_on_cells()?;
+        let engine = &mut self.engine;
+        engine.change_land();
+        engine.apply_interventions();
+        engine.apply_faults();
+        let refused = engine.decide();
+        self.hand_out_keys()?;
+        let engine = &mut self.engine;
+        engine.attack();
+        engine.intrude();
+        engine.keep_keys();
+
+        let tick = engine.tick;
+        let sent = engine.send();
+        let reach_m = engine.radio.range_m();
+        self.wire.choose(|one, other| one.is_beside(other, reach_m));
+        let engine = &self.engine;
+        let packets = self
+            .wire
+            .halo(|region| encode(&engine.radio.sent(|from_m| region.is_near(from_m, reach_m)).collect::<Vec<_>>()))?;
+        let mut elsewhere = Vec::new();
+        for (rank, bytes) in packets {
+            elsewhere.extend(decode::<Vec<Sent>>(rank, "packets", &bytes)?);
+        }
+        let engine = &mut self.engine;
+        let carried = engine.radio.receive(tick, &engine.positions_m, &elsewhere, sent);
+        let packets = engine.count(refused, carried);
+
+        let ground = &self.engine.ground;
+        self.wire.choose(|one, other| ground.hinders(one, other));
+        let commands = &self.engine.commands;
+        let wishes = self.wire.halo(|region| ground.wishes(tick, region, commands))?;
+        let (own, ground) = (self.wire.regions[self.wire.rank()].clone(), &mut self.engine.ground);
+        ground.advance_beside(tick, commands, &own, &wishes, &mut self.wire)?;
+        let engine = &mut self.engine;
+        engine.collisions += engine.ground.count_collisions(tick);
+        engine.observe();
+        let keeping = self.keeping(true)?;
+        self.engine.tick += 1;
+        self.tell_region()?;
+        self.collide()?;
+        self.share()?;
+        self.wire.traffic.ticks += 1;
+        let load = self.engine.here.len() as f64 + RECEPTION * (carried.delivered + carried.lost) as f64;
+        let sums = self.tell_sums(packets, load)?;
+        Ok((self.engine.row(keeping, sums.packets), sums))
+    }
+
+    /// Nobody may draw a wall where somebody stands, on whatever rank.
+    fn agree_on_cells(&mut self) -> Result<(), RankError> {
+        let engine = &self.engine;
+        let due = engine.interventions.iter().take_while(|(tick, _)| *tick <= engine.tick);
+        let cells = due.filter_map(|(_, what)| match what {
+            Intervention::Cell { cell: [x, y], .. } => Some(engine.ground.is_taken(Cell::new(*x, *y))),
+            _ => None,
+        });
+        let own: Vec<bool> = cells.collect();
+        if own.is_empty() {
+            return Ok(());
+        }
+        let mut taken = vec![false; own.len()];
+        for (rank, bytes) in self.wire.gather(encode(&own))?.iter().enumerate() {
+            let theirs = decode::<Vec<bool>>(rank, "cells", bytes)?;
+            taken.iter_mut().zip(theirs).for_each(|(taken, theirs)| *taken |= theirs);
+        }
+        let (now, mut taken) = (engine.tick, taken.into_iter());
+        self.engine.interventions.retain(|(tick, what)| {
+            let is_asked = *tick <= now && matches!(what, Intervention::Cell { .. });
+            !(is_asked && taken.next() == Some(true))
+        });
+        Ok(())
+    }
+
+    /// An attacker who takes a robot gets its keys from the rank that has it.
+    fn hand_out_keys(&mut self) -> Result<(), RankError> {
+        let tick = self.engine.tick;
+        let attacks = self.scenario.attacks.iter();
+        let taken = attacks.filter(|attack| attack.kind == AttackKind::Insider && attack.from_tick == tick);
+        let taken: Vec<RobotId> = taken.map(|attack| attack.claims).collect();
+        if taken.is_empty() {
+            return Ok(());
+        }
+        let rings: Vec<Option<Ring>> = taken.iter().map(|&robot| self.engine.ring_of(robot)).collect();
+        let heard = self.wire.gather_first(encode(&rings))?;
+        for (rank, bytes) in heard.iter().enumerate() {
+            let rings = decode::<Vec<Option<Ring>>>(rank, "keys", bytes)?;
+            let rings = taken.iter().zip(rings).filter_map(|(&robot, ring)| Some((robot, ring?)));
+            self.engine.taken.extend(rings);
+        }
+        Ok(())
+    }
+
+    /// How well a formation is kept: rank 0 has all places, and sums them in the order of robots.
+    fn keeping(&mut self, counts: bool) -> Result<Option<Keeping>, RankError> {
+        if self.scenario.formations.is_empty() {
+            return Ok(None);
+        }
+        let engine = &self.engine;
+        let own = engine.here.iter().enumerate();
+        let own = own.filter_map(|(index, &number)| Some((number, engine.ground.place(index)?)));
+        let heard = self.wire.gather_first(encode(&own.collect::<Vec<_>>()))?;
+        let mut places = Vec::<(u32, [f64; 2])>::new();
+        for (rank, bytes) in heard.iter().enumerate() {
+            places.extend(decode::<Vec<(u32, [f64; 2])>>(rank, "places", bytes)?);
+        }
+        places.sort_unstable_by_key(|&(number, _)| number);
+        let places: Vec<_> = places.into_iter().map(|(_, place)| place).collect();
+        Ok(self.engine.ground.keeping_of(&places, counts))
+    }
+
+    /// Where robots are at the beginning of the next tick.
+    pub(super) fn places(&self) -> impl Iterator<Item = ([f64; 2], Cell)> + Clone + '_ {
+        let engine = &self.engine;
+        (0..engine.here.len()).map(|index| {
+            let motion = engine.ground.motion(index, engine.tick);
+            let [x, y, _] = motion.position_m;
+            ([x, y], motion.cell)
+        })
+    }
+
+    /// Says where robots are, and hears where others are.
+    pub(super) fn tell_region(&mut self) -> Result<(), RankError> {
+        let engine = &self.engine;
+        let attackers = engine.attackers.iter().map(|attacker| attacker.place_m());
+        let keeper = engine.keeper.iter().map(|keeper| keeper.place_m());
+        let heard = engine.ground.heard().map(|(disc, _)| [disc.position_m[0], disc.position_m[1]]);
+        let intruders = heard.take(engine.intruders.len());
+        let own = Region::new(self.places(), attackers.chain(keeper).chain(intruders));
+        let all = self.wire.gather(encode(&own))?;
+        let all = all.iter().enumerate().map(|(rank, bytes)| decode(rank, "a region", bytes));
+        self.wire.regions = all.collect::<Result<_, _>>()?;
+        Ok(())
+    }
+
+    /// Counts collisions over borders.
+    fn collide(&mut self) -> Result<(), RankError> {
+        let (ground, tick) = (&self.engine.ground, self.engine.tick);
+        self.wire.choose(|one, other| ground.touches(one, other));
+        let bodies = self.wire.halo(|region| ground.bodies(tick, region))?;
+        self.engine.collisions += self.engine.ground.count_collisions_beside(&bodies)?;
+        Ok(())
+    }
+
+    fn tell_sums(&mut self, packets: PacketCounts, load: f64) -> Result<Sums, RankError> {
+        let saves = self.is_save_due();
+        let engine = &self.engine;
+        let own = Sums {
+            arrived: engine.arrivals.count() as u64,
+            waiting: engine.waits.now() as u64,
+            collisions: engine.collisions,
+            packets,
+            hash: hash::sum(&engine.chains),
+            gap_m: engine.ground.gap_m(),
+            load,
+            stops: self.stops,
+            saves,
+        };
+        let all = self.wire.gather(encode(&own))?;
+        let all = all.iter().enumerate().map(|(rank, bytes)| decode::<Sums>(rank, "sums", bytes));
+        let all = all.collect::<Result<Vec<_>, _>>()?;
+        self.loads = all.iter().map(|sums| sums.load).collect();
+        Ok(Sums::of(&all))
+    }
+
+    /// Whether rank 0 wants a checkpoint now.
+    fn is_save_due(&mut self) -> bool {
+        let is_due = self.wire.rank() == 0
+            && match self.sharing.checkpoints {
+                None => false,
+                Some(Every::Ticks(ticks)) => {
+                    self.stops || self.engine.tick > 0 && self.engine.tick.is_multiple_of(ticks.max(1))
+                }
+                Some(Every::Time(time)) => self.stops || self.saved_at.elapsed() >= time,
+            };
+        if is_due {
+            self.saved_at = Instant::now();
+        }
+        is_due
+    }
+
+    /// Rank 0 shows the whole to whoever looks on.
+    fn watch(&mut self, row: &TickRow, sums: &Sums, watch: &mut Watch<'_>) -> Result<(), RankError> {
+        let rows = if self.sharing.records { self.rows()? } else { Vec::new() };
+        let saved = if sums.saves { self.save()? } else { None };
+        if self.wire.rank() == 0 {
+            let moment = Moment {
+                run: saved.as_ref().map(|saved| saved as &dyn Saves),
+                arrived: sums.arrived as usize,
+                waiting: sums.waiting as usize,
+                collisions: sums.collisions,
+                gap_m: sums.gap_m,
+                trace_hash: sums.hash,
+                ..self.engine.moment(row)
+            };
+            self.stops |= watch(&moment, &mut rows.into_iter()).is_break();
+        }
+        Ok(())
+    }
+
+    /// Everybody's lines of the record by rising number, on rank 0.
+    fn rows(&mut self) -> Result<Vec<RobotRow>, RankError> {
+        let own: Vec<Row> = self.engine.rows().map(Row::from).collect();
+        let heard = self.wire.gather_first(encode(&own))?;
+        let mut rows = Vec::<Row>::new();
+        for (rank, bytes) in heard.iter().enumerate() {
+            rows.extend(decode::<Vec<Row>>(rank, "robots", bytes)?);
+        }
+        rows.sort_unstable_by_key(Row::id);
+        let ground = &self.engine.ground;
+        let rows = rows.into_iter().enumerate();
+        Ok(rows.map(|(number, row)| row.with_error(ground.formation_error(number) as f32)).collect())
+    }
+
+    /// Adds up what came of it.
+    fn end(mut self) -> Result<Ended, RankError> {
+        let engine = &self.engine;
+        let times = engine.here.iter().copied().zip(engine.arrivals.times().iter().copied());
+        let times: Vec<(u32, Option<u64>)> = times.collect();
+        let (part, traffic) = (Part::of(engine), self.wire.traffic);
+        let heard = self.wire.gather_first(encode(&times))?;
+        let mut times = Vec::<(u32, Option<u64>)>::new();
+        for (rank, bytes) in heard.iter().enumerate() {
+            times.extend(decode::<Vec<(u32, Option<u64>)>>(rank, "arrivals", bytes)?);
+        }
+        times.sort_unstable_by_key(|&(number, _)| number);
+        let engine = &self.engine;
+        let (formation, place_error, formations) = engine.ground.kept();
+        let mut outcome = Outcome {
+            ticks: engine.tick,
+            seconds: engine.seconds(),
+            arrival_times: times.into_iter().map(|(_, time)| time).collect(),
+            formation,
+            place_error,
+            formations,
+            ..nothing(engine.ground.clearance().is_some())
+        };
+        let mut all = Vec::new();
+        for (rank, bytes) in self.wire.gather(encode(&(part, traffic)))?.iter().enumerate() {
+            let (part, traffic) = decode::<(Part, Traffic)>(rank, "its account", bytes)?;
+            part.add_to(&mut outcome);
+            all.push(traffic);
+        }
+        outcome.waits.retain(|count| count.robots > 0);
+        Ok(Ended { outcome, traffic: all })
+    }
+}

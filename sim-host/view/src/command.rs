@@ -1,0 +1,209 @@
+//! `staya view`: a run, or a recording, in the browser.
+
+use crate::page;
+use crate::playback::Playback;
+use crate::server::{ServeError, Server};
+use crate::session::Session;
+use anyhow::{Context as _, Result};
+use clap::Args;
+use serde::Serialize;
+use staya_console::{Ended, Global, ScenarioArgs, Stop, print, print_json};
+use staya_sim::scenario::text_with;
+use std::fs::OpenOptions;
+use std::io::{self, Write as _};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// Where pages are served.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct ListenArgs {
+    /// Address and port of the page; port 0: any that is free. Beyond this machine (0.0.0.0) whoever has the address that is
+    /// printed, with its token, can watch and steer the run, unencrypted.
+    #[arg(long, value_name = "ADDRESS", default_value_t = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0))]
+    pub listen: SocketAddr,
+    /// Do not open a browser.
+    #[arg(long)]
+    pub no_open: bool,
+}
+
+impl ListenArgs {
+    /// Starts serving the page, and says where.
+    ///
+    /// # Errors
+    /// The address cannot be listened on.
+    fn serve(&self, global: &Global) -> Result<Page> {
+        let server = Server::start(self.listen, page::served()?)?;
+        if !server.address().ip().is_loopback() {
+            eprintln!(
+                "The page is open to the network: whoever learns its address can steer this run, and others on the way can \
+                 read along."
+            );
+        }
+        let url = server.url();
+        if global.json {
+            print_json(&Served { url: &url })?;
+        } else {
+            print(&format!("{url}\n"))?;
+        }
+        let way_in = if self.no_open { None } else { open(&url, server.address().port()) };
+        Ok(Page { server, _way_in: way_in })
+    }
+}
+
+/// A page that is served.
+struct Page {
+    server: Server,
+    _way_in: Option<WayIn>,
+}
+
+impl Page {
+    const fn server(&self) -> &Server {
+        &self.server
+    }
+
+    /// Ends it.
+    ///
+    /// # Errors
+    /// It had ended by itself.
+    fn end(self) -> Result<(), ServeError> {
+        if self.server.is_alive() { Ok(()) } else { Err(ServeError::Ended) }
+    }
+}
+
+/// Where the page is, as with `--json`.
+#[derive(Debug, Serialize)]
+struct Served<'a> {
+    url: &'a str,
+}
+
+/// Look at a run in the browser, and take hold of it; or play a recording.
+#[derive(Args, Clone, Debug)]
+pub struct ViewArgs {
+    /// A scenario (.toml), or a recording of `staya run --record`.
+    #[command(flatten)]
+    source: ScenarioArgs,
+    #[command(flatten)]
+    listen: ListenArgs,
+    /// Begin paused.
+    #[arg(long)]
+    paused: bool,
+    /// Simulated seconds per second [default: 1, or ten ticks a second where a tick is longer].
+    #[arg(long, value_name = "X", value_parser = speed)]
+    speed: Option<f64>,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse().ok().filter(|speed| (0.001..=1e6).contains(speed));
+    speed.ok_or_else(|| "give 0.001 to 1000000".to_owned())
+}
+
+impl ViewArgs {
+    /// Runs the command, until Ctrl-C.
+    ///
+    /// # Errors
+    /// A scenario or recording that cannot be read or is wrong, an address that cannot be listened on.
+    pub fn run(&self, global: &Global) -> Result<Ended> {
+        let path = self.source.path();
+        let stop = Stop::on_ctrl_c()?;
+        let is_stopped = || stop.is_requested();
+        let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+        if is_scenario {
+            // What is wrong is said of the file as it stands.
+            self.source.load()?;
+            let text = text_with(path, self.source.settings())?;
+            let mut session = Session::new(text, path, &self.source.overrides(), self.paused)?;
+            if self.speed.is_some() {
+                session.set_speed(self.speed);
+            }
+            let page = self.listen.serve(global)?;
+            session.run(page.server(), &|| is_stopped() || !page.server().is_alive());
+            page.end()?;
+        } else {
+            let mut playback = Playback::open(path, self.paused)?;
+            if let Some(at) = playback.torn_at() {
+                let (_, last) = playback.ticks();
+                eprintln!("{}: the file ends too early, at byte {at}; it is played up to tick {last}", path.display());
+            }
+            if self.speed.is_some() {
+                playback.set_speed(self.speed);
+            }
+            let page = self.listen.serve(global)?;
+            let over = || is_stopped() || !page.server().is_alive();
+            playback.run(page.server(), &over).context("the recording cannot be played on")?;
+            page.end()?;
+        }
+        Ok(Ended::by(&stop))
+    }
+}
+
+/// A file that leads a browser to the page: what stands in a command line, everybody on the machine can read. It is gone
+/// with this.
+struct WayIn(PathBuf);
+
+impl WayIn {
+    /// Makes it for this user alone.
+    ///
+    /// # Errors
+    /// It cannot be written, or there is one of that name.
+    fn new(url: &str, port: u16) -> io::Result<Self> {
+        let path = std::env::temp_dir().join(format!("staya-{}-{port}.html", std::process::id()));
+        let mut options = OpenOptions::new();
+        options.write(true).create_new(true);
+        #[cfg(unix)]
+        std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
+        let mut file = options.open(&path)?;
+        let this = Self(path);
+        writeln!(
+            file,
+            "<!doctype html><meta charset=\"utf-8\"><meta name=\"referrer\" content=\"no-referrer\">\
+             <meta http-equiv=\"refresh\" content=\"0; url={url}\"><title>Staya</title><a href=\"{url}\">The page</a>"
+        )?;
+        Ok(this)
+    }
+}
+
+impl Drop for WayIn {
+    fn drop(&mut self) {
+        // At worst it leads to a page that is gone.
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+/// Opens a browser where there is one; the address has been printed in any case.
+fn open(url: &str, port: u16) -> Option<WayIn> {
+    let has_screen = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
+    let mut command = match std::env::consts::OS {
+        "macos" => Command::new("open"),
+        "windows" => Command::new("explorer"),
+        _ if has_screen => Command::new("xdg-open"),
+        _ => return None,
+    };
+    let way_in = WayIn::new(url, port).ok()?;
+    let command = command.arg(&way_in.0).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    // Without a browser there is still the address.
+    command.spawn().ok().map(|_| way_in)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_in_is_its_users_alone_and_goes_with_the_page() {
+        let url = "http://127.0.0.1:1/?token=0123abcd";
+        let way_in = WayIn::new(url, 1).expect("it can be written");
+        let path = way_in.0.clone();
+        let text = std::fs::read_to_string(&path).expect("it is there");
+        assert!(text.contains(&format!("0; url={url}\"")) && !path.to_string_lossy().contains("0123abcd"), "{text}");
+        #[cfg(unix)]
+        {
+            let mode = std::os::unix::fs::PermissionsExt::mode(&path.metadata().expect("it is there").permissions());
+            assert_eq!(mode & 0o777, 0o600);
+        }
+        // What is there already may be somebody else's.
+        assert!(WayIn::new(url, 1).is_err() && path.exists());
+        drop(way_in);
+        assert!(!path.exists());
+    }
+}

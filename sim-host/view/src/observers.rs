@@ -1,0 +1,83 @@
+//! What `staya run --mcap` and `staya run --view` add to a run.
+
+use crate::mcap::McapWriter;
+use crate::watch::Watcher;
+use anyhow::Result;
+use staya::run::{Observer, RunArgs};
+use staya_record::frame::{FrameData, Framer};
+use staya_record::scene::{Mode, Scene};
+use staya_sim::engine::Moment;
+use staya_sim::record::RobotRow;
+use staya_sim::scenario::Scenario;
+use std::fs::File;
+
+/// The observers that the options of a run ask for.
+///
+/// # Errors
+/// A file cannot be written, or the page's address cannot be listened on.
+pub fn of_run(args: &RunArgs, scenario: &Scenario) -> Result<Vec<Box<dyn Observer>>> {
+    let mut observers: Vec<Box<dyn Observer>> = Vec::new();
+    if let Some((path, every)) = args.mcap() {
+        let scene = Scene::new(scenario, Mode::Recording);
+        observers.push(Box::new(Mcap {
+            writer: McapWriter::create(path, &scene)?,
+            framer: Framer::new(scenario),
+            frame: FrameData::default(),
+            every,
+            is_written: true,
+        }));
+    }
+    if let Some(watcher) = Watcher::by_options(args.watch(), scenario)? {
+        observers.push(Box::new(Page(watcher)));
+    }
+    Ok(observers)
+}
+
+/// An MCAP file, and the latest moment.
+struct Mcap {
+    writer: McapWriter<File>,
+    framer: Framer,
+    frame: FrameData,
+    every: u32,
+    is_written: bool,
+}
+
+impl Observer for Mcap {
+    fn is_due(&mut self) -> bool {
+        true
+    }
+
+    fn tick(&mut self, moment: &Moment<'_>, rows: &[RobotRow]) -> Result<()> {
+        self.framer.fill(&mut self.frame, moment, rows.iter().copied());
+        self.is_written = moment.row.tick.is_multiple_of(self.every);
+        if self.is_written {
+            self.writer.frame(&self.frame)?;
+        }
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>) -> Result<()> {
+        if !self.is_written {
+            self.writer.frame(&self.frame)?;
+        }
+        Ok(self.writer.finish()?)
+    }
+}
+
+/// A page that shows the run while it goes on.
+struct Page(Watcher);
+
+impl Observer for Page {
+    fn is_due(&mut self) -> bool {
+        self.0.is_due()
+    }
+
+    fn tick(&mut self, moment: &Moment<'_>, rows: &[RobotRow]) -> Result<()> {
+        self.0.tick(moment, &mut rows.iter().copied());
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<()> {
+        Ok(())
+    }
+}
