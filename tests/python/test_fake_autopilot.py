@@ -2,7 +2,6 @@
 
 import gzip
 import math
-import os
 import struct
 from collections import Counter
 from pathlib import Path
@@ -11,14 +10,10 @@ import pytest
 from fake_autopilot import PILOT, Vehicle
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-ROOT = Path(__file__).resolve().parents[2]
-SHARED = Path(os.environ.get("STAYA_SHARED", ROOT.parent / "shared"))
-FLIGHTS = SHARED / "data/ardupilot"
+FLIGHTS = Path(__file__).resolve().parents[1] / "data/ardupilot"
 STEP_S = 0.02
 # What a companion reads, besides answers.
 STREAMS = ["HEARTBEAT", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "EXTENDED_SYS_STATE"]
-
-pytestmark = pytest.mark.skipif(not FLIGHTS.is_dir(), reason=f"needs {FLIGHTS}, which is not there; STAYA_SHARED names another folder")
 
 
 def recorded(name, system, until):

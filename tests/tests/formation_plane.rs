@@ -1,6 +1,6 @@
 //! Formations in the plane: how far from their places robots are, and how long they take.
 //!
-//! `cargo test -p staya-tests --test formation_plane -- --nocapture` prints the figures of all scenes. The law was made
+//! `cargo test -p staya-tests formation_plane -- --nocapture` prints the figures of all scenes. The law was made
 //! on [`TUNED`] alone; of the other scenes only the bounds were set after they had been seen.
 
 use staya_controller::grid::UNIT;

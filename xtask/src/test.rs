@@ -6,28 +6,16 @@ use crate::repo::Repo;
 use crate::report::{Counts, Report};
 use crate::tally::counted;
 
-/// Tests in a module of this name read data beside the repository, which CI has.
-const NEEDS_SHARED: &str = "needs_shared::";
-
 /// Properties are tried on the same random cases each time, so that a failure is the change's; `cargo test` alone takes
 /// new ones.
 const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 
 /// Host tests and clients, then what other targets and other workspaces can show.
 pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
-    let mut why_skipped = Vec::new();
-    let mut options = Vec::new();
-    match extent {
-        Extent::Short => why_skipped.push(String::from(LONG)),
-        Extent::All => options.push("--include-ignored"),
-    }
-    let shared = std::env::var_os("STAYA_SHARED").map_or_else(|| repo.root.join("../shared"), std::path::PathBuf::from);
-    if !shared.is_dir() {
-        options.extend(["--skip", NEEDS_SHARED]);
-        let folder = shared.display();
-        why_skipped.push(format!("{NEEDS_SHARED}* need {folder}, which is not there"));
-    }
-    let why_skipped = why_skipped.join("; ");
+    let (options, why_skipped): (&[&str], _) = match extent {
+        Extent::Short => (&[], LONG),
+        Extent::All => (&["--include-ignored"], ""),
+    };
     let arguments = ["test", "--locked", "--workspace", "--no-fail-fast"];
     let mut build = repo.cargo(&arguments);
     build.arg("--no-run");
@@ -40,7 +28,7 @@ pub fn run(repo: &Repo, report: &mut Report, extent: Extent) {
     let mut toolchains = Toolchains::default();
     // Tests wait more than they compute, the clients' most of all.
     let firmware = (extent == Extent::All).then(|| crate::firmware::begin(repo, &mut toolchains)).flatten();
-    report.part("tests on the host", || counted(&mut tests, &why_skipped));
+    report.part("tests on the host", || counted(&mut tests, why_skipped));
     if is_compiled {
         // The program's own tests have brought it.
         crate::clients::run_tests(repo, report, None, extent);

@@ -1,4 +1,4 @@
-//! Recorded flights with ArduPilot's own code, from outside the repository: one vehicle's side, fed into its state machine.
+//! Replays recorded flights of ArduPilot's own code: one vehicle's side, fed into its state machine.
 
 use super::kind::Kind;
 use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules};
@@ -8,7 +8,7 @@ use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::RawFrame;
 use std::fs::File;
 use std::io::Read as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 /// The recorder's own station.
@@ -30,18 +30,14 @@ fn frame_len(bytes: &[u8]) -> usize {
 pub struct Recording(Vec<(Duration, Vec<u8>)>);
 
 impl Recording {
-    /// The recording `name` beside the repository, or where `STAYA_SHARED` says. Without it, says so and answers `None`.
-    pub fn shared(name: &str) -> Option<Self> {
-        let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
-        let folder = std::env::var_os("STAYA_SHARED").map_or_else(beside, PathBuf::from);
-        let path = folder.join(format!("data/ardupilot/{name}.tlog.gz"));
-        let Ok(file) = File::open(&path) else {
-            println!("skipped: {} is not there; STAYA_SHARED names another folder", path.display());
-            return None;
-        };
+    /// Reads the flight `name` from `tests/data/ardupilot`.
+    pub fn load(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/ardupilot");
+        let path = folder.join(format!("{name}.tlog.gz"));
+        let file = File::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let mut bytes = Vec::new();
         GzDecoder::new(file).read_to_end(&mut bytes).expect("a whole gzip file");
-        Some(Self::read(&bytes))
+        Self::read(&bytes)
     }
 
     fn read(bytes: &[u8]) -> Self {
@@ -96,7 +92,7 @@ impl Recording {
     }
 }
 
-mod needs_shared {
+mod tests {
     use super::*;
     use crate::companion::offboard::tests::RULES;
     use crate::companion::offboard::{Doubt, Entry, State};
@@ -117,7 +113,7 @@ mod needs_shared {
 
     #[test]
     fn the_pilots_takeoff_is_not_taken_away() {
-        let Some(recording) = Recording::shared("copters-pilot-takeoff") else { return };
+        let recording = Recording::load("copters-pilot-takeoff");
         for system in 1..=4 {
             let mut first = None;
             recording.replay(system, Kind::ArduCopter, RULES, |now, offboard, sent, _| {
@@ -135,7 +131,7 @@ mod needs_shared {
 
     #[test]
     fn after_its_own_takeoff_it_steers_until_the_pilot_lands() {
-        let Some(recording) = Recording::shared("copter-crossing") else { return };
+        let recording = Recording::load("copter-crossing");
         let rules = Rules { entry: Entry::Once, arm: true, takeoff: true, altitude_m: Some(10.0), ..RULES };
         let mut setpoints = Vec::new();
         recording.replay(1, Kind::ArduCopter, rules, |now, offboard, sent, _| {
@@ -169,7 +165,7 @@ mod needs_shared {
     /// The fix was lost between 6.0 and 7.0 s, which is as often as this vehicle said so; the autopilot's own failsafe came at 14.2 s.
     #[test]
     fn a_lost_gps_ends_steering_and_is_believed_again_after_a_while() {
-        let Some(recording) = Recording::shared("rovers-gps-lost") else { return };
+        let recording = Recording::load("rovers-gps-lost");
         let (mut states, mut doubts, mut start, mut lost, mut end) = (Vec::new(), Vec::new(), None, None, None);
         recording.replay(3, Kind::ArduRover, ROVER, |now, offboard, sent, events| {
             let seconds = now.as_secs_f64();
@@ -209,7 +205,7 @@ mod needs_shared {
     #[test]
     fn vehicles_that_are_well_are_believed_throughout() {
         for name in ["rovers-crossing", "rovers-pilot-hold"] {
-            let Some(recording) = Recording::shared(name) else { return };
+            let recording = Recording::load(name);
             for system in 1..=6 {
                 recording.replay(system, Kind::ArduRover, ROVER, |now, offboard, _, events| {
                     assert!(!events.iter().any(|event| matches!(event, Event::Doubts(_))), "{name} {system} {now:?}");
@@ -221,7 +217,7 @@ mod needs_shared {
 
     #[test]
     fn after_a_restart_the_last_place_is_known_until_there_is_a_new_one() {
-        let Some(recording) = Recording::shared("rovers-restart") else { return };
+        let recording = Recording::load("rovers-restart");
         let (mut steered, mut last) = (Vec::new(), None);
         recording.replay(3, Kind::ArduRover, ROVER, |now, offboard, _, _| {
             let seconds = now.as_secs_f64();

@@ -64,9 +64,9 @@ impl Machine for Replay {
     }
 }
 
-/// What robot 1 knows of robot 3 at a time, seconds: its radius, metres; `None`: nothing.
-fn known_of_the_third(name: &str, until: f64) -> Option<Vec<(f64, Option<f32>)>> {
-    let recording = Recording::shared(name)?;
+/// Robot 1's knowledge of robot 3 over time: seconds, and the radius in metres, or `None` while it is unknown.
+fn known_of_the_third(name: &str, until: f64) -> Vec<(f64, Option<f32>)> {
+    let recording = Recording::load(name);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/six-rovers-crossing.toml");
     let config = Config::load(&path).unwrap();
     let options = Options { quiet: true, ..Options::default() };
@@ -78,32 +78,28 @@ fn known_of_the_third(name: &str, until: f64) -> Option<Vec<(f64, Option<f32>)>>
         known.push((companions.now().as_secs_f64(), companions.vehicles[0].controller.known_radius_m(3)));
     }
     companions.has_said_farewell = true;
-    Some(known)
+    known
 }
 
-mod needs_shared {
-    use super::*;
+#[test]
+fn others_are_told_that_a_vehicle_without_gps_may_be_elsewhere() {
+    let known = known_of_the_third("rovers-gps-lost", 55.0);
+    let at = |seconds: f64| {
+        let found = known.iter().find(|(at, _)| *at >= seconds).expect("so long");
+        f64::from(found.1.expect("it is heard throughout"))
+    };
+    assert_eq!(at(6.9), 1.0, "its body");
+    // From 7.03 s on, at 2 m/s, up to rules.error_m.
+    assert!((at(9.03) - 5.0).abs() < 0.5, "{}", at(9.03));
+    assert!((at(14.0) - 11.0).abs() < 1e-3 && (at(45.0) - 11.0).abs() < 1e-3, "{}", at(14.0));
+    assert_eq!(at(47.0), 1.0, "all was well for 5 s");
+}
 
-    #[test]
-    fn others_are_told_that_a_vehicle_without_gps_may_be_elsewhere() {
-        let Some(known) = known_of_the_third("rovers-gps-lost", 55.0) else { return };
-        let at = |seconds: f64| {
-            let found = known.iter().find(|(at, _)| *at >= seconds).expect("so long");
-            f64::from(found.1.expect("it is heard throughout"))
-        };
-        assert_eq!(at(6.9), 1.0, "its body");
-        // From 7.03 s on, at 2 m/s, up to rules.error_m.
-        assert!((at(9.03) - 5.0).abs() < 0.5, "{}", at(9.03));
-        assert!((at(14.0) - 11.0).abs() < 1e-3 && (at(45.0) - 11.0).abs() < 1e-3, "{}", at(14.0));
-        assert_eq!(at(47.0), 1.0, "all was well for 5 s");
-    }
-
-    #[test]
-    fn others_never_lose_a_vehicle_whose_autopilot_restarts() {
-        let Some(known) = known_of_the_third("rovers-restart", 62.0) else { return };
-        let heard: Vec<_> = known.iter().filter(|(at, _)| *at > 2.0).collect();
-        assert!(heard.iter().all(|(_, radius)| radius.is_some()), "lost it");
-        let widest = heard.iter().filter_map(|(_, radius)| *radius).fold(0.0, f32::max);
-        assert!((widest - 11.0).abs() < 1e-3, "{widest}");
-    }
+#[test]
+fn others_never_lose_a_vehicle_whose_autopilot_restarts() {
+    let known = known_of_the_third("rovers-restart", 62.0);
+    let heard: Vec<_> = known.iter().filter(|(at, _)| *at > 2.0).collect();
+    assert!(heard.iter().all(|(_, radius)| radius.is_some()), "lost it");
+    let widest = heard.iter().filter_map(|(_, radius)| *radius).fold(0.0, f32::max);
+    assert!((widest - 11.0).abs() < 1e-3, "{widest}");
 }

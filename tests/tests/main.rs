@@ -1,0 +1,15 @@
+//! Cross-crate tests, one module per subject.
+
+mod cases;
+mod crossing;
+mod dead_members;
+mod duplicates;
+mod faults;
+mod flocks;
+mod formation_plane;
+mod formats;
+mod frames;
+mod golden;
+mod matrix;
+mod movingai;
+mod threads;
