@@ -12,4 +12,5 @@ mod frames;
 mod golden;
 mod matrix;
 mod movingai;
+mod programs;
 mod threads;

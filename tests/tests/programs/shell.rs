@@ -1,6 +1,5 @@
-//! `--set`, `staya completions`, `staya man`: what a shell meets.
+//! `--set`, help, and commands that `staya` hands to other programs.
 
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 fn staya(arguments: &[&str]) -> Output {
@@ -42,26 +41,15 @@ fn a_wrong_setting_names_field_and_remedy() {
 }
 
 #[test]
-fn shells_and_man_know_every_command() {
-    let help = text(&staya(&["--help"]).stdout);
-    let commands = help.lines().skip_while(|line| !line.starts_with("Commands:")).skip(1);
-    let commands = commands.take_while(|line| !line.is_empty()).filter_map(|line| line.split_whitespace().next());
-    let commands: Vec<_> = commands.filter(|name| *name != "help").collect();
-    assert!(commands.contains(&"run") && commands.len() > 10, "{help}");
-    for shell in ["bash", "zsh", "fish"] {
-        let script = text(&staya(&["completions", shell]).stdout);
-        for name in &commands {
-            assert!(script.contains(name), "{shell} does not know {name}");
-        }
+fn commands_of_other_programs_are_found_and_their_help_is_their_own() {
+    for arguments in [&["sweep", "--help"][..], &["help", "sweep"]] {
+        let Output { status, stdout, stderr } = staya(arguments);
+        assert!(status.success(), "{}", text(&stderr));
+        assert!(text(&stdout).contains("Usage: staya sweep"), "{}", text(&stdout));
     }
-    let folder = tempfile::tempdir().expect("a folder");
-    let pages = folder.path().join("man1");
-    assert!(staya(&["man", &pages.display().to_string()]).status.success());
-    for name in &commands {
-        let page = std::fs::read_to_string(pages.join(format!("staya-{name}.1"))).unwrap_or_default();
-        assert!(page.contains(".SH SYNOPSIS"), "{name}");
-    }
-    let Output { status, stderr, .. } = staya(&["man", "/proc/none"]);
-    let said = text(&stderr);
-    assert!(!Path::new("/proc/none").exists() && status.code() == Some(1) && said.contains("can be made"), "{said}");
+    let Output { status, stdout, .. } = staya(&["help"]);
+    let help = text(&stdout);
+    assert!(status.success() && ["run", "sweep", "bridge", "voxel"].iter().all(|name| help.contains(name)), "{help}");
+    let Output { status, stderr, .. } = staya(&["sweep", "no-such-plan.toml"]);
+    assert!(status.code() == Some(1) && text(&stderr).starts_with("staya: "), "{}", text(&stderr));
 }

@@ -251,7 +251,7 @@ fn each_field_of_a_plan_is_in_the_documentation() {
     let fields = include_str!("table.rs").lines().filter_map(|line| line.strip_prefix("    pub ")?.split_once(": "));
     let fields: Vec<&str> = fields.map(|(name, _)| name).collect();
     assert!(fields.len() > 15, "{fields:?}");
-    let page = include_str!("../../../../docs/sweeps.md");
+    let page = include_str!("../../../../../docs/sweeps.md");
     for field in fields {
         let is_named = ["`", "[", "[[", " ", "{ "]
             .iter()
