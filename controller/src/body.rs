@@ -43,7 +43,7 @@ impl<S: Scalar> Body<S> {
     }
 }
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::scalar::Q16;

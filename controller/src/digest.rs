@@ -286,7 +286,7 @@ macro_rules! named_parts {
 
 named_parts!(SerializeStruct, SerializeStructVariant);
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::scalar::{Q16, Scalar};

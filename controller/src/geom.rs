@@ -326,7 +326,7 @@ impl Position {
     }
 }
 
-#[cfg(all(test, feature = "fixed", feature = "micromath"))]
+#[cfg(all(test, feature = "micromath"))]
 mod tests {
     use super::*;
     use crate::scalar::{Fast32, Q16};

@@ -123,7 +123,7 @@ mod wait;
 mod waypoint;
 mod waypoint_guidance;
 
-#[cfg(all(test, feature = "auth", feature = "fixed"))]
+#[cfg(all(test, feature = "auth"))]
 mod tests;
 
 pub use any::{AnyGuidance, AnyHalfPlanes, AnySafety};

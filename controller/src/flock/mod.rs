@@ -13,5 +13,5 @@ pub mod goal;
 pub mod lattice;
 mod reference;
 
-#[cfg(all(test, feature = "fixed", feature = "micromath"))]
+#[cfg(all(test, feature = "micromath"))]
 mod tests;

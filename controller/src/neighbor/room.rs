@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use heapless::Vec;
 
-#[cfg(all(test, feature = "fixed", feature = "wire"))]
+#[cfg(all(test, feature = "wire"))]
 mod tests;
 
 /// What is left between two bodies, millimetres: both places are told to a millimetre along each axis, and both robots may

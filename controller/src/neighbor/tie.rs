@@ -24,7 +24,7 @@ pub fn tie<S: Scalar>(own: RobotId, other: RobotId) -> Vec2<S> {
     if own.0 == low { way } else { -way }
 }
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::scalar::Q16;

@@ -12,7 +12,7 @@ use crate::time::{Duration, Instant};
 use heapless::Vec;
 use serde::Serialize;
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests;
 
 /// Robots that a tracker follows: as many as an agent of default capacity knows.

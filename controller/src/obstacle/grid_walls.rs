@@ -139,7 +139,7 @@ fn sides(cells: &[u8], begin: usize, step: usize, back: usize) -> impl Iterator<
     })
 }
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::rand::Rng;

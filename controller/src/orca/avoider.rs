@@ -16,13 +16,13 @@ use crate::scalar::Scalar;
 use heapless::Vec;
 use serde::Serialize;
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod scale;
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod simulation;
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod space;
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests;
 
 /// Where robots avoid each other, and how it is found out what a moving neighbour forbids.

@@ -33,7 +33,7 @@ mod velocity_obstacle;
 mod voxel;
 mod wall;
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod fixtures;
 
 pub use avoider::{Analytic, Avoider, HalfSpaces, InSpace};

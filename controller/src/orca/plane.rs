@@ -189,5 +189,5 @@ fn rounding<S: Scalar>(speed: S, plane: &HalfPlane<S>) -> S {
     S::EPSILON * S::from_i32(16) * scale.max(S::ONE)
 }
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests;

@@ -13,7 +13,7 @@ use crate::geom::Vec3;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests;
 
 impl<S: Scalar> Dimension for Vec3<S> {

@@ -25,7 +25,7 @@
 //! [`VelocityObstacle::value`]: super::VelocityObstacle::value
 
 mod table;
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests;
 
 pub use table::{VelocityObstacleTable, VoxelTable, VoxelTable2k, VoxelTable8k, VoxelTable16k, VoxelTable64k};

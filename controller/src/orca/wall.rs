@@ -114,5 +114,5 @@ fn leg<S: Scalar>(v: Vec2<S>, [left, right]: [Vec2<S>; 2], radius: S, rate: S, i
     Some(Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } })
 }
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests;

@@ -21,7 +21,7 @@
 
 pub mod zone;
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests;
 
 use crate::body::Body;

@@ -4,7 +4,6 @@ use super::integer::{bow_q32, log2_q32, polynomial_q30};
 use super::{Scalar, sealed};
 use core::num::NonZeroU64;
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
-use fixed::types::I16F16;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A number from -32768 to 32767.99998 in steps of 2^-16 (0.000015), saturating everywhere.
@@ -15,19 +14,19 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// Errors against exact functions, each beside the half step of rounding: `sqrt` and `norm` one
 /// step (rounded down); `sin_cos`, `atan2`, `ln` one step; `exp` a factor of 1 + 1e-8.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Q16(I16F16);
+pub struct Q16(i32);
 
 impl Q16 {
     /// The number `bits` / 65536.
     #[must_use]
     pub const fn from_bits(bits: i32) -> Self {
-        Self(I16F16::from_bits(bits))
+        Self(bits)
     }
 
     /// The number times 65536.
     #[must_use]
     pub const fn bits(self) -> i32 {
-        self.0.to_bits()
+        self.0
     }
 
     /// The nearest number to `bits` / 65536 that is in range.
@@ -53,15 +52,17 @@ impl<'de> Deserialize<'de> for Q16 {
     }
 }
 
-impl From<I16F16> for Q16 {
-    fn from(value: I16F16) -> Self {
-        Self(value)
+#[cfg(any(test, feature = "fixed"))]
+impl From<fixed::types::I16F16> for Q16 {
+    fn from(value: fixed::types::I16F16) -> Self {
+        Self(value.to_bits())
     }
 }
 
-impl From<Q16> for I16F16 {
+#[cfg(any(test, feature = "fixed"))]
+impl From<Q16> for fixed::types::I16F16 {
     fn from(value: Q16) -> Self {
-        value.0
+        Self::from_bits(value.0)
     }
 }
 
@@ -82,7 +83,7 @@ impl Sub for Q16 {
 impl Mul for Q16 {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        // Not the crate's product: that rounds down, which would let positions drift.
+        // To nearest: a product that is rounded down would let positions drift.
         Self::saturating((self.wide() * other.wide() + (1 << 15)) >> 16)
     }
 }

@@ -9,16 +9,14 @@
 
 #[cfg(feature = "micromath")]
 mod fast;
-#[cfg(feature = "fixed")]
 mod fixed;
 mod float;
 pub(crate) mod integer;
-#[cfg(all(test, feature = "fixed", feature = "micromath"))]
+#[cfg(all(test, feature = "micromath"))]
 mod tests;
 
 #[cfg(feature = "micromath")]
 pub use fast::Fast32;
-#[cfg(feature = "fixed")]
 pub use fixed::Q16;
 
 use core::cmp::Ordering;

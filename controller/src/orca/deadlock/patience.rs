@@ -72,7 +72,7 @@ impl<S: Scalar> Patience<S> {
     }
 }
 
-#[cfg(all(test, feature = "fixed"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::geom::Vec3;
