@@ -10,8 +10,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Request, RequestKind, Sealed,
-    TEMPLATE_PART, TemplateAssignment, Wire, decode, encode,
+    Ack, Beacon, GoalAssignment, Header, MAX_FRAME_LEN, Message, Request, RequestKind, Sealed, TEMPLATE_PART,
+    TemplateAssignment, Wire, decode, encode,
 };
 
 const TO: RobotId = RobotId(70_000);
@@ -34,16 +34,6 @@ fn messages() -> [(&'static str, Message); 6] {
                 slot: 4,
                 mode: Mode::Cruise,
                 target: CELL,
-            }),
-        ),
-        (
-            "compact",
-            Message::Compact(CompactBeacon {
-                time_ms: 12_345,
-                position_mm: [12_345, -678_901],
-                velocity_mmps: [250, -3],
-                radius_cm: 15,
-                mode: Mode::Cruise,
             }),
         ),
         (

@@ -6,7 +6,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, Frame, GoalAssignment, Header, Message, PayloadBytes, Request, RequestKind,
+    Ack, Beacon, Frame, GoalAssignment, Header, Message, PayloadBytes, Request, RequestKind,
     TemplateAssignment, WaypointAssignment,
 };
 use staya_mavlink::wire::{decode, encode};
@@ -41,13 +41,6 @@ fn messages() -> [(&'static str, Message, &'static str); 10] {
         mode: Mode::Fault,
         target: Cell::new(-32_768, 70),
     };
-    let compact = CompactBeacon {
-        time_ms: 65_535,
-        position_mm: [-1, 678_901],
-        velocity_mmps: [-250, 3],
-        radius_cm: 15,
-        mode: Mode::Cruise,
-    };
     let request = Request { to: TO, origin: RobotId(9), number: 7, kind: RequestKind::Redirect, valid_ms: 2_000 };
     let ack = Ack { to: TO, boot: 3, number: 7, accepted: true };
     let goal = GoalAssignment { to: RobotId::NOBODY, version: 0, target: Cell::new(24, -21) };
@@ -64,11 +57,6 @@ fn messages() -> [(&'static str, Message, &'static str); 10] {
             Message::Beacon(beacon),
             "time_us=4000000001 x_mm=12345 y_mm=-678901 z_mm=-2147483648 vx_mmps=250 vy_mmps=-3 vz_mmps=32767 radius_mm=150 \
              cell_x=98 cell_y=-98 target_x=-32768 target_y=70 busy_ms=400 heading=8 leader=1 slot=4 mode=5",
-        ),
-        (
-            "STAYA_COMPACT",
-            Message::Compact(compact),
-            "time_ms=65535 x_mm=-1 y_mm=678901 vx_mmps=-250 vy_mmps=3 radius_cm=15 mode=2",
         ),
         ("STAYA_REQUEST", Message::Request(request), "target_system=254 origin=9 number=7 kind=2 valid_ms=2000"),
         ("STAYA_ACK", Message::Ack(ack), "target_system=254 request_boot=3 number=7 accepted=1"),

@@ -8,8 +8,8 @@
 //! damage. Everything else between frames comes out of [`Wire::next_frame`] as one piece, which [`Wire::decode`] refuses, so that it counts.
 
 use crate::dialect::{
-    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_COMPACT_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PAYLOAD_DATA,
-    STAYA_PLACE_DATA, STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PAYLOAD_DATA, STAYA_PLACE_DATA,
+    STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
@@ -21,8 +21,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, CompactBeacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, MAX_PAYLOAD, Message,
-    PayloadBytes, Request, RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
+    Ack, Beacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, MAX_PAYLOAD, Message, PayloadBytes, Request,
+    RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
 };
 
 /// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -125,22 +125,6 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
             };
             frame::encode(sender, &data, out)
         }
-        Message::Compact(beacon) => {
-            let [x_mm, y_mm] = beacon.position_mm;
-            let [vx_mmps, vy_mmps] = beacon.velocity_mmps;
-            let data = STAYA_COMPACT_DATA {
-                x_mm,
-                y_mm,
-                time_ms: beacon.time_ms,
-                vx_mmps,
-                vy_mmps,
-                sequence,
-                boot,
-                radius_cm: beacon.radius_cm,
-                mode: beacon.mode as u8,
-            };
-            frame::encode(sender, &data, out)
-        }
         Message::Request(request) => {
             let data = STAYA_REQUEST_DATA {
                 valid_ms: request.valid_ms,
@@ -235,7 +219,6 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
     let raw = RawFrame::new(bytes).ok_or(DecodeError::Crc)?;
     let (boot, sequence, message) = match raw.message_id() {
         STAYA_BEACON_DATA::ID => beacon(&body(&raw)?)?,
-        STAYA_COMPACT_DATA::ID => compact(&body(&raw)?)?,
         STAYA_REQUEST_DATA::ID => request(&body(&raw)?)?,
         STAYA_ACK_DATA::ID => ack(&body(&raw)?)?,
         STAYA_TEMPLATE_DATA::ID => template_part(&body(&raw)?)?,
@@ -301,17 +284,6 @@ fn beacon(data: &STAYA_BEACON_DATA) -> Parts {
         target: Cell::new(data.target_x, data.target_y),
     };
     Ok((data.boot, data.sequence, Message::Beacon(beacon)))
-}
-
-fn compact(data: &STAYA_COMPACT_DATA) -> Parts {
-    let beacon = CompactBeacon {
-        time_ms: data.time_ms,
-        position_mm: [data.x_mm, data.y_mm],
-        velocity_mmps: [data.vx_mmps, data.vy_mmps],
-        radius_cm: data.radius_cm,
-        mode: mode(data.mode).ok_or(DecodeError::Body)?,
-    };
-    Ok((data.boot, data.sequence, Message::Compact(beacon)))
 }
 
 fn request(data: &STAYA_REQUEST_DATA) -> Parts {

@@ -69,18 +69,12 @@ pub(super) const fn is_ahead(next: Header, header: Header) -> bool {
 
 /// A few bits of when and where a beacon says that its sender is; `None` for other messages.
 fn print(message: &Message) -> Option<u16> {
-    let (mm, more) = match message {
-        Message::Beacon(beacon) => {
-            (beacon.position_mm, [beacon.time.as_micros(), beacon.cell.x as u32, beacon.cell.y as u32])
-        }
-        Message::Compact(beacon) => {
-            let [x, y] = beacon.position_mm;
-            ([x, y, 0], [beacon.time_ms.into(), 0, 0])
-        }
-        _ => return None,
+    let Message::Beacon(beacon) = message else {
+        return None;
     };
+    let more = [beacon.time.as_micros(), beacon.cell.x as u32, beacon.cell.y as u32];
     // FNV-1a by words.
-    let words = mm.iter().map(|mm| mm.cast_unsigned()).chain(more);
+    let words = beacon.position_mm.iter().map(|mm| mm.cast_unsigned()).chain(more);
     let print = words.fold(0x811C_9DC5_u32, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193));
     Some((print >> 16) as u16)
 }
@@ -89,10 +83,6 @@ fn print(message: &Message) -> Option<u16> {
 pub(super) fn place(message: &Message) -> Option<Position> {
     match message {
         Message::Beacon(beacon) => Some(Position::from_mm(beacon.position_mm)),
-        Message::Compact(beacon) => {
-            let [x, y] = beacon.position_mm;
-            Some(Position::from_mm([x, y, 0]))
-        }
         _ => None,
     }
 }

@@ -28,9 +28,6 @@ const WAYPOINTS: usize = 4;
 /// Matters of others that are remembered.
 const ORDERS: usize = 8;
 
-/// Where a robot stands whose cell nobody told: in the corner of all maps, in nobody's way.
-const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
-
 /// News that is not kept here but acted on by the agent.
 pub(super) enum News<S> {
     /// Somebody asks to choose another direction.
@@ -214,20 +211,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 // What its law told comes by itself; that of an earlier life is void.
                 let known = self.table.get(id, now).known().filter(|_| arrival != Arrival::Rebooted);
                 neighbor.payload = known.map_or(neighbor.payload, |known| known.payload);
-                self.keep(neighbor, frame.header, now, listener, out);
-            }
-            Message::Compact(beacon) if arrival.is_latest() => {
-                let heard = Neighbor::from_compact(id, &beacon, NO_CELL, listener.heard_at);
-                // What it does not say is as it was said last.
-                let known = self.table.get(id, now).known();
-                let neighbor = known.map_or(heard, |known| Neighbor {
-                    heard: heard.heard,
-                    position: heard.position,
-                    velocity_mps: heard.velocity_mps,
-                    radius_m: heard.radius_m,
-                    mode: heard.mode,
-                    ..*known
-                });
                 self.keep(neighbor, frame.header, now, listener, out);
             }
             Message::Request(request) if is_mine(request.to) => {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::wire::{Beacon, CompactBeacon};
+use crate::wire::Beacon;
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
@@ -332,22 +332,6 @@ fn beacon_becomes_metres_and_own_time() {
     assert_eq!((n.heard, n.busy_until), (at(u32::MAX), at(65_534_999)));
     assert_eq!((n.cell, n.target), (beacon.cell, beacon.target));
     assert_eq!((n.heading, n.slot, n.mode), (Dir::North, 3, Mode::Cruise));
-}
-
-#[test]
-fn compact_beacon_becomes_a_neighbour_in_the_plane() {
-    let beacon = CompactBeacon {
-        time_ms: 1,
-        position_mm: [i32::MIN, 250],
-        velocity_mmps: [-250, 125],
-        radius_cm: 255,
-        mode: Mode::Hold,
-    };
-    let n = Neighbor::<f64>::from_compact(RobotId(5), &beacon, Cell::new(4, 2), at(10));
-    assert_eq!(n.position, Position::from_mm([i32::MIN, 250, 0]));
-    assert_eq!(n.velocity_mps, Vec3::new(-0.25, 0.125, 0.0));
-    assert_eq!((n.radius_m, n.mode), (2.55, Mode::Hold));
-    assert_eq!((n.cell, n.target, n.busy_until), (Cell::new(4, 2), Cell::new(4, 2), at(10)));
 }
 
 /// A robot per id, at small whole distances so that ties occur.

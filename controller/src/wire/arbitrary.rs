@@ -65,14 +65,6 @@ fn beacon() -> impl Strategy<Value = Message> {
     })
 }
 
-fn compact() -> impl Strategy<Value = Message> {
-    let motion = (any::<u16>(), any::<[i32; 2]>(), any::<[i16; 2]>());
-    (motion, any::<u8>(), mode()).prop_map(|(motion, radius_cm, mode)| {
-        let (time_ms, position_mm, velocity_mmps) = motion;
-        Message::Compact(CompactBeacon { time_ms, position_mm, velocity_mmps, radius_cm, mode })
-    })
-}
-
 pub fn entry() -> impl Strategy<Value = TemplateEntry> {
     (cell(), robot(), any::<u8>()).prop_map(|(offset, id, hops)| TemplateEntry { offset, id, hops })
 }
@@ -116,5 +108,5 @@ pub fn message() -> impl Strategy<Value = Message> {
     let payload = vec(any::<u8>(), 0..=MAX_PAYLOAD);
     let payload = payload.prop_map(|bytes| Message::Payload(PayloadBytes::new(&bytes).unwrap_or_default()));
     let keys = prop_oneof![key, held];
-    prop_oneof![beacon(), compact(), request, ack, template(), goal, place, keys, land, payload]
+    prop_oneof![beacon(), request, ack, template(), goal, place, keys, land, payload]
 }

@@ -31,8 +31,8 @@
 //! messages 7 KiB in all on a Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
 
 use super::message::{
-    Ack, Beacon, CompactBeacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART,
-    TemplateAssignment, WaypointAssignment,
+    Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART, TemplateAssignment,
+    WaypointAssignment,
 };
 use super::payload::{MAX_PAYLOAD, PayloadBytes};
 use crate::land::{LandPatch, PATCH_TILES};
@@ -46,7 +46,7 @@ use serde::{Deserialize, Serialize};
 mod beacon;
 
 /// The version of the format that this code writes and reads, 1..=127.
-pub const VERSION: u8 = 2;
+pub const VERSION: u8 = 3;
 /// Bytes of an authentication tag.
 pub const TAG_LEN: usize = 8;
 /// The greatest number of a robot in frames with a tag, as sender and as leader.
@@ -68,11 +68,6 @@ static CRC: Crc<u16, Table<TABLES>> = Crc::<u16, Table<TABLES>>::new(&CRC_16_IBM
 impl Beacon {
     /// Bytes of a frame that carries one, at most: tag and delimiter included.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 4 + 3 * 4 + 3 * 2 + 2 + CELL + 1 + 2 + ID + 1 + 1 + CELL;
-}
-
-impl CompactBeacon {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
-    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 2 + 2 * 4 + 2 * 2 + 1 + 1;
 }
 
 impl Request {
@@ -124,7 +119,6 @@ impl PayloadBytes {
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
         Beacon::MAX_FRAME_LEN,
-        CompactBeacon::MAX_FRAME_LEN,
         Request::MAX_FRAME_LEN,
         Ack::MAX_FRAME_LEN,
         TemplateAssignment::MAX_FRAME_LEN,
@@ -149,9 +143,8 @@ pub const MAX_FRAME_LEN: usize = {
 /// A frame between COBS and the delimiter, at most.
 const MAX_CONTENT: usize = MAX_FRAME_LEN - 2;
 
-// Crazyflie peer-to-peer packets hold 60 bytes, its app channel 30; COBS here knows one block.
+// Crazyflie peer-to-peer packets hold 60 bytes; COBS here knows one block.
 const _: () = assert!(MAX_FRAME_LEN <= 60);
-const _: () = assert!(CompactBeacon::MAX_FRAME_LEN - TAG_LEN + (5 - ID) <= 30);
 // Sender, addressee and those of a template.
 const _: () = assert!((2 + TEMPLATE_PART) * (5 - ID) <= TAG_LEN);
 const _: () = assert!(MAX_CONTENT <= 253);

@@ -1,8 +1,7 @@
 //! What beacons tell of their senders, as the neighbour table keeps it.
 
-use super::{Beacon, CompactBeacon};
+use super::Beacon;
 use crate::geom::{Position, Vec3};
-use crate::grid::{Cell, Dir};
 use crate::neighbor::Neighbor;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
@@ -25,32 +24,6 @@ impl<S: Scalar, P: Default> Neighbor<S, P> {
             leader: beacon.leader,
             heading: beacon.heading,
             slot: beacon.slot,
-            mode: beacon.mode,
-            is_lost: false,
-            gap_m: S::ZERO,
-            payload: P::default(),
-        }
-    }
-
-    /// The robot `id` as its compact beacon, received at `now`, describes it: at height 0, without
-    /// a leader, standing in `cell`, which the caller finds from the position if it uses cells.
-    #[must_use]
-    #[expect(clippy::arithmetic_side_effects, reason = "16 bits times 10 within 32")]
-    pub fn from_compact(id: RobotId, beacon: &CompactBeacon, cell: Cell, now: Instant) -> Self {
-        let [x, y] = beacon.position_mm;
-        let [vx, vy] = beacon.velocity_mmps.map(i32::from);
-        Self {
-            id,
-            heard: now,
-            busy_until: now,
-            position: Position::from_mm([x, y, 0]),
-            velocity_mps: Vec3::from_milli([vx, vy, 0]),
-            radius_m: S::from_milli(i32::from(beacon.radius_cm) * 10),
-            cell,
-            target: cell,
-            leader: RobotId::NOBODY,
-            heading: Dir::Stay,
-            slot: 0,
             mode: beacon.mode,
             is_lost: false,
             gap_m: S::ZERO,

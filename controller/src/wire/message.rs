@@ -49,25 +49,6 @@ pub struct Beacon {
     pub target: Cell,
 }
 
-/// The beacon for radios that carry 30 bytes: what collision avoidance and flocking need, in the plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct CompactBeacon {
-    /// Sender's clock when it sampled its state, ms (wraps after 65 s).
-    #[serde(with = "fixint")]
-    pub time_ms: u16,
-    /// World position in the plane, mm.
-    #[serde(with = "fixint")]
-    pub position_mm: [i32; 2],
-    /// World velocity in the plane, mm/s.
-    #[serde(with = "fixint")]
-    pub velocity_mmps: [i16; 2],
-    /// Radius of the smallest disc around the body, cm.
-    pub radius_cm: u8,
-    /// What it is doing.
-    pub mode: Mode,
-}
-
 /// What one robot asks of another (A. V. Kuznetsov 2017, KUZ, section 7: up the leader chain, hop by hop).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -219,8 +200,6 @@ pub struct KeyHeld {
 pub enum Message {
     /// Periodic state.
     Beacon(Beacon),
-    /// Periodic state for narrow radios.
-    Compact(CompactBeacon),
     /// A request to one robot.
     Request(Request),
     /// Its acknowledgement.
@@ -246,7 +225,7 @@ impl Message {
     #[must_use]
     pub const fn addressee(&self) -> Option<RobotId> {
         let to = match self {
-            Self::Beacon(_) | Self::Compact(_) | Self::Land(_) | Self::Payload(_) => return None,
+            Self::Beacon(_) | Self::Land(_) | Self::Payload(_) => return None,
             Self::Request(request) => request.to,
             Self::Ack(ack) => ack.to,
             Self::Template(part) => part.to,

@@ -67,10 +67,6 @@ fn any_message() -> impl Strategy<Value = Message> {
             target,
         })
     });
-    let compact = (any::<(u16, u8, [i32; 2], [i16; 2])>(), modes).prop_map(|(numbers, mode)| {
-        let (time_ms, radius_cm, position_mm, velocity_mmps) = numbers;
-        Message::Compact(CompactBeacon { time_ms, position_mm, velocity_mmps, radius_cm, mode })
-    });
     let kinds = prop_oneof![Just(RequestKind::Stop), Just(RequestKind::Resume), Just(RequestKind::Redirect)];
     let request = (id(), id(), any::<(u8, u16)>(), kinds);
     let request = request.prop_map(|(to, origin, (number, valid_ms), kind)| {
@@ -102,7 +98,7 @@ fn any_message() -> impl Strategy<Value = Message> {
         (cell(), any::<[u8; 32]>()).prop_map(|(corner, bytes)| Message::Land(LandPatch::from_bytes(corner, bytes)));
     let payload = vec(any::<u8>(), 0..=MAX_PAYLOAD);
     let payload = payload.prop_map(|bytes| Message::Payload(PayloadBytes::new(&bytes).unwrap_or_default()));
-    prop_oneof![beacon, compact, request, ack, template, goal, place, land, payload]
+    prop_oneof![beacon, request, ack, template, goal, place, land, payload]
 }
 
 proptest! {
@@ -194,7 +190,6 @@ fn fields_without_meaning_are_refused() {
     let bodies = [
         raw(&STAYA_BEACON_DATA { mode: 7, ..beacon.clone() }),
         raw(&STAYA_BEACON_DATA { heading: 9, ..beacon }),
-        raw(&STAYA_COMPACT_DATA { mode: 255, ..STAYA_COMPACT_DATA::DEFAULT }),
         raw(&STAYA_REQUEST_DATA { kind: 3, ..STAYA_REQUEST_DATA::DEFAULT }),
         raw(&STAYA_ACK_DATA { accepted: 2, ..STAYA_ACK_DATA::DEFAULT }),
         raw(&STAYA_TEMPLATE_DATA { count: 3, ..STAYA_TEMPLATE_DATA::DEFAULT }),

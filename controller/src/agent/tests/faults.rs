@@ -291,23 +291,6 @@ fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
     assert_eq!(one(1, 1, Cell::new(5, 5)), Mode::Hold);
 }
 
-/// Compact beacons know no cells: their sender stands in nobody's way.
-#[test]
-fn who_is_heard_without_a_cell_occupies_none() {
-    let (mut agent, mut ws) = (route_agent(1), workspace());
-    agent.assign_goal(Cell::new(0, 0));
-    let mut cells = [BLOCKED; 121];
-    cells[55..66].fill(1);
-    for n in 0..8 {
-        let compact = Message::Compact(crate::wire::CompactBeacon::default());
-        let inbox = bytes(2, 0, n, &[compact]);
-        let at = Cell::new(1, 0);
-        let out = agent.step(&inputs(&cells, at, &inbox), tick(n.into()), &mut ws);
-        assert_eq!(agent.neighbors().len(), 1);
-        assert!(requests(&out).is_empty(), "nobody is in the way");
-    }
-}
-
 /// With `Recovery::Def` the top leader turns to who is off instead of standing, also when asked to.
 #[test]
 fn a_leader_that_recovers_heads_for_who_is_off() {

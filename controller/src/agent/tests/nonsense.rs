@@ -53,7 +53,7 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
             Message::KeyHeld(held) => held.to = to,
             // Beside the robot, or anywhere.
             Message::Land(patch) if to == OWN => patch.corner = crate::land::tile_of(here),
-            Message::Compact(_) | Message::Land(_) | Message::Payload(_) => {}
+            Message::Land(_) | Message::Payload(_) => {}
         }
         let header = Header { boot, sender, sequence };
         (header, message)
