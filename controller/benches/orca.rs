@@ -3,10 +3,7 @@
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::geom::{Vec2, Vec3};
-use staya_controller::orca::{
-    Analytic, HalfPlane, HalfSpaces, MovingBall, Params, VoxelTable2k, VoxelTable8k, VoxelTable16k, VoxelTable64k,
-    half_space, solve,
-};
+use staya_controller::orca::{Analytic, HalfPlane, HalfSpaces, MovingBall, Params, VoxelTable2k, half_space, solve};
 use staya_controller::rand::Rng;
 use staya_controller::scalar::{Q16, Scalar};
 
@@ -63,9 +60,6 @@ fn half_planes<S: Scalar>(c: &mut Criterion, scalar: &str) {
     }
     run("analytic", &by(Analytic));
     run("template_2k", &by(VoxelTable2k));
-    run("template_8k", &by(VoxelTable8k));
-    run("template_16k", &by(VoxelTable16k));
-    run("template_64k", &by(VoxelTable64k));
 }
 
 fn what_is_left(c: &mut Criterion) {

@@ -10,8 +10,6 @@ use std::fs;
 
 /// What all must give: `case number hash steps` in each line. The tests on the host compare it too, and write it.
 const TABLE: &str = "tests/golden/cases.txt";
-/// Cases with tables for which the small part has no flash.
-const LARGE: [&str; 3] = ["orca_template_8k", "orca_template_16k", "orca_template_64k"];
 /// Steps of one agent in the worst company, with more neighbours than the small part has room for.
 const WORST: &str = "worst_";
 
@@ -85,7 +83,7 @@ fn on_part(
 fn is_for(part: &Part, row: &str) -> bool {
     let mut words = row.split(' ');
     let (case, number) = (words.next().unwrap_or(""), words.next());
-    let is_small = number == Some("Q16") && !LARGE.contains(&case) && !case.starts_with(WORST);
+    let is_small = number == Some("Q16") && !case.starts_with(WORST);
     part.name != "nrf51" || is_small
 }
 
@@ -138,7 +136,6 @@ mod tests {
             ("route f32 0 1", false),
             ("route Q16 0 1", true),
             ("orca_template_2k Q16 0 1", true),
-            ("orca_template_64k Q16 0 1", false),
             ("worst_route Q16 0 1", false),
         ] {
             assert!(is_for(large, row));

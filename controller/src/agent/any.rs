@@ -177,7 +177,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 }
 
-/// Any source of half-planes: the formula, or a template of some size.
+/// Any source of half-planes: the formula, or the voxel table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[expect(missing_docs, reason = "each variant's type says it")]
@@ -185,18 +185,6 @@ pub enum AnyHalfPlanes {
     #[default]
     Analytic,
     Template2k,
-    Template8k,
-    Template16k,
-    Template64k,
-}
-
-impl AnyHalfPlanes {
-    /// Its table is in this build: those of more than 2 KiB need the feature `large-tables`, and without it the formula stands in,
-    /// as safe. Whoever is told by others what to be refuses what is not here.
-    #[must_use]
-    pub const fn is_built(self) -> bool {
-        cfg!(feature = "large-tables") || matches!(self, Self::Analytic | Self::Template2k)
-    }
 }
 
 impl<S: Scalar> HalfSpaces<S> for AnyHalfPlanes {
@@ -212,15 +200,6 @@ impl<S: Scalar> HalfSpaces<S> for AnyHalfPlanes {
         match self {
             Self::Analytic => orca::half_plane(own, disc, params),
             Self::Template2k => orca::VoxelTable2k.half_space(own, disc, params),
-            #[cfg(feature = "large-tables")]
-            Self::Template8k => orca::VoxelTable8k.half_space(own, disc, params),
-            #[cfg(feature = "large-tables")]
-            Self::Template16k => orca::VoxelTable16k.half_space(own, disc, params),
-            #[cfg(feature = "large-tables")]
-            Self::Template64k => orca::VoxelTable64k.half_space(own, disc, params),
-            // What is configured from outside was refused before: see `is_built`.
-            #[cfg(not(feature = "large-tables"))]
-            Self::Template8k | Self::Template16k | Self::Template64k => orca::half_plane(own, disc, params),
         }
     }
 }

@@ -209,12 +209,6 @@ named! {
         Orca = "orca",
         /// ORCA with half-planes from the voxel table (A. Tolok and others, FVM) of 2 KiB.
         Template2k = "template_2k",
-        /// The same of 8 KiB.
-        Template8k = "template_8k",
-        /// The same of 16 KiB.
-        Template16k = "template_16k",
-        /// The same of 64 KiB.
-        Template64k = "template_64k",
         /// ORCA in space, for robots that fly.
         Fly = "fly",
         /// Push-out (PAV).
@@ -237,9 +231,6 @@ impl SafetyKind {
             Self::PushOut => return SafetySetup::PushOut { params: push_out },
             Self::Orca => AnyHalfPlanes::Analytic,
             Self::Template2k => AnyHalfPlanes::Template2k,
-            Self::Template8k => AnyHalfPlanes::Template8k,
-            Self::Template16k => AnyHalfPlanes::Template16k,
-            Self::Template64k => AnyHalfPlanes::Template64k,
         };
         SafetySetup::Orca { params, inflation, source }
     }
@@ -388,21 +379,9 @@ impl SafetySetup {
             Self::Orca { source, .. } => match source {
                 AnyHalfPlanes::Analytic => SafetyKind::Orca,
                 AnyHalfPlanes::Template2k => SafetyKind::Template2k,
-                AnyHalfPlanes::Template8k => SafetyKind::Template8k,
-                AnyHalfPlanes::Template16k => SafetyKind::Template16k,
-                AnyHalfPlanes::Template64k => SafetyKind::Template64k,
             },
             Self::Fly { .. } => SafetyKind::Fly,
             Self::PushOut { .. } => SafetyKind::PushOut,
-        }
-    }
-
-    /// This build has all that the layer needs: see [`AnyHalfPlanes::is_built`].
-    #[must_use]
-    pub const fn is_built(&self) -> bool {
-        match self {
-            Self::Orca { source, .. } => source.is_built(),
-            Self::None | Self::Fly { .. } | Self::PushOut { .. } => true,
         }
     }
 

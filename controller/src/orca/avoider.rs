@@ -108,7 +108,7 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
 }
 
 /// Collision avoidance of one robot; at most `K` constraints count. `P` says where: [`Analytic`] or a
-/// [`VoxelTable`](super::VoxelTable) in the plane, [`InSpace`] in space.
+/// [`VoxelTable2k`](super::VoxelTable2k) in the plane, [`InSpace`] in space.
 ///
 /// Bytes: those of [`AvoidParams`] and the few of the rule against deadlocks; 16 K bytes of stack (`f32`; in space 24
 /// K), three times that when no velocity is permitted.

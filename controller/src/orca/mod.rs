@@ -43,7 +43,5 @@ pub use params::{AvoidParams, DeadlockParams, Params};
 pub use plane::half_plane;
 pub use space::half_space;
 pub use velocity_obstacle::VelocityObstacle;
-pub use voxel::{
-    VelocityObstacleTable, VoxelTable, VoxelTable2k, VoxelTable8k, VoxelTable16k, VoxelTable64k, half_plane_from_table,
-};
+pub use voxel::{VelocityObstacleTable, VoxelTable2k, half_plane_from_table};
 pub use wall::wall;

@@ -5,8 +5,6 @@ pub(crate) mod on_grid;
 mod waypoints;
 
 use crate::{Probe, Summary};
-#[cfg(feature = "large-tables")]
-use staya_controller::agent::AnyHalfPlanes;
 use staya_controller::orca::{Analytic, VoxelTable2k};
 use staya_controller::scalar::Scalar;
 use staya_controller::wire::Postcard;
@@ -29,15 +27,6 @@ pub enum Case {
     OrcaAnalytic,
     /// The same with half-planes from a table of 2 KiB.
     OrcaTemplate2k,
-    /// The same with half-planes from a table of 8 KiB.
-    #[cfg(feature = "large-tables")]
-    OrcaTemplate8k,
-    /// The same with half-planes from a table of 16 KiB.
-    #[cfg(feature = "large-tables")]
-    OrcaTemplate16k,
-    /// The same with half-planes from a table of 64 KiB.
-    #[cfg(feature = "large-tables")]
-    OrcaTemplate64k,
     /// Robots in two rooms change places through a door for one.
     Doorway,
     /// Five robots on a sphere change sides above a floor, around a ball.
@@ -62,12 +51,6 @@ impl Case {
         Self::RouteInPlane,
         Self::OrcaAnalytic,
         Self::OrcaTemplate2k,
-        #[cfg(feature = "large-tables")]
-        Self::OrcaTemplate8k,
-        #[cfg(feature = "large-tables")]
-        Self::OrcaTemplate16k,
-        #[cfg(feature = "large-tables")]
-        Self::OrcaTemplate64k,
         Self::Doorway,
         Self::Fly,
         Self::PushOut,
@@ -87,13 +70,6 @@ impl Case {
             Self::RouteInPlane => "route_in_plane",
             Self::OrcaAnalytic => "orca_analytic",
             Self::OrcaTemplate2k => "orca_template_2k",
-            // One agent type for the large ones: each would take another 12 KiB of flash.
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate8k => "orca_template_8k",
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate16k => "orca_template_16k",
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate64k => "orca_template_64k",
             Self::Doorway => "doorway",
             Self::Fly => "fly",
             Self::PushOut => "push_out",
@@ -115,13 +91,6 @@ impl Case {
             Self::RouteInPlane => waypoints::route_in_plane(probe),
             Self::OrcaAnalytic => waypoints::swap(Analytic, probe),
             Self::OrcaTemplate2k => waypoints::swap(VoxelTable2k, probe),
-            // One agent type for the large ones: each would take another 12 KiB of flash.
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate8k => waypoints::swap(AnyHalfPlanes::Template8k, probe),
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate16k => waypoints::swap(AnyHalfPlanes::Template16k, probe),
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate64k => waypoints::swap(AnyHalfPlanes::Template64k, probe),
             Self::Doorway => waypoints::doorway(probe),
             Self::Fly => waypoints::fly(probe),
             Self::PushOut => waypoints::push_out(probe),

@@ -12,7 +12,7 @@ use staya_controller::agent::{
     InPlane, Inputs, KinematicState, LatticeGuidance, OnGrid, OrcaSafety, RouteGuidance, Safety, TEMPLATE, ToCells,
     Unguarded, VISITS, Waypoint, WaypointGuidance,
 };
-#[cfg(feature = "large-tables")]
+#[cfg(feature = "all-cases")]
 use staya_controller::agent::{FlySafety, PushOutSafety};
 use staya_controller::flock::boids::BoidsParams;
 use staya_controller::flock::goal::GoalParams;
@@ -22,11 +22,8 @@ use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Dir, Window};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::obstacle::Obstacle;
-#[cfg(feature = "large-tables")]
-use staya_controller::orca::VoxelTable64k;
-use staya_controller::orca::{Analytic, VoxelTable2k};
-use staya_controller::orca::{AvoidParams, HalfSpaces};
-#[cfg(feature = "large-tables")]
+use staya_controller::orca::{Analytic, AvoidParams, HalfSpaces, VoxelTable2k};
+#[cfg(feature = "all-cases")]
 use staya_controller::push_out::PushOutParams;
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
@@ -59,16 +56,13 @@ pub enum WorstCase {
     FormationReflexive,
     /// ORCA in a crowd in which no velocity is permitted most of the time, half-planes by the formula.
     OrcaAnalytic,
-    /// The same with the smallest table.
+    /// The same with half-planes from the table.
     OrcaTemplate2k,
-    /// The same with the largest table.
-    #[cfg(feature = "large-tables")]
-    OrcaTemplate64k,
     /// ORCA in space in such a crowd.
-    #[cfg(feature = "large-tables")]
+    #[cfg(feature = "all-cases")]
     Fly,
     /// Push-out in such a crowd.
-    #[cfg(feature = "large-tables")]
+    #[cfg(feature = "all-cases")]
     PushOut,
     /// The alpha flock with everybody in range.
     Lattice,
@@ -86,11 +80,9 @@ impl WorstCase {
         Self::FormationReflexive,
         Self::OrcaAnalytic,
         Self::OrcaTemplate2k,
-        #[cfg(feature = "large-tables")]
-        Self::OrcaTemplate64k,
-        #[cfg(feature = "large-tables")]
+        #[cfg(feature = "all-cases")]
         Self::Fly,
-        #[cfg(feature = "large-tables")]
+        #[cfg(feature = "all-cases")]
         Self::PushOut,
         Self::Lattice,
         Self::GoalFlock,
@@ -106,11 +98,9 @@ impl WorstCase {
             Self::FormationReflexive => "worst_formation_reflexive",
             Self::OrcaAnalytic => "worst_orca_analytic",
             Self::OrcaTemplate2k => "worst_orca_template_2k",
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate64k => "worst_orca_template_64k",
-            #[cfg(feature = "large-tables")]
+            #[cfg(feature = "all-cases")]
             Self::Fly => "worst_fly",
-            #[cfg(feature = "large-tables")]
+            #[cfg(feature = "all-cases")]
             Self::PushOut => "worst_push_out",
             Self::Lattice => "worst_lattice",
             Self::GoalFlock => "worst_goal_flock",
@@ -126,14 +116,12 @@ impl WorstCase {
             Self::FormationReflexive => on_grid::<S, _, P, N>(formation(Prediction::Reflexive), probe),
             Self::OrcaAnalytic => worst_orca::<S, _, P, N, K>(Analytic, probe),
             Self::OrcaTemplate2k => worst_orca::<S, _, P, N, K>(VoxelTable2k, probe),
-            #[cfg(feature = "large-tables")]
-            Self::OrcaTemplate64k => worst_orca::<S, _, P, N, K>(VoxelTable64k, probe),
-            #[cfg(feature = "large-tables")]
+            #[cfg(feature = "all-cases")]
             Self::Fly => {
                 let safety = FlySafety::<S, K>::in_space(AvoidParams::default(), inflation());
                 in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
             }
-            #[cfg(feature = "large-tables")]
+            #[cfg(feature = "all-cases")]
             Self::PushOut => {
                 let safety = PushOutSafety::new(PushOutParams::new(S::from_milli(400)));
                 in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)

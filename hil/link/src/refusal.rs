@@ -13,8 +13,6 @@ pub enum Refusal {
     Nobody,
     /// It does not speak this format.
     Format(Format),
-    /// It has no table of this size.
-    Table,
     /// The guidance law has no use for the task.
     Task,
     /// No guidance law of this firmware's reads so.
@@ -43,7 +41,6 @@ impl fmt::Display for Refusal {
             Self::Format(format) => {
                 write!(f, "this firmware was built without {}", format.name())
             }
-            Self::Table => f.write_str("this firmware was built without voxel tables of more than 2 KiB"),
             Self::Task => fmt::Display::fmt(&WrongTask, f),
             Self::Law => f.write_str("the host has another guidance law than this firmware"),
             Self::Search { needs, room } => {

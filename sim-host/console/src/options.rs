@@ -49,14 +49,7 @@ pub fn safety() -> impl TypedValueParser<Value = SafetyKind> {
 
 /// The safety layer of robots that cross: ORCA, exact or looked up.
 pub fn crossing_safety() -> impl TypedValueParser<Value = SafetyKind> {
-    one_of(&[
-        (SafetyKind::Orca, ""),
-        (SafetyKind::Template2k, ""),
-        (SafetyKind::Template8k, ""),
-        (SafetyKind::Template16k, ""),
-        (SafetyKind::Template64k, ""),
-        (SafetyKind::None, ""),
-    ])
+    one_of(&[(SafetyKind::Orca, ""), (SafetyKind::Template2k, ""), (SafetyKind::None, "")])
 }
 
 /// What push-out makes of a step.

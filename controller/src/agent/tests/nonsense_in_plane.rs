@@ -149,14 +149,11 @@ fn guidance(which: u8, speed: f32, length: f32) -> AnyGuidance<f32, CELLS, VISIT
 fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
     let inflation = StalenessInflation { growth_mps, max_m: length };
     let orca = |source| AnySafety::Orca(OrcaSafety::with_source(AvoidParams::default(), inflation, source));
-    match which % 8 {
+    match which % 5 {
         0 => AnySafety::Unguarded(Unguarded),
         1 => AnySafety::Fly(FlySafety::in_space(AvoidParams::default(), inflation)),
         2 => AnySafety::PushOut(PushOutSafety::new(PushOutParams::new(length))),
         3 => orca(AnyHalfPlanes::Template2k),
-        4 => orca(AnyHalfPlanes::Template8k),
-        5 => orca(AnyHalfPlanes::Template16k),
-        6 => orca(AnyHalfPlanes::Template64k),
         _ => orca(AnyHalfPlanes::Analytic),
     }
 }

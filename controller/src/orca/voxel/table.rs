@@ -1,4 +1,4 @@
-//! The tables, made at compile time.
+//! The table, made at compile time.
 
 /// Length of a stored normal, and what sines of levels count in: powers of two that every scalar can tell apart.
 pub(super) const ONE: i32 = 1 << 14;
@@ -30,61 +30,33 @@ impl VelocityObstacleTable {
     }
 }
 
-/// A choice of a [`VelocityObstacleTable`], as a type, so that firmware links the one that it uses.
-pub trait VoxelTable {
+/// ORCA's table, of at most 2 KiB, as a source of half-planes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct VoxelTable2k;
+
+const LEVELS: usize = 20;
+const DIRECTIONS: usize = 25;
+
+impl VoxelTable2k {
     /// The table.
-    const TABLE: VelocityObstacleTable;
-}
-
-macro_rules! voxel_table {
-    ($(#[$doc:meta])* $name:ident: $levels:literal x $directions:literal) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-        #[cfg_attr(feature = "state", derive(serde::Deserialize))]
-        pub struct $name;
-
-        impl VoxelTable for $name {
-            const TABLE: VelocityObstacleTable = {
-                const LEGS: [[i16; 2]; $levels] = legs();
-                static SINES: [u16; $levels] = sines(&LEGS);
-                static NORMALS: [[i16; 2]; $levels * $directions] = normals(&LEGS, $directions);
-                VelocityObstacleTable {
-                    sines: &SINES,
-                    directions: $directions,
-                    normals: &NORMALS,
-                }
-            };
-        }
+    pub const TABLE: VelocityObstacleTable = {
+        const LEGS: [[i16; 2]; LEVELS] = legs();
+        static SINES: [u16; LEVELS] = sines(&LEGS);
+        static NORMALS: [[i16; 2]; LEVELS * DIRECTIONS] = normals(&LEGS);
+        VelocityObstacleTable { sines: &SINES, directions: DIRECTIONS, normals: &NORMALS }
     };
 }
-
-voxel_table!(
-    /// At most 2 KiB.
-    VoxelTable2k: 20 x 25
-);
-voxel_table!(
-    /// At most 8 KiB.
-    VoxelTable8k: 40 x 50
-);
-voxel_table!(
-    /// At most 16 KiB.
-    VoxelTable16k: 56 x 72
-);
-voxel_table!(
-    /// At most 64 KiB.
-    VoxelTable64k: 110 x 148
-);
 
 /// The normal of the left leg in each level, from square to the axis (far away) to straight back (touching).
 ///
 /// The half angles are twice the arc tangents of equal steps, which lie denser towards a right angle. A level's sine is
 /// that of the rounded normal.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
-const fn legs<const L: usize>() -> [[i16; 2]; L] {
-    let mut legs = [[0; 2]; L];
+const fn legs() -> [[i16; 2]; LEVELS] {
+    let mut legs = [[0; 2]; LEVELS];
     let mut level = 0;
-    while level < L {
-        let t = level as f64 / (L - 1) as f64;
+    while level < LEVELS {
+        let t = level as f64 / (LEVELS - 1) as f64;
         let scale = ONE as f64 / (1.0 + t * t);
         legs[level] = [rounded(2.0 * t * scale), rounded((1.0 - t * t) * scale)];
         level += 1;
@@ -94,10 +66,10 @@ const fn legs<const L: usize>() -> [[i16; 2]; L] {
 
 /// The sine of each level, rounded down: of cones that are no wider than the stored normals are for.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
-const fn sines<const L: usize>(legs: &[[i16; 2]; L]) -> [u16; L] {
-    let mut sines = [0; L];
+const fn sines(legs: &[[i16; 2]; LEVELS]) -> [u16; LEVELS] {
+    let mut sines = [0; LEVELS];
     let mut level = 0;
-    while level < L {
+    while level < LEVELS {
         let (x, y) = (legs[level][0] as f64, legs[level][1] as f64);
         sines[level] = (x / root(x * x + y * y) * ONE as f64) as u16;
         level += 1;
@@ -107,12 +79,12 @@ const fn sines<const L: usize>(legs: &[[i16; 2]; L]) -> [u16; L] {
 
 /// The outward normal at the border nearest to the points in each direction.
 #[expect(clippy::indexing_slicing, clippy::integer_division_remainder_used, reason = "runs at compile time")]
-const fn normals<const L: usize, const N: usize>(legs: &[[i16; 2]; L], directions: usize) -> [[i16; 2]; N] {
-    let mut normals = [[0; 2]; N];
+const fn normals(legs: &[[i16; 2]; LEVELS]) -> [[i16; 2]; LEVELS * DIRECTIONS] {
+    let mut normals = [[0; 2]; LEVELS * DIRECTIONS];
     let mut at = 0;
-    while at < N {
-        let (level, direction) = (at / directions, at % directions);
-        let x = direction as f64 / (directions - 1) as f64;
+    while at < LEVELS * DIRECTIONS {
+        let (level, direction) = (at / DIRECTIONS, at % DIRECTIONS);
+        let x = direction as f64 / (DIRECTIONS - 1) as f64;
         normals[at] = normal(legs[level], x, 1.0 - x);
         at += 1;
     }

@@ -1,4 +1,4 @@
-//! The velocity obstacle of two robots (Tolok et al., FVM): how far half-planes from voxel templates are off the exact
+//! The velocity obstacle of two robots (Tolok et al., FVM): how far half-planes from the voxel template are off the exact
 //! ones, and [`pictures`] of what the paper draws.
 
 pub mod pictures;
@@ -6,10 +6,7 @@ mod view;
 
 use serde::Serialize;
 use staya_controller::geom::Vec2;
-use staya_controller::orca::{
-    Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable, VoxelTable2k, VoxelTable8k,
-    VoxelTable16k, VoxelTable64k,
-};
+use staya_controller::orca::{Analytic, HalfSpaces, MovingBall, Params, VelocityObstacleTable, VoxelTable2k};
 use staya_controller::rand::Rng;
 use staya_stats::{mean, quantile};
 use std::f64::consts::TAU;
@@ -36,12 +33,14 @@ pub struct Errors {
     pub max: f64,
 }
 
-/// One size of the template against the analytic form.
+/// How far the template is off the analytic form.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Size {
-    /// The type's name.
-    pub name: &'static str,
-    /// Bytes in flash.
+pub struct Report {
+    /// Pairs compared.
+    pub pairs: u32,
+    /// Their seed.
+    pub seed: u64,
+    /// Bytes of the template in flash.
     pub bytes: usize,
     /// Nodes: sines of the half angle, and directions.
     pub nodes: [usize; 2],
@@ -49,17 +48,6 @@ pub struct Size {
     pub angle_deg: Errors,
     /// Differences of the demanded changes of velocity, in (R_A + R_B) / tau.
     pub distance: Errors,
-}
-
-/// How far templates are off.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
-    /// Pairs compared.
-    pub pairs: u32,
-    /// Their seed.
-    pub seed: u64,
-    /// The smallest template first.
-    pub sizes: Vec<Size>,
 }
 
 /// A vector in the plane.
@@ -95,43 +83,26 @@ impl Sample {
             .collect()
     }
 
-    /// Compares each size with the analytic form.
+    /// Compares the template with the analytic form.
     #[must_use]
     pub fn report(&self) -> Report {
-        let pairs = self.draw();
+        let compared = self.draw().into_iter().filter_map(|(own, other)| {
+            let exact = Analytic.half_space(own, &other, &PARAMS)?;
+            let found = VoxelTable2k.half_space(own, &other, &PARAMS)?;
+            let (sin, cos) = (exact.normal.det(found.normal), exact.normal.dot(found.normal));
+            let change = found.penetration(own) - exact.penetration(own);
+            Some((libm::atan2(sin, cos).abs().to_degrees(), change.abs() * PARAMS.horizon_s / other.radii_m))
+        });
+        let (angles, distances): (Vec<f64>, Vec<f64>) = compared.unzip();
+        let table: VelocityObstacleTable = VoxelTable2k::TABLE;
         Report {
             pairs: self.pairs,
             seed: self.seed,
-            sizes: vec![
-                size::<VoxelTable2k>("Template2k", &pairs, VoxelTable2k),
-                size::<VoxelTable8k>("Template8k", &pairs, VoxelTable8k),
-                size::<VoxelTable16k>("Template16k", &pairs, VoxelTable16k),
-                size::<VoxelTable64k>("Template64k", &pairs, VoxelTable64k),
-            ],
+            bytes: table.bytes(),
+            nodes: table.shape(),
+            angle_deg: Errors::of(&angles),
+            distance: Errors::of(&distances),
         }
-    }
-}
-
-fn size<T: VoxelTable>(
-    name: &'static str,
-    pairs: &[(Vec2<f64>, MovingBall<V>)],
-    template: impl HalfSpaces<f64, Velocity = V>,
-) -> Size {
-    let table: VelocityObstacleTable = T::TABLE;
-    let compared = pairs.iter().filter_map(|(own, other)| {
-        let exact = Analytic.half_space(*own, other, &PARAMS)?;
-        let found = template.half_space(*own, other, &PARAMS)?;
-        let (sin, cos) = (exact.normal.det(found.normal), exact.normal.dot(found.normal));
-        let change = found.penetration(*own) - exact.penetration(*own);
-        Some((libm::atan2(sin, cos).abs().to_degrees(), change.abs() * PARAMS.horizon_s / other.radii_m))
-    });
-    let (angles, distances): (Vec<f64>, Vec<f64>) = compared.unzip();
-    Size {
-        name,
-        bytes: table.bytes(),
-        nodes: table.shape(),
-        angle_deg: Errors::of(&angles),
-        distance: Errors::of(&distances),
     }
 }
 
@@ -151,7 +122,7 @@ impl fmt::Display for Report {
     fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             text,
-            "half-planes from voxel templates against the exact ones, {} pairs, seed {}",
+            "half-planes from the voxel template against the exact ones, {} pairs, seed {}",
             self.pairs, self.seed
         )?;
         writeln!(text, "{:36}{:>26}{:>36}", "", "angle of normals, deg", "change of velocity, (R_A+R_B)/tau")?;
@@ -160,14 +131,12 @@ impl fmt::Display for Report {
             "{:<14}{:>8}{:>14}{:>10}{:>8}{:>8}{:>16}{:>10}{:>10}",
             "template", "bytes", "nodes", "mean", "p99", "max", "mean", "p99", "max"
         )?;
-        for size in &self.sizes {
-            let [levels, directions] = size.nodes;
-            let nodes = format!("{levels} x {directions}");
-            let Errors { mean, p99, max } = size.angle_deg;
-            write!(text, "{:<14}{:>8}{nodes:>14}{mean:>10.4}{p99:>8.3}{max:>8.3}", size.name, size.bytes)?;
-            let Errors { mean, p99, max } = size.distance;
-            writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")?;
-        }
+        let [levels, directions] = self.nodes;
+        let nodes = format!("{levels} x {directions}");
+        let Errors { mean, p99, max } = self.angle_deg;
+        write!(text, "{:<14}{:>8}{nodes:>14}{mean:>10.4}{p99:>8.3}{max:>8.3}", "Template2k", self.bytes)?;
+        let Errors { mean, p99, max } = self.distance;
+        writeln!(text, "{mean:>16.6}{p99:>10.5}{max:>10.5}")?;
         Ok(())
     }
 }
@@ -177,26 +146,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn larger_templates_err_less_on_average_and_equal_seeds_say_the_same() {
+    fn equal_seeds_say_the_same_in_rows_of_equal_length() {
         let sample = Sample { pairs: 2000, seed: 1 };
         let report = sample.report();
         assert_eq!(report, sample.report());
-        for pair in report.sizes.windows(2) {
-            assert!(pair[0].bytes < pair[1].bytes);
-            assert!(pair[0].angle_deg.mean > pair[1].angle_deg.mean);
-        }
-        for size in &report.sizes {
-            assert!(size.angle_deg.mean > 0.0 && size.angle_deg.p99 <= size.angle_deg.max);
-        }
-        assert_ne!(Sample { seed: 2, ..sample }.report().sizes, report.sizes);
-    }
-
-    #[test]
-    fn the_table_has_a_row_for_each_size() {
-        let sample = Sample { pairs: 100, seed: 3 };
-        let text = sample.report().to_string();
-        assert_eq!(text.lines().count(), 3 + 4);
-        assert!(text.contains("Template64k"));
+        assert!(report.angle_deg.mean > 0.0 && report.angle_deg.p99 <= report.angle_deg.max);
+        assert_ne!(Sample { seed: 2, ..sample }.report().angle_deg, report.angle_deg);
+        let text = report.to_string();
+        assert_eq!(text.lines().count(), 3 + 1);
         let width = text.lines().last().unwrap().len();
         assert!(text.lines().skip(1).all(|line| line.len() == width), "{text}");
     }

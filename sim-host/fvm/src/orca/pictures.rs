@@ -7,7 +7,7 @@ use super::view::{
     opaque, picture,
 };
 use anyhow::{Context as _, bail};
-use staya_controller::orca::{HalfPlane, MovingBall, Params, VelocityObstacle, VoxelTable, VoxelTable16k, half_plane};
+use staya_controller::orca::{HalfPlane, MovingBall, Params, VelocityObstacle, VoxelTable2k, half_plane};
 use staya_plot::canvas::{Anchor, Canvas, Point, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 use staya_sim::record::Error;
@@ -298,14 +298,14 @@ impl Drawing {
 
     /// What the voxel template keeps: the normal to the nearest border; and where it errs.
     fn template(&self) -> Canvas {
-        let mut canvas = canvas("The normal to the nearest border, as the 16 KiB template has it", 3, SMALL_SIDE, 0.0);
+        let mut canvas = canvas("The normal to the nearest border, as the template has it", 3, SMALL_SIDE, 0.0);
         let look_up = |at: V| {
             let ahead = self.obstacle.ahead();
             let (tip, radius) = self.obstacle.disc();
             let w = at - tip;
             let across = ahead.det(w);
             let sine = radius / tip.norm();
-            let table = VoxelTable16k::TABLE;
+            let table = VoxelTable2k::TABLE;
             let normal = table.normal(sine, V::new(w.dot(ahead), across.abs()))?;
             let side = if across > 0.0 { normal.y } else { -normal.y };
             Some(ahead.rotate(normal.x, side))
