@@ -30,7 +30,6 @@ pub const fn chained(before: u64, next: u64) -> u64 {
 
 /// State that no digest counts, for `#[serde(with = "uncounted")]`: keys, and what says nothing more than the rest. It is to
 /// be kept and moved all the same.
-#[cfg(feature = "state")]
 pub mod uncounted {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -165,9 +164,8 @@ impl ser::Serializer for &mut Digest {
         Ok(())
     }
 
-    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _name: &'static str, value: &T) -> Result<(), NotWalked> {
-        #[cfg(feature = "state")]
-        if _name == uncounted::NAME {
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, name: &'static str, value: &T) -> Result<(), NotWalked> {
+        if name == uncounted::NAME {
             return Ok(());
         }
         value.serialize(self)
@@ -341,7 +339,6 @@ mod tests {
         assert_eq!(digest(&-f64::NAN), digest(&f64::NAN));
     }
 
-    #[cfg(feature = "state")]
     #[test]
     fn what_is_uncounted_is_kept_and_does_not_count() {
         #[derive(Serialize, serde::Deserialize, PartialEq, Debug)]

@@ -1,11 +1,10 @@
 //! The mode of a robot as one pure function of its mode and its situation. Read [`next_mode`] first.
 
 use crate::robot::Mode;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What the next mode depends on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Situation {
     /// The motors are off, or somebody else steers.

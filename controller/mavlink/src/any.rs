@@ -5,9 +5,7 @@ use crate::signing::Signing;
 use crate::wire::Mavlink;
 use core::ops::{Deref, DerefMut};
 use heapless::Vec;
-use serde::Serialize;
-#[cfg(not(feature = "state"))]
-use serde::Serializer;
+use serde::{Deserialize, Serialize};
 use staya_controller::auth::Key;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{
@@ -32,8 +30,7 @@ pub enum AnyWire<S = Keyless, G = Keyless> {
 }
 
 /// In place of a format with a key for who has none: there is no such value.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Keyless {}
 
 impl Deref for Keyless {
@@ -112,14 +109,6 @@ pub const fn max_robot(format: Format, has_key: bool) -> RobotId {
     }
 }
 
-#[cfg(not(feature = "state"))]
-impl<S: Serialize, G: Serialize> Serialize for AnyWire<S, G> {
-    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        each!(self, wire => wire.serialize(serializer))
-    }
-}
-
-#[cfg(feature = "state")]
 mod state;
 
 impl<S, G> FromFormat for AnyWire<S, G>

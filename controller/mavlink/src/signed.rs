@@ -4,14 +4,13 @@ use crate::frame::{RawFrame, SIGNATURE_LEN};
 use crate::signing::{STREAMS, SignError, Signing, Verdict};
 use crate::wire::{BEACON_LEN, Mavlink};
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use staya_controller::wire::{DecodeError, EncodeError, Frame, Header, Message, Wire};
 
 /// [`Mavlink`] with signatures: what it says is signed, and what is not signed with the key is not heard.
 ///
 /// It costs 13 bytes a frame. [`Signing`] says what timestamps a robot without a clock takes after a start, and what is accepted.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Signed<const N: usize = STREAMS> {
     signing: Signing<N>,
 }

@@ -4,7 +4,7 @@
 //! guesses is right once in 2^48 tries. See "Message Signing" in MAVLink's guide; pymavlink and MAVProxy do the same.
 
 use crate::frame::{CRC, RawFrame, SIGNATURE_LEN};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use staya_controller::auth::{Freshness, Key, ReplayGuard, Sha256, is_same};
 
 /// Senders that a [`Signing`] of default capacity knows.
@@ -74,8 +74,7 @@ impl Verdict {
 }
 
 /// How many frames were what; counts stay at their end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
     /// [`Verdict::Authentic`].
@@ -145,16 +144,13 @@ impl Counts {
 /// that have one, hears none of them until its owner tells it the time. To exhaust it takes a thousand frames, each a month ahead of the last, all signed
 /// with the key.
 ///
-/// The state that serde sees does not hold the key, but with the feature `state`, where it is the whole state.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+/// Serde sees the whole state, the key included; digests do not count the key.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Signing<const N: usize = STREAMS> {
-    #[cfg_attr(feature = "state", serde(with = "staya_controller::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "staya_controller::digest::uncounted")]
     key: Key,
     /// The key before or after it, while it changes.
-    #[cfg_attr(feature = "state", serde(with = "staya_controller::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "staya_controller::digest::uncounted")]
     also: Option<Key>,
     link: u8,
     /// Of the next frame.
@@ -163,13 +159,12 @@ pub struct Signing<const N: usize = STREAMS> {
     clock: Option<u64>,
     lead: Option<u64>,
     streams: ReplayGuard<N>,
-    #[cfg_attr(feature = "state", serde(deserialize_with = "none_unsigned"))]
+    #[serde(deserialize_with = "none_unsigned")]
     may_be_unsigned: &'static [u32],
     counts: Counts,
 }
 
 /// Who is heard without a signature is the program's, and has no place in a state: there is none.
-#[cfg(feature = "state")]
 fn none_unsigned<'de, D: serde::Deserializer<'de>>(from: D) -> Result<&'static [u32], D::Error> {
     use serde::Deserialize as _;
     heapless::Vec::<u32, 0>::deserialize(from).map(|_| &[][..])

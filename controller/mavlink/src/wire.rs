@@ -14,7 +14,7 @@ use crate::dialect::{
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
 use mavlink_core::MessageData;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::land::LandPatch;
 use staya_controller::robot::{Mode, RobotId};
@@ -36,8 +36,7 @@ const AROUND: usize = 12;
 pub const BEACON_LEN: usize = AROUND + STAYA_BEACON_DATA::ENCODED_LEN;
 
 /// MAVLink 2 frames without signature. It keeps nothing; signatures of others are not looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mavlink;
 
 impl Wire for Mavlink {

@@ -43,8 +43,7 @@ pub(in crate::agent) fn large<G>(law: G) -> Large<G> {
 }
 
 /// Any guidance law, on the grid, in the plane or in space.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     Waypoint(WaypointGuidance<S>),
@@ -205,9 +204,8 @@ impl<S: Scalar> HalfSpaces<S> for AnyHalfPlanes {
 }
 
 /// Any safety layer; at most `K` half-planes count.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
-#[cfg_attr(feature = "state", serde(bound(deserialize = "")))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(deserialize = ""))]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnySafety<S: Scalar, const K: usize> {
     Unguarded(Unguarded),

@@ -9,12 +9,11 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
 use crate::wire::TemplateAssignment;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A law of the plane or of space that is told of any surroundings, as a simulator or a host with a link tells of them. On the
 /// grid alone the robot is in [`Mode::Fault`](crate::robot::Mode::Fault).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AnyWorld<G>(pub G);
 
 impl<G: Teamwork> Teamwork for AnyWorld<G> {

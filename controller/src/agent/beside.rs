@@ -4,7 +4,7 @@ use super::GuidanceInput;
 use crate::geom::Vec3;
 use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// After coming no nearer for so long that one could have gone so many own radii, a robot asks whether its place is taken.
 const PATIENCE: i32 = 4;
@@ -33,8 +33,7 @@ const SLOW: i32 = 100;
 /// - If it is somebody on the move, perhaps to the same place or to one close by, one of them goes on: until
 ///   [`BY_DISTANCE`] the nearest, until [`BY_NUMBER`] the smallest number (each can be nearest to its own place). The other
 ///   ones leave him the room that he needs. Then all try again.
-#[derive(Clone, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Beside<S> {
     /// The least distance to the goal so far, metres; 0: it has not looked yet.
     nearest_m: S,

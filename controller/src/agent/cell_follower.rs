@@ -9,7 +9,7 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
 use crate::wire::TemplateAssignment;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How far from the middle of its cell, along an axis, a robot is in the next one: thousandths of a cell.
 const LEAVES_AT: i32 = 750;
@@ -22,8 +22,7 @@ const LEAVES_AT: i32 = 750;
 /// ever; that they may share a cell now is the safety layer's business. Its way has no place that it goes to straight
 /// for longer than a cell: who shall give way, and how to get past each other, the law decides by its prices and
 /// requests.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CellFollower<S, G> {
     law: G,
     speed_mps: S,
@@ -31,8 +30,7 @@ pub struct CellFollower<S, G> {
 }
 
 /// What the law decided last.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Last<S> {
     cell: Cell,
     at: Instant,

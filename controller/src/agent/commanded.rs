@@ -12,11 +12,10 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::TemplateAssignment;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What an operator wants of a robot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Wish<S> {
     /// Its own behaviour.
@@ -50,8 +49,7 @@ pub enum Wish<S> {
 ///
 /// It only wishes, as any guidance law does: the safety layer behind it keeps the robot clear of others whatever the
 /// operator wants. Robots that follow this one see by its beacon that it left its formation.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Commanded<S, G> {
     inside: G,
     wish: Wish<S>,

@@ -24,7 +24,7 @@ use crate::neighbor::Neighbor;
 use crate::scalar::Scalar;
 use crate::time::Duration;
 use crate::wire::{Header, Message};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Frames of one's own that are known again. What comes back later is refused for its number; a double whose news are so late is
 /// not heard.
@@ -32,8 +32,7 @@ const SAID: usize = 16;
 const _: () = assert!(SAID.is_power_of_two());
 
 /// The last beacons of one's own, by sequence number: a few bits of what they said.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Said([u16; SAID]);
 
 impl Said {

@@ -10,15 +10,14 @@ use crate::geom::{Position, Torus, Vec2, Vec3};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::time::Instant;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Goals that a robot of a goal flock has room for.
 pub const GOALS: usize = WAYPOINTS;
 
 /// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances that follow a reference, if they are given
 /// one as waypoint 0.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
     reference: Option<Waypoint<S>>,
@@ -96,8 +95,7 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
 
 /// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, there each robot draws one of
 /// them. Goals may move, by velocities of their own: the middle moves along, and who has drawn one follows it.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,
     arrival_m: S,
@@ -198,15 +196,13 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
 }
 
 /// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours', in the open plane or on a torus.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct BoidsGuidance<S> {
     params: BoidsParams<S>,
     speed_mps: S,
     heading: Option<Vec2<S>>,
     /// The same for all robots of a run, so that no digest counts it.
-    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "crate::digest::uncounted")]
     torus: Option<Torus<S>>,
 }
 

@@ -23,7 +23,7 @@ use crate::template::Template;
 use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
 use core::iter::successors;
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 mod foresight;
 mod in_plane;
@@ -38,8 +38,7 @@ const ALTERNATIVES: usize = 2;
 ///
 /// Without a template the robot travels alone. `K` is how followers take their leader to go on: by its next move, or by its
 /// [`Course`](crate::formation::Course).
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, K = NextMove> {
     route: RouteParams,
     formation: FormationParams,
@@ -63,8 +62,7 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     /// Decisions on end in which it was behind, or not there yet when the top leader was.
     behind: u16,
     /// Nobody falls behind, as in the plane: the slowest makes the pace.
-    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "crate::digest::uncounted")]
     is_rigid: bool,
     steering: K,
 }

@@ -12,7 +12,7 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{Payload, RequestKind, TemplateAssignment};
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Chooses where to go. An agent has one; each composes behaviours of the layer below.
 ///
@@ -361,8 +361,7 @@ impl<'a, S, P> GuidanceInput<'a, S, P> {
 }
 
 /// What a guidance law decided.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 pub struct Decision<S> {
@@ -381,8 +380,7 @@ pub struct Decision<S> {
 }
 
 /// What to do until the next decision.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Action<S> {
     /// To stand.
@@ -414,8 +412,7 @@ impl<S> Action<S> {
 }
 
 /// How a robot stands to where it should be.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
     /// It is where it should be, or beside.
@@ -433,8 +430,7 @@ pub struct Status {
 }
 
 /// A request that a guidance law wants made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ask {
     /// To whom.

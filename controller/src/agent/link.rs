@@ -16,7 +16,7 @@ use crate::wire::{
     PayloadBytes, Request, RequestKind, Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 mod sight;
 mod who;
@@ -46,8 +46,7 @@ pub(super) enum News<S> {
 }
 
 /// What the link keeps between steps; `P` is what the law tells others.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Link<S, const N: usize, W, P> {
     /// The format of the frames.
     wire: W,

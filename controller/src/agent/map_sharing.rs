@@ -12,7 +12,7 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Instant;
 use crate::wire::TemplateAssignment;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Guidance law `G` with a map of `T` tiles beyond the window: [`LandMap`]. Laws on the grid price the exits of their windows by it
 /// ([`GuidanceInput::land`]), whoever leads; the others have no use for it.
@@ -22,16 +22,14 @@ use serde::Serialize;
 /// patience: in all 42 moves for a goal, and the ways back from where they led.
 ///
 /// With each beacon the robot says one patch of its map. Who is not to share keeps nothing, says nothing and does as `G` does.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MapSharing<G, const T: usize> {
     inside: G,
     #[serde(with = "counted_if_shared")]
     map: Seldom<Map<T>, 1>,
 }
 
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Map<const T: usize> {
     land: LandMap<T>,
     params: MapParams,
@@ -42,8 +40,7 @@ struct Map<const T: usize> {
 const PATIENCE: u8 = 32;
 
 /// Whether the map gets the robot on.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Progress {
     /// Where it was and where it goes.
     way: Option<(Cell, Cell)>,
@@ -78,21 +75,16 @@ impl Progress {
 /// What a robot without a map writes of it: for digests nothing.
 mod counted_if_shared {
     use super::{Map, Seldom};
-    #[cfg(feature = "state")]
     use serde::{Deserialize, Deserializer};
     use serde::{Serialize, Serializer};
 
     pub(super) fn serialize<const T: usize, Z: Serializer>(map: &Seldom<Map<T>, 1>, to: Z) -> Result<Z::Ok, Z::Error> {
         match map.first() {
-            #[cfg(feature = "state")]
             None => crate::digest::uncounted::serialize(map, to),
-            #[cfg(not(feature = "state"))]
-            None => to.serialize_unit(),
             Some(_) => map.serialize(to),
         }
     }
 
-    #[cfg(feature = "state")]
     pub(super) fn deserialize<'de, const T: usize, D: Deserializer<'de>>(
         from: D,
     ) -> Result<Seldom<Map<T>, 1>, D::Error> {

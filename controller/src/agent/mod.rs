@@ -161,9 +161,7 @@ use crate::scalar::Scalar;
 use crate::supervisor::Situation;
 use crate::wire::{MAX_PAYLOAD, Postcard, Wire};
 use link::Link;
-#[cfg(feature = "state")]
-use serde::Deserialize;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Cells of a search for windows of radius 5 (A. V. Kuznetsov 2017, KUZ) with their border: (2 * 5 + 3)^2.
 pub const CELLS: usize = 169;
@@ -205,12 +203,8 @@ const _: () = assert!(matches!(BYTES, [4408, 4680, 2008, 2720]));
 /// 2 KiB of them what a robot learns of its way, 1992 for [`OrcaAgent`], and at most 2720 of workspace that all agents
 /// on the grid of a processor share; on a 64-bit host 4408, 4680, 2008 and 2720, or with the feature `host` what is in
 /// their lists. The build fails when one of them changes unnoticed.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(Deserialize))]
-#[cfg_attr(
-    feature = "state",
-    serde(bound(deserialize = "G: Deserialize<'de>, A: Deserialize<'de>, W: Deserialize<'de>"))
-)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(deserialize = "G: Deserialize<'de>, A: Deserialize<'de>, W: Deserialize<'de>"))]
 pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = Postcard> {
     config: AgentConfig<S>,
     guidance: G,
@@ -225,8 +219,7 @@ pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = P
 }
 
 /// Where to go.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 enum Goal {
     /// This robot, wherever its place in a formation is.
     Own(Cell),
@@ -235,8 +228,7 @@ enum Goal {
 }
 
 /// What stays of a decision.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Last {
     situation: Situation,
     target: Cell,

@@ -13,14 +13,13 @@ use crate::scalar::Scalar;
 use crate::time::Instant;
 use crate::wire::{TemplateAssignment, Wire};
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Guidance law `G` of a robot that is told whom it sees ([`Agent::see`]): in the plane and in space. The law and its safety layer find those in the
 /// neighbour table, as others are there, merged with what is heard: see [`Tracker`].
 ///
 /// It is a wrapper, so that a robot without eyes has no byte of it. One without [`TrackParams`] does as `G` does.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTracking<S: Scalar, G> {
     inside: G,
     #[serde(with = "counted_if_it_sees")]
@@ -30,7 +29,6 @@ pub struct NeighborTracking<S: Scalar, G> {
 /// What a robot without eyes writes of them: for digests nothing.
 mod counted_if_it_sees {
     use super::{Scalar, Seldom, Tracker};
-    #[cfg(feature = "state")]
     use serde::{Deserialize, Deserializer};
     use serde::{Serialize, Serializer};
 
@@ -39,15 +37,11 @@ mod counted_if_it_sees {
         to: Z,
     ) -> Result<Z::Ok, Z::Error> {
         match tracker.first() {
-            #[cfg(feature = "state")]
             None => crate::digest::uncounted::serialize(tracker, to),
-            #[cfg(not(feature = "state"))]
-            None => to.serialize_unit(),
             Some(_) => tracker.serialize(to),
         }
     }
 
-    #[cfg(feature = "state")]
     pub(super) fn deserialize<'de, S: Scalar, D: Deserializer<'de>>(
         from: D,
     ) -> Result<Seldom<Tracker<S>, 1>, D::Error> {

@@ -8,15 +8,11 @@ use crate::neighbor::StalenessInflation;
 use crate::orca::{Analytic, AvoidParams, Avoider, Dimension, HalfSpaces, InSpace};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// An [`Avoider`]: in the plane, where heights are left alone, or in space, as its source of constraints says.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
-#[cfg_attr(
-    feature = "state",
-    serde(bound(deserialize = "P: serde::Deserialize<'de>, Avoider<S, K, P>: serde::Deserialize<'de>"))
-)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound(deserialize = "P: serde::Deserialize<'de>, Avoider<S, K, P>: serde::Deserialize<'de>"))]
 pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
     avoider: Avoider<S, K, P>,
     inflation: StalenessInflation<S>,

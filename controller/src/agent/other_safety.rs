@@ -7,12 +7,11 @@ use crate::geom::Vec3;
 use crate::push_out::{PushOutParams, push_out};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Push-out (V. E. and V. V. Pavlovsky, PAV): steps that lead too near are put right, but only against where others are
 /// now.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PushOutSafety<S> {
     params: PushOutParams<S>,
 }

@@ -40,13 +40,12 @@ use crate::shuffle::{Sharpness, weighted_shuffle};
 use crate::template::Template;
 use crate::time::Duration;
 use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Travelling in formation as published; remembers visits of `M` cells and a template of `F` neighbours.
 ///
 /// Work of a decision: one search of the window, with [`Prediction::Reflexive`] one more per neighbour found.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize> {
     route: RouteParams,
     formation: PublishedParams,

@@ -12,7 +12,7 @@ use crate::route::{CostField, Replan, RouteParams, Router};
 use crate::scalar::Scalar;
 use crate::shuffle::Sharpness;
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Scratch memory of the guidance laws on the grid; `CELLS` as for [`CostField`].
 #[derive(Clone, Debug)]
@@ -44,8 +44,7 @@ impl<const CELLS: usize> GridWorkspace<CELLS> {
 }
 
 /// Windowed routing to the own goal; remembers visits of `M` cells.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0> {
     params: RouteParams,
     replan: Replan,

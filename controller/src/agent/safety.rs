@@ -7,7 +7,7 @@ use crate::neighbor::{Nearby, StalenessInflation};
 use crate::obstacle::Obstacle;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a safety layer may know.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +54,7 @@ pub trait Safety<S: Scalar> {
 }
 
 /// No safety layer: the wish is the command. For robots that move cell by cell, and to see what a layer is worth.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unguarded;
 

@@ -46,8 +46,7 @@ impl<S: Scalar> Silence<S> {
 }
 
 /// Whether anybody is there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Company {
     /// Nobody was ever heard, or all have gone out of range since.
     Unknown,

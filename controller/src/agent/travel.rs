@@ -11,14 +11,13 @@ use crate::robot::Mode;
 use crate::shuffle::{Sharpness, weighted_shuffle};
 use crate::wire::RequestKind;
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Decisions after which whoever stands in the way is asked to choose another direction.
 pub(super) const PATIENCE: u8 = 4;
 
 /// What a robot remembers of its last decisions.
-#[derive(Clone, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Travel {
     /// Where it decided last.
     cell: Option<Cell>,

@@ -7,7 +7,7 @@ use crate::geom::Vec3;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Nearer than so many own radii, a waypoint on the way is passed: beside a robot that stands in it.
 const PASSED_RADII: i32 = 3;
@@ -17,8 +17,7 @@ const PASSED_RADII: i32 = 3;
 ///
 /// It goes by at most [`WAYPOINTS`] waypoints in the order of their numbers. Number 0 begins a course (what was before is
 /// forgotten), the next number lengthens it, and one that is there already is moved. The last one is its goal.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
     /// The one that it heads for.

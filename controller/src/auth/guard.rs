@@ -3,7 +3,7 @@
 //! The sliding window of IPsec (RFC 4303, section 3.4.3) per sender, over counters that never wrap and never start anew.
 
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How a frame stands to those of the same sender before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,8 +28,7 @@ impl Freshness {
 }
 
 /// What is remembered of one sender; 16 bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 struct Peer {
     newest: u64,
     /// Bit k: the frame `newest - k` was seen.
@@ -49,8 +48,7 @@ struct Peer {
 /// whole recording in order, from the restart until the true sender is heard: every frame of it that is older is refused from then on. Who
 /// wants to close this gap stores [`Self::export`] in lasting memory, from time to time or when the power goes, and gives it back with
 /// [`Self::import`]; or raises [`Self::set_floor`] above what was recorded on earlier days.
-#[derive(Clone, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ReplayGuard<const N: usize> {
     /// By sender, rising.
     peers: Vec<Peer, N>,

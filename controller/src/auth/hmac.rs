@@ -5,8 +5,7 @@ use super::{Key, Sha256};
 use core::fmt;
 
 /// Makes codes with one key; 64 bytes. The two blocks that depend on the key alone are hashed once.
-#[derive(Clone)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Mac {
     inner: [u32; 8],
     outer: [u32; 8],

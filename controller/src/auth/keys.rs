@@ -22,8 +22,7 @@ pub const SEED_LEN: usize = 16;
 pub const WRAPPED_LEN: usize = 2 * SEED_LEN;
 
 /// What only the operator has: every other key is made of it.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Master(Mac);
 
 impl Master {
@@ -47,8 +46,7 @@ impl Master {
 }
 
 /// What the swarm's key of one generation is made of; 128 bits that nobody guesses.
-#[derive(Clone, PartialEq, Eq)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Seed([u8; SEED_LEN]);
 
 impl Seed {

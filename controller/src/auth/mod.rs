@@ -19,10 +19,9 @@ use core::hint::black_box;
 /// Bytes of a [`Key`].
 pub const KEY_LEN: usize = 32;
 
-/// A secret of 32 bytes. It comes from configuration; it is never printed, logged or part of a digest of state. Only hosts that keep the
-/// whole state of robots (the feature `state`) can write it.
-#[derive(Clone, PartialEq, Eq)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+/// A secret of 32 bytes. It comes from configuration; it is never printed, logged or part of a digest of state. Serde
+/// writes it, so the saved state of a robot is as secret as its key.
+#[derive(Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Key([u8; KEY_LEN]);
 
 impl Key {

@@ -19,11 +19,10 @@ use crate::geom::Vec2;
 use crate::neighbor::{Nearby, tie};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A largest turn, as what rotates by it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Turn<S> {
     cos: S,
     sin: S,
@@ -63,8 +62,7 @@ impl<S: Scalar> Turn<S> {
 }
 
 /// Parameters of boids, made by [`BoidsParams::new`], which computes what a step would compute again and again.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoidsParams<S> {
     crowded: u64,
@@ -72,8 +70,7 @@ pub struct BoidsParams<S> {
     turn: Turn<S>,
     turn_away: Turn<S>,
     /// What they were made of; says nothing more than the others.
-    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "crate::digest::uncounted")]
     values: [S; 4],
 }
 

@@ -146,8 +146,7 @@ fn repulsion<S: Scalar>(params: &GoalParams<S>, distance_m: S) -> S {
 }
 
 /// Where a robot with goals is on its way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Stage {
     /// To the middle of all goals.
@@ -163,8 +162,7 @@ pub enum Stage {
 pub struct Full;
 
 /// Up to `N` goals of a robot: first it goes to the middle of all; there it draws one of them (eq. 3).
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Goals<const N: usize> {
     places: Vec<Position, N>,

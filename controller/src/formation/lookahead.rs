@@ -8,7 +8,7 @@
 use super::{Anchor, FormationParams, aim, lag};
 use crate::grid::{Cell, Dir, Norm, UNIT};
 use crate::robot::RobotId;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The course on which followers take their leader to be.
 pub trait Steering {
@@ -25,8 +25,7 @@ pub trait Steering {
 }
 
 /// By the move that the leader announced: [`aim`], [`lag`]. O(1).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NextMove;
 
 impl Steering for NextMove {
@@ -42,8 +41,7 @@ impl Steering for NextMove {
 }
 
 /// By the course that the leader has held over its last moves, each of them half as much as the next one. All is O(1).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Course {
     leader: Option<(RobotId, Cell)>,
     /// The mean move, [`ONE`] per cell.

@@ -4,7 +4,7 @@ use crate::grid::Cell;
 use crate::list;
 use crate::robot::RobotId;
 use crate::template::{Template, TemplateEntry};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The place that a robot holds in its formation, if that is not its own any more.
 ///
@@ -18,8 +18,7 @@ use serde::Serialize;
 /// place; who hears a neighbour in a place that it could not have come to so keeps its own. Several formations hence need no
 /// word for which of them one is in: a template names its members. The paper (A. V. Kuznetsov 2017) has no such rule: there
 /// the place of a missing robot stays empty.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ranks {
     /// The place held instead of one's own, and how far that is off, cells.

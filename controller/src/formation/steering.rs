@@ -4,7 +4,7 @@ use super::{FormationParams, Member};
 use crate::cost::{Cost, EXCLUDED, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 use crate::template::TemplateEntry;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Somebody beside whom one has a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,8 +110,7 @@ pub fn def(cell: Cell, members: &[Member]) -> Dir {
 }
 
 /// Whether the top leader waits: hysteresis around r0 (KUZ algorithm 2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
     waits: bool,

@@ -2,11 +2,10 @@
 
 use super::{Position, Vec2};
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A plane without edges: who leaves on one side comes in on the other.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Torus<S> {
     /// Size along x and y, metres. What is not above 0 does not wrap.

@@ -42,8 +42,7 @@ pub(super) struct Known {
 /// at least three eighths lie ahead wherever the robot is in its patch.
 ///
 /// Memory: 3 bytes a tile. What leaves the square is forgotten. On a host nothing is held before the first tile is known.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LandMap<const T: usize> {
     /// By their places modulo the side; all or none.
     tiles: Seldom<Known, T>,

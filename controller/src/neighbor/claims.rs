@@ -121,8 +121,7 @@ fn is_longer<S: Scalar>(vector: Vec3<S>, length: S) -> bool {
 }
 
 /// A robot whose places are in doubt.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Suspect {
     id: RobotId,
     /// Where it says that it is.
@@ -138,8 +137,7 @@ type Jumpers = heapless::Vec<Suspect, SUSPECTS, u8>;
 type Jumpers = crate::list::Seldom<Suspect, SUSPECTS>;
 
 /// Who has jumped of late; 100 bytes, with the feature `host` those of who has.
-#[derive(Clone, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Suspects(Jumpers);
 
 /// What a jump is worth.

@@ -1,7 +1,7 @@
 //! How long a neighbour's silence may last before it is more than bad luck.
 
 use crate::time::Duration;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Periods of silence that say nothing yet.
 const SHORT: u16 = 3;
@@ -22,8 +22,7 @@ const MOST_PERIODS: i32 = 64;
 /// known after the first one. Without evidence a gap is taken to begin at one frame in two and to end at one frame in two.
 ///
 /// 8 bytes; constant work per frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LossEstimate {
     /// Frames of theirs, heard or not.

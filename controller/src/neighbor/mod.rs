@@ -37,8 +37,7 @@ pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 const LEAVES_FROM: i32 = 750;
 
 /// One robot as last heard; `P` is what its law tells, of size 0 unless it tells something.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Neighbor<S, P = ()> {
     /// Who it is.
@@ -159,8 +158,7 @@ type Entries<S, const N: usize, P> = crate::list::Seldom<Neighbor<S, P>, N>;
 ///
 /// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point, and those of a payload) and 16 more; with the feature `host` those of the
 /// robots in it.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTable<S, const N: usize, P = ()> {
     entries: Entries<S, N, P>,
     ages: Ages,

@@ -5,7 +5,7 @@ use crate::geom::{Position, Vec3};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Least variance of a measured place, micrometres squared times a million: (4 mm)^2. Places are whole millimetres, and
 /// fixed point has no smaller square.
@@ -19,8 +19,7 @@ const LEAST_VARIANCE: i32 = 16;
 /// brought up to that one's time first, and its error with it.
 ///
 /// 80 bytes (`f32`); constant work.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Track<S> {
     /// Who it is, or a number that only the robot itself knows ([`RobotId::is_local`]).
     pub id: RobotId,

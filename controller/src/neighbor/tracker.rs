@@ -10,7 +10,7 @@ use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
 mod tests;
@@ -38,8 +38,7 @@ const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 /// it said, untouched. Who is only seen has no leader and no cell, tells nothing, is of the own flock and taken to give way.
 ///
 /// 16 tracks of 80 bytes (`f32`).
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tracker<S> {
     params: TrackParams<S>,
     tracks: Vec<Track<S>, TRACKS>,
@@ -50,8 +49,7 @@ pub struct Tracker<S> {
 }
 
 /// One that was seen and is followed no more, since others are nearer.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Displaced {
     id: RobotId,
     heard: Option<Instant>,

@@ -14,7 +14,7 @@ use crate::obstacle::Obstacle;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 #[cfg(test)]
 mod scale;
@@ -40,8 +40,7 @@ pub trait HalfSpaces<S: Scalar> {
 }
 
 /// In the plane, exactly by [`half_plane`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Analytic;
 
@@ -63,8 +62,7 @@ impl<S: Scalar> HalfSpaces<S> for Analytic {
 /// While somebody is in the way, robots lean by 25 degrees to the right and, by their numbers, somewhat up or down;
 /// [`DeadlockParams`](super::DeadlockParams) plays no part. Walls are upright and have no top: only the horizontal
 /// velocity counts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InSpace<S> {
     /// How many times as far as beside each other robots keep apart above and below each other, the same for all; 1 or
@@ -112,14 +110,10 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
 ///
 /// Bytes: those of [`AvoidParams`] and the few of the rule against deadlocks; 16 K bytes of stack (`f32`; in space 24
 /// K), three times that when no velocity is permitted.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
-#[cfg_attr(
-    feature = "state",
-    serde(bound(
-        deserialize = "P: serde::Deserialize<'de>, <P::Velocity as Dimension>::Memory: serde::Deserialize<'de>"
-    ))
-)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound(
+    deserialize = "P: serde::Deserialize<'de>, <P::Velocity as Dimension>::Memory: serde::Deserialize<'de>"
+))]
 pub struct Avoider<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
     params: AvoidParams<S>,
     source: P,

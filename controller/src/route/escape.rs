@@ -11,11 +11,10 @@
 
 use super::RouteParams;
 use crate::grid::{Cell, Dir, Window};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How the robot comes nearer to its target than it ever was, whatever the walls.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Escape {
     /// Squared distance to the target where the wall was met; `None` while no wall is in the way.
     met: Option<u64>,

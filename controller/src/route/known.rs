@@ -7,7 +7,7 @@
 
 use crate::grid::{BLOCKED, Cell, Window};
 use crate::list::{Seldom, sink_last};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Ticks that a cell takes for who only supposes that it is closed: no way through it is taken while there is another one, and
 /// none is given up that nobody has looked at.
@@ -22,8 +22,7 @@ pub const fn supposed(class: u8) -> u8 {
 /// The classes of up to `N` cells that a robot has seen otherwise than its map says.
 ///
 /// When full, the cell farthest from the robot is forgotten, and is again what the map says. Memory: 6 bytes a cell.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LandMemory<const N: usize> {
     /// By rising cell.
     cells: Seldom<(Cell, u8), N>,

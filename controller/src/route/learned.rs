@@ -3,13 +3,12 @@
 use crate::cost::Cost;
 use crate::grid::Cell;
 use crate::list::Seldom;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Least costs to the target of up to `L` cells, each more than the straight way would cost.
 ///
 /// When full, the cell farthest from the robot is forgotten. Memory: 8 bytes a cell.
-#[derive(Clone, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LearnedCosts<const L: usize> {
     costs: Seldom<(Cell, Cost), L>,
 }

@@ -8,7 +8,7 @@ use crate::grid::{Cell, Dir, Window};
 use crate::land::{FarLand, Gains};
 use crate::list::Seldom;
 use crate::names::named;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Moves that a plan holds; a longer route is planned again after so many.
 pub const PLAN: usize = 32;
@@ -43,8 +43,7 @@ named! {
 /// nothing is learned, and the paper's rule decides. What `L` cells cannot hold, or with `L` = 0, the wall gets it out:
 /// after 20 moves (100 with a memory) the robot walks along it until it is nearer than ever. So it arrives wherever
 /// there is a way that it may go undisturbed, with any gains, `M` and `L`.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Router<const M: usize, const L: usize = 0> {
     visits: VisitMemory<M>,
     here: Option<Cell>,

@@ -2,13 +2,12 @@
 
 use crate::grid::Cell;
 use crate::list::Seldom;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How often the robot entered each of the last `M` different cells.
 ///
 /// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes a cell.
-#[derive(Clone, Debug, Default, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct VisitMemory<const M: usize> {
     /// In order of the last entry, oldest first.
     visits: Seldom<(Cell, u8), M>,

@@ -7,7 +7,7 @@ use crate::list;
 use crate::robot::RobotId;
 use crate::template::{Template, TemplateEntry};
 use heapless::Vec;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Parts that a [`TemplateAssembler`] can tell apart: one bit each.
 const MAX_PARTS: usize = u64::BITS as usize;
@@ -127,11 +127,10 @@ impl TemplateAssignment {
 /// newer version (see [`Newest`]) drops what was collected, finished or not, with its first part; a
 /// part of an older version is passed over. Versions that are lost in the air are no matter: the
 /// sender resends, or sends a newer one.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TemplateAssembler<const F: usize> {
     #[serde(serialize_with = "as_slice")]
-    #[cfg_attr(feature = "state", serde(deserialize_with = "of_slice"))]
+    #[serde(deserialize_with = "of_slice")]
     entries: [TemplateEntry; F],
     /// Bit p: part p is there.
     there: u64,
@@ -149,7 +148,6 @@ fn as_slice<const F: usize, Z: Serializer>(entries: &[TemplateEntry; F], seriali
 }
 
 /// What [`as_slice`] wrote.
-#[cfg(feature = "state")]
 fn of_slice<'de, const F: usize, D: serde::Deserializer<'de>>(from: D) -> Result<[TemplateEntry; F], D::Error> {
     let entries: Vec<TemplateEntry, F> = serde::Deserialize::deserialize(from)?;
     let count = entries.len();

@@ -8,7 +8,7 @@ use super::frame::next_frame;
 use super::{Beacon, DecodeError, EncodeError, Frame, Header, KeyPhase, Message, decode, encode};
 use crate::names::named;
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A wire format: frames of one message each, which can be told apart in a stream of bytes.
 ///
@@ -65,8 +65,7 @@ pub trait FromFormat: Wire {
 }
 
 /// The frames of this crate: postcard within COBS, see [`encode`] and [`decode`]; without a tag. It keeps nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Postcard;
 
 impl Wire for Postcard {

@@ -1,6 +1,6 @@
 //! Which of two assignments is the newer one, by a version that wraps.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 /// The version of the newest assignment so far; 2 bytes.
 ///
 /// One for each sender and kind of assignment, since each sender counts its own. A version is newer
@@ -8,8 +8,7 @@ use serde::Serialize;
 /// old from both sides. A sender that starts anew may count from anywhere: its owner calls
 /// [`Newest::forget`] when a [`SequenceWindow`](super::SequenceWindow) says
 /// [`Arrival::Rebooted`](super::Arrival::Rebooted), or when it forgets the sender.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Newest {
     version: Option<u8>,

@@ -11,8 +11,7 @@ use heapless::Vec;
 
 /// Speaks to each robot under that robot's own key, and hears what each says under it: how far it is with its keys. Counters are those of
 /// [`Sealed`](super::Sealed), with the same rule for starts.
-#[derive(Clone, Debug)]
-#[cfg_attr(feature = "state", derive(serde::Serialize, serde::Deserialize))]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct OperatorWire<const N: usize = PEERS> {
     master: Master,
     header: Header,

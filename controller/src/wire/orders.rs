@@ -7,7 +7,7 @@ use super::{Ack, Header, Request, RequestKind};
 use crate::list::Seldom;
 use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A request that lies this far behind a newer one on the same matter, or less, is an old one that
 /// came late; one that seems to lie farther behind is a new one whose number wrapped.
@@ -26,8 +26,7 @@ pub struct Answer {
 }
 
 /// The latest request on one matter (to stand or not; the direction) of one origin by one sender.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Order {
     sender: RobotId,
     origin: RobotId,
@@ -67,8 +66,7 @@ impl Order {
 ///
 /// Time is compared by wrapped difference: [`Orders::is_stopped`] should be called at least every half
 /// hour. After a longer pause no stop stands, but a repeat may be taken for a new request.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Orders<const S: usize> {
     lines: Seldom<Order, S>,
     memory: Duration,

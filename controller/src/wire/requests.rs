@@ -74,8 +74,7 @@ pub enum Due {
 }
 
 /// A request on its way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Pending {
     request: Request,
     /// Sends so far.
@@ -100,8 +99,7 @@ impl Pending {
 ///
 /// After a pause of any length [`Requests::poll`] goes on with what was on its way: see
 /// [`Instant::has_reached`].
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Requests<const P: usize> {
     pending: Seldom<Pending, P>,
     retry: Retry,

@@ -2,18 +2,15 @@
 
 use super::{KeyAssignment, KeyPhase};
 use crate::auth::{Key, Mac, Seed};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The swarm's key of one generation.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Group {
     generation: u16,
-    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "crate::digest::uncounted")]
     mac: Mac,
-    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "crate::digest::uncounted")]
     seed: Option<Seed>,
 }
 
@@ -37,14 +34,12 @@ pub enum Signer {
 ///
 /// A phase that comes without those before it brings them along, so that a robot that was off takes one message. Nothing goes back: of two generations
 /// the later one stays, and who is told of an earlier one changes nothing.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ring {
     speaks: Group,
     /// The generation before, or the one to come.
     also: Option<Group>,
-    #[cfg_attr(feature = "state", serde(with = "crate::digest::uncounted"))]
-    #[cfg_attr(not(feature = "state"), serde(skip))]
+    #[serde(with = "crate::digest::uncounted")]
     own: Option<Mac>,
 }
 

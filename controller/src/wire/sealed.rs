@@ -7,7 +7,7 @@ use super::{
 use crate::auth::{Freshness, Key, Mac, ReplayGuard, is_same};
 use crate::robot::RobotId;
 use heapless::Vec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Senders that a [`Sealed`] of default capacity knows.
 pub const PEERS: usize = 64;
@@ -55,9 +55,8 @@ pub const REACH_STARTS: u32 = 1024;
 /// [`Self::refuse_before`] with it: then no frame of an earlier mission is believed, even by receivers that have forgotten everything.
 /// What else survives the receiver's restart is its owner's choice: [`ReplayGuard::export`] through [`Self::guard`].
 ///
-/// The state that serde sees does not hold the key, but with the feature `state`, where it is the whole state.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+/// Serde sees the whole state, the key included; digests do not count the key.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Sealed<const N: usize = PEERS> {
     ring: Ring,
     /// The own number, where the robot has a key of its own.
@@ -130,8 +129,7 @@ impl<const N: usize> Sealed<N> {
 }
 
 /// The numbers under which frames are sealed: none comes twice.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Epochs {
     epoch: u32,
     /// The sequence number of the last frame.

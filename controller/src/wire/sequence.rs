@@ -4,7 +4,7 @@
 //! a boot number that says that the sequence started anew.
 
 use super::Header;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How many sequence numbers a [`SequenceWindow`] remembers, the newest included.
 pub const SEQUENCE_SPAN: u16 = u32::BITS as u16;
@@ -53,8 +53,7 @@ impl Arrival {
 /// [`Arrival::PreviousBoot`]; frames of still earlier boots look like another start. Boot numbers
 /// are best counted in lasting memory; one drawn at random equals the previous one (and makes
 /// the robot wait until it is forgotten) once in 256 starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SequenceWindow {
     /// Bit k: the frame `newest - k` was seen. 0: none was, ever.

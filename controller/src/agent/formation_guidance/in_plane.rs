@@ -17,7 +17,7 @@ use crate::scalar::Scalar;
 use crate::template::{Template, TemplateEntry};
 use crate::time::Duration;
 use crate::wire::{RequestKind, TemplateAssignment};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// [`FormationGuidance`] on a body that moves in the plane; see [`crate::formation::Drive`] for the law.
 ///
@@ -25,8 +25,7 @@ use serde::Serialize;
 /// [`CellFollower`] does. In each step besides, a follower goes for its place as a point, with its leader's velocity,
 /// and the top leader goes straight to its goal where the land in sight is even, at the pace of the slowest whom it
 /// hears. Where the straight way is closed or dear, both go by the cells.
-#[derive(Clone, Debug, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
     beside: Beside<S>,

@@ -11,7 +11,7 @@ use crate::geom::Vec2;
 use crate::orca::dimension::Situation;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Who gets ahead by less than this share of what it wishes is stuck, thousandths.
 const STUCK: i32 = 150;
@@ -19,8 +19,7 @@ const STUCK: i32 = 150;
 const BACK: i32 = 2_000;
 
 /// What a robot remembers of how it gets ahead.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Patience<S> {
     /// The mean velocity of late, or the one to back off with, m/s; zero: nothing yet.
     course_mps: Vec2<S>,

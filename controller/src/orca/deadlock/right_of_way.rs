@@ -31,7 +31,7 @@ use crate::geom::Vec2;
 use crate::orca::dimension::Situation;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Longest passage whose walls are not looked at between its ends, thousandths of the own radius.
 const DEEPEST: i32 = 8_000;
@@ -59,8 +59,7 @@ const TIE: i32 = 600;
 const PATIENCE_OF_RANK: i32 = 1_667;
 
 /// What a robot remembers of the gap before it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[cfg_attr(feature = "state", derive(serde::Deserialize))]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RightOfWay<S> {
     /// Which way the last robot seen in the gap went: whether as this one wants to.
     last_went_ahead: Option<bool>,
