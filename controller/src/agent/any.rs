@@ -15,7 +15,7 @@ use super::waypoint_guidance::WaypointGuidance;
 use super::{AnySurroundings, Parameter, Surroundings, Waypoint};
 #[cfg(feature = "published")]
 use crate::formation::Course;
-use crate::geom::{Torus, Vec2, Vec3};
+use crate::geom::{Vec2, Vec3};
 use crate::grid::Cell;
 use crate::neighbor::StalenessInflation;
 use crate::orca::{self, HalfPlane, HalfSpaces, MovingBall};
@@ -154,13 +154,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
 
     fn has_own_goal(&self) -> bool {
         each!(self, law => Guidance::<S>::has_own_goal(law))
-    }
-
-    fn torus(&self) -> Option<Torus<S>> {
-        match self {
-            Self::Boids(law) => law.torus(),
-            _ => None,
-        }
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

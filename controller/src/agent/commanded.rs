@@ -3,7 +3,7 @@
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, pass_on};
 use super::waypoint_guidance::WaypointGuidance;
 use super::{Parameter, Wait, Waypoint, WrongTask};
-use crate::geom::{Torus, Vec3};
+use crate::geom::Vec3;
 use crate::grid::Cell;
 use crate::land::LandPatch;
 use crate::neighbor::Tracker;
@@ -193,10 +193,6 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
 
     fn has_own_goal(&self) -> bool {
         self.wish != Wish::Own || self.inside.has_own_goal()
-    }
-
-    fn torus(&self) -> Option<Torus<S>> {
-        self.inside.torus()
     }
 
     fn tracker(&mut self) -> Option<&mut Tracker<S>> {

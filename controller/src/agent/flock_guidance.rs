@@ -6,7 +6,7 @@ use super::{InPlane, Parameter, WAYPOINTS, Waypoint};
 use crate::flock::boids::BoidsParams;
 use crate::flock::goal::{GoalParams, Goals, Stage, wish};
 use crate::flock::lattice::{LatticeParams, Reference, ReferenceMotion, acceleration};
-use crate::geom::{Position, Torus, Vec2, Vec3};
+use crate::geom::{Position, Vec2, Vec3};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use crate::time::Instant;
@@ -195,29 +195,19 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     }
 }
 
-/// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours', in the open plane or on a torus.
+/// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours'.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct BoidsGuidance<S> {
     params: BoidsParams<S>,
     speed_mps: S,
     heading: Option<Vec2<S>>,
-    /// The same for all robots of a run, so that no digest counts it.
-    #[serde(with = "crate::digest::uncounted")]
-    torus: Option<Torus<S>>,
 }
 
 impl<S: Scalar> BoidsGuidance<S> {
     /// At `speed_mps`; the first heading is that of the body, or drawn if it stands.
     #[must_use]
     pub const fn new(params: BoidsParams<S>, speed_mps: S) -> Self {
-        Self { params, speed_mps, heading: None, torus: None }
-    }
-
-    /// On a torus, as the paper has it. Others need not be told: what they say are places, and each takes those at their nearest
-    /// images ([`Torus::image`]).
-    #[must_use]
-    pub const fn on_torus(self, torus: Torus<S>) -> Self {
-        Self { torus: Some(torus), ..self }
+        Self { params, speed_mps, heading: None }
     }
 }
 
@@ -255,10 +245,6 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
 
     fn has_own_goal(&self) -> bool {
         true
-    }
-
-    fn torus(&self) -> Option<Torus<S>> {
-        self.torus
     }
 
     fn parameter(&self, parameter: Parameter) -> Option<S> {

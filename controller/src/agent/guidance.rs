@@ -2,7 +2,7 @@
 
 use super::{KinematicState, Parameter, Surroundings, Wait, Waypoint};
 use crate::body::Body;
-use crate::geom::{Torus, Vec3};
+use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::land::{FarLand, LandPatch};
 use crate::neighbor::{Ages, Nearby, Neighbor, Tracker};
@@ -108,12 +108,6 @@ pub trait Guidance<S: Scalar>: Teamwork {
         false
     }
 
-    /// The torus that it lives on: then it is told of others at the images of theirs that are nearest to it. `None`: the open
-    /// plane.
-    fn torus(&self) -> Option<Torus<S>> {
-        None
-    }
-
     /// What follows those whom the robot sees; `None`: it knows of nobody but by radio. See [`NeighborTracking`](super::NeighborTracking).
     fn tracker(&mut self) -> Option<&mut Tracker<S>> {
         None
@@ -204,10 +198,6 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
 
     fn has_own_goal(&self) -> bool {
         G::has_own_goal(self)
-    }
-
-    fn torus(&self) -> Option<Torus<S>> {
-        G::torus(self)
     }
 
     fn tracker(&mut self) -> Option<&mut Tracker<S>> {

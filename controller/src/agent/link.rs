@@ -67,25 +67,21 @@ pub(super) struct Link<S, const N: usize, W, P> {
     commanders: [Option<(RobotId, u8)>; 3],
     beacon_due: Instant,
     has_sent: bool,
+    /// The torus that simulated robots live on. It is equal for all of a run, so digests do not count it.
+    #[cfg(feature = "host")]
+    #[serde(with = "crate::digest::uncounted")]
+    torus: Option<Torus<S>>,
 }
 
-/// Own position, the torus that it is on, when what arrives was said, how fast others can be (if that is known), how often they speak, what they may say of
+/// Own position, when what arrives was said, how fast others can be (if that is known), how often they speak, what they may say of
 /// themselves, and who must stay in a full table.
 pub(super) struct Listener<'a, S> {
     pub(super) position: Position,
-    pub(super) torus: Option<Torus<S>>,
     pub(super) heard_at: Instant,
     pub(super) fastest_mps: Option<S>,
     pub(super) period: Duration,
     pub(super) claims: &'a Claims<S>,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
-}
-
-impl<S: Scalar> Listener<'_, S> {
-    /// The image of a place that is nearest to another one.
-    fn image(&self, place: Position, other: Position) -> Position {
-        self.torus.map_or(place, |torus| torus.image(place, other))
-    }
 }
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
@@ -106,7 +102,26 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             commanders: [None; 3],
             beacon_due: Instant::from_micros(0),
             has_sent: false,
+            #[cfg(feature = "host")]
+            torus: None,
         }
+    }
+
+    #[cfg(feature = "host")]
+    pub(super) const fn set_torus(&mut self, torus: Torus<S>) {
+        self.torus = Some(torus);
+    }
+
+    const fn torus(&self) -> Option<Torus<S>> {
+        #[cfg(feature = "host")]
+        return self.torus;
+        #[cfg(not(feature = "host"))]
+        None
+    }
+
+    /// The image of a place that is nearest to another one: in the open plane, the place itself.
+    fn image(&self, place: Position, other: Position) -> Position {
+        self.torus().map_or(place, |torus| torus.image(place, other))
     }
 
     pub(super) const fn wire(&self) -> &W {
@@ -129,6 +144,9 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         remember: Duration,
         out: &mut Outputs<S>,
     ) {
+        if let Some(torus) = self.torus() {
+            self.table.see_at(|place| torus.image(place, own));
+        }
         let (windows, loss) = (&mut self.windows, &mut self.loss);
         let Ages { stale_after, expire_after } = self.table.ages();
         let patience = if remember > Duration::ZERO {
@@ -280,7 +298,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         out: &mut Outputs<S>,
     ) {
         let id = neighbor.id;
-        neighbor.position = listener.image(neighbor.position, listener.position);
+        neighbor.position = self.image(neighbor.position, listener.position);
         self.cut(&mut neighbor, listener.claims, out);
         self.company = Company::Heard(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);

@@ -2,7 +2,6 @@
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
 use super::{Parameter, Surroundings, Waypoint};
-use crate::geom::Torus;
 use crate::grid::Cell;
 use crate::land::{FarLand, LandMap, LandPatch, MapParams};
 use crate::list::Seldom;
@@ -168,10 +167,6 @@ impl<S: Scalar, G: Guidance<S>, const T: usize> Guidance<S> for MapSharing<G, T>
 
     fn has_own_goal(&self) -> bool {
         self.inside.has_own_goal()
-    }
-
-    fn torus(&self) -> Option<Torus<S>> {
-        self.inside.torus()
     }
 
     fn tracker(&mut self) -> Option<&mut Tracker<S>> {

@@ -271,4 +271,10 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             },
         }
     }
+
+    /// Puts the robot on a torus: from now on it takes others at their images nearest to it. For simulated boids.
+    #[cfg(feature = "host")]
+    pub const fn set_torus(&mut self, torus: crate::geom::Torus<S>) {
+        self.link.set_torus(torus);
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
 use super::{Agent, KinematicState, Outputs, Parameter, Safety, Waypoint};
-use crate::geom::{Position, Torus};
+use crate::geom::Position;
 use crate::grid::Cell;
 use crate::land::LandPatch;
 use crate::list::{self, Seldom};
@@ -131,10 +131,6 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for NeighborTracking<S, G> {
 
     fn has_own_goal(&self) -> bool {
         self.inside.has_own_goal()
-    }
-
-    fn torus(&self) -> Option<Torus<S>> {
-        self.inside.torus()
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

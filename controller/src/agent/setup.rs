@@ -22,7 +22,6 @@ use crate::formation::Course;
 use crate::formation::FormationParams;
 #[cfg(feature = "published")]
 use crate::formation::published::PublishedParams;
-use crate::geom::Torus;
 use crate::grid::Cell;
 use crate::names::named;
 use crate::neighbor::StalenessInflation;
@@ -86,25 +85,16 @@ pub struct BoidsSetup {
     pub max_turn: f32,
     /// Largest turn away, radians a step.
     pub max_turn_away: f32,
-    /// Sides of the torus that they live on, metres; `None`: the open plane.
-    pub torus_m: Option<[f32; 2]>,
 }
 
 impl BoidsSetup {
     /// The paper's values at a scale of one metre: 30, 150, 0.05, 0.02.
-    pub const PAPER: Self =
-        Self { crowded_m: 30.0, closest_m: 150.0, max_turn: 0.05, max_turn_away: 0.02, torus_m: None };
+    pub const PAPER: Self = Self { crowded_m: 30.0, closest_m: 150.0, max_turn: 0.05, max_turn_away: 0.02 };
 
     /// The parameters in a kind of number.
     #[must_use]
     pub fn params<S: Scalar>(&self) -> BoidsParams<S> {
         BoidsParams::new(cast(self.crowded_m), cast(self.closest_m), cast(self.max_turn), cast(self.max_turn_away))
-    }
-
-    /// The torus in a kind of number.
-    #[must_use]
-    pub fn torus<S: Scalar>(&self) -> Option<Torus<S>> {
-        self.torus_m.map(|size_m| Torus { size_m: size_m.map(cast) })
     }
 }
 
@@ -325,8 +315,7 @@ impl GuidanceSetup {
                 AnyGuidance::GoalFlock(GoalFlockGuidance::new(params.cast(), cast(*arrival_m), *seed))
             }
             Self::Boids { params, speed_mps } => {
-                let law = BoidsGuidance::new(params.params(), cast(*speed_mps));
-                AnyGuidance::Boids(params.torus().map_or(law, |torus| law.on_torus(torus)))
+                AnyGuidance::Boids(BoidsGuidance::new(params.params(), cast(*speed_mps)))
             }
             Self::Route { route, speed_mps } => {
                 let guidance = route.guidance();

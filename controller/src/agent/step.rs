@@ -97,12 +97,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
         let remember = if keeps_clear { config.silence.remember } else { Duration::ZERO };
         let radio = (config.beacon_period, config.latency);
-        // No robot lives on one.
-        let torus = guidance.torus().filter(|_| cfg!(feature = "published"));
         let own = inputs.state.position;
-        if let Some(torus) = torus {
-            link.table.see_at(|place| torus.image(place, own));
-        }
         link.expire(own, now, radio, remember, out);
         let have_left = link.table.is_empty() && link.table.lost().is_empty();
         if keeps_clear && link.company.passes(now, have_left, config) {
@@ -112,7 +107,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         while let Some(bytes) = link.next_frame(&mut inbox) {
             let listener = Listener {
                 position: own,
-                torus,
                 heard_at,
                 fastest_mps,
                 period: config.beacon_period,

@@ -19,7 +19,7 @@ use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 
 /// The version of the link that this code speaks.
-pub const VERSION: u8 = 8;
+pub const VERSION: u8 = 9;
 
 /// Version, kind and CRC.
 pub const OVERHEAD: usize = 1 + 1 + CRC_LEN;

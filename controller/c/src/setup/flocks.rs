@@ -159,7 +159,7 @@ impl StayaGoalFlock {
 
 impl StayaBoids {
     pub(crate) fn defaults(unit_m: f32) -> Self {
-        let BoidsSetup { crowded_m, closest_m, max_turn, max_turn_away, .. } = BoidsSetup::PAPER;
+        let BoidsSetup { crowded_m, closest_m, max_turn, max_turn_away } = BoidsSetup::PAPER;
         Self {
             crowded_m: crowded_m * unit_m,
             closest_m: closest_m * unit_m,

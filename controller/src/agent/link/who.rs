@@ -67,7 +67,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             // Then it is the only one that is heard.
             (None, _) => false,
             (Some(known), None) => !is_within(
-                listener.image(place, known.position),
+                self.image(place, known.position),
                 known,
                 self.time_since(known, header, listener),
                 fastest_mps,
@@ -75,7 +75,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             (Some(known), Some(double)) => {
                 let longest = self.table.ages().stale_after;
                 let distance = |known: &Neighbor<S, P>| {
-                    let place = listener.image(place, known.position);
+                    let place = self.image(place, known.position);
                     known.offset_at(place, at, longest).length_key()
                 };
                 distance(double) < distance(known)
@@ -102,7 +102,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         let Some(known) = self.known(id) else {
             return true;
         };
-        let place = listener.image(place, known.position);
+        let place = self.image(place, known.position);
         if claims.can_go(known.position, place, self.time_since(known, header, listener)) {
             self.suspects.clear(id);
             return true;

@@ -25,7 +25,7 @@ fn guidances() -> [GuidanceSetup; 7] {
         GuidanceSetup::Lattice { params: LatticeParams::new(1.0), motion: ReferenceMotion::Resting(7.0) },
         GuidanceSetup::GoalFlock { params: GoalParams::new(0.5, 0.5), arrival_m: 0.3, seed: 9 },
         GuidanceSetup::Boids {
-            params: BoidsSetup { crowded_m: 0.3, closest_m: 1.5, torus_m: Some([8.0, 6.0]), ..BoidsSetup::PAPER },
+            params: BoidsSetup { crowded_m: 0.3, closest_m: 1.5, ..BoidsSetup::PAPER },
             speed_mps: 0.5,
         },
         GuidanceSetup::Route { route, speed_mps: None },

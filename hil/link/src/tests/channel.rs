@@ -216,7 +216,8 @@ fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
 #[test]
 fn device_of_another_version_is_a_clear_error() {
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
-    let mut content = std::vec![9, 0x81, 1, 2];
+    let other = VERSION + 1;
+    let mut content = std::vec![other, 0x81, 1, 2];
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI).checksum(&content);
     content.extend(crc.to_le_bytes());
     let mut foreign = cobs::encode_vec(&content);
@@ -224,9 +225,9 @@ fn device_of_another_version_is_a_clear_error() {
     bench.port.greet(0);
     bench.back.on_the_way.clear();
     bench.back.send(&foreign, 0);
-    let error = bench.wait().expect_err("version 9");
-    assert_eq!(error, PortError::Version { device: 9 });
-    let versions = std::format!("version 9 of the link, this host version {VERSION}:");
+    let error = bench.wait().expect_err("another version");
+    assert_eq!(error, PortError::Version { device: other });
+    let versions = std::format!("version {other} of the link, this host version {VERSION}:");
     assert!(std::format!("{error}").contains(&versions));
 }
 

@@ -64,6 +64,7 @@ use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, Guidance, Inputs, NEIGHBORS, Outputs, Safety, Setup,
 };
 use staya_controller::auth::Key;
+use staya_controller::geom::Torus;
 use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
@@ -169,6 +170,8 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     brains: Brains<G, A>,
     #[doc(hidden)]
     pub ground: W,
+    /// What robots live on instead of the open plane.
+    torus: Option<Torus<f32>>,
     #[doc(hidden)]
     pub radio: Radio,
     #[doc(hidden)]
@@ -257,6 +260,7 @@ where
             brains: Box::new(brains),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
             ground,
+            torus: scenario.torus_m().map(|sides_m| Torus { size_m: sides_m.map(|side_m| side_m as f32) }),
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],
             statuses: Vec::new(),
@@ -312,6 +316,9 @@ where
             }
         };
         let mut agent = Agent::new(&self.config(index, boot), guidance, safety, wire);
+        if let Some(torus) = self.torus {
+            agent.set_torus(torus);
+        }
         // A law that has no use for its task says so; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(number, self.tick));
         intervene::retune(&self.tuned, number, |parameter, value| agent.set_parameter(parameter, value));

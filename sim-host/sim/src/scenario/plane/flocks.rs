@@ -190,7 +190,6 @@ pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result
     spec.within(source, "boids.max_turn", max_turn, [0.0, 3.15], "radians")?;
     spec.within(source, "boids.max_turn_away", max_turn_away, [0.0, 3.15], "radians")?;
     let [crowded, closest, turn, away] = [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
-    let torus_m = spec.torus_m.map(|sides| sides.map(|side| side as f32));
-    let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away, torus_m };
+    let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away };
     Ok(Some(GuidanceSetup::Boids { params, speed_mps: cruise_mps as f32 }))
 }

@@ -27,8 +27,6 @@ pub(super) struct Spec {
     pub goal_flock: Option<GoalFlockTable>,
     pub boids: Option<BoidsTable>,
     pub flock: u8,
-    /// The same for all.
-    pub torus_m: Option<[f64; 2]>,
 }
 
 impl Spec {
@@ -50,7 +48,6 @@ impl Spec {
             goal_flock: table.goal_flock,
             boids: table.boids,
             flock: if table.guidance == GuidanceKind::Formation { 0 } else { places },
-            torus_m: table.torus_m,
         }
     }
 
@@ -84,7 +81,6 @@ impl Spec {
                 // Each its own; the last ones share the last.
                 _ => group.flock.unwrap_or(places.saturating_add(u8::try_from(index + 1).unwrap_or(u8::MAX))),
             },
-            torus_m: self.torus_m,
         }
     }
 

@@ -44,8 +44,6 @@ fn a_torus_is_for_boids_alone_and_has_whole_millimetres() {
     let setup = setup(&text("torus_m = [9, 8]", two, ""));
     assert_eq!(setup.torus_m, Some([9.0, 8.0]));
     assert_eq!(setup.space().offset([0.0; 3], [8.5, 7.0, 0.0]), [-0.5, -1.0, 0.0]);
-    let GuidanceSetup::Boids { params, .. } = setup.general.guidance else { panic!("boids") };
-    assert_eq!(params.torus_m, Some([9.0, 8.0]));
     let lattice =
         format!("{HEAD}[plane]\nradius_m = 0.2\nmax_speed_mps = 1\ntorus_m = [9, 8]\n[plane.robots]\nlist = [{two}]\n");
     for (text, said) in [
