@@ -1,5 +1,5 @@
-//! The MAVLink dialect in Rust is what `mavlink-bindgen` makes of its XML, without code for features
-//! that the crate does not have. `STAYA_BLESS=1 cargo test --test dialect` in this folder writes it.
+//! Compares `controller/mavlink/src/dialect.rs` with the output of `mavlink-bindgen` for its XML, from
+//! which code for missing features is removed. `STAYA_BLESS=1 cargo test --test dialect` writes the file.
 
 use mavlink_bindgen::{XmlDefinitions, generate};
 use std::path::Path;
