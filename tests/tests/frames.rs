@@ -6,8 +6,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, Frame, GoalAssignment, Header, Message, PayloadBytes, Request, RequestKind,
-    TemplateAssignment, WaypointAssignment,
+    Ack, Beacon, Frame, GoalAssignment, Header, Message, PayloadBytes, Request, RequestKind, TemplateAssignment,
+    WaypointAssignment,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 const TO: RobotId = RobotId(254);
 
 /// Name, message, and its fields as the dialect has them.
-fn messages() -> [(&'static str, Message, &'static str); 10] {
+fn messages() -> [(&'static str, Message, &'static str); 9] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {
         Message::Template(TemplateAssignment {
