@@ -17,7 +17,7 @@ use staya_controller::wire::{
 const TO: RobotId = RobotId(70_000);
 const CELL: Cell = Cell::new(98, -98);
 
-fn messages() -> [(&'static str, Message); 6] {
+fn messages() -> [(&'static str, Message); 5] {
     let entry = TemplateEntry { offset: CELL, id: TO, hops: 1 };
     [
         (
