@@ -1,7 +1,6 @@
 //! A robot on three omni wheels, with the numbers of a part without an FPU, goes to its place while it spins: ticks in, duties out.
 
-mod common;
-
+use crate::common;
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType as PinError, OutputPin};
 use staya_controller::agent::{Agent, AgentConfig, InPlane, Inputs, OrcaSafety, Waypoint, WaypointGuidance};

@@ -11,8 +11,7 @@
     clippy::std_instead_of_core
 )]
 
-mod common;
-
+use crate::common;
 use core::convert::Infallible;
 use embedded_io::{ErrorType, Read, ReadReady, Write, WriteReady};
 use staya_controller::agent::{

@@ -33,6 +33,8 @@ mod velocity_obstacle;
 mod voxel;
 mod wall;
 
+#[cfg(all(test, feature = "micromath"))]
+mod fast32;
 #[cfg(test)]
 mod fixtures;
 

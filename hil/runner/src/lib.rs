@@ -1,7 +1,9 @@
 //! Robots on devices: starts emulators, opens serial ports, steps all of them in lockstep and compares each with its shadow, the same
 //! robot in this process. Read [`Fleet`] first.
 //!
-//! ```no_run
+//! `tests/fleet.rs` steps fleets in the same way:
+//!
+//! ```ignore
 //! use staya_runner::{Answer, Fleet, Options, DeviceConfig};
 //! # fn configs() -> Vec<DeviceConfig> { Vec::new() }
 //! # use staya_controller::agent::{AnyInputs, InPlane, Inputs, KinematicState};

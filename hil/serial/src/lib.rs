@@ -1,6 +1,6 @@
 //! Serial ports as people write them, opened as a reader and a writer: for devices in the loop and for MAVLink alike.
 //!
-//! ```no_run
+//! ```ignore
 //! use std::io::{Read, Write};
 //! use std::time::Duration;
 //! let port: staya_serial::SerialPort = "/dev/ttyACM0,baud=57600".parse()?;

@@ -1,9 +1,10 @@
 //! Robots of a scenario as firmware, on emulated microcontrollers or boards, in lockstep with the rest: what `staya hil` does, for Staya's
 //! own guidance laws ([`run`]) and for one that is the caller's ([`Own`]).
 //!
-//! A whole program for a law of one's own, which takes the arguments of `staya hil`:
+//! A whole program for a guidance law of your own, which takes the arguments of `staya hil` (`examples/own_part` is such
+//! a program):
 //!
-//! ```no_run
+//! ```ignore
 //! # use serde::{Deserialize, Serialize};
 //! # use staya_controller::agent::*;
 //! # use staya_controller::{geom::Vec3, rand::Rng, scalar::Scalar};

@@ -1,6 +1,6 @@
 //! Charts: what to show. The modules `layout` and `panels` say where it goes.
 //!
-//! ```no_run
+//! ```ignore
 //! use staya_plot::{Chart, Panels, Series};
 //! # fn main() -> Result<(), staya_sim::record::Error> {
 //! let loss = Chart::new("Route loss on natural land", "obstacles", "loss (%)")

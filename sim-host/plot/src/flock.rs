@@ -3,7 +3,7 @@
 //! A [`Snapshot`] is one moment, [`Sheet`] is several beside each other, as in figures 7 to 12 of R. Olfati-Saber 2006
 //! (OLF). For three dimensions, [`View`] makes two of them.
 //!
-//! ```no_run
+//! ```ignore
 //! use staya_plot::flock::{Obstacle, Sheet, Snapshot};
 //! # fn main() -> Result<(), staya_sim::record::Error> {
 //! let moment = Snapshot {
