@@ -38,6 +38,7 @@ mod repo;
 mod report;
 mod size;
 mod soak;
+mod source;
 mod swarms;
 mod tally;
 mod test;
