@@ -23,6 +23,7 @@ pub fn run(repo: &Repo, report: &mut Report) {
     }
     report.step("layers of the controller", || crate::layers::check(&repo.root.join("controller/src")));
     report.step("no circles between modules", || crate::circles::check(&repo.root));
+    report.step(crate::weight::SHARED, || crate::weight::check_shared(repo));
     report.step("no log that panics", || crate::plants::check_logs(&repo.root));
     crate::minimal::check(repo, report);
     report.step("what the documentation names", || crate::documents::check(&repo.root));

@@ -42,6 +42,7 @@ mod source;
 mod swarms;
 mod tally;
 mod test;
+mod weight;
 
 use device::Toolchains;
 use extent::Extent;
@@ -89,6 +90,8 @@ Usage: cargo xtask COMMAND
   new             what `staya new` makes, of each kind: compiled, tested, its law on the emulated STM32F405
   plants          panics planted in a copy of the firmware's sources, one at a time: the linker must refuse each
   qemu            the emulators of the parts; fetches them on Debian
+  weight [--peer] [--record]
+                  the cost of the README's first command beside the last record in xtask/weight.csv; --peer also builds ripgrep
   help            this text
 
 `test` builds for microcontrollers with rustup's targets if they are installed, otherwise with
@@ -176,6 +179,10 @@ fn main() -> ExitCode {
             }
         },
         ["swarms"] => swarms::run(&repo, &mut report, &mut Toolchains::default()),
+        ["weight", options @ ..] if options.iter().all(|option| ["--record", "--peer"].contains(option)) => {
+            let has = |name: &str| options.contains(&name);
+            weight::run_command(&repo, &mut report, has("--record"), has("--peer"));
+        }
         [] => {
             eprint!("{HELP}");
             return ExitCode::from(2);

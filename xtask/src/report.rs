@@ -130,7 +130,7 @@ impl Report {
 
 /// What this program and the commands that have ended have worked so far (`/proc/self/stat` of Linux: a machine that
 /// is shared makes parts take longer, but hardly work more). What is started from a server of its own does not count.
-fn processor_time() -> Option<Duration> {
+pub fn processor_time() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let hundredths = hundredths_worked(&stat)?;
     Some(Duration::from_millis(hundredths.checked_mul(10)?))
