@@ -1,23 +1,22 @@
 //! `cargo xtask c`: the library for C. Its programs on this machine, the canned swarms on an emulated part, templates for firmware of others.
 
-use crate::apt;
-use crate::device::{Toolchain, Toolchains};
+use crate::apt::Tools;
+use crate::device::{STM32F405, Toolchain};
 use crate::emulate;
+use crate::files;
 use crate::firmware::sections;
-use crate::part::{Part, part};
 use crate::repo::{Repo, output_of, run as run_command_line, shown};
-use crate::report::Report;
-use std::fs;
+use crate::session::Session;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What all must give.
 const TABLE: &str = "tests/golden/cases.txt";
-const PART: &str = "stm32f405";
-/// Debian's packages of the compiler for it; no library of C is needed.
-const PACKAGES: [&str; 2] = ["gcc-arm-none-eabi", "binutils-arm-none-eabi"];
-const PROGRAMS: [&str; 3] = ["arm-none-eabi-gcc", "arm-none-eabi-g++", "arm-none-eabi-nm"];
-const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install gcc-arm-none-eabi`";
+/// Debian's packages of the compiler for the part; no library of C is needed.
+const COMPILER: Tools = Tools {
+    packages: &["gcc-arm-none-eabi", "binutils-arm-none-eabi"],
+    programs: &["arm-none-eabi-gcc", "arm-none-eabi-g++", "arm-none-eabi-nm"],
+};
 /// What the sources must pass without a word.
 const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wno-variadic-macros", "-ffp-contract=off"];
 const INCLUDES: [&str; 2] = ["-Icontroller/c/include", "-Icontroller/c/tests"];
@@ -26,26 +25,22 @@ const SYSTEM: [&str; 3] = ["-lm", "-lpthread", "-ldl"];
 /// What the panic handler calls, and nobody defines.
 const PANIC: &str = "staya_panic_is_reachable";
 
-/// The command.
-pub fn run_command(repo: &Repo, report: &mut Report) {
-    run(repo, report, &mut Toolchains::default());
-}
-
 /// On the host, on the emulated part, and for other people's firmware.
-pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    on_host(repo, report);
-    sanitized(repo, report);
-    on_part(repo, report, toolchains);
+pub fn run(s: &mut Session) {
+    on_host(s);
+    sanitized(s);
+    on_part(s);
 }
 
-fn on_host(repo: &Repo, report: &mut Report) {
+fn on_host(s: &mut Session) {
+    let repo = &s.repo;
     let name = "the library for C, on this machine";
     for compiler in ["cc", "c++"] {
         if output_of(repo.command(compiler).arg("--version")).is_none() {
-            return report.skip(name, &format!("no {compiler}; on Debian run, as root, `apt-get install g++`"));
+            return s.report.skip(name, &format!("no {compiler}; on Debian run, as root, `apt-get install g++`"));
         }
     }
-    report.step(name, || {
+    s.report.step(name, || {
         run_command_line(&mut repo.cargo(&["build", "--locked", "--package", "staya-c"]))?;
         let library = repo.target.join("debug/libstaya_c.a");
         let swarms = ["controller/c/tests/swarms.c", "controller/c/tests/host.c"];
@@ -64,12 +59,13 @@ const SANITIZED: [&str; 2] = ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux
 
 /// The tests of the library, misuse above all, with each access to memory checked: the sanitizer ends a test at the first byte that is not
 /// the library's to touch. Stable Rust has it behind the variable that lets it take unstable options.
-fn sanitized(repo: &Repo, report: &mut Report) {
+fn sanitized(s: &mut Session) {
+    let repo = &s.repo;
     let name = "the library for C, each access to memory checked";
     let Some(host) = SANITIZED.into_iter().find(|host| has_sanitizer(repo, host)) else {
-        return report.skip(name, "this Rust has no librustc-stable_rt.asan.a; rustup's for Linux has");
+        return s.report.skip(name, "this Rust has no librustc-stable_rt.asan.a; rustup's for Linux has");
     };
-    report.step(name, || {
+    s.report.step(name, || {
         let mut test = repo.cargo(&["test", "--locked", "--package", "staya-c", "--target", host]);
         // A folder of its own, or flags that differ would have everything compiled anew.
         test.env("CARGO_TARGET_DIR", repo.target.join("asan")).env("CARGO_INCREMENTAL", "0");
@@ -99,48 +95,35 @@ fn program(repo: &Repo, library: &Path, compiler: &str, standard: &str, sources:
     output_of(&mut start).map(|text| text + "\n").ok_or_else(|| format!("{} fails", to.display()))
 }
 
-fn on_part(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
+fn on_part(s: &mut Session) {
     let name = "the library for C, on the emulated stm32f405";
-    let Some(part) = part(PART) else {
-        return;
-    };
-    let ready = compilers(repo).and_then(|()| emulate::prepare(repo, part));
-    match ready.and_then(|()| toolchains.find(repo, part.target)) {
-        Err(reason) => report.skip(name, &reason),
-        Ok(toolchain) => {
-            report.step(name, || {
-                let library = library(repo, &toolchain, part)?;
-                has_no_panic(repo, &library)?;
-                templates(repo)?;
-                let elf = link(repo, &library)?;
-                let output = emulate::run(repo, part, &elf)?;
-                let (stack, rows): (Vec<&str>, Vec<&str>) = output.lines().partition(|line| line.starts_with(STACK));
-                let stack = stack
-                    .first()
-                    .and_then(|line| line.strip_prefix(STACK))
-                    .ok_or("the program says nothing of its stack")?;
-                println!("{} bytes of stack at most, the program's own included", stack.trim());
-                compare(repo, &rows.join("\n"))
-            });
-        }
+    if let Err(reason) = compilers(&s.repo).and_then(|()| emulate::prepare(&s.repo, STM32F405)) {
+        return s.report.skip(name, &reason);
     }
+    s.with_toolchain(name, STM32F405.target, |repo, toolchain| {
+        let library = library(repo, toolchain)?;
+        has_no_panic(repo, &library)?;
+        templates(repo)?;
+        let output = emulate::run(repo, STM32F405, &link(repo, &library)?, "none")?;
+        let (stack, rows): (Vec<&str>, Vec<&str>) = output.lines().partition(|line| line.starts_with(STACK));
+        let stack = stack.first().and_then(|line| line.strip_prefix(STACK));
+        let stack = stack.ok_or("the program says nothing of its stack")?;
+        println!("{} bytes of stack at most, the program's own included", stack.trim());
+        compare(repo, &rows.join("\n"))
+    });
 }
 
 /// Makes sure that the compiler for the part is there; unpacks it on Debian.
 pub fn compilers(repo: &Repo) -> Result<(), String> {
-    let are_there = || PROGRAMS.iter().all(|name| output_of(repo.command(name).arg("--version")).is_some());
-    if are_there() {
-        return Ok(());
-    }
-    apt::unpack(repo, &PACKAGES, &PROGRAMS).map_err(|reason| format!("no arm-none-eabi-gcc ({reason}); {REMEDY}"))?;
-    are_there().then_some(()).ok_or_else(|| format!("no arm-none-eabi-gcc; {REMEDY}"))
+    let starts = |name: &&str| output_of(repo.command(name).arg("--version")).is_some();
+    COMPILER.prepare(repo, || COMPILER.programs.iter().all(starts))
 }
 
 /// The library as a user of the part makes it.
-pub fn library(repo: &Repo, toolchain: &Toolchain, part: &Part) -> Result<PathBuf, String> {
-    let mut build = toolchain.cargo(repo, part.target, "build");
+pub fn library(repo: &Repo, toolchain: &Toolchain) -> Result<PathBuf, String> {
+    let mut build = toolchain.cargo(repo, STM32F405.target, "build");
     run_command_line(build.args(["--locked", "--profile", "firmware", "--package", "staya-c"]))?;
-    Ok(toolchain.target_folder(repo).join(part.target).join("firmware/libstaya_c.a"))
+    Ok(toolchain.target_folder(repo).join(STM32F405.target).join("firmware/libstaya_c.a"))
 }
 
 /// What the program on the part puts before the deepest stack that it has seen.
@@ -197,7 +180,7 @@ fn link(repo: &Repo, library: &Path) -> Result<PathBuf, String> {
 
 /// Compares with the rows of the golden table that C can make.
 fn compare(repo: &Repo, output: &str) -> Result<(), String> {
-    let table = fs::read_to_string(repo.root.join(TABLE)).map_err(|error| format!("{TABLE}: {error}"))?;
+    let table = files::read(&repo.root.join(TABLE))?;
     let faults = foreign(&table, output);
     let rows = output.lines().count();
     println!("{rows} rows, {} differ", faults.len());
@@ -218,7 +201,7 @@ fn foreign<'a>(table: &str, output: &'a str) -> Vec<&'a str> {
 
 fn folder(repo: &Repo) -> Result<PathBuf, String> {
     let folder = repo.target.join("c");
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    files::make(&folder)?;
     Ok(folder)
 }
 

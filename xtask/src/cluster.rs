@@ -3,9 +3,10 @@
 //! Slurm's daemons run as the present user, without systemd, control groups or keys: one controller and one node with
 //! two cores, on loopback, with all that they write in `target/cluster`.
 
-use crate::apt;
-use crate::repo::{Repo, output_of, run};
-use crate::report::Report;
+use crate::apt::{Tools, unpacked};
+use crate::files;
+use crate::repo::{Repo, output_of, run as run_command};
+use crate::session::Session;
 use std::fs;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
@@ -15,15 +16,14 @@ use std::time::{Duration, Instant};
 
 const SLURM: &str = "a sweep on Slurm";
 const PARALLEL: &str = "a sweep on GNU parallel";
-const PACKAGES: [&str; 4] = ["slurmctld", "slurmd", "slurm-client", "parallel"];
-const PROGRAMS: [&str; 8] = [CONTROLLER, NODE, STEP, "sbatch", "squeue", "scontrol", "scancel", "parallel"];
+const TOOLS: Tools = Tools {
+    packages: &["slurmctld", "slurmd", "slurm-client", "parallel"],
+    programs: &[CONTROLLER, NODE, STEP, "sbatch", "squeue", "scontrol", "scancel", "parallel"],
+};
 const CONTROLLER: &str = "slurmctld-wlm";
 const NODE: &str = "slurmd-wlm";
 /// What the node starts each task with.
 const STEP: &str = "slurmstepd-wlm";
-const REMEDY: &str =
-    "on Debian run, as root, `apt-get update && apt-get install slurmctld slurmd slurm-client parallel`";
-
 /// Tasks of the array.
 const TASKS: u64 = 20;
 /// Runs of a task.
@@ -38,55 +38,31 @@ const PLAN: &str = "name = 'swap-loss'\nscenario = 'swap.toml'\nseeds = 10\n\
     measures = ['arrived', 'arrival_last_seconds', 'least_gap_m', 'packets.lost']\n\
     [axes]\nradio.loss = { from = 0, to = 0.7, step = 0.1 }\n";
 
-/// The command: builds the program, and runs both.
-pub fn run_command(repo: &Repo, report: &mut Report) {
-    let mut build = repo.cargo(&["build", "--locked", "--package", "staya"]);
-    if report.step("staya for clusters", || run(&mut build)) {
-        return run_tests(repo, report);
+/// Makes both engines ready and has each do a sweep; the rows must be those of this machine alone.
+pub fn run(s: &mut Session) {
+    let ready = s.staya("debug").ok_or_else(|| String::from("the program was not built"));
+    let ready = ready.and_then(|staya| prepare(&s.repo).map(|()| staya));
+    let mut sweep = ready.clone().map(|_| None);
+    if let Ok(staya) = ready {
+        s.report.step("a sweep on this machine, to compare with", || {
+            sweep = Ok(Some(Sweep::new(&s.repo, staya)?));
+            Ok(())
+        });
     }
-    report.skip(SLURM, "the program was not built");
-    report.skip(PARALLEL, "the program was not built");
-}
-
-/// Makes both engines ready and has each do a sweep with the program that there is; the rows must be those of this machine alone.
-pub fn run_tests(repo: &Repo, report: &mut Report) {
-    if let Err(reason) = prepare(repo) {
-        report.skip(SLURM, &reason);
-        return report.skip(PARALLEL, &reason);
-    }
-    let mut sweep = None;
-    report.step("a sweep on this machine, to compare with", || {
-        sweep = Some(Sweep::new(repo)?);
-        Ok(())
-    });
-    match &sweep {
-        Some(sweep) => {
-            report.step(SLURM, || on_slurm(sweep));
-            report.step(PARALLEL, || on_parallel(sweep));
-        }
-        None => {
-            report.skip(SLURM, "there is nothing to compare with");
-            report.skip(PARALLEL, "there is nothing to compare with");
+    for (name, engine) in [(SLURM, on_slurm as fn(&Sweep<'_>) -> Result<(), String>), (PARALLEL, on_parallel)] {
+        match &sweep {
+            Ok(Some(sweep)) => drop(s.report.step(name, || engine(sweep))),
+            Ok(None) => s.report.skip(name, "there is nothing to compare with"),
+            Err(reason) => s.report.skip(name, reason),
         }
     }
 }
 
 /// Makes sure that both are there: unpacks them on Debian. The error says why they are not.
 fn prepare(repo: &Repo) -> Result<(), String> {
-    let is_there = || {
-        let starts = |name: &&str| output_of(repo.command(name).arg("-V")).is_some();
-        // Its clients want a configuration before they say anything.
-        let client = output_of(repo.command("sh").args(["-c", "command -v sbatch"])).is_some();
-        [CONTROLLER, NODE].iter().all(starts)
-            && client
-            && output_of(repo.command("parallel").arg("--version")).is_some()
-    };
-    if is_there() {
-        return Ok(());
-    }
-    apt::unpack(repo, &PACKAGES, &PROGRAMS)
-        .map_err(|reason| format!("no Slurm, no GNU parallel ({reason}); {REMEDY}"))?;
-    if is_there() { Ok(()) } else { Err(format!("Slurm or GNU parallel does not start; {REMEDY}")) }
+    // Slurm's clients want a configuration before they say anything.
+    let question = format!("{CONTROLLER} -V && {NODE} -V && command -v sbatch && parallel --version");
+    TOOLS.prepare(repo, || output_of(repo.command("sh").args(["-c", &question])).is_some())
 }
 
 /// A plan, and what one machine makes of it.
@@ -98,18 +74,13 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    fn new(repo: &'a Repo) -> Result<Self, String> {
+    fn new(repo: &'a Repo, staya: PathBuf) -> Result<Self, String> {
         let folder = repo.target.join("cluster");
-        let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
-        if folder.exists() {
-            fs::remove_dir_all(&folder).map_err(wrong)?;
-        }
-        fs::create_dir_all(&folder).map_err(wrong)?;
-        fs::write(folder.join("swap.toml"), SCENARIO).map_err(wrong)?;
-        fs::write(folder.join("plan.toml"), PLAN).map_err(wrong)?;
-        let staya = repo.target.join("debug").join(format!("staya{}", std::env::consts::EXE_SUFFIX));
+        files::make_empty(&folder)?;
+        files::write(&folder.join("swap.toml"), SCENARIO)?;
+        files::write(&folder.join("plan.toml"), PLAN)?;
         let this = Self { repo, folder, staya };
-        run(&mut this.sweep(&["plan.toml", "--out", "alone", "--quiet"]))?;
+        run_command(&mut this.sweep(&["plan.toml", "--out", "alone", "--quiet"]))?;
         Ok(this)
     }
 
@@ -124,7 +95,7 @@ impl<'a> Sweep<'a> {
     fn script(&self, name: &str, arguments: &[&str]) -> Result<PathBuf, String> {
         let text = output_of(&mut self.sweep(arguments)).ok_or_else(|| format!("no script {name}"))?;
         let path = self.folder.join(name);
-        fs::write(&path, text + "\n").map_err(|error| format!("{}: {error}", path.display()))?;
+        files::write(&path, text + "\n")?;
         Ok(path)
     }
 
@@ -136,14 +107,12 @@ impl<'a> Sweep<'a> {
 
     /// Merges, and compares every file byte for byte.
     fn compare(&self, out: &str) -> Result<(), String> {
-        run(&mut self.sweep(&["merge", "plan.toml", "--out", out, "--quiet"]))?;
+        run_command(&mut self.sweep(&["merge", "plan.toml", "--out", out, "--quiet"]))?;
         let plot = "plots/arrived-over-radio.loss.png";
         for name in ["rows.csv", "aggregates.csv", plot] {
-            let [alone, here] = ["alone", out].map(|out| fs::read(self.folder.join(out).join(name)));
-            match (alone, here) {
-                (Ok(alone), Ok(here)) if alone == here => {}
-                (Ok(_), Ok(_)) => return Err(format!("{out}/{name} is not that of one machine")),
-                _ => return Err(format!("{out}/{name} cannot be read")),
+            let [alone, here] = ["alone", out].map(|out| files::bytes(&self.folder.join(out).join(name)));
+            if alone? != here? {
+                return Err(format!("{out}/{name} is not that of one machine"));
             }
         }
         println!("{out}: rows, aggregates and picture are byte for byte those of one machine");
@@ -198,8 +167,7 @@ fn within<T>(time: Duration, mut ask: impl FnMut() -> Option<T>) -> Option<T> {
 /// Writes Slurm's configuration.
 fn configure(sweep: &Sweep<'_>) -> Result<PathBuf, String> {
     let folder = sweep.folder.join("slurm");
-    let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
-    ["state", "spool"].iter().try_for_each(|name| fs::create_dir_all(folder.join(name))).map_err(wrong)?;
+    ["state", "spool"].iter().try_for_each(|name| files::make(&folder.join(name)))?;
     let said = |program: &str, argument: &str| {
         output_of(sweep.repo.command(program).arg(argument)).ok_or_else(|| format!("{program} {argument} says nothing"))
     };
@@ -212,7 +180,7 @@ fn configure(sweep: &Sweep<'_>) -> Result<PathBuf, String> {
         return Err(String::from("there is no free port on loopback"));
     };
     let place = folder.display();
-    let plugins = apt::unpacked(sweep.repo, "slurm-wlm");
+    let plugins = unpacked(sweep.repo, "slurm-wlm");
     let plugins = plugins.map_or(String::new(), |plugins| format!("PluginDir={}\n", plugins.display()));
     let text = format!(
         "ClusterName=staya\n\
@@ -245,7 +213,7 @@ fn configure(sweep: &Sweep<'_>) -> Result<PathBuf, String> {
          PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP\n"
     );
     let file = folder.join("slurm.conf");
-    fs::write(&file, text).map_err(wrong)?;
+    files::write(&file, text)?;
     Ok(file)
 }
 
@@ -260,9 +228,9 @@ fn on_slurm(sweep: &Sweep<'_>) -> Result<(), String> {
     };
     let mut daemons = Daemons { repo: sweep.repo, children: Vec::new() };
     daemons.start(&mut slurm(CONTROLLER, &["-D", "-i"]), &folder.join("controller.out"))?;
-    let step = apt::script(sweep.repo, STEP).map_or(String::from(STEP), |path| path.display().to_string());
-    let with_step = ["-D", "-d", &step];
-    let node: &[&str] = if Path::new(&step).is_file() { &with_step } else { &with_step[..1] };
+    let step = sweep.repo.tools().join(STEP);
+    let (with_step, step) = (step.is_file(), step.display().to_string());
+    let node: &[&str] = if with_step { &["-D", "-d", &step] } else { &["-D"] };
     daemons.start(&mut slurm(NODE, node), &folder.join("node.out"))?;
     let is_idle = || output_of(&mut slurm("scontrol", &["show", "node"])).filter(|said| said.contains("State=IDLE"));
     within(PATIENCE, is_idle).ok_or_else(|| format!("the node does not come up; see {}", folder.display()))?;
@@ -338,10 +306,10 @@ fn on_parallel(sweep: &Sweep<'_>) -> Result<(), String> {
         echo \"$1\" >> '{}'\nshift\nexec sh -c \"$*\"\n",
         log.display()
     );
-    fs::write(&ssh, text).map_err(|error| format!("{}: {error}", ssh.display()))?;
-    apt::make_executable(&ssh).map_err(|error| format!("{}: {error}", ssh.display()))?;
+    files::write(&ssh, text)?;
+    output_of(sweep.repo.command("chmod").arg("+x").arg(&ssh)).ok_or("chmod fails")?;
     let mut command = sweep.repo.command("sh");
-    run(command.arg(script).current_dir(&sweep.folder).env("PARALLEL_SSH", &ssh).env("HOME", &sweep.folder))?;
+    run_command(command.arg(script).current_dir(&sweep.folder).env("PARALLEL_SSH", &ssh).env("HOME", &sweep.folder))?;
     let hosts = fs::read_to_string(&log).unwrap_or_default();
     if !hosts.lines().any(|line| line == "elsewhere") {
         return Err(String::from("no job went to the other host"));

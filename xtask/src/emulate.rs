@@ -1,8 +1,10 @@
 //! A program of the firmware in the emulator of its part, from its start to its end.
 
-use crate::part::Part;
-use crate::qemu;
-use crate::repo::{Repo, shown};
+use crate::apt::Tools;
+use crate::device::{PARTS, Part};
+use crate::firmware::{self, Profile};
+use crate::repo::{Repo, output_of, shown};
+use crate::session::Session;
 use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Stdio};
@@ -22,19 +24,42 @@ fn machine(part: &Part) -> &'static [&'static str] {
     }
 }
 
-/// Whether the part's emulator is there; unpacks it on Debian.
+/// Debian's packages of both emulators.
+const QEMU: Tools =
+    Tools { packages: &["qemu-system-arm", "qemu-system-misc"], programs: &["qemu-system-arm", "qemu-system-riscv32"] };
+
+/// The command that fetches the emulators.
+pub fn run_command(s: &mut Session) {
+    for part in &PARTS {
+        s.report.step(&format!("the emulator of the {}", part.name), || prepare(&s.repo, part));
+    }
+}
+
+/// Makes sure that the part's emulator is there: unpacks it on Debian.
 pub fn prepare(repo: &Repo, part: &Part) -> Result<(), String> {
-    qemu::prepare(repo, part.emulator).map(drop)
+    QEMU.prepare(repo, || output_of(repo.command(part.emulator).arg("--version")).is_some())
 }
 
-/// Runs a program that prints and ends by itself; what it printed. Each instruction takes a nanosecond of
-/// the part's time.
-pub fn run(repo: &Repo, part: &Part, elf: &Path) -> Result<String, String> {
-    run_on_line(repo, part, elf, "none")
+/// A step with programs of the firmware on a part: builds them, all if none is named. Skipped if program or emulator is missing.
+pub fn on_part(
+    s: &mut Session,
+    name: &str,
+    part: &Part,
+    (profile, bins): (Profile, &[&str]),
+    work: impl FnOnce(&Repo) -> Result<(), String>,
+) {
+    if !firmware::build(s, part, profile, bins) {
+        return s.report.skip(name, "there is no firmware");
+    }
+    match prepare(&s.repo, part) {
+        Err(reason) => s.report.skip(name, &reason),
+        Ok(()) => drop(s.report.step(name, || work(&s.repo))),
+    }
 }
 
-/// The same with the part's UART on one of QEMU's devices; what goes to `stdio` is what is returned.
-pub fn run_on_line(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<String, String> {
+/// Runs a program that ends by itself, with the part's UART on one of QEMU's devices, `none` or `stdio`; what it printed. Each instruction
+/// takes a nanosecond of the part's time.
+pub fn run(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<String, String> {
     let mut command = repo.command(part.emulator);
     command
         .args(machine(part))

@@ -3,9 +3,11 @@
 //! What is not installed is unpacked into `target/tools` and run from there. Everything stays on this machine: ranks talk through shared
 //! memory.
 
-use crate::apt;
-use crate::repo::{Repo, output_of, run};
+use crate::apt::{Tools, unpacked};
+use crate::files;
+use crate::repo::{Repo, output_of, run as run_command};
 use crate::report::Report;
+use crate::session::Session;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -18,9 +20,8 @@ const HASHES: &str = "one hash on 1, 2, 3, 4 and 8 ranks";
 const RESUMED: &str = "a checkpoint of three ranks goes on on two, and by one process";
 const KILLED: &str = "a rank that is killed ends the run and leaves its records";
 const WRONG: &str = "ranks that cannot share a scenario say why";
-const PACKAGES: [&str; 3] = ["openmpi-bin", "libopenmpi-dev", "libclang1"];
-const PROGRAMS: [&str; 2] = ["mpirun.openmpi", "mpicc.openmpi"];
-const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install openmpi-bin libopenmpi-dev libclang1`";
+const MPI: Tools =
+    Tools { packages: &["openmpi-bin", "libopenmpi-dev", "libclang1"], programs: &["mpirun.openmpi", "mpicc.openmpi"] };
 /// Longest time that ranks may take to end.
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -34,30 +35,25 @@ const PLANE: &str = "name = 'plane'\nticks = 150\ntick_s = 0.1\n[radio]\nrange_m
     [plane.robots.circle]\ncount = 60\nradius_m = 8\nnoise_m = 0.05\n";
 const ATTACKED: &str = "scenarios/insider.toml";
 
-/// The command: builds the program that there is without MPI, and runs all.
-pub fn run_command(repo: &Repo, report: &mut Report) {
-    let mut build = repo.cargo(&["build", "--locked", "--package", "staya"]);
-    if report.step("staya to compare with", || run(&mut build)) {
-        return run_tests(repo, report);
-    }
-    skip(report, "the program was not built");
-}
-
 /// The command that measures: an optimised build, on a machine that does nothing else.
-pub fn run_scaling(repo: &Repo, report: &mut Report) {
-    match Mpi::find(repo) {
-        Ok(mpi) => scaling::measure(&mpi, report),
-        Err(reason) => report.skip("scaling", &reason),
+pub fn run_scaling(s: &mut Session) {
+    match Mpi::find(&s.repo) {
+        Ok(mpi) => scaling::measure(&mpi, &mut s.report),
+        Err(reason) => s.report.skip("scaling", &reason),
     }
 }
 
-/// Makes MPI ready, builds `staya-mpi` and compares it with the `staya` that there is.
-pub fn run_tests(repo: &Repo, report: &mut Report) {
+/// Makes MPI ready, builds `staya-mpi` and compares it with `staya`.
+pub fn run(s: &mut Session) {
+    if s.staya("debug").is_none() {
+        return skip(&mut s.report, "the program was not built");
+    }
+    let (repo, report) = (&s.repo, &mut s.report);
     let mpi = match Mpi::find(repo) {
         Ok(mpi) => mpi,
         Err(reason) => return skip(report, &reason),
     };
-    if !report.step("staya-mpi", || run(&mut mpi.build())) {
+    if !report.step("staya-mpi", || run_command(&mut mpi.build())) {
         return skip(report, "staya-mpi was not built");
     }
     report.step(HASHES, || mpi.compare());
@@ -85,37 +81,30 @@ impl<'a> Mpi<'a> {
         let folder = repo.target.join("mpi");
         let make = |mpirun: &str, environment| Mpi { repo, mpirun: mpirun.to_string(), environment, folder };
         let starts = |program: &str, argument: &str| output_of(repo.command(program).arg(argument)).is_some();
-        let ours = repo.tools().join(PROGRAMS[0]).is_file();
-        let is_installed = starts("mpirun", "--version")
-            && starts("mpicc", "-show")
-            && output_of(repo.command("sh").args(["-c", "ldconfig -p | grep -q libclang"])).is_some();
-        if is_installed && !ours {
+        let has_clang = || output_of(repo.command("sh").args(["-c", "ldconfig -p | grep -q libclang"])).is_some();
+        if starts("mpirun", "--version") && starts("mpicc", "-show") && has_clang() {
             return Ok(make("mpirun", Vec::new()));
         }
-        if !ours {
-            apt::unpack(repo, &PACKAGES, &PROGRAMS).map_err(|reason| format!("no OpenMPI ({reason}); {REMEDY}"))?;
-        }
+        MPI.prepare(repo, || repo.tools().join(MPI.programs[0]).is_file())?;
         let root = repo.target.join("tools/unpacked/usr");
         let clang = fs::read_dir(root.join("lib")).into_iter().flatten().flatten();
         let clang = clang.map(|entry| entry.path().join("lib")).find(|lib| lib.join("libclang.so.1").exists());
-        let clang = clang.ok_or_else(|| format!("the packages hold no libclang; {REMEDY}"))?;
+        let clang = clang.ok_or("the packages hold no libclang")?;
         // clang's own headers are a package more; the compiler's do as well.
         let headers = output_of(repo.command("cc").arg("-print-file-name=include")).ok_or("no C compiler")?;
-        let libraries = apt::unpacked(repo, "openmpi").and_then(|folder| Some(folder.parent()?.to_path_buf()));
-        let libraries = libraries.ok_or_else(|| format!("the packages hold no libraries of OpenMPI; {REMEDY}"))?;
+        let libraries = unpacked(repo, "openmpi").and_then(|folder| Some(folder.parent()?.to_path_buf()));
+        let libraries = libraries.ok_or("the packages hold no libraries of OpenMPI")?;
         let libraries = [libraries.clone(), libraries.join("openmpi/lib")].map(|path| path.display().to_string());
         let environment = vec![
             ("OPAL_PREFIX", root.display().to_string()),
             ("LD_LIBRARY_PATH", libraries.join(":")),
             ("LIBCLANG_PATH", clang.display().to_string()),
             ("BINDGEN_EXTRA_CLANG_ARGS", format!("-I{headers}")),
-            ("MPICC", repo.tools().join(PROGRAMS[1]).display().to_string()),
+            ("MPICC", repo.tools().join(MPI.programs[1]).display().to_string()),
         ];
-        let mpi = make(PROGRAMS[0], environment);
-        match output_of(mpi.command(&mpi.mpirun).arg("--version")) {
-            Some(_) => Ok(mpi),
-            None => Err(format!("OpenMPI does not start; {REMEDY}")),
-        }
+        let mpi = make(MPI.programs[0], environment);
+        let version = output_of(mpi.command(&mpi.mpirun).arg("--version"));
+        version.map(|_| mpi).ok_or_else(|| String::from("OpenMPI does not start"))
     }
 
     fn command(&self, program: &str) -> Command {
@@ -163,13 +152,12 @@ impl<'a> Mpi<'a> {
 
     /// The scenarios, written down; the path of each.
     fn scenarios(&self) -> Result<Vec<(&'static str, String)>, String> {
-        fs::create_dir_all(&self.folder).map_err(|error| format!("{}: {error}", self.folder.display()))?;
         let written = SCENARIOS.iter().map(|&(name, text)| {
             if Path::new(text).extension().is_some_and(|end| end == "toml") {
                 return Ok((name, text.to_string()));
             }
             let file = self.folder.join(format!("{name}.toml"));
-            fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))?;
+            files::write(&file, text)?;
             Ok((name, file.display().to_string()))
         });
         written.collect()
@@ -182,14 +170,14 @@ impl<'a> Mpi<'a> {
             let mut alone = self.repo.command(self.program("staya"));
             alone.args(["run", &scenario, "--quiet", "--json", "--out", &out]);
             let alone = figures(&mut alone)?;
-            let trace = fs::read(Path::new(&out).join("trace.csv")).map_err(|error| format!("{out}: {error}"))?;
+            let trace = || files::bytes(&Path::new(&out).join("trace.csv"));
+            let alone_trace = trace()?;
             for ranks in [1, 2, 3, 4, 8] {
                 let here = figures(&mut self.ranks(ranks, &[&scenario, "--out", &out]))?;
                 if here != alone {
                     return Err(format!("{name} on {ranks} ranks: {here}, on one machine {alone}"));
                 }
-                let theirs = fs::read(Path::new(&out).join("trace.csv"));
-                if theirs.map_err(|error| format!("{out}: {error}"))? != trace {
+                if trace()? != alone_trace {
                     return Err(format!("{name} on {ranks} ranks: trace.csv is not that of one process"));
                 }
             }
@@ -222,8 +210,7 @@ impl<'a> Mpi<'a> {
     fn kill_one(&self) -> Result<(), String> {
         let scenario = self.scenarios()?.into_iter().find(|(name, _)| *name == "grid").map(|(_, path)| path);
         let out = self.folder.join("out/killed");
-        let _ = fs::remove_dir_all(self.folder.join("out"));
-        fs::create_dir_all(self.folder.join("out")).map_err(|error| error.to_string())?;
+        files::make_empty(&self.folder.join("out"))?;
         let out_text = out.display().to_string();
         let arguments = [&scenario.unwrap_or_default(), "--ticks", "1000000", "--out", &out_text];
         let mut command = self.ranks(4, &arguments);
@@ -268,7 +255,7 @@ impl<'a> Mpi<'a> {
         let text = "name = 'two'\nticks = 9\ntick_s = 0.1\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n\
             [plane.robots.circle]\ncount = 2\nradius_m = 3\n";
         let file = self.folder.join("two.toml");
-        fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))?;
+        files::write(&file, text)?;
         for (scenario, remedy) in [(file.display().to_string(), "start at most 2"), ("no.toml".into(), "no.toml")] {
             let out = self.folder.join("out/refused").display().to_string();
             let output = self.ranks(3, &[&scenario, "--out", &out]).output();

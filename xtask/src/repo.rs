@@ -51,6 +51,11 @@ impl Repo {
         command
     }
 
+    /// A program that was built by the profile `debug` or `release`.
+    pub fn program(&self, profile: &str, name: &str) -> PathBuf {
+        self.target.join(profile).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+    }
+
     /// The cargo that runs this program, with these arguments.
     pub fn cargo(&self, arguments: &[&str]) -> Command {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

@@ -1,5 +1,6 @@
 //! What test programs say of themselves, added up.
 
+use crate::extent::LONG;
 use crate::repo::run_reading;
 use crate::report::Counts;
 use std::process::Command;
@@ -11,6 +12,8 @@ const NAMED: usize = 8;
 #[derive(Default)]
 struct Tally {
     counts: Counts,
+    /// Tests that another command has.
+    others: u64,
     /// Whether a program has begun and not yet said how it ended.
     runs: bool,
     /// The last test of that program that was said to take long.
@@ -21,8 +24,9 @@ struct Tally {
 
 impl Tally {
     fn read(&mut self, line: &str) {
-        if let Some(counts) = parse_test_result(line) {
+        if let Some((counts, others)) = parse_test_result(line) {
             self.counts += counts;
+            self.others += others;
             (self.runs, self.slow) = (false, None);
         } else if line.starts_with("running ") && (line.ends_with(" tests") || line.ends_with(" test")) {
             self.crashed();
@@ -54,12 +58,12 @@ impl Tally {
     }
 }
 
-/// The counts in one line of a test program's output, if it is its closing line. What the command
-/// line filtered out was skipped.
-fn parse_test_result(line: &str) -> Option<Counts> {
+/// The counts in one line of a test program's output, if it is its closing line, and the number of ignored tests, which another command
+/// has. What the command line filtered out was skipped.
+fn parse_test_result(line: &str) -> Option<(Counts, u64)> {
     let rest = line.strip_prefix("test result: ")?;
     let (_, counts) = rest.split_once(". ")?;
-    let mut sum = Counts::default();
+    let (mut sum, mut others) = (Counts::default(), 0);
     for field in counts.split("; ") {
         let (number, what) = field.split_once(' ')?;
         let Ok(number) = number.parse::<u64>() else {
@@ -68,11 +72,12 @@ fn parse_test_result(line: &str) -> Option<Counts> {
         match what {
             "passed" => sum.passed += number,
             "failed" => sum.failed += number,
-            "ignored" | "filtered out" => sum.skipped += number,
+            "ignored" => others += number,
+            "filtered out" => sum.skipped += number,
             _ => {}
         }
     }
-    Some(sum)
+    Some((sum, others))
 }
 
 /// Runs test programs and adds up their closing lines. A program that ends without one (it
@@ -94,6 +99,7 @@ pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
     if counts.skipped > 0 && !why_skipped.is_empty() {
         notes.push(why_skipped.to_string());
     }
+    notes.extend((tally.others > 0).then(|| format!("{} tests: {LONG}", tally.others)));
     (counts, notes.join("; "))
 }
 
@@ -105,8 +111,8 @@ mod tests {
     fn closing_line_of_a_test_program_is_counted() {
         let line = "test result: FAILED. 12 passed; 3 failed; 1 ignored; 0 measured; \
                     4 filtered out; finished in 0.02s";
-        let counts = parse_test_result(line).unwrap();
-        assert_eq!(counts, Counts { passed: 12, failed: 3, skipped: 5 });
+        let counts = Counts { passed: 12, failed: 3, skipped: 4 };
+        assert_eq!(parse_test_result(line), Some((counts, 1)));
     }
 
     #[test]
@@ -122,14 +128,14 @@ mod tests {
         command
     }
 
-    const PASSED: &str = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
-    const FAILED: &str = "test result: FAILED. 2 passed; 1 failed; 3 ignored; 0 measured; 0 filtered out";
+    const PASSED: &str = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 2 filtered out";
+    const FAILED: &str = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 3 filtered out";
 
     #[test]
     fn closing_lines_add_up() {
         let (counts, note) = counted(&mut shell(&format!("echo '{PASSED}'; echo '{PASSED}'")), "why");
-        assert_eq!(counts, Counts { passed: 4, failed: 0, skipped: 2 });
-        assert_eq!(note, "why");
+        assert_eq!(counts, Counts { passed: 4, failed: 0, skipped: 4 });
+        assert_eq!(note, format!("why; 2 tests: {LONG}"));
     }
 
     #[test]

@@ -1,56 +1,51 @@
 //! `cargo xtask weight`: what the README's first command costs, beside the last record, and no library compiled twice.
 
+use crate::files;
+use crate::options::Options;
 use crate::repo::{Repo, output_of, run};
-use crate::report::{Report, processor_time};
+use crate::report::processor_time;
+use crate::session::{MAIN, Session, programs};
 use crate::source::{members, modules};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 
-/// The program of the README's first command.
-const MAIN: &str = "staya";
-/// Programs that it hands over to; those that the workspace does not have are left out.
-const OTHERS: [&str; 5] = ["staya-lab", "staya-view", "staya-mav", "staya-hil", "staya-voxel"];
 /// The records, one line each.
 const RECORDS: &str = "xtask/weight.csv";
 const HEADER: &str = "date,commit,units,processor_s,peer_s,program_bytes,code_lines";
 const PEER: [&str; 4] = ["install", "ripgrep", "--locked", "--root"];
 
-/// Measures, prints each figure beside the last record, and adds a record if `is_recorded`. With `has_peer` the time of the same
-/// processors for another program stands beside it.
-pub fn run_command(repo: &Repo, report: &mut Report, is_recorded: bool, has_peer: bool) {
-    report.step(SHARED, || check_shared(repo));
-    report.step("weight", || {
-        let folder = repo.target.join("weight");
-        let _ = fs::remove_dir_all(&folder);
-        run(&mut repo.cargo(&["fetch", "--locked"]))?;
-        let units = graph(repo, MAIN, MAIN)?.units;
-        let units = units.iter().filter(|unit| unit.mode == "build").count();
-        let mut build = repo.cargo(&["build", "--release", "--locked", "--package", MAIN]);
-        let processor_s = seconds(build.env("CARGO_TARGET_DIR", &folder))?;
-        let program = folder.join("release").join(format!("{MAIN}{}", std::env::consts::EXE_SUFFIX));
-        let program_bytes = fs::metadata(&program).map_err(|error| format!("{}: {error}", program.display()))?.len();
-        let mut peer = repo.cargo(&PEER);
-        peer.arg(folder.join("ripgrep")).env("CARGO_TARGET_DIR", folder.join("peer"));
-        let peer_s = if has_peer { Some(seconds(&mut peer)?) } else { None };
-        let lines = code_lines(&repo.root)?;
-        lines.iter().for_each(|(member, lines)| println!("{lines:>7}  {member}"));
-        let code_lines: usize = lines.iter().map(|(_, lines)| lines).sum();
-        let figures =
-            [Some(units as f64), Some(processor_s), peer_s, Some(program_bytes as f64), Some(code_lines as f64)];
-        let file = repo.root.join(RECORDS);
-        let records = fs::read_to_string(&file).unwrap_or_else(|_| format!("{HEADER}\n"));
-        print!("{}", table(&records, &figures));
-        if is_recorded {
-            let date = output_of(repo.command("date").args(["-u", "+%F"])).unwrap_or_default();
-            let commit = output_of(repo.command("git").args(["rev-parse", "--short", "HEAD"])).unwrap_or_default();
-            let figures = figures.map(|figure| figure.map_or(String::new(), |figure| format!("{}", round(figure))));
-            let record = format!("{records}{date},{commit},{}\n", figures.join(","));
-            fs::write(&file, record).map_err(|error| format!("{}: {error}", file.display()))?;
-        }
-        Ok(())
-    });
+/// The command: prints each figure beside the last record; `--record` adds one, `--peer` also measures another program.
+pub fn run_command(s: &mut Session, options: &Options<'_>) {
+    s.report.step(SHARED, || check_shared(&s.repo));
+    s.report.step("weight", || measure(&s.repo, options));
+}
+
+fn measure(repo: &Repo, options: &Options<'_>) -> Result<(), String> {
+    let folder = repo.target.join("weight");
+    files::make_empty(&folder)?;
+    run(&mut repo.cargo(&["fetch", "--locked"]))?;
+    let units = graph(repo, MAIN, MAIN)?.units.iter().filter(|unit| unit.mode == "build").count();
+    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", MAIN]);
+    let processor_s = seconds(build.env("CARGO_TARGET_DIR", &folder))?;
+    let bytes = files::bytes(&folder.join("release").join(files::name(&repo.program("release", MAIN))))?.len();
+    let mut peer = repo.cargo(&PEER);
+    peer.arg(folder.join("ripgrep")).env("CARGO_TARGET_DIR", folder.join("peer"));
+    let peer_s = if options.has("--peer") { Some(seconds(&mut peer)?) } else { None };
+    let lines = code_lines(&repo.root)?;
+    lines.iter().for_each(|(member, lines)| println!("{lines:>7}  {member}"));
+    let code_lines: usize = lines.iter().map(|(_, lines)| lines).sum();
+    let figures = [Some(units as f64), Some(processor_s), peer_s, Some(bytes as f64), Some(code_lines as f64)];
+    let file = repo.root.join(RECORDS);
+    let records = files::read(&file).unwrap_or_else(|_| format!("{HEADER}\n"));
+    print!("{}", table(&records, &figures));
+    if !options.has("--record") {
+        return Ok(());
+    }
+    let date = output_of(repo.command("date").args(["-u", "+%F"])).unwrap_or_default();
+    let commit = output_of(repo.command("git").args(["rev-parse", "--short", "HEAD"])).unwrap_or_default();
+    let figures = figures.map(|figure| figure.map_or(String::new(), |figure| format!("{}", round(figure))));
+    files::write(&file, format!("{records}{date},{commit},{}\n", figures.join(",")))
 }
 
 /// To a tenth.
@@ -134,20 +129,8 @@ fn graph(repo: &Repo, package: &str, program: &str) -> Result<Graph, String> {
 
 /// Compares the plans of all programs: one folder has each library once if they want the same features of it.
 pub fn check_shared(repo: &Repo) -> Result<(), String> {
-    let metadata = output_of(&mut repo.cargo(&["metadata", "--no-deps", "--format-version", "1", "--locked"]));
-    let metadata = serde_json::from_str(&metadata.ok_or("cargo metadata fails")?);
-    let metadata: serde_json::Value = metadata.map_err(|error| format!("cargo metadata: {error}"))?;
-    let mut graphs = Vec::new();
-    for program in std::iter::once(MAIN).chain(OTHERS) {
-        let has_it = |package: &&serde_json::Value| {
-            let targets = package["targets"].as_array().into_iter().flatten();
-            targets.into_iter().any(|target| target["name"] == program && target["kind"][0] == "bin")
-        };
-        let package = metadata["packages"].as_array().and_then(|packages| packages.iter().find(has_it));
-        if let Some(package) = package.and_then(|package| package["name"].as_str()) {
-            graphs.push((program, graph(repo, package, program)?));
-        }
-    }
+    let graph = |(package, program): (String, &'static str)| Ok((program, graph(repo, &package, program)?));
+    let graphs = programs(repo)?.into_iter().map(graph).collect::<Result<Vec<_>, String>>()?;
     println!("{}", graphs.iter().map(|(program, _)| *program).collect::<Vec<_>>().join(", "));
     let faults = differences(&graphs);
     faults.iter().for_each(|fault| println!("{fault}"));

@@ -2,9 +2,9 @@
 //! else; no test has them.
 
 use super::Mpi;
+use crate::files;
 use crate::repo::run;
 use crate::report::Report;
-use std::fs;
 use std::process::Command;
 
 const NAME: &str = "200,000 robots on 1, 2 and 4 ranks";
@@ -23,9 +23,8 @@ pub(super) fn measure(mpi: &Mpi<'_>, report: &mut Report) {
 }
 
 fn table(mpi: &Mpi<'_>) -> Result<(), String> {
-    fs::create_dir_all(&mpi.folder).map_err(|error| format!("{}: {error}", mpi.folder.display()))?;
     let file = mpi.folder.join("scaling.toml");
-    fs::write(&file, SCENARIO).map_err(|error| format!("{}: {error}", file.display()))?;
+    files::write(&file, SCENARIO)?;
     let (scenario, out) = (file.display().to_string(), mpi.folder.join("out/scaling").display().to_string());
     println!("ranks   seconds   times sooner   processor, slowest rank   trace hash");
     let mut alone = None;
