@@ -10,7 +10,6 @@ mod bless;
 mod c;
 mod check;
 mod circles;
-mod cluster;
 mod device;
 mod documents;
 mod emulate;
@@ -67,7 +66,7 @@ const COMMANDS: [Command; 27] = [
     ("clients [NAME]", "MAVLink clients against staya: the tests whose names contain NAME", |s, o| {
         python::clients(s, o.name(), All)
     }),
-    ("cluster", "sweeps on Slurm and GNU parallel, on this machine", |s, _| cluster::run(s)),
+    ("cluster", "sweeps on Slurm and GNU parallel, on this machine", |s, _| python::cluster(s)),
     ("example", "the example firmware of examples/stm32f4", |s, _| firmware::example(s)),
     ("faults [stm32f405|nrf51|riscv32...]", "firmware that fails on purpose says why and restarts", |s, o| {
         swarms::faults(s, &o.names)

@@ -17,6 +17,11 @@ const CHROMIUM: Tools = Tools {
     packages: &["chromium-headless-shell", "chromium-common", "fontconfig-config", "fonts-dejavu-core"],
     programs: &["chromium-headless-shell"],
 };
+/// Slurm's daemons and clients, and GNU parallel.
+const CLUSTER: Tools = Tools {
+    packages: &["slurmctld", "slurmd", "slurm-client", "parallel"],
+    programs: &["slurmctld-wlm", "slurmd-wlm", "slurmstepd-wlm", "sbatch", "squeue", "scontrol", "scancel", "parallel"],
+};
 /// The package for Python, which has nothing in it without this feature.
 pub const FEATURE: &str = "staya-python/module";
 /// For lints on a machine that may have no Python: links against no libpython, as in a wheel, and asks no interpreter.
@@ -33,7 +38,7 @@ pub fn clients(s: &mut Session, only: Option<&str>, extent: Extent) {
         arguments.extend(["-m", "not long"]);
     }
     let program = s.staya("debug");
-    suite(s, "MAVLink clients", client_tools, program, &arguments);
+    suite(s, "MAVLink clients", Suite { program, arguments: &arguments, ..Suite::default() }, client_tools);
 }
 
 /// Pages of `staya view` in a browser.
@@ -43,7 +48,23 @@ pub fn browser(s: &mut Session) {
         environment(repo, "python", "tests/browser/requirements.txt")
     };
     let program = s.staya("debug");
-    suite(s, "pages in a browser", prepare, program, &["tests/browser", "--timeout", "120"]);
+    let environment = vec![("CHROMIUM", CHROMIUM.programs[0].to_string())];
+    let arguments = &["tests/browser", "--timeout", "120"];
+    suite(s, "pages in a browser", Suite { program, environment, arguments }, prepare);
+}
+
+/// Sweeps on Slurm and GNU parallel.
+pub fn cluster(s: &mut Session) {
+    let prepare = |repo: &Repo| {
+        // Slurm's clients want a configuration before they say anything.
+        let question = "slurmctld-wlm -V && slurmd-wlm -V && command -v sbatch && parallel --version";
+        CLUSTER.prepare(repo, || output_of(repo.command("sh").args(["-c", question])).is_some())?;
+        client_environment(repo)
+    };
+    let program = s.staya("debug");
+    let environment = vec![("STAYA_TOOLS", s.repo.target.join("tools").display().to_string())];
+    let arguments = &["tests/cluster", "--timeout", "300"];
+    suite(s, "sweeps on Slurm and GNU parallel", Suite { program, environment, arguments }, prepare);
 }
 
 /// The package for Python: a wheel, the types of what is not compiled, tests.
@@ -60,23 +81,29 @@ pub fn package(s: &mut Session) {
     types.args(["-m", "mypy", "--strict", "--python-executable"]).arg(&python).arg("sim-host/python/python/staya");
     types.arg("--cache-dir").arg(s.repo.target.join(PACKAGE).join("mypy"));
     s.report.command("types of the package for Python", types);
-    suite(s, NAME, package_environment, Some(python), &["tests/python-package", "--timeout", "300"]);
+    let arguments = &["tests/python-package", "--timeout", "300"];
+    suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
 }
 
-/// Runs a suite in the environment that `prepare` gives. Skipped without a program to test.
-fn suite(
-    s: &mut Session,
-    name: &str,
-    prepare: impl FnOnce(&Repo) -> Result<PathBuf, String>,
-    program: Option<PathBuf>,
-    arguments: &[&str],
-) {
-    let prepared = program.ok_or_else(|| String::from("the program was not built"));
-    match prepared.and_then(|program| Ok((program, prepare(&s.repo)?))) {
+/// What a suite is run with.
+#[derive(Default)]
+pub struct Suite<'a> {
+    /// What is tested, in the variable `STAYA`; the suite is skipped without it.
+    pub program: Option<PathBuf>,
+    /// Further variables.
+    pub environment: Vec<(&'static str, String)>,
+    /// pytest's arguments.
+    pub arguments: &'a [&'a str],
+}
+
+/// Runs a suite with the Python that `prepare` gives.
+pub fn suite(s: &mut Session, name: &str, suite: Suite<'_>, prepare: impl FnOnce(&Repo) -> Result<PathBuf, String>) {
+    let program = suite.program.ok_or_else(|| String::from("the program was not built"));
+    match program.and_then(|program| Ok((program, prepare(&s.repo)?))) {
         Err(reason) => s.report.skip(name, &reason),
         Ok((program, python)) => {
-            let mut tests = pytest(&s.repo, &python, arguments);
-            tests.env("STAYA", program).env("CHROMIUM", CHROMIUM.programs[0]);
+            let mut tests = pytest(&s.repo, &python, suite.arguments);
+            tests.env("STAYA", program).envs(suite.environment);
             s.report.part(name, || counted(&mut tests));
         }
     }

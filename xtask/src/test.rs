@@ -53,7 +53,7 @@ pub fn run(s: &mut Session, extent: Extent) {
         return crate::emulated::run(s, &SHORT);
     }
     crate::python::browser(s);
-    crate::cluster::run(s);
+    crate::python::cluster(s);
     crate::mpi::run(s);
     crate::python::package(s);
     if let Some(mut firmware) = firmware {
