@@ -1,8 +1,8 @@
 //! The sources of crates as tokens: the paths that each module names, and the lines that hold code. Tests are left out.
 
+use crate::files;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 
 /// A module's names from the crate's root down; empty for the root itself.
@@ -19,8 +19,7 @@ pub struct Content {
 
 /// The folders of the workspace's crates, from its top.
 pub fn members(root: &Path) -> Result<Vec<String>, String> {
-    let manifest = fs::read_to_string(root.join("Cargo.toml")).map_err(|error| error.to_string())?;
-    let manifest: toml::Table = manifest.parse().map_err(|error| format!("{error}"))?;
+    let manifest: toml::Table = files::read(&root.join("Cargo.toml"))?.parse().map_err(|error| format!("{error}"))?;
     let members = manifest.get("workspace").and_then(|workspace| workspace.get("members"));
     let members = members.and_then(toml::Value::as_array).into_iter().flatten();
     Ok(members.filter_map(toml::Value::as_str).map(String::from).collect())
@@ -30,7 +29,7 @@ pub fn members(root: &Path) -> Result<Vec<String>, String> {
 pub fn modules(source: &Path) -> Result<BTreeMap<Module, Content>, String> {
     let mut code = Code::default();
     if source.is_dir() {
-        code.read(source, &mut Vec::new())?;
+        code.read(source)?;
     }
     Ok(code.without_tests())
 }
@@ -44,23 +43,17 @@ pub struct Code {
 }
 
 impl Code {
-    fn read(&mut self, folder: &Path, above: &mut Module) -> Result<(), String> {
-        let wrong = |error: std::io::Error| format!("{}: {error}", folder.display());
-        for entry in fs::read_dir(folder).map_err(wrong)? {
-            let path = entry.map_err(wrong)?.path();
-            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            if path.is_dir() && name != "bin" {
-                above.push(name);
-                self.read(&path, above)?;
-                above.pop();
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                let mut module = above.clone();
-                if !["lib", "main", "mod"].contains(&name.as_str()) {
-                    module.push(name);
-                }
-                self.file(&fs::read_to_string(&path).map_err(wrong)?, &module)
-                    .map_err(|error| format!("{}: {error}", path.display()))?;
+    fn read(&mut self, source: &Path) -> Result<(), String> {
+        let is_code = |path: &Path| path.extension().is_some_and(|end| end == "rs");
+        let is_wanted = |path: &Path| if path.is_dir() { files::name(path) != "bin" } else { is_code(path) };
+        for file in files::below(source, &is_wanted)? {
+            let module = file.with_extension("");
+            let names = module.strip_prefix(source).unwrap_or(&module).iter();
+            let mut module: Module = names.map(|name| name.to_string_lossy().into_owned()).collect();
+            if module.last().is_some_and(|name| ["lib", "main", "mod"].contains(&name.as_str())) {
+                module.pop();
             }
+            self.file(&files::read(&file)?, &module).map_err(|error| format!("{}: {error}", file.display()))?;
         }
         Ok(())
     }
