@@ -3,7 +3,6 @@
 
 use crate::files;
 use crate::python;
-use crate::repo::output_of;
 use crate::report::Counts;
 use crate::session::Session;
 use std::fs;
@@ -11,13 +10,11 @@ use std::path::Path;
 use std::time::SystemTime;
 
 const PEERS: &str = "tests/peers";
-/// Those that are no criterion's.
-const BRIDGE: &str = "bridge";
-const VIEW: &str = "view";
-/// Runs of one scenario with a page that no browser shows, each beside one without; the ratio of one pair tells of the machine, their median of the page.
-const PAIRS: usize = 9;
-/// That median at most.
-const VIEW_COSTS: f64 = 1.03;
+/// Benchmarks that are not criterion's: name, row of the closing table, script.
+const SCRIPTS: [(&str, &str, &str); 2] = [
+    ("bridge", "bridge beside pymavlink", "tests/python/bench_bridge.py"),
+    ("view", "a run with a page that no browser shows", "tests/python/bench_view.py"),
+];
 
 /// Benchmarks with a goal: at least so many times as fast as another benchmark of the same run. No goal is a time, which would be one of the
 /// machine.
@@ -32,14 +29,13 @@ const GOALS: [(&str, f64, &str); 6] = [
 
 /// Runs the benchmarks whose name contains `name` and judges their medians.
 pub fn run(s: &mut Session, name: Option<&str>) {
-    if !matches!(name, Some(BRIDGE | VIEW)) {
+    if !SCRIPTS.iter().any(|(script, ..)| name == Some(script)) {
         criterion(s, name, &["--workspace", "--exclude", "staya-view"]);
     }
-    if name.is_none_or(|name| BRIDGE.contains(name)) {
-        bridge(s);
+    for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| name.is_none_or(|name| script.contains(name))) {
+        script(s, row, file);
     }
-    if name.is_none_or(|name| VIEW.contains(name)) {
-        view(s);
+    if name.is_none_or(|name| "view".contains(name)) {
         let bench = s.repo.cargo(&["bench", "--locked", "--package", "staya-view", "--bench", "view"]);
         s.report.command("pictures a second", bench);
     }
@@ -49,63 +45,21 @@ pub fn run(s: &mut Session, name: Option<&str>) {
 pub fn run_goals(s: &mut Session) {
     let names: Vec<&str> = GOALS.iter().flat_map(|(name, _, other)| [*name, *other]).collect();
     criterion(s, Some(&format!("^({})$", names.join("|"))), &["--package", "staya-controller"]);
-    bridge(s);
-    view(s);
+    SCRIPTS.iter().for_each(|(_, row, file)| script(s, row, file));
 }
 
-/// What a page costs a run that no browser shows.
-fn view(s: &mut Session) {
-    const NAME: &str = "a run with a page that no browser shows";
+/// A benchmark in Python with the program as users have it; the script judges.
+fn script(s: &mut Session, name: &str, file: &str) {
     let Some(program) = s.staya("release") else {
-        return s.report.skip(NAME, "the program was not built");
-    };
-    s.report.part(NAME, || {
-        let mut ratios = Vec::new();
-        for pair in 0..PAIRS {
-            // By turns, so that a machine that becomes slower is slower for both.
-            let mut seconds = [0.0; 2];
-            for with_page in [pair % 2, 1 - pair % 2] {
-                let page: &[&str] = if with_page == 1 { &["--view"] } else { &[] };
-                let mut run = s.repo.command(&program);
-                run.args(["run", "scenarios/twenty-discs.toml", "--json", "-q", "--out"])
-                    .arg(s.repo.target.join("bench-view"));
-                let said = output_of(run.args(page));
-                match said.as_deref().and_then(|json| number(json, "wall_seconds")) {
-                    Some(wall) => seconds[with_page] = wall,
-                    None => return (Counts { failed: 1, ..Counts::default() }, "`staya run` failed".to_owned()),
-                }
-            }
-            println!("without {:.3} s, with a page {:.3} s", seconds[0], seconds[1]);
-            ratios.push(seconds[1] / seconds[0]);
-        }
-        ratios.sort_by(f64::total_cmp);
-        let median = ratios[PAIRS / 2];
-        let is_met = median <= VIEW_COSTS;
-        let note = format!("{median:.3} times as long (median of {PAIRS} pairs), at most {VIEW_COSTS}");
-        (Counts { passed: is_met.into(), failed: (!is_met).into(), ..Counts::default() }, note)
-    });
-}
-
-/// The number in a field of printed JSON.
-fn number(json: &str, field: &str) -> Option<f64> {
-    let (_, value) = json.split_once(&format!("\"{field}\":"))?;
-    let end = value.find([',', '}'])?;
-    value.get(..end)?.trim().parse().ok()
-}
-
-/// Messages that `staya bridge` obeys beside pymavlink; the script judges.
-fn bridge(s: &mut Session) {
-    const NAME: &str = "bridge beside pymavlink";
-    let Some(program) = s.staya("release") else {
-        return s.report.skip(NAME, "the program was not built");
+        return s.report.skip(name, "the program was not built");
     };
     match python::client_environment(&s.repo) {
         Ok(python) => {
             let mut bench = s.repo.command(&python);
-            bench.arg("tests/python/bench_bridge.py").env("STAYA", program);
-            s.report.command(NAME, bench);
+            bench.arg(file).env("STAYA", program);
+            s.report.command(name, bench);
         }
-        Err(reason) => s.report.skip(NAME, &reason),
+        Err(reason) => s.report.skip(name, &reason),
     }
 }
 
@@ -177,8 +131,8 @@ fn medians(home: &Path, start: SystemTime) -> Vec<(String, f64)> {
 
 /// The median's point estimate in criterion's estimates.json.
 fn median(json: &str) -> Option<f64> {
-    let (_, median) = json.split_once("\"median\"")?;
-    number(median, "point_estimate")
+    let estimates: serde_json::Value = serde_json::from_str(json).ok()?;
+    estimates["median"]["point_estimate"].as_f64()
 }
 
 /// Nanoseconds for people.

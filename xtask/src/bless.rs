@@ -5,7 +5,8 @@ use crate::session::Session;
 
 /// Runs the tests whose name contains `name` with the variable that makes them write, runs them
 /// again without it, and lists what changed.
-pub fn run(s: &mut Session, name: &str) {
+pub fn run(s: &mut Session, name: Option<&str>) {
+    let name = name.unwrap_or("golden");
     let tests = || s.repo.cargo(&["test", "--workspace", "--no-fail-fast", name]);
     s.report.step("rewrite golden files", || repo::run(tests().env(BLESS, "1")));
     let again = tests();

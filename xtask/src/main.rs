@@ -46,67 +46,39 @@ use std::process::ExitCode;
 type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
 
 /// The commands. Of lines that begin with the same word, the first that fits counts.
+#[rustfmt::skip]
 const COMMANDS: [Command; 27] = [
-    ("check", "all that can be judged without running the code; every warning is an error", |s, _| check::run(s)),
+    ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
     ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, Short)),
-    ("test [--all]", "also long tests, all parts and programs, sweeps, peers, benchmarks with goals", |s, _| {
-        test::run(s, All)
-    }),
-    (
-        "autopilots [--rover PATH] [--copter PATH] [--defaults FOLDER] [NAME]",
-        "flights with your build of ArduPilot",
-        autopilots::run_command,
-    ),
-    ("bench [NAME]", "benchmarks whose names contain NAME: medians, ratios, goals", |s, o| bench::run(s, o.name())),
-    ("bless [NAME]", "rewrite golden files by the tests whose names contain NAME (golden)", |s, o| {
-        bless::run(s, o.name().unwrap_or("golden"))
-    }),
+    ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, All)),
+    ("autopilots [--rover PATH] [--copter PATH] [--defaults FOLDER] [NAME]", "flights with your build of ArduPilot",
+        autopilots::run_command),
+    ("bench [NAME]", "benchmarks: medians, ratios, goals", |s, o| bench::run(s, o.name())),
+    ("bless [NAME]", "rewrite golden files by tests named NAME (golden)", |s, o| bless::run(s, o.name())),
     ("browser", "the page of `staya view` in Chromium", |s, _| python::browser(s)),
     ("c", "the library for C, on this machine and on an emulated STM32F405", |s, _| c::run(s)),
-    ("clients [NAME]", "MAVLink clients against staya: the tests whose names contain NAME", |s, o| {
-        python::clients(s, o.name(), All)
-    }),
+    ("clients [NAME]", "MAVLink clients against staya", |s, o| python::clients(s, o.name(), All)),
     ("cluster", "sweeps on Slurm and GNU parallel, on this machine", |s, _| python::cluster(s)),
     ("example", "the example firmware of examples/stm32f4", |s, _| firmware::example(s)),
-    ("faults [stm32f405|nrf51|riscv32...]", "firmware that fails on purpose says why and restarts", |s, o| {
-        swarms::faults(s, &o.names)
-    }),
-    (
-        "firmware [--debug] [--bin NAME] [stm32f405|nrf51|riscv32...]",
-        "programs of hil/firmware: target/firmware/PART/BIN",
-        firmware::run_command,
-    ),
-    (
-        "firmware [--crate DIR] [stm32f405|nrf51|riscv32...]",
-        "firmware of a crate with a law of its own",
-        firmware::run_command,
-    ),
+    ("faults [stm32f405|nrf51|riscv32...]", "firmware that fails restarts", |s, o| swarms::faults(s, &o.names)),
+    ("firmware [--debug] [--bin NAME] [stm32f405|nrf51|riscv32...]", "programs of hil/firmware: target/firmware/PART",
+        firmware::run_command),
+    ("firmware [--crate DIR] [stm32f405|nrf51|riscv32...]", "firmware of a crate with a law of its own",
+        firmware::run_command),
     ("fuzz [--seconds N]", "each fuzz target for N seconds (60)", |s, o| fuzz::run(s, o.value("--seconds"))),
-    (
-        "install [--prefix DIR] [--debug]",
-        "programs, firmware, manual pages, completions below DIR (~/.local)",
-        install::run_command,
-    ),
+    ("install [--prefix DIR] [--debug]", "programs, firmware, manual, completions below DIR (~/.local)",
+        install::run_command),
     ("mpi", "one world over ranks of OpenMPI, on this machine", |s, _| mpi::run(s)),
     ("mpi [--scaling]", "times of 200,000 robots on 1, 2 and 4 ranks", |s, _| mpi::run_scaling(s)),
     ("new", "what `staya new` makes, compiled and tested", |s, _| project::run(s, All)),
     ("plants", "panics planted in the firmware's sources: the linker refuses each", |s, _| plants::run(s, true)),
     ("python", "the package for Python: its wheel, types and tests", |s, _| python::package(s)),
     ("qemu", "fetches the emulators of the parts", |s, _| emulate::run_command(s)),
-    ("size [--json]", "flash, RAM, stack and instructions of each part, against hil/budgets.toml", |s, o| {
-        size::run(s, o.has("--json"))
-    }),
-    (
-        "soak [--minutes N] [--json FILE] [flood|key|companion|hil...]",
-        "everything at once among hostile clients (3 minutes)",
-        soak::run_command,
-    ),
+    ("size [--json]", "flash, RAM, stack, instructions against budgets", |s, o| size::run(s, o.has("--json"))),
+    ("soak [--minutes N] [--json FILE] [flood|key|companion|hil...]", "everything at once among hostile clients",
+        soak::run_command),
     ("swarms", "the canned swarms give one hash on the host and on each part", |s, _| swarms::run(s)),
-    (
-        "weight [--peer] [--record]",
-        "the cost of the README's first command beside the last record",
-        weight::run_command,
-    ),
+    ("weight [--peer] [--record]", "the cost of the README's first command", weight::run_command),
     ("help", "this text", |_, _| {}),
 ];
 
