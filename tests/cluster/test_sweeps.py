@@ -45,7 +45,7 @@ TOOLS = Path(os.environ.get("STAYA_TOOLS", "target/tools"))
 
 
 def run(*command, check=True, **options):
-    """What a command prints."""
+    """The output of a command."""
     return subprocess.run([*map(str, command)], check=check, stdout=subprocess.PIPE, text=True, **options).stdout
 
 

@@ -64,7 +64,7 @@ count = 2
 radius_m = 3
 """
 ATTACKED = (ROOT / "scenarios/insider.toml").read_text()
-# What must be the same everywhere.
+# Figures that are the same on any number of ranks.
 FIGURES = ["arrived", "collisions", "delivered", "rejected", "least_gap_m", "trace_hash"]
 scenarios = pytest.mark.parametrize("text", [GRID, PLANE, ATTACKED], ids=["grid", "plane", "attacked"])
 

@@ -1,7 +1,8 @@
 //! Programs from Debian's packages, unpacked into `target/tools` and run from there.
 //!
-//! That needs no root and changes no installed package. A package of the user's can exclude another one: the `qemu-utils` of backports
-//! excludes Debian's emulators. Only Python, and tshark for root, do not work from another folder and are installed, as root.
+//! That needs no root and changes no installed package. A package of the user's can exclude another
+//! one: the `qemu-utils` of backports excludes Debian's emulators. Only Python, and tshark for
+//! root, do not work from another folder and are installed, as root.
 
 use crate::repo::{Repo, ended, output_of};
 use std::path::PathBuf;
@@ -13,7 +14,8 @@ pub struct Tools {
 }
 
 impl Tools {
-    /// Makes sure that `starts` says so: unpacks the packages if it does not. The error names the remedy.
+    /// Makes sure that `starts` says so: unpacks the packages if it does not. The error names the
+    /// remedy.
     pub fn prepare(&self, repo: &Repo, starts: impl Fn() -> bool) -> Result<(), String> {
         if starts() {
             return Ok(());

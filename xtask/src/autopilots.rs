@@ -1,4 +1,5 @@
-//! `cargo xtask autopilots`: the companion beside ArduPilot's own code, in its own simulation, for whoever has built it.
+//! `cargo xtask autopilots`: the companion beside ArduPilot's own code, in its own simulation, for
+//! whoever has built it.
 
 use crate::options::Options;
 use crate::python;

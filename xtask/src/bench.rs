@@ -16,8 +16,8 @@ const SCRIPTS: [(&str, &str, &str); 2] = [
     ("view", "a run with a page that no browser shows", "tests/python/bench_view.py"),
 ];
 
-/// Benchmarks with a goal: at least so many times as fast as another benchmark of the same run. No goal is a time, which would be one of the
-/// machine.
+/// Benchmarks with a goal: the least ratio of its speed to another benchmark's in the same run. No
+/// goal is a time, which would be one of the machine.
 const GOALS: [(&str, f64, &str); 6] = [
     ("cost_field_16x16/staya", 5.0, "cost_field_16x16/pathfinding"),
     ("cost_field_32x32/staya", 5.0, "cost_field_32x32/pathfinding"),
@@ -63,7 +63,7 @@ fn script(s: &mut Session, name: &str, file: &str) {
     }
 }
 
-/// Those of the workspace, of the packages that `own` names, and those beside peers.
+/// Runs the workspace's benchmarks in the packages that `own` names, and those beside peers.
 fn criterion(s: &mut Session, filter: Option<&str>, own: &[&str]) {
     let home = s.repo.target.join("criterion");
     let start = SystemTime::now();

@@ -1,4 +1,5 @@
-//! `cargo xtask c`: the library for C. Its programs on this machine, the canned swarms on an emulated part, templates for firmware of others.
+//! `cargo xtask c`: the library for C. Its programs on this machine, the canned swarms on an
+//! emulated part, templates for firmware of others.
 
 use crate::apt::Tools;
 use crate::device::{STM32F405, Toolchain};
@@ -10,19 +11,19 @@ use crate::session::Session;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What all must give.
+/// The rows that every program must print.
 const TABLE: &str = "tests/golden/cases.txt";
 /// Debian's packages of the compiler for the part; no library of C is needed.
 const COMPILER: Tools = Tools {
     packages: &["gcc-arm-none-eabi", "binutils-arm-none-eabi"],
     programs: &["arm-none-eabi-gcc", "arm-none-eabi-g++", "arm-none-eabi-nm"],
 };
-/// What the sources must pass without a word.
+/// Warnings that the sources must not cause.
 const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wno-variadic-macros", "-ffp-contract=off"];
 const INCLUDES: [&str; 2] = ["-Icontroller/c/include", "-Icontroller/c/tests"];
-/// What Rust's standard library, which the library has on a host, asks of the system.
+/// System libraries that Rust's standard library needs on a host.
 const SYSTEM: [&str; 3] = ["-lm", "-lpthread", "-ldl"];
-/// What the panic handler calls, and nobody defines.
+/// The symbol that the panic handler calls and that no crate defines.
 const PANIC: &str = "staya_panic_is_reachable";
 
 /// On the host, on the emulated part, and for other people's firmware.
@@ -54,32 +55,31 @@ fn on_host(s: &mut Session) {
     });
 }
 
-/// Machines for which rustup's and Debian's stable Rust have the run-time part of AddressSanitizer.
-const SANITIZED: [&str; 2] = ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"];
-
-/// The tests of the library, misuse above all, with each access to memory checked: the sanitizer ends a test at the first byte that is not
-/// the library's to touch. Stable Rust has it behind the variable that lets it take unstable options.
+/// The tests of the library, misuse above all, with each access to memory checked: the sanitizer
+/// ends a test at the first byte that is not the library's to touch. Stable Rust has it behind the
+/// variable that lets it take unstable options.
 fn sanitized(s: &mut Session) {
     let repo = &s.repo;
     let name = "the library for C, each access to memory checked";
-    let Some(host) = SANITIZED.into_iter().find(|host| has_sanitizer(repo, host)) else {
+    let Some(host) = sanitized_host(repo) else {
         return s.report.skip(name, "this Rust has no librustc-stable_rt.asan.a; rustup's for Linux has");
     };
     s.report.step(name, || {
-        let mut test = repo.cargo(&["test", "--locked", "--package", "staya-c", "--target", host]);
-        // A folder of its own, or flags that differ would have everything compiled anew.
+        let mut test = repo.cargo(&["test", "--locked", "--package", "staya-c", "--target", &host]);
+        // A folder of its own, or flags that differ would compile everything again.
         test.env("CARGO_TARGET_DIR", repo.target.join("asan")).env("CARGO_INCREMENTAL", "0");
         test.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address").env("RUST_MIN_STACK", "16777216");
         run_command_line(test.args(["--config", "profile.dev.opt-level=0", "--config", "profile.dev.debug=1"]))
     });
 }
 
-/// Whether this machine is such a one and has it.
-fn has_sanitizer(repo: &Repo, host: &str) -> bool {
-    let about = output_of(repo.command("rustc").arg("-vV")).unwrap_or_default();
-    let root = output_of(repo.command("rustc").args(["--print", "sysroot"])).unwrap_or_default();
-    let library = Path::new(root.trim()).join("lib/rustlib").join(host).join("lib/librustc-stable_rt.asan.a");
-    about.lines().any(|line| line.strip_prefix("host: ") == Some(host)) && library.is_file()
+/// This machine's target, if the Rust here has the run-time part of AddressSanitizer for it.
+fn sanitized_host(repo: &Repo) -> Option<String> {
+    let about = output_of(repo.command("rustc").arg("-vV"))?;
+    let host = about.lines().find_map(|line| line.strip_prefix("host: "))?;
+    let root = output_of(repo.command("rustc").args(["--print", "sysroot"]))?;
+    let library = Path::new(&root).join("lib/rustlib").join(host).join("lib/librustc-stable_rt.asan.a");
+    library.is_file().then(|| host.to_string())
 }
 
 /// Compiles a program, runs it, and gives what it prints.
@@ -126,10 +126,11 @@ pub fn library(repo: &Repo, toolchain: &Toolchain) -> Result<PathBuf, String> {
     Ok(toolchain.target_folder(repo).join(STM32F405.target).join("firmware/libstaya_c.a"))
 }
 
-/// What the program on the part puts before the deepest stack that it has seen.
+/// The word before the deepest stack that the program on the part has seen.
 const STACK: &str = "stack";
 
-/// Everything that C can call is in the library, and what is left of the panic handler would be undefined in it.
+/// Everything that C can call is in the library, and what is left of the panic handler would be
+/// undefined in it.
 fn has_no_panic(repo: &Repo, library: &Path) -> Result<(), String> {
     let symbols = output_of(repo.command("arm-none-eabi-nm").arg("--undefined-only").arg(library));
     let symbols = symbols.ok_or("arm-none-eabi-nm cannot read the library")?;

@@ -9,10 +9,11 @@ use crate::session::Session;
 /// Workspaces of their own, and how to leave out what needs more than a stable compiler.
 const OTHERS: [(&str, &[&str]); 2] = [("tests/peers", &[]), ("tests/fuzz", &["--no-default-features"])];
 
-/// What a user's own firmware depends on.
+/// Packages that a user's own firmware depends on.
 const PACKAGES: [&str; 4] = ["staya-controller", "staya-mavlink", "staya-robot", "staya-voxel"];
 
-/// Formatting, layers, lints, documentation; the quick ones first, and beside the lints what has folders of its own.
+/// Formatting, layers, lints, documentation; the quick ones first, and beside the lints what has
+/// folders of its own.
 pub fn run(s: &mut Session) {
     if has(s, "fmt", "rustfmt") {
         let check = ["fmt", "--all", "--check"];

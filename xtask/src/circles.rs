@@ -7,7 +7,8 @@ use std::path::Path;
 /// Which modules of a folder use which others of the same folder.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
-/// Reads every crate of the workspace. The error names the first circle; all are printed with their folder.
+/// Reads every crate of the workspace. The error names the first circle; all are printed with their
+/// folder.
 pub fn check(root: &Path) -> Result<(), String> {
     let mut found = BTreeSet::new();
     for member in members(root)? {
@@ -22,14 +23,14 @@ pub fn check(root: &Path) -> Result<(), String> {
     found.into_iter().next().map_or(Ok(()), Err)
 }
 
-/// In each folder of modules: which uses which, by what they or modules below them name.
+/// The uses between the modules of each folder, by the paths in them and in modules below them.
 fn uses(modules: &BTreeMap<Module, Content>) -> BTreeMap<Module, Uses> {
     let mut all: BTreeMap<Module, Uses> = BTreeMap::new();
     for (user, Content { named, .. }) in modules {
         for used in named {
             let common = user.iter().zip(used).take_while(|(a, b)| a == b).count();
             let (Some(above), Some(below)) = (user.get(common), used.get(common)) else {
-                continue; // a module uses what it is in, or what is in it
+                continue; // a module uses its parent or its child
             };
             let is_module =
                 modules.keys().any(|module| used.get(..=common).is_some_and(|used| module.starts_with(used)));

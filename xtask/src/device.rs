@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 pub struct Part {
     /// As in `hil/firmware` and on the command line.
     pub name: &'static str,
-    /// What its code is compiled for.
+    /// The target that its code is compiled for.
     pub target: &'static str,
     /// The emulator that runs it.
     pub emulator: &'static str,
@@ -52,14 +52,15 @@ pub struct Toolchains {
     debian: Option<Result<Debian, String>>,
 }
 
-/// Checks of the controller with each set of features that its manifest lists, which go on while other steps run: on the part
-/// with a Cortex-M4F; on the one with a Cortex-M0, which has no FPU, with those that have fixed point.
+/// Checks of the controller with each set of features that its manifest lists, which go on while
+/// other steps run: on the part with a Cortex-M4F; on the one with a Cortex-M0, which has no FPU,
+/// with those that have fixed point.
 pub struct FeatureChecks {
     /// Names of steps, and what checks them or why nothing does.
     checks: Vec<(String, Result<Check, String>)>,
 }
 
-/// What came out, when it has ended.
+/// The result, once the thread has ended.
 type Check = JoinHandle<Result<(), String>>;
 
 impl FeatureChecks {
@@ -148,7 +149,7 @@ impl Toolchain {
             }
         };
         command.args(["--target", target]);
-        // The same for every command: another level builds everything that logs anew.
+        // The same for every command: another level rebuilds everything that logs.
         if std::env::var_os("DEFMT_LOG").is_none() {
             command.env("DEFMT_LOG", "info");
         }
@@ -190,8 +191,8 @@ fn prepare(repo: &Repo) -> Result<Debian, String> {
 }
 
 impl Debian {
-    /// Its cargo with these arguments, with its rustc, allowed to build `core`, in a target folder of its own: two compilers in
-    /// one folder would build everything anew at each change.
+    /// Its cargo with these arguments, with its rustc, allowed to build `core`, in a target folder
+    /// of its own: two compilers in one folder would rebuild everything at each change.
     fn cargo(&self, repo: &Repo, arguments: &[&str]) -> Command {
         let mut command = repo.command(self.bin.join("cargo"));
         // Cargo and rustup tell their children which toolchain runs; that is another one here.

@@ -1,4 +1,5 @@
-//! What the documentation names exists: paths, links and their headings, and the code that README.md quotes.
+//! What the documentation names exists: paths, links and their headings, and the code that
+//! README.md quotes.
 
 use crate::files;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,8 @@ const MADE: [&str; 2] = ["target", "out"];
 /// Says what was, not what is.
 const HISTORY: &str = "CHANGELOG.md";
 
-/// Reads every Markdown file of the repository. The error counts the faults, which are printed by file and line.
+/// Reads every Markdown file of the repository. The error counts the faults, which are printed by
+/// file and line.
 pub fn check(root: &Path) -> Result<(), String> {
     let folders = folders(root)?;
     let mut faults = Vec::new();
@@ -67,8 +69,8 @@ impl Document<'_> {
             || files::read(&file).is_ok_and(|text| text.lines().any(|line| anchor(line).as_deref() == Some(heading)))
     }
 
-    /// Words that begin with a top folder, and in backticks files and folders beside, below or above the last of those
-    /// in the same line, or in the document's own folder.
+    /// Words that begin with a top folder, and in backticks files and folders beside, below or
+    /// above the last of those in the same line, or in the document's own folder.
     fn missing_paths<'t>(&self, line: &'t str) -> Vec<&'t str> {
         let mut missing = Vec::new();
         let mut near = vec![self.here().join("src"), self.here()];
@@ -106,7 +108,7 @@ fn is_placeholder(part: &str) -> bool {
     part.contains('*') || !stem.is_empty() && stem != "README" && stem.chars().all(|c| c.is_uppercase() || c == '_')
 }
 
-/// What a link to a heading names it by; `None` for other lines.
+/// The name of a heading in links; `None` for other lines.
 fn anchor(line: &str) -> Option<String> {
     let heading = line.trim_start_matches('#').strip_prefix(' ').filter(|_| line.starts_with('#'))?;
     let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));

@@ -30,15 +30,16 @@ pub fn run(s: &mut Session, parts: &[&'static Part]) {
         return s.report.skip(name, &format!("no firmware of {OWN}"));
     }
     run_installed(s);
-    // Of the whole workspace, as the other tests: alone, the runner would be built once more with other features.
+    // Of the whole workspace, as the other tests: alone, the runner would be built once more with
+    // other features.
     let mut tests = s.repo.cargo(&["test", "--locked", "--workspace", "--test", "emulated"]);
     tests.env("STAYA_FIRMWARE", s.repo.target.join("firmware"));
     tests.env("STAYA_PARTS", parts.iter().map(|part| part.name).collect::<Vec<_>>().join(","));
     s.report.part(name, || counted(&mut tests, ""));
 }
 
-/// What `cargo xtask install` installs finds its firmware beside itself, from a folder that knows of no repository: it neither asks for
-/// cargo, which is not there, nor for this folder's.
+/// What `cargo xtask install` installs finds its firmware beside itself, from a folder that knows
+/// of no repository: it neither asks for cargo, which is not there, nor for this folder's.
 fn run_installed(s: &mut Session) {
     let prefix = s.repo.target.join("tmp/installed");
     if !install::put_step(s, &prefix, "debug") {
@@ -52,8 +53,8 @@ fn run_installed(s: &mut Session) {
     });
 }
 
-/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices. The
-/// program is the one that its own tests have brought.
+/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one
+/// without devices. The program is the one that its own tests have brought.
 pub fn run_ten(s: &mut Session) {
     s.report.step("ten robots of a formation as firmware, 1000 steps", || {
         let mut staya = s.repo.command(s.repo.program("debug", MAIN));
@@ -71,7 +72,8 @@ pub fn run_ten(s: &mut Session) {
     });
 }
 
-/// Runs `staya hil`, which fails by itself when a device and its shadow differ; the whole run must also be the one without devices.
+/// Runs `staya hil`, which fails by itself when a device and its shadow differ; the whole run must
+/// also be the one without devices.
 fn is_the_same(staya: &mut Command) -> Result<(), String> {
     let mut verdict = None;
     run_reading(staya, |line| {

@@ -36,7 +36,8 @@ pub fn make_empty(folder: &Path) -> Result<(), String> {
     make(folder)
 }
 
-/// Copies a file, and makes the folder that it goes to. A program that runs cannot be written to, but another one can take its name.
+/// Copies a file, and makes the folder that it goes to. A program that runs cannot be written to,
+/// but another one can take its name.
 pub fn copy(from: &Path, to: &Path) -> Result<(), String> {
     make(to.parent().unwrap_or(to))?;
     let beside = to.with_extension("new");
@@ -52,7 +53,8 @@ pub fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(entries)
 }
 
-/// All files below a folder that `is_wanted` takes, sorted; folders that it does not take are left out whole.
+/// All files below a folder that `is_wanted` takes, sorted; folders that it does not take are left
+/// out whole.
 pub fn below(folder: &Path, is_wanted: &impl Fn(&Path) -> bool) -> Result<Vec<PathBuf>, String> {
     let mut files = Vec::new();
     for path in entries(folder)?.into_iter().filter(|path| is_wanted(path)) {

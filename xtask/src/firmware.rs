@@ -9,7 +9,7 @@ use object::{Object as _, ObjectSection as _, SectionFlags, SectionKind, elf};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 
-/// Cargo's profile for what goes on a part, and the one to debug with.
+/// Cargo's profile for programs of a part, and the profile to debug them with.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Profile {
     Firmware,
@@ -51,10 +51,10 @@ pub fn run_command(s: &mut Session, options: &Options<'_>) {
     }
 }
 
-/// Begins to build every program for all parts, with what others leave of the processors; the caller waits for its end. What it
-/// cannot build is reported when it is built as a step.
+/// Begins to build every program for all parts, with what others leave of the processors; the
+/// caller waits for its end. What it cannot build is reported when it is built as a step.
 pub fn begin(s: &mut Session) -> Option<Child> {
-    // What has to be fetched is fetched first: packages are unpacked by one program at a time.
+    // Toolchains are fetched first: packages are unpacked by one program at a time.
     let parts = PARTS.iter().filter(|part| s.toolchains.find(&s.repo, part.target).is_ok());
     let parts: Vec<&str> = parts.map(|part| part.name).collect();
     if parts.is_empty() {
@@ -65,7 +65,8 @@ pub fn begin(s: &mut Session) -> Option<Child> {
     command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()
 }
 
-/// Builds the programs of these names for a part as one step, or all of them if none is named. Returns whether the ELF files are there.
+/// Builds the programs of these names for a part as one step, or all of them if none is named.
+/// Returns whether the ELF files are there.
 pub fn build(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) -> bool {
     let name = match profile {
         Profile::Firmware => format!("firmware for {}", part.name),
@@ -97,8 +98,9 @@ fn make(repo: &Repo, toolchain: &Toolchain, part: &Part, profile: Profile, only:
     bins.iter().try_for_each(|bin| put(&built.join(bin), &profile.elf(repo, part, bin)))
 }
 
-/// Builds the program `firmware` of the crate in `folder` for a part as one step, and puts it where the crate's program on the host looks:
-/// `FOLDER/target/firmware/PART/lockstep`. Returns whether it is there.
+/// Builds the program `firmware` of the crate in `folder` for a part as one step, and puts it where
+/// the crate's program on the host looks: `FOLDER/target/firmware/PART/lockstep`. Returns whether
+/// it is there.
 pub fn build_own(s: &mut Session, part: &Part, folder: &Path) -> bool {
     let name = format!("firmware of {} for {}", folder.display(), part.name);
     s.with_toolchain(&name, part.target, |repo, toolchain| {
@@ -141,7 +143,7 @@ fn put(from: &Path, to: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// What an ELF file takes, bytes.
+/// The sizes of an ELF file, bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Sections {
     /// Machine code.
@@ -154,7 +156,7 @@ pub struct Sections {
     pub ram: u64,
 }
 
-/// What an ELF file of 32 bits takes.
+/// The sizes of an ELF file of 32 bits.
 pub fn sections(file: &Path) -> Result<Sections, String> {
     sizes(&files::bytes(file)?).ok_or_else(|| format!("{} is not a 32-bit ELF file", file.display()))
 }

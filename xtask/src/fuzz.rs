@@ -9,15 +9,16 @@ const FOLDER: &str = "tests/fuzz";
 /// How long each target runs unless the command line says otherwise; libFuzzer takes 0 for ever.
 const SECONDS: &str = "60";
 
-/// What the fuzzer needs: the question whether it is there, and what to do if not.
+/// Requirements of the fuzzer: the command that finds each, and the remedy without it.
 const NEEDS: [(&[&str], &str); 3] = [
     (&["rustup", "run", "nightly", "cargo", "--version"], "no nightly Rust; run `rustup toolchain install nightly`"),
     (&["rustup", "run", "nightly", "cargo", "fuzz", "--version"], "no cargo-fuzz; run `cargo install cargo-fuzz`"),
     (&["c++", "--version"], "no C++ compiler, which libFuzzer needs; on Debian run, as root, `apt-get install g++`"),
 ];
 
-/// Targets whose bytes are choices, not words to be guessed, in code without `unsafe`: what the fuzzer otherwise follows (each comparison, each
-/// access to memory) finds nothing there and takes nine tenths of the time.
+/// Targets whose bytes are choices, not words to be guessed, in code without `unsafe`: what the
+/// fuzzer otherwise follows (each comparison, each access to memory) finds nothing there and takes
+/// nine tenths of the time.
 const STORIES: [&str; 1] = ["requests_model"];
 
 /// Runs each target for some seconds. New inputs stay in `tests/fuzz/corpus`, those that break

@@ -1,4 +1,5 @@
-//! `cargo xtask install`: the program, the firmware that it runs on emulated parts and boards, its manual and what shells complete it by.
+//! `cargo xtask install`: the program, the firmware that it runs on emulated parts and boards, its
+//! manual and what shells complete it by.
 
 use crate::device::PARTS;
 use crate::files;
@@ -16,7 +17,8 @@ const COMPLETIONS: [(&str, &str); 3] = [
     ("fish", "share/fish/vendor_completions.d/staya.fish"),
 ];
 
-/// The command. Firmware for a part that no toolchain here builds is skipped, and was not there before.
+/// The command. Firmware for a part that no toolchain here builds is skipped, and was not there
+/// before.
 pub fn run_command(s: &mut Session, options: &Options<'_>) {
     let home = std::env::var_os("HOME").map(|home| Path::new(&home).join(".local"));
     let prefix = options.value("--prefix").and_then(|folder| std::path::absolute(folder).ok()).or(home);

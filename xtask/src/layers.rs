@@ -18,7 +18,8 @@ const LAYERS: [&[&str]; 4] = [
 /// The layer of the behaviours.
 const APART: usize = 2;
 
-/// Reads every source file of the controller. The error counts the imports that point up or sideways, which are printed.
+/// Reads every source file of the controller. The error counts the imports that point up or
+/// sideways, which are printed.
 pub fn check(source: &Path) -> Result<(), String> {
     let mut faults = BTreeSet::new();
     for (module, Content { named, .. }) in modules(source)? {
@@ -36,7 +37,7 @@ fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|modules| modules.contains(&module))
 }
 
-/// What is wrong with `user` using `used`, if anything is.
+/// The fault in `user` using `used`, if there is one.
 fn fault(user: &str, used: &str) -> Option<String> {
     if user == used {
         return None;

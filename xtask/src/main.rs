@@ -1,7 +1,7 @@
 //! `cargo xtask`: the project's own commands, the same on a desk and in CI.
 //!
-//! One file per command or kind of command; [`session`] is what they share: the repository ([`repo`]), what passed
-//! ([`report`]), and the programs that are built.
+//! One file per command or kind of command; they share [`session`]: the repository
+//! ([`repo`]), what passed ([`report`]), and the programs that are built.
 
 mod apt;
 mod autopilots;
@@ -83,7 +83,7 @@ const COMMANDS: [Command; 27] = [
 ];
 
 const NOTES: &str = "
-Programs that this machine lacks are unpacked into target/tools from Debian's packages. What cannot run
+Programs that this machine lacks are unpacked into target/tools from Debian's packages. A part that cannot run
 is skipped, with the reason; with CI=true in the environment it has failed.
 
 The last line counts tests and steps: `N passed, N failed, N skipped`. The exit code is 1 if

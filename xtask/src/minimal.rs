@@ -6,7 +6,8 @@ use crate::session::Session;
 
 const NAME: &str = "the declared minimal Rust";
 
-/// If the toolchain here is that Rust, all that is compiled shows it; else rustup's of that version has to check the workspace.
+/// If the toolchain here is that Rust, all that is compiled shows it; else rustup's of that version
+/// has to check the workspace.
 pub fn check(s: &mut Session) {
     let declared = match declared(&s.repo) {
         Ok(declared) => declared,
@@ -42,7 +43,8 @@ fn declared(repo: &Repo) -> Result<String, String> {
     version.map(String::from).ok_or_else(|| format!("{}: no rust-version", path.display()))
 }
 
-/// Whether what `rustc --version` says is a release of `version`, such as `rustc 1.95.0 (...)` of `1.95`.
+/// Whether what `rustc --version` says is a release of `version`, such as `rustc 1.95.0 (...)` of
+/// `1.95`.
 fn is_release_of(said: &str, version: &str) -> bool {
     let release = said.split_whitespace().nth(1).and_then(|release| release.strip_prefix(version));
     release.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

@@ -1,4 +1,5 @@
-//! `cargo xtask mpi`: one world over ranks, with OpenMPI from Debian's packages. What is not installed is unpacked into `target/tools`.
+//! `cargo xtask mpi`: one world over ranks, with OpenMPI from Debian's packages. What is not
+//! installed is unpacked into `target/tools`.
 
 use crate::apt::{Tools, unpacked};
 use crate::files;
@@ -25,7 +26,8 @@ pub fn run_scaling(s: &mut Session) {
     s.report.command("200,000 robots on 1, 2 and 4 ranks", times);
 }
 
-/// Makes OpenMPI ready and builds `staya-mpi`. Returns the environment of both; none if it cannot be built.
+/// Makes OpenMPI ready and builds `staya-mpi`. Returns the environment of both; none if it cannot
+/// be built.
 fn build(s: &mut Session, options: &[&str]) -> Option<Vec<(&'static str, String)>> {
     let environment = match environment(&s.repo) {
         Ok(environment) => environment,
@@ -39,7 +41,7 @@ fn build(s: &mut Session, options: &[&str]) -> Option<Vec<(&'static str, String)
     s.report.step("staya-mpi", || run_command(&mut build)).then_some(environment)
 }
 
-/// What programs need to find OpenMPI; nothing where it is installed.
+/// The variables by which programs find OpenMPI; none where it is installed.
 fn environment(repo: &Repo) -> Result<Vec<(&'static str, String)>, String> {
     let question = "mpirun --version && mpicc -show && ldconfig -p | grep libclang";
     if output_of(repo.command("sh").args(["-c", question])).is_some() {

@@ -1,17 +1,18 @@
 //! The command line of a command, read as its usage line says.
 
-/// What a command line asks for.
+/// The options and names of a command line.
 #[derive(Debug, Default, PartialEq)]
 pub struct Options<'a> {
     /// Options with their values; a flag has an empty one.
     values: Vec<(&'a str, &'a str)>,
-    /// Arguments that are no options.
+    /// Arguments that are not options.
     pub names: Vec<&'a str>,
 }
 
 impl<'a> Options<'a> {
-    /// Reads arguments by a usage line such as `soak [--debug] [--minutes N] [flood|key...]`: a flag, an option with a value (`N`: a number
-    /// above 0), and names: `NAME` for one of any kind, several where dots follow, those of a list where the line has a list.
+    /// Reads arguments by a usage line such as `soak [--debug] [--minutes N] [flood|key...]`: a
+    /// flag, an option with a value (`N`: a number above 0), and names: `NAME` for one of any kind,
+    /// several where dots follow, those of a list where the line has a list.
     pub fn read(usage: &str, arguments: &[&'a str]) -> Result<Self, String> {
         let words: Vec<&str> = usage.split_whitespace().skip(1).collect();
         let names = words.iter().enumerate().find(|(at, word)| {

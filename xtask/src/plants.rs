@@ -1,4 +1,5 @@
-//! Firmware with a panic does not link: panics are planted in a copy of the sources, one at a time, and the linker must refuse each.
+//! Firmware with a panic does not link: panics are planted in a copy of the sources, one at a time,
+//! and the linker must refuse each.
 //!
 //! That the sources as they are link, without one, is seen whenever the firmware is built.
 
@@ -9,11 +10,12 @@ use crate::session::Session;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// What the panic handler calls, and nobody defines.
+/// The symbol that the panic handler calls and that no crate defines.
 const SYMBOL: &str = "staya_panic_is_reachable";
 /// Where the copy is, in the target folder.
 const COPY: &str = "planted";
-/// What the copy consists of: manifests, sources and their pages, linker scripts, MAVLink's messages.
+/// The files in the copy: manifests, sources and their pages, linker scripts, MAVLink's
+/// messages.
 const FOLDERS: [&str; 6] = ["controller", "examples", "hil", "sim-host", "tests", "xtask"];
 const FILES: [&str; 3] = ["Cargo.toml", "Cargo.lock", "memory.x"];
 const ENDINGS: [&str; 5] = ["rs", "toml", "md", "x", "xml"];
@@ -35,55 +37,26 @@ struct Plant {
 }
 
 /// Each kind of code that the proof is for.
+#[rustfmt::skip]
 const PLANTS: [Plant; 6] = [
-    Plant {
-        name: "the UART's ring",
-        file: "hil/firmware/src/ring.rs",
+    Plant { name: "the UART's ring", file: "hil/firmware/src/ring.rs", bin: "lockstep", is_long: false,
         right: "self.bytes.get(tail)?.load(",
-        wrong: "self.bytes[tail].load(",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "the UART's interrupt",
-        file: "hil/firmware/src/part/stm32f405.rs",
+        wrong: "self.bytes[tail].load(" },
+    Plant { name: "the UART's interrupt", file: "hil/firmware/src/part/stm32f405.rs", bin: "lockstep", is_long: false,
         right: "RECEIVED.push(byte);",
-        wrong: "RECEIVED.push(byte.checked_add(1).unwrap());",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "start-up",
-        file: "hil/firmware/src/part/stm32f405.rs",
+        wrong: "RECEIVED.push(byte.checked_add(1).unwrap());" },
+    Plant { name: "start-up", file: "hil/firmware/src/part/stm32f405.rs", bin: "lockstep", is_long: false,
         right: "    if !comes(|| RCC.cr().read().pllrdy()) {",
-        wrong: "    assert!(comes(|| RCC.cr().read().pllrdy()));\n    if false {",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "lockstep itself",
-        file: "hil/firmware/src/lockstep.rs",
+        wrong: "    assert!(comes(|| RCC.cr().read().pllrdy()));\n    if false {" },
+    Plant { name: "lockstep itself", file: "hil/firmware/src/lockstep.rs", bin: "lockstep", is_long: false,
         right: "fault::over_the_link(format_args!(\"stack overflow: all of {} bytes used\", stack::size()));",
-        wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "logs",
-        file: "hil/firmware/src/log.rs",
+        wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());" },
+    Plant { name: "logs", file: "hil/firmware/src/log.rs", bin: "lockstep", is_long: false,
         right: "if let Some(place) = self.bytes.get_mut(self.used) {",
-        wrong: "{\n                let place = &mut self.bytes[self.used];",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "an operator's orders",
-        file: "controller/src/agent/commanded.rs",
+        wrong: "{\n                let place = &mut self.bytes[self.used];" },
+    Plant { name: "an operator's orders", file: "controller/src/agent/commanded.rs", bin: "nopanic_operator", is_long: true,
         right: "self.wish = wish;",
-        wrong: "self.wish = [wish][core::hint::black_box(1)];",
-        bin: "nopanic_operator",
-        is_long: true,
-    },
+        wrong: "self.wish = [wish][core::hint::black_box(1)];" },
 ];
 
 /// Plants on the part whose firmware has them all; those that take minutes only if `all` is set.
@@ -94,8 +67,8 @@ pub fn run(s: &mut Session, all: bool) {
     }
 }
 
-/// That no source names one of the macros of `defmt` that panic: those have a panic of their own, of which the linker is told that it is in
-/// order (`hil/firmware/build.rs`).
+/// That no source names one of the macros of `defmt` that panic: those have a panic of their own,
+/// of which the linker is told that it is in order (`hil/firmware/build.rs`).
 pub fn check_logs(root: &Path) -> Result<(), String> {
     for file in LOGGED.iter().map(|folder| list(&root.join(folder))).collect::<Result<Vec<_>, _>>()?.concat() {
         let bytes = files::bytes(&file)?;
@@ -137,7 +110,8 @@ fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) ->
     }
 }
 
-/// The sources with the plant in them. What is as it should be is left alone, so that cargo builds only what differs.
+/// The sources with the plant in them. What is as it should be is left alone, so that cargo builds
+/// only what differs.
 fn copy_sources(root: &Path, copy: &Path, plant: &Plant) -> Result<(), String> {
     let mut sources = FILES.map(|file| root.join(file)).to_vec();
     sources.extend(FOLDERS.iter().map(|folder| list(&root.join(folder))).collect::<Result<Vec<_>, _>>()?.concat());

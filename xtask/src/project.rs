@@ -1,4 +1,5 @@
-//! What `staya new` makes compiles, and its tests run: a project of each kind in `target/new`, in the target folder that all share.
+//! Projects that `staya new` makes compile, and their tests run: a project of each kind in
+//! `target/new`, in the target folder that all share.
 
 use crate::apt::Tools;
 use crate::c;
@@ -22,7 +23,8 @@ const PARTS: [(&str, &str); 4] = [
     ("nrf52840", "thumbv7em-none-eabihf"),
     ("esp32c3", "riscv32imc-unknown-none-elf"),
 ];
-/// Rust on this machine; of all extent also C, firmware for each part, the law on the emulated one, Python.
+/// Rust on this machine; of all extent also C, firmware for each part, the law on the emulated one,
+/// Python.
 pub fn run(s: &mut Session, extent: Extent) {
     if s.staya("debug").is_none() {
         return s.report.skip("new projects", "`staya` is not compiled");
@@ -87,7 +89,8 @@ fn firmware(s: &mut Session, name: &str, target: &str) {
     s.with_toolchain(&format!("a new robot's firmware for {name}"), target, |repo, toolchain| {
         let folder = make(repo, &format!("robot-{name}"), &["--part", name])?;
         let mut build = toolchain.cargo(repo, target, "build");
-        // As quick to compile as can be linked; the part that `cargo xtask example` has compiled for release is that.
+        // As quick to compile as can be linked; the part that `cargo xtask example` has compiled
+        // for release is that.
         build.args((name == STM32F405.name).then_some("--release"));
         run_command_line(build.arg("--quiet").current_dir(folder.join("firmware")))
     });

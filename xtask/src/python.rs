@@ -12,7 +12,7 @@ use std::process::Command;
 const PYTHON: Tools = Tools { packages: &["python3", "python3-venv"], programs: &["Python 3 with venv"] };
 /// Looks into a capture.
 const TSHARK: Tools = Tools { packages: &["tshark"], programs: &["tshark"] };
-/// A browser without windows, and what it shows text with.
+/// A browser without windows, and its fonts.
 const CHROMIUM: Tools = Tools {
     packages: &["chromium-headless-shell", "chromium-common", "fontconfig-config", "fonts-dejavu-core"],
     programs: &["chromium-headless-shell"],
@@ -24,12 +24,14 @@ const CLUSTER: Tools = Tools {
 };
 /// The package for Python, which has nothing in it without this feature.
 pub const FEATURE: &str = "staya-python/module";
-/// For lints on a machine that may have no Python: links against no libpython, as in a wheel, and asks no interpreter.
+/// For lints on a machine that may have no Python: links against no libpython, as in a wheel, and
+/// asks no interpreter.
 pub const WITHOUT_PYTHON: [(&str, &str); 2] = [("PYO3_BUILD_EXTENSION_MODULE", "1"), ("PYO3_NO_PYTHON", "1")];
 /// The environment with the wheel.
 const PACKAGE: &str = "python-package";
 
-/// MAVLink clients against `staya`: the tests whose names contain `only`; long ones only if all are wanted.
+/// MAVLink clients against `staya`: the tests whose names contain `only`; long ones only if all are
+/// wanted.
 pub fn clients(s: &mut Session, only: Option<&str>, extent: Extent) {
     // Tests wait for real time more than they compute.
     let mut arguments = vec!["tests/python", "-n", "12", "--dist", "worksteal"];
@@ -67,7 +69,7 @@ pub fn cluster(s: &mut Session) {
     suite(s, "sweeps on Slurm and GNU parallel", Suite { program, environment, arguments }, prepare);
 }
 
-/// The package for Python: a wheel, the types of what is not compiled, tests.
+/// The package for Python: a wheel, the types of its Python code, tests.
 pub fn package(s: &mut Session) {
     const NAME: &str = "the package for Python";
     let python = match package_environment(&s.repo) {
@@ -85,10 +87,10 @@ pub fn package(s: &mut Session) {
     suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
 }
 
-/// What a suite is run with.
+/// The setting of a suite.
 #[derive(Default)]
 pub struct Suite<'a> {
-    /// What is tested, in the variable `STAYA`; the suite is skipped without it.
+    /// The program under test, in the variable `STAYA`; the suite is skipped without it.
     pub program: Option<PathBuf>,
     /// Further variables.
     pub environment: Vec<(&'static str, String)>,
@@ -116,7 +118,8 @@ pub fn pytest(repo: &Repo, python: &Path, arguments: &[&str]) -> Command {
     tests
 }
 
-/// An environment in a folder of the target folder, brought up to date with a list of packages from PyPI. Returns its Python.
+/// An environment in a folder of the target folder, brought up to date with a list of packages from
+/// PyPI. Returns its Python.
 fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf, String> {
     let folder = repo.target.join(folder);
     let python = folder.join("bin/python");
@@ -151,7 +154,8 @@ pub fn client_environment(repo: &Repo) -> Result<PathBuf, String> {
 pub fn client_tools(repo: &Repo) -> Result<PathBuf, String> {
     let python = client_environment(repo)?;
     if output_of(repo.command("tshark").arg("--version")).is_none() {
-        // For root it reads its data from where it was built for, and nowhere else. Without it one test is skipped.
+        // For root it reads its data from where it was built for, and nowhere else. Without it one
+        // test is skipped.
         if let Err(reason) = TSHARK.install(repo).or_else(|_| TSHARK.unpack(repo)) {
             println!("no tshark ({reason}); on Debian run, as root, `apt-get update && apt-get install tshark`");
         }
@@ -173,7 +177,8 @@ pub fn with_wheel(repo: &Repo) -> Result<PathBuf, String> {
     Ok(python)
 }
 
-/// Builds the wheel with the profile of tests, which is quick to compile and fast enough, and installs it.
+/// Builds the wheel with the profile of tests, which is quick to compile and fast enough, and
+/// installs it.
 fn wheel(repo: &Repo, python: &Path) -> Result<(), String> {
     let wheels = repo.target.join(PACKAGE).join("wheels");
     files::make_empty(&wheels)?;
@@ -188,8 +193,8 @@ fn wheel(repo: &Repo, python: &Path) -> Result<(), String> {
 /// Before figures that a test prints for the closing table.
 const FIGURES: &str = "figures: ";
 
-/// Runs tests and reads how many did what. The note says what went wrong, how many tests another command has, and the figures that were
-/// found last.
+/// Runs tests and reads how many did what. The note says what went wrong, how many tests another
+/// command has, and the figures that were found last.
 pub fn counted(tests: &mut Command) -> (Counts, String) {
     let (mut closing, mut figures) = (None, None);
     let ended = run_reading(tests, |line| {
@@ -211,7 +216,8 @@ pub fn counted(tests: &mut Command) -> (Counts, String) {
     (counts, notes.join(": "))
 }
 
-/// The counts in the last line of pytest, `1 failed, 2 passed, 1 skipped in 3.21s`, or of the soak; and how many tests were not wanted.
+/// The counts in the last line of pytest, `1 failed, 2 passed, 1 skipped in 3.21s`, or of the soak;
+/// and how many tests were not wanted.
 fn closing_line(line: &str) -> Option<(Counts, u64)> {
     let (counts, time) = line.trim_start_matches("soak: ").trim_matches(['=', ' ']).rsplit_once(" in ")?;
     if !time.contains('s') || !time.starts_with(|first: char| first.is_ascii_digit()) {

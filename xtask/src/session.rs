@@ -1,4 +1,5 @@
-//! What a command works with: the repository, the report, toolchains, and the programs once they are built.
+//! The session of a command: the repository, the report, toolchains, and the programs once they
+//! are built.
 
 use crate::device::{Toolchain, Toolchains};
 use crate::repo::{Repo, output_of};
@@ -10,7 +11,7 @@ pub const MAIN: &str = "staya";
 /// Programs that it hands over to; those that the workspace does not have are left out.
 const OTHERS: [&str; 5] = ["staya-lab", "staya-view", "staya-mav", "staya-hil", "staya-voxel"];
 
-/// What a command works with.
+/// The session of a command.
 pub struct Session {
     pub repo: Repo,
     pub report: Report,
@@ -25,8 +26,8 @@ impl Session {
         Self { repo, report, toolchains: Toolchains::default(), built: Vec::new() }
     }
 
-    /// `staya` of a profile, `debug` or `release`, in a folder with the programs that it hands over to. Builds them unless that was done
-    /// before; none if they cannot be built.
+    /// `staya` of a profile, `debug` or `release`, in a folder with the programs that it hands over
+    /// to. Builds them unless that was done before; none if they cannot be built.
     pub fn staya(&mut self, profile: &'static str) -> Option<PathBuf> {
         let before = self.built.iter().find(|(known, _)| *known == profile).map(|(_, is_built)| *is_built);
         let is_built = before.unwrap_or_else(|| {
@@ -44,7 +45,8 @@ impl Session {
         is_built.then(|| self.repo.program(profile, MAIN))
     }
 
-    /// A step that compiles for a target; skipped without a toolchain for it. Returns whether it succeeded.
+    /// A step that compiles for a target; skipped without a toolchain for it. Returns whether it
+    /// succeeded.
     pub fn with_toolchain(
         &mut self,
         name: &str,

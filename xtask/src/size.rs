@@ -17,20 +17,21 @@ use serde::Serialize;
 /// Where the limits are.
 const BUDGETS: &str = "hil/budgets.toml";
 
-/// What was measured on a part.
+/// The measurements of a part.
 #[derive(Serialize)]
 struct Measured {
     part: &'static str,
     /// Programs with their sections, bytes.
     programs: Vec<(String, Sections)>,
     rows: Vec<Row>,
-    /// What each behaviour's step needs of flash.
+    /// The flash that each behaviour's step needs.
     steps: Vec<reach::Step>,
-    /// What it takes to write and to read frames of each wire format.
+    /// The flash that encoder and decoder of each wire format need.
     formats: Vec<reach::Step>,
 }
 
-/// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON instead of as tables.
+/// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON
+/// instead of as tables.
 pub fn run(s: &mut Session, is_json: bool) {
     let mut all = Vec::new();
     for part in &PARTS {

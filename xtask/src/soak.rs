@@ -1,4 +1,5 @@
-//! `cargo xtask soak`: all of `staya` at once among hostile clients, for minutes or hours. `tests/python/soak.py` does it and judges.
+//! `cargo xtask soak`: all of `staya` at once among hostile clients, for minutes or hours.
+//! `tests/python/soak.py` does it and judges.
 
 use crate::device::STM32F405;
 use crate::emulate;
@@ -9,7 +10,7 @@ use crate::repo::Repo;
 use crate::session::Session;
 
 const NAME: &str = "soak";
-/// What can be asked for alone, as `tests/python/soak.py` names it; the last one needs firmware.
+/// Parts of the soak, as `tests/python/soak.py` names them; the last one needs firmware.
 const PARTS: [&str; 4] = ["flood", "key", "companion", HIL];
 const HIL: &str = "hil";
 
@@ -22,7 +23,8 @@ pub fn run_command(s: &mut Session, options: &Options<'_>) {
     run(s, "release", options, parts);
 }
 
-/// A short one with the program and the firmware that tests have brought, so that the command itself does not rot.
+/// A short one with the program and the firmware that tests have brought, so that the command
+/// itself does not rot.
 pub fn run_short(s: &mut Session) {
     let options = Options::read("soak [--minutes N]", &["--minutes", "0.15"]).unwrap_or_default();
     run(s, "debug", &options, PARTS.to_vec());
@@ -54,7 +56,7 @@ fn run(s: &mut Session, profile: &'static str, options: &Options<'_>, mut parts:
     s.report.part(NAME, || python::counted(soak.args(parts)));
 }
 
-/// What firmware in the loop lacks here, if anything.
+/// An error if firmware in the loop cannot run here.
 fn has_firmware(repo: &Repo) -> Result<(), String> {
     if !Profile::Firmware.elf(repo, STM32F405, "lockstep").is_file() {
         return Err(format!("no firmware for {}", STM32F405.name));

@@ -1,4 +1,5 @@
-//! The sources of crates as tokens: the paths that each module names, and the lines that hold code. Tests are left out.
+//! The sources of crates as tokens: the paths that each module names, and the lines that hold code.
+//! Tests are left out.
 
 use crate::files;
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
@@ -8,10 +9,10 @@ use std::path::Path;
 /// A module's names from the crate's root down; empty for the root itself.
 pub type Module = Vec<String>;
 
-/// What a module consists of.
+/// The content of a module.
 #[derive(Default)]
 pub struct Content {
-    /// What it names by paths from `crate`, `super` and `self`, from the crate's root down.
+    /// Paths in it that begin with `crate`, `super` or `self`, from the crate's root down.
     pub named: Vec<Module>,
     /// Lines with code; neither blank nor comment.
     pub lines: BTreeSet<usize>,
@@ -106,7 +107,8 @@ impl Code {
         }
     }
 
-    /// Counts the lines of these tokens and, of a group, those of its brackets; with `inside` also those between them.
+    /// Counts the lines of these tokens and, of a group, those of its brackets; with `inside` also
+    /// those between them.
     fn mark(&mut self, module: &Module, tokens: &[TokenTree], inside: bool) {
         for token in tokens {
             let spans = match token {
@@ -123,7 +125,8 @@ impl Code {
         }
     }
 
-    /// What comes behind an item that only tests have, or behind a field or another element of a list.
+    /// The tokens behind an item that only tests have, or behind a field or another element of a
+    /// list.
     fn skip<'a>(&mut self, tokens: &'a [TokenTree], module: &Module) -> &'a [TokenTree] {
         const ITEMS: [&str; 12] =
             ["fn", "mod", "use", "struct", "enum", "impl", "trait", "const", "static", "type", "extern", "macro_rules"];
@@ -142,7 +145,7 @@ impl Code {
         if let [.., keyword, TokenTree::Ident(name), _] = item
             && is(keyword, "mod")
         {
-            // A file of another name is told in an attribute: `#[path = "tests.rs"]`.
+            // An attribute names a file of another name: `#[path = "tests.rs"]`.
             let text = item.iter().map(ToString::to_string).collect::<String>();
             let file = text.split_once("path = \"").and_then(|(_, rest)| rest.split_once(".rs\""));
             self.tests.insert(file.map_or_else(|| below(module, name), |(file, _)| below(module, file)));

@@ -7,7 +7,8 @@ use crate::firmware::Profile;
 use crate::repo::{Repo, output_of, run as run_command, shown};
 use crate::session::Session;
 
-/// What all must give: `case number hash steps` in each line. The tests on the host compare it too, and write it.
+/// The golden rows: `case number hash steps` in each line. The tests on the host compare it too,
+/// and write it.
 const TABLE: &str = "tests/golden/cases.txt";
 /// Cases with tables for which the small part has no flash.
 const LARGE: [&str; 3] = ["orca_template_8k", "orca_template_16k", "orca_template_64k"];
@@ -32,7 +33,8 @@ pub fn run(s: &mut Session) {
     replay(s, STM32F405, Profile::Debug, &[]);
 }
 
-/// The programs that tests on emulated parts need, for these parts: devices in lockstep, canned swarms.
+/// The programs that tests on emulated parts need, for these parts: devices in lockstep, canned
+/// swarms.
 pub fn run_short(s: &mut Session, parts: &[&'static Part]) {
     for part in parts {
         replay(s, part, Profile::Firmware, &["lockstep", "replay"]);
@@ -48,7 +50,8 @@ fn replay(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) {
     });
 }
 
-/// Firmware that goes wrong says why over its line, and starts again with its count of starts kept; on these parts, or all if none is named.
+/// Firmware that goes wrong says why over its line, and starts again with its count of starts kept;
+/// on these parts, or all if none is named.
 pub fn faults(s: &mut Session, names: &[&str]) {
     for part in parts(names) {
         on_part(s, &format!("faults on the {}", part.name), part, (Profile::Firmware, &["faults"]), |repo| {
@@ -73,7 +76,8 @@ fn misses(part: &Part, said: &str) -> Option<String> {
     })
 }
 
-/// Whether a row of the table is for a part: the one without FPU and with little flash computes in fixed point only.
+/// Whether a row of the table is for a part: the one without FPU and with little flash computes in
+/// fixed point only.
 fn is_for(part: &Part, row: &str) -> bool {
     let mut words = row.split(' ');
     let (case, number) = (words.next().unwrap_or(""), words.next());

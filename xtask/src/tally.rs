@@ -1,4 +1,4 @@
-//! What test programs say of themselves, added up.
+//! The closing lines of test programs, added up.
 
 use crate::extent::LONG;
 use crate::repo::run_reading;
@@ -58,8 +58,8 @@ impl Tally {
     }
 }
 
-/// The counts in one line of a test program's output, if it is its closing line, and the number of ignored tests, which another command
-/// has. What the command line filtered out was skipped.
+/// The counts in one line of a test program's output, if it is its closing line, and the number of
+/// ignored tests, which another command has. What the command line filtered out was skipped.
 fn parse_test_result(line: &str) -> Option<(Counts, u64)> {
     let rest = line.strip_prefix("test result: ")?;
     let (_, counts) = rest.split_once(". ")?;
@@ -81,8 +81,8 @@ fn parse_test_result(line: &str) -> Option<(Counts, u64)> {
 }
 
 /// Runs test programs and adds up their closing lines. A program that ends without one (it
-/// crashed), and a command that fails without any test that does (it did not compile), is one failure each.
-/// The note names what failed; `why_skipped` is part of it if anything was.
+/// crashed), and a command that fails without any test that does (it did not compile), is one
+/// failure each. The note names what failed; `why_skipped` is part of it if anything was.
 pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
     let mut tally = Tally::default();
     let ended = run_reading(tests, |line| tally.read(line));

@@ -12,8 +12,8 @@ const SHORT: [&Part; 2] = [&PARTS[0], &PARTS[1]];
 /// Tests in a module of this name read data beside the repository, which CI has.
 const NEEDS_SHARED: &str = "needs_shared::";
 
-/// Properties are tried on the same random cases each time, so that a failure is the change's; `cargo test` alone takes
-/// new ones.
+/// Properties are tried on the same random cases each time, so that a failure is the change's;
+/// `cargo test` alone takes new ones.
 const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 
 /// Host tests and clients, then what other targets and other workspaces can show.

@@ -1,4 +1,5 @@
-//! `cargo xtask weight`: what the README's first command costs, beside the last record, and no library compiled twice.
+//! `cargo xtask weight`: what the README's first command costs, beside the last record, and no
+//! library compiled twice.
 
 use crate::files;
 use crate::options::Options;
@@ -15,7 +16,8 @@ const RECORDS: &str = "xtask/weight.csv";
 const HEADER: &str = "date,commit,units,processor_s,peer_s,program_bytes,code_lines";
 const PEER: [&str; 4] = ["install", "ripgrep", "--locked", "--root"];
 
-/// The command: prints each figure beside the last record; `--record` adds one, `--peer` also measures another program.
+/// The command: prints each figure beside the last record; `--record` adds one, `--peer` also
+/// measures another program.
 pub fn run_command(s: &mut Session, options: &Options<'_>) {
     s.report.step(SHARED, || check_shared(&s.repo));
     s.report.step("weight", || measure(&s.repo, options));
@@ -61,7 +63,8 @@ fn seconds(command: &mut std::process::Command) -> Result<f64, String> {
     Ok(worked.unwrap_or_default().as_secs_f64())
 }
 
-/// Each figure, its value in the last record that has it, and the ratio of both; the time also as a ratio to the peer's.
+/// Each figure, its value in the last record that has it, and the ratio of both; the time also as a
+/// ratio to the peer's.
 fn table(records: &str, figures: &[Option<f64>; 5]) -> String {
     let rows: Vec<Vec<Option<f64>>> =
         records.lines().skip(1).map(|row| row.split(',').skip(2).map(|field| field.parse().ok()).collect()).collect();
@@ -99,7 +102,7 @@ pub const SHARED: &str = "no library compiled twice for the programs";
 struct Unit {
     pkg_id: String,
     target: Target,
-    /// What for: `build`, or `run-custom-build`.
+    /// `build`, or `run-custom-build`.
     mode: String,
     /// Differs between a library of programs and the same library of build scripts and macros.
     profile: serde_json::Value,
@@ -118,7 +121,7 @@ struct Graph {
     units: Vec<Unit>,
 }
 
-/// What cargo would compile for a program, without compiling it.
+/// Cargo's plan for a program; nothing is compiled.
 fn graph(repo: &Repo, package: &str, program: &str) -> Result<Graph, String> {
     let mut plan = repo.cargo(&["build", "--release", "--locked", "--package", package, "--bin", program]);
     // The option is stable enough to be read, and not stable.
@@ -127,7 +130,8 @@ fn graph(repo: &Repo, package: &str, program: &str) -> Result<Graph, String> {
     serde_json::from_str(&text).map_err(|error| format!("cargo's plan of {program}: {error}"))
 }
 
-/// Compares the plans of all programs: one folder has each library once if they want the same features of it.
+/// Compares the plans of all programs: one folder has each library once if they want the same
+/// features of it.
 pub fn check_shared(repo: &Repo) -> Result<(), String> {
     let graph = |(package, program): (String, &'static str)| Ok((program, graph(repo, &package, program)?));
     let graphs = programs(repo)?.into_iter().map(graph).collect::<Result<Vec<_>, String>>()?;
