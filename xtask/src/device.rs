@@ -1,11 +1,9 @@
 //! Microcontrollers, and what compiles for them: rustup's targets or Debian's packages.
 
 use crate::apt::Tools;
-use crate::repo::{Repo, ended, output_of};
-use crate::report::Report;
+use crate::repo::{Repo, output_of};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread::JoinHandle;
 
 /// A microcontroller that there is firmware for.
 pub struct Part {
@@ -50,78 +48,6 @@ pub enum Toolchain {
 #[derive(Default)]
 pub struct Toolchains {
     debian: Option<Result<Debian, String>>,
-}
-
-/// Checks of the controller with each set of features that its manifest lists, which go on while
-/// other steps run: on the part with a Cortex-M4F; on the one with a Cortex-M0, which has no FPU,
-/// with those that have fixed point.
-pub struct FeatureChecks {
-    /// Names of steps, and what checks them or why nothing does.
-    checks: Vec<(String, Result<Check, String>)>,
-}
-
-/// The result, once the thread has ended.
-type Check = JoinHandle<Result<(), String>>;
-
-impl FeatureChecks {
-    /// Begins them, one thread a part: the compiler has one thread for one crate.
-    pub fn begin(repo: &Repo) -> Self {
-        let manifest = std::fs::read_to_string(repo.root.join("controller/Cargo.toml"));
-        let sets = feature_sets(&manifest.unwrap_or_default());
-        let mut toolchains = Toolchains::default();
-        let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
-        let checks = parts.map(|part| {
-            let has_fpu = part.target.ends_with("hf");
-            let fits = |features: &&String| has_fpu || features.split(',').any(|feature| feature == "fixed");
-            let check = toolchains.find(repo, part.target).map(|toolchain| {
-                // Cargo lets one command at a time into a folder.
-                let folder = toolchain.target_folder(repo).join("sets").join(part.target);
-                let commands = sets.iter().filter(fits).map(|features| {
-                    let mut check = toolchain.cargo(repo, part.target, "check");
-                    check.args(["--locked", "--quiet", "--package", "staya-controller"]);
-                    check.args(["--no-default-features", "--features", features]);
-                    check.env("CARGO_TARGET_DIR", &folder);
-                    (features.clone(), check)
-                });
-                let commands: Vec<_> = commands.collect();
-                std::thread::spawn(move || check_each(commands))
-            });
-            (format!("feature sets of the controller for {}", part.target), check)
-        });
-        Self { checks: checks.collect() }
-    }
-
-    /// Waits for them: one step a part.
-    pub fn end(self, report: &mut Report) {
-        for (name, check) in self.checks {
-            match check {
-                Ok(check) => {
-                    report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
-                }
-                Err(reason) => report.skip(&name, &reason),
-            }
-        }
-    }
-}
-
-/// Quiet, because other steps run beside it, but for what the compiler finds.
-fn check_each(commands: Vec<(String, Command)>) -> Result<(), String> {
-    commands
-        .into_iter()
-        .try_for_each(|(features, mut check)| ended(check.status()).map_err(|reason| format!("`{features}`: {reason}")))
-}
-
-/// The list `feature-sets` in a manifest's metadata, and the set without any feature.
-fn feature_sets(manifest: &str) -> Vec<String> {
-    let manifest: Option<toml::Table> = manifest.parse().ok();
-    let sets = manifest.as_ref().and_then(|manifest| {
-        let metadata = manifest.get("package")?.get("metadata")?.get("staya")?;
-        metadata.get("feature-sets")?.as_array()
-    });
-    let names = sets.into_iter().flatten().filter_map(toml::Value::as_str);
-    let mut names: Vec<String> = std::iter::once("").chain(names).map(String::from).collect();
-    names.dedup();
-    names
 }
 
 impl Toolchains {
@@ -234,13 +160,6 @@ fn names_a_toolchain(variable: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn feature_sets_are_those_of_the_manifest_and_the_empty_one() {
-        let manifest = "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
-        assert_eq!(feature_sets(manifest), ["", "orca", "orca,fixed"]);
-        assert_eq!(feature_sets("[package]\n"), [""]);
-    }
 
     #[test]
     fn toolchain_of_the_parent_does_not_leak() {
