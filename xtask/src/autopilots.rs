@@ -5,6 +5,7 @@ use crate::options::Options;
 use crate::python;
 use crate::repo::{Repo, run_reading};
 use crate::session::Session;
+use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -99,7 +100,7 @@ pub fn run_command(s: &mut Session, options: &Options<'_>) {
         for test in names(&mut list) {
             // One at a time: they go by the clock.
             let row = test.rsplit("::test_").next().unwrap_or(&test).replace('_', " ");
-            s.report.part(&row, || python::counted(start().arg("-s").arg(&test)));
+            s.report.part(&row, || counted(start().arg("-s").arg(&test), ""));
         }
     }
 }

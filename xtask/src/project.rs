@@ -12,6 +12,7 @@ use crate::python;
 use crate::repo::{Repo, output_of, run as run_command_line};
 use crate::report::Counts;
 use crate::session::{MAIN, Session};
+use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -140,7 +141,7 @@ fn in_python(s: &mut Session) {
             Ok(folder)
         });
         match made {
-            Ok(folder) => python::counted(python::pytest(&s.repo, &python, &[]).current_dir(folder)),
+            Ok(folder) => counted(python::pytest(&s.repo, &python, &[]).current_dir(folder), ""),
             Err(reason) => (Counts { failed: 1, ..Default::default() }, reason),
         }
     });

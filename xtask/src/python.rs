@@ -1,11 +1,11 @@
 //! Tests in Python, each suite in an environment of its own in the target folder.
 
 use crate::apt::Tools;
-use crate::extent::{Extent, LONG};
+use crate::extent::Extent;
 use crate::files;
-use crate::repo::{Repo, output_of, run, run_reading};
-use crate::report::Counts;
+use crate::repo::{Repo, output_of, run};
 use crate::session::Session;
+use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -106,7 +106,7 @@ pub fn suite(s: &mut Session, name: &str, suite: Suite<'_>, prepare: impl FnOnce
         Ok((program, python)) => {
             let mut tests = pytest(&s.repo, &python, suite.arguments);
             tests.env("STAYA", program).envs(suite.environment);
-            s.report.part(name, || counted(&mut tests));
+            s.report.part(name, || counted(&mut tests, ""));
         }
     }
 }
@@ -188,86 +188,4 @@ fn wheel(repo: &Repo, python: &Path) -> Result<(), String> {
     let built: Vec<String> = files::entries(&wheels)?.iter().map(|wheel| wheel.display().to_string()).collect();
     let wheels = built.iter().map(String::as_str);
     pip(repo, python, &["--force-reinstall", "--no-deps"].into_iter().chain(wheels).collect::<Vec<_>>())
-}
-
-/// Before figures that a test prints for the closing table.
-const FIGURES: &str = "figures: ";
-
-/// Runs tests and reads how many did what. The note says what went wrong, how many tests another
-/// command has, and the figures that were found last.
-pub fn counted(tests: &mut Command) -> (Counts, String) {
-    let (mut closing, mut figures) = (None, None);
-    let ended = run_reading(tests, |line| {
-        closing = closing_line(line).or(closing);
-        figures = line.strip_prefix(FIGURES).map(String::from).or_else(|| figures.take());
-    });
-    let (mut counts, others) = closing.unwrap_or_default();
-    let mut notes = Vec::new();
-    match ended {
-        Ok(()) if closing.is_some() => {}
-        Err(_) if counts.failed > 0 => notes.push(String::from("see above")),
-        ended => {
-            counts.failed += 1;
-            notes.push(ended.err().unwrap_or_else(|| String::from("no closing line")));
-        }
-    }
-    notes.extend((others > 0).then(|| format!("{others} tests: {LONG}")));
-    notes.extend(figures);
-    (counts, notes.join(": "))
-}
-
-/// The counts in the last line of pytest, `1 failed, 2 passed, 1 skipped in 3.21s`, or of the soak;
-/// and how many tests were not wanted.
-fn closing_line(line: &str) -> Option<(Counts, u64)> {
-    let (counts, time) = line.trim_start_matches("soak: ").trim_matches(['=', ' ']).rsplit_once(" in ")?;
-    if !time.contains('s') || !time.starts_with(|first: char| first.is_ascii_digit()) {
-        return None;
-    }
-    let (mut sum, mut others) = (Counts::default(), 0);
-    for field in counts.split(", ") {
-        let (number, what) = field.split_once(' ')?;
-        let number: u64 = number.parse().ok()?;
-        match what {
-            "passed" => sum.passed += number,
-            "failed" | "error" | "errors" | "xpassed" => sum.failed += number,
-            "skipped" | "xfailed" => sum.skipped += number,
-            "deselected" => others += number,
-            _ => {}
-        }
-    }
-    Some((sum, others))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn closing_line_is_counted() {
-        let line = "==== 1 failed, 12 passed, 2 skipped, 7 deselected, 1 error in 63.21s (0:01:03) ====";
-        assert_eq!(closing_line(line), Some((Counts { passed: 12, failed: 2, skipped: 2 }, 7)));
-        let soak = "soak: 27 passed, 1 failed in 3.0 minutes; load of the machine 1.9";
-        assert_eq!(closing_line(soak), Some((Counts { passed: 27, failed: 1, skipped: 0 }, 0)));
-    }
-
-    #[test]
-    fn other_lines_are_not() {
-        for line in [
-            "",
-            "tests/python/test_a.py ....  [100%]",
-            "FAILED test_a.py::test_b - assert 1 in (2, 3)",
-            "no tests ran in 0.01s",
-            "flood     ok      memory is flat",
-        ] {
-            assert_eq!(closing_line(line), None, "{line}");
-        }
-    }
-
-    #[test]
-    fn deselected_tests_are_not_counted() {
-        let mut tests = Command::new("echo");
-        let (counts, note) = counted(tests.arg("3 passed, 2 deselected in 0.12s"));
-        assert_eq!((counts, note), (Counts { passed: 3, ..Counts::default() }, format!("2 tests: {LONG}")));
-        assert_eq!(counted(&mut Command::new("true")).0.failed, 1);
-    }
 }

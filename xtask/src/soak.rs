@@ -8,6 +8,7 @@ use crate::options::Options;
 use crate::python;
 use crate::repo::Repo;
 use crate::session::Session;
+use crate::tally::counted;
 
 const NAME: &str = "soak";
 /// Parts of the soak, as `tests/python/soak.py` names them; the last one needs firmware.
@@ -53,7 +54,7 @@ fn run(s: &mut Session, profile: &'static str, options: &Options<'_>, mut parts:
     for option in ["--minutes", "--json"] {
         soak.args(options.value(option).into_iter().flat_map(|value| [option, value]));
     }
-    s.report.part(NAME, || python::counted(soak.args(parts)));
+    s.report.part(NAME, || counted(soak.args(parts), ""));
 }
 
 /// An error if firmware in the loop cannot run here.
