@@ -1,9 +1,11 @@
-//! `cargo xtask autopilots`: the companion beside ArduPilot's own code, in its own simulation, for whoever has built it.
+//! `cargo xtask autopilots`: the companion beside ArduPilot's own code, in its own simulation, for
+//! whoever has built it.
 
-use crate::clients;
-use crate::python::pytest;
-use crate::repo::{Repo, run, run_reading};
-use crate::report::Report;
+use crate::options::Options;
+use crate::python;
+use crate::repo::{Repo, run_reading};
+use crate::session::Session;
+use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -33,39 +35,6 @@ const KINDS: [Kind; 2] = [
     Kind { name: "copter", option: "--copter", variable: "STAYA_COPTER", files: &["test_copters.py"] },
 ];
 
-/// What the command line asks for.
-#[derive(Default, Debug, PartialEq)]
-pub struct Request<'a> {
-    /// The programs, by the places in [`KINDS`].
-    programs: [Option<&'a str>; 2],
-    defaults: Option<&'a str>,
-    /// Of the tests those whose names contain it.
-    name: Option<&'a str>,
-}
-
-impl<'a> Request<'a> {
-    /// Reads `[--rover PATH] [--copter PATH] [--defaults FOLDER] [NAME]`.
-    pub fn read(arguments: &[&'a str]) -> Option<Self> {
-        let mut request = Self::default();
-        let mut rest = arguments.iter();
-        while let Some(argument) = rest.next() {
-            let [rover, copter] = &mut request.programs;
-            let place = match *argument {
-                "--rover" => rover,
-                "--copter" => copter,
-                "--defaults" => &mut request.defaults,
-                option if option.starts_with('-') => return None,
-                name => {
-                    request.name = Some(name);
-                    continue;
-                }
-            };
-            *place = Some(rest.next()?);
-        }
-        Some(request)
-    }
-}
-
 /// A simulation that can be started, and the folder with its parameters.
 struct Simulation {
     program: PathBuf,
@@ -73,9 +42,9 @@ struct Simulation {
 }
 
 /// The simulation of `kind` that is asked for; the error says why there is none.
-fn simulation(repo: &Repo, request: &Request<'_>, kind: &Kind, program: Option<&str>) -> Result<Simulation, String> {
+fn simulation(repo: &Repo, options: &Options<'_>, kind: &Kind) -> Result<Simulation, String> {
     let Kind { name, option, .. } = kind;
-    let Some(program) = program else {
+    let Some(program) = options.value(option) else {
         return Err(format!("no program: {REMEDY}, `cargo xtask autopilots {option} PATH`"));
     };
     let absent = |error: std::io::Error| format!("{option} {program}: {error}; {REMEDY}");
@@ -89,7 +58,7 @@ fn simulation(repo: &Repo, request: &Request<'_>, kind: &Kind, program: Option<&
     }
     let file = format!("{name}.parm");
     let beside = || program.ancestors().map(|folder| folder.join(DEFAULTS)).find(|folder| folder.join(&file).is_file());
-    let defaults = match request.defaults {
+    let defaults = match options.value("--defaults") {
         Some(folder) => Path::new(folder).canonicalize().ok().filter(|folder| folder.join(&file).is_file()),
         None => beside(),
     };
@@ -102,41 +71,36 @@ fn simulation(repo: &Repo, request: &Request<'_>, kind: &Kind, program: Option<&
 }
 
 /// The command: each flight is a row of the closing table, with its figures.
-pub fn run_command(repo: &Repo, report: &mut Report, request: &Request<'_>) {
+pub fn run_command(s: &mut Session, options: &Options<'_>) {
     let mut flights = Vec::new();
-    for (kind, program) in KINDS.iter().zip(request.programs) {
-        match simulation(repo, request, kind, program) {
+    for kind in &KINDS {
+        match simulation(&s.repo, options, kind) {
             Ok(simulation) => flights.push((kind, simulation)),
-            Err(reason) => report.skip(&format!("ArduPilot's {}s", kind.name), &reason),
+            Err(reason) => s.report.skip(&format!("ArduPilot's {}s", kind.name), &reason),
         }
     }
     if flights.is_empty() {
         return;
     }
-    let mut build = repo.cargo(&["build", "--locked", "--release", "--package", "staya"]);
-    if !report.step("staya beside autopilots", || run(&mut build)) {
-        return;
-    }
-    let python = match clients::environment(repo) {
+    let Some(staya) = s.staya("release") else { return };
+    let python = match python::client_environment(&s.repo) {
         Ok(python) => python,
-        Err(reason) => return report.skip("flights", &reason),
+        Err(reason) => return s.report.skip("flights", &reason),
     };
     for (kind, simulation) in flights {
         let start = || {
-            let mut tests = repo.command(&python);
-            tests.args(["-m", "pytest", "-q", "--color", "no", "--timeout", LONGEST]);
+            let mut tests = python::pytest(&s.repo, &python, &["--timeout", LONGEST]);
             tests.env(kind.variable, &simulation.program).env("STAYA_AUTOPILOT_DEFAULTS", &simulation.defaults);
-            let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
-            tests.env("STAYA", repo.target.join("release").join(program));
+            tests.env("STAYA", &staya);
             tests
         };
         let mut list = start();
         list.arg("--collect-only").args(kind.files.iter().map(|file| format!("{TOP}/autopilots/{file}")));
-        list.args(request.name.into_iter().flat_map(|name| ["-k", name]));
+        list.args(options.name().into_iter().flat_map(|name| ["-k", name]));
         for test in names(&mut list) {
             // One at a time: they go by the clock.
             let row = test.rsplit("::test_").next().unwrap_or(&test).replace('_', " ");
-            report.part(&row, || pytest(start().arg("-s").arg(&test), "wanted, and not reached"));
+            s.report.part(&row, || counted(start().arg("-s").arg(&test), ""));
         }
     }
 }
@@ -154,21 +118,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arguments_are_read() {
-        let request = Request::read(&["--copter", "c", "hold", "--rover", "r", "--defaults", "d"]);
-        let wanted = Request { programs: [Some("r"), Some("c")], defaults: Some("d"), name: Some("hold") };
-        assert_eq!(request, Some(wanted));
-        assert_eq!(Request::read(&[]), Some(Request::default()));
-        assert_eq!(Request::read(&["--rover"]), None);
-        assert_eq!(Request::read(&["--plane", "p"]), None);
-    }
-
-    #[test]
-    fn what_cannot_be_started_is_refused_with_what_to_do() {
+    fn a_program_that_cannot_be_started_is_refused_with_the_remedy() {
         let (repo, [rover, _]) = (Repo::find(), &KINDS);
-        let refused = |program| simulation(&repo, &Request::default(), rover, program).err().unwrap_or_default();
-        assert!(refused(None).contains("docs/autopilots.md"));
-        assert!(refused(Some("/nowhere/ardurover")).contains("--rover /nowhere/ardurover: "));
-        assert!(refused(Some("/bin/true")).contains("not a simulation"));
+        let refused = |arguments: &[&str]| {
+            let options = Options::read("autopilots [--rover PATH]", arguments).expect("sound");
+            simulation(&repo, &options, rover).err().unwrap_or_default()
+        };
+        assert!(refused(&[]).contains("docs/autopilots.md"));
+        assert!(refused(&["--rover", "/nowhere/ardurover"]).contains("--rover /nowhere/ardurover: "));
+        assert!(refused(&["--rover", "/bin/true"]).contains("not a simulation"));
     }
 }

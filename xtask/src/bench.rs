@@ -1,135 +1,84 @@
 //! `cargo xtask bench`: the project's benchmarks and those beside peer crates, in one run on one
 //! machine.
 
-use crate::clients;
-use crate::repo::{Repo, output_of, run as run_to_end};
-use crate::report::{Counts, Report};
+use crate::files;
+use crate::python;
+use crate::report::Counts;
+use crate::session::Session;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::SystemTime;
 
 const PEERS: &str = "tests/peers";
-/// Those that are no criterion's.
-const BRIDGE: &str = "bridge";
-const VIEW: &str = "view";
-/// Runs of one scenario with a page that nobody looks at, each beside one without; a ratio of one pair tells of the machine, their median of the page.
-const PAIRS: usize = 9;
-/// That median at most.
-const VIEW_COSTS: f64 = 1.03;
+/// Benchmarks that are not criterion's: name, row of the closing table, script.
+const SCRIPTS: [(&str, &str, &str); 2] = [
+    ("bridge", "bridge beside pymavlink", "tests/python/bench_bridge.py"),
+    ("view", "a run with a page that no browser shows", "tests/python/bench_view.py"),
+];
 
-/// What a benchmark should reach.
-enum Goal {
-    /// At least this many times as fast as the other benchmark.
-    Faster(f64, &'static str),
-    /// A median below this many nanoseconds.
-    Under(f64),
-}
-
-/// Benchmarks with a goal; the others are listed without one.
-const GOALS: [(&str, Goal); 7] = [
-    ("cost_field_16x16/staya", Goal::Faster(5.0, "cost_field_16x16/pathfinding")),
-    ("cost_field_32x32/staya", Goal::Faster(5.0, "cost_field_32x32/pathfinding")),
-    ("orca_10/staya", Goal::Faster(1.0, "orca_10/dodgy_2d")),
-    // 0.75 microseconds a robot.
-    ("orca_step_1000/staya", Goal::Under(750_000.0)),
-    ("flock_100k/staya", Goal::Faster(2.0, "flock_100k/krabmaga")),
-    ("agent_step/constant_velocity", Goal::Under(5_000.0)),
-    ("agent_step/reflexive", Goal::Under(25_000.0)),
+/// Benchmarks with a goal: the least ratio of its speed to another benchmark's in the same run. No
+/// goal is a time, which would be one of the machine.
+const GOALS: [(&str, f64, &str); 6] = [
+    ("cost_field_16x16/staya", 5.0, "cost_field_16x16/pathfinding"),
+    ("cost_field_32x32/staya", 5.0, "cost_field_32x32/pathfinding"),
+    ("orca_10/staya", 1.0, "orca_10/dodgy_2d"),
+    ("orca_step_1000/staya", 0.9, "orca_step_1000/dodgy_2d"),
+    ("flock_100k/staya", 2.0, "flock_100k/krabmaga"),
+    ("agent_step/reflexive", 0.2, "agent_step/constant_velocity"),
 ];
 
 /// Runs the benchmarks whose name contains `name` and judges their medians.
-pub fn run(repo: &Repo, report: &mut Report, name: Option<&str>) {
-    if !matches!(name, Some(BRIDGE | VIEW)) {
-        criterion(repo, report, name);
+pub fn run(s: &mut Session, name: Option<&str>) {
+    if !SCRIPTS.iter().any(|(script, ..)| name == Some(script)) {
+        criterion(s, name, &["--workspace", "--exclude", "staya-view"]);
     }
-    if name.is_none_or(|name| BRIDGE.contains(name)) {
-        bridge(repo, report);
+    for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| name.is_none_or(|name| script.contains(name))) {
+        script(s, row, file);
     }
-    if name.is_none_or(|name| VIEW.contains(name)) {
-        view(repo, report);
+    if name.is_none_or(|name| "view".contains(name)) {
+        let bench = s.repo.cargo(&["bench", "--locked", "--package", "staya-view", "--bench", "view"]);
+        s.report.command("pictures a second", bench);
     }
 }
 
-/// The program as users have it; `what` it is for.
-fn release(repo: &Repo, report: &mut Report, what: &str) -> Option<PathBuf> {
-    let mut build = repo.cargo(&["build", "--release", "--locked", "--package", "staya"]);
-    let program = format!("staya{}", std::env::consts::EXE_SUFFIX);
-    report.step(what, || run_to_end(&mut build)).then(|| repo.target.join("release").join(program))
+/// Runs the benchmarks that have goals, and those that the goals compare with.
+pub fn run_goals(s: &mut Session) {
+    let names: Vec<&str> = GOALS.iter().flat_map(|(name, _, other)| [*name, *other]).collect();
+    criterion(s, Some(&format!("^({})$", names.join("|"))), &["--package", "staya-controller"]);
+    SCRIPTS.iter().for_each(|(_, row, file)| script(s, row, file));
 }
 
-/// What a page costs a run that nobody looks at, and how many pictures a second there are of how many robots; the benchmark judges these.
-fn view(repo: &Repo, report: &mut Report) {
-    const NAME: &str = "a run with a page, nobody looking";
-    let Some(program) = release(repo, report, "staya for its pages") else {
-        return report.skip(NAME, "the program was not built");
+/// A benchmark in Python with the program as users have it; the script judges.
+fn script(s: &mut Session, name: &str, file: &str) {
+    let Some(program) = s.staya("release") else {
+        return s.report.skip(name, "the program was not built");
     };
-    report.part(NAME, || {
-        let mut ratios = Vec::new();
-        for pair in 0..PAIRS {
-            // By turns, so that a machine that becomes slower is slower for both.
-            let mut seconds = [0.0; 2];
-            for with_page in [pair % 2, 1 - pair % 2] {
-                let page: &[&str] = if with_page == 1 { &["--view"] } else { &[] };
-                let mut run = repo.command(&program);
-                run.args(["run", "scenarios/twenty-discs.toml", "--json", "-q", "--out"])
-                    .arg(repo.target.join("bench-view"));
-                let said = output_of(run.args(page));
-                match said.as_deref().and_then(|json| number(json, "wall_seconds")) {
-                    Some(wall) => seconds[with_page] = wall,
-                    None => return (Counts { failed: 1, ..Counts::default() }, "`staya run` failed".to_owned()),
-                }
-            }
-            println!("without {:.3} s, with a page {:.3} s", seconds[0], seconds[1]);
-            ratios.push(seconds[1] / seconds[0]);
+    match python::client_environment(&s.repo) {
+        Ok(python) => {
+            let mut bench = s.repo.command(&python);
+            bench.arg(file).env("STAYA", program);
+            s.report.command(name, bench);
         }
-        ratios.sort_by(f64::total_cmp);
-        let median = ratios[PAIRS / 2];
-        let is_met = median <= VIEW_COSTS;
-        let note = format!("{median:.3} times as long (median of {PAIRS} pairs), at most {VIEW_COSTS}");
-        (Counts { passed: is_met.into(), failed: (!is_met).into(), ..Counts::default() }, note)
-    });
-    let bench = repo.cargo(&["bench", "--locked", "--package", "staya-view", "--bench", "view"]);
-    report.command("pictures a second", bench);
-}
-
-/// The number in a field of printed JSON.
-fn number(json: &str, field: &str) -> Option<f64> {
-    let (_, value) = json.split_once(&format!("\"{field}\":"))?;
-    let end = value.find([',', '}'])?;
-    value.get(..end)?.trim().parse().ok()
-}
-
-/// Messages through `staya bridge` beside pymavlink; the script judges.
-fn bridge(repo: &Repo, report: &mut Report) {
-    const NAME: &str = "bridge beside pymavlink";
-    let python = match clients::prepare(repo) {
-        Ok(python) => python,
-        Err(reason) => return report.skip(NAME, &reason),
-    };
-    let Some(program) = release(repo, report, "staya for the bridge") else {
-        return report.skip(NAME, "the program was not built");
-    };
-    let mut bench = repo.command(&python);
-    bench.arg("tests/python/bench_bridge.py");
-    bench.env("STAYA", program);
-    report.command(NAME, bench);
-}
-
-fn criterion(repo: &Repo, report: &mut Report, name: Option<&str>) {
-    let home = repo.target.join("criterion");
-    let start = SystemTime::now();
-    // Only targets that are benchmarks: a library's own tests need no release build.
-    let own = repo.cargo(&["bench", "--locked", "--workspace", "--exclude", "staya-view", "--bench", "*"]);
-    let peers = repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
-    for (what, mut bench) in [("benchmarks", own), ("benchmarks beside peers", peers)] {
-        bench.env("CRITERION_HOME", &home);
-        bench.args(name.map(|name| ["--", name]).into_iter().flatten());
-        report.command(what, bench);
+        Err(reason) => s.report.skip(name, &reason),
     }
-    report.part("goals", || {
+}
+
+/// Runs the workspace's benchmarks in the packages that `own` names, and those beside peers.
+fn criterion(s: &mut Session, filter: Option<&str>, own: &[&str]) {
+    let home = s.repo.target.join("criterion");
+    let start = SystemTime::now();
+    let mut benches = s.repo.cargo(&["bench", "--locked"]);
+    // Only targets that are benchmarks: a library's own tests need no release build.
+    benches.args(own).args(["--bench", "*"]);
+    let peers = s.repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
+    for (what, mut bench) in [("benchmarks", benches), ("benchmarks beside peers", peers)] {
+        bench.env("CRITERION_HOME", &home).args(filter.map(|name| ["--", name]).into_iter().flatten());
+        s.report.command(what, bench);
+    }
+    s.report.part("goals", || {
         let (mut counts, note) = judge(&medians(&home, start));
-        if name.is_some() {
-            // Nobody asked for the others.
+        if filter.is_some_and(|name| !name.starts_with('^')) {
+            // The others were not asked for.
             counts.skipped = 0;
         }
         (counts, note)
@@ -143,16 +92,13 @@ fn judge(medians: &[(String, f64)]) -> (Counts, String) {
     let mut counts = Counts::default();
     println!("{:width$}  {:>10}  goal", "benchmark", "median");
     for (name, median) in medians {
-        let goal = GOALS.iter().find(|(known, _)| known == name).map(|(_, goal)| goal);
-        let (met, what) = match goal {
+        let (met, what) = match GOALS.iter().find(|(known, ..)| known == name) {
             None => (None, String::new()),
-            Some(Goal::Under(limit)) => (Some(median < limit), format!("under {}", shown(*limit))),
-            Some(Goal::Faster(times, peer)) => match of(peer) {
-                None => (None, format!("{peer} did not run")),
-                Some(other) => {
-                    let ratio = other / median;
-                    let what = format!("{ratio:.1} times as fast as {peer}, at least {times}");
-                    (Some(ratio >= *times), what)
+            Some((_, times, other)) => match of(other) {
+                None => (None, format!("{other} did not run")),
+                Some(ns) => {
+                    let ratio = ns / median;
+                    (Some(ratio >= *times), format!("{ratio:.1} times as fast as {other}, at least {times}"))
                 }
             },
         };
@@ -173,37 +119,20 @@ fn judge(medians: &[(String, f64)]) -> (Counts, String) {
 
 /// The medians in nanoseconds that criterion wrote since `start`, by name.
 fn medians(home: &Path, start: SystemTime) -> Vec<(String, f64)> {
-    let mut found = Vec::new();
-    for group in folders(home) {
-        for function in folders(&home.join(&group)) {
-            let file = home.join(&group).join(&function).join("new/estimates.json");
-            let fresh = fs::metadata(&file).and_then(|meta| meta.modified());
-            if !fresh.is_ok_and(|time| time >= start) {
-                continue;
-            }
-            if let Some(ns) = fs::read_to_string(&file).ok().as_deref().and_then(median) {
-                found.push((format!("{group}/{function}"), ns));
-            }
-        }
-    }
-    found
-}
-
-/// Names of the folders in a folder, sorted; none if it cannot be read.
-fn folders(parent: &Path) -> Vec<String> {
-    let entries = fs::read_dir(parent).into_iter().flatten().flatten();
-    let mut names: Vec<String> = entries
-        .filter(|entry| entry.path().is_dir())
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
+    let inside = |folder: &Path| files::entries(folder).unwrap_or_default();
+    let read = |folder: &Path| {
+        let file = folder.join("new/estimates.json");
+        let is_fresh = fs::metadata(&file).and_then(|meta| meta.modified()).is_ok_and(|time| time >= start);
+        let name = folder.strip_prefix(home).ok()?.display().to_string();
+        Some((name, files::read(&file).ok().filter(|_| is_fresh).as_deref().and_then(median)?))
+    };
+    inside(home).iter().flat_map(|group| inside(group)).filter_map(|folder| read(&folder)).collect()
 }
 
 /// The median's point estimate in criterion's estimates.json.
 fn median(json: &str) -> Option<f64> {
-    let (_, median) = json.split_once("\"median\"")?;
-    number(median, "point_estimate")
+    let estimates: serde_json::Value = serde_json::from_str(json).ok()?;
+    estimates["median"]["point_estimate"].as_f64()
 }
 
 /// Nanoseconds for people.
@@ -235,19 +164,14 @@ mod tests {
         let medians = [
             of("agent_step/constant_velocity", 4_999.0),
             of("agent_step/reflexive", 25_000.0),
-            of("cost_field_16x16/pathfinding", 500.0),
+            of("cost_field_16x16/pathfinding", 499.0),
             of("cost_field_16x16/staya", 100.0),
             of("cost_field_32x32/staya", 100.0),
+            of("orca_10/dodgy_2d", 100.0),
+            of("orca_10/staya", 99.0),
         ];
-        let (counts, _) = judge(&medians);
-        assert_eq!(
-            counts,
-            Counts {
-                passed: 2,
-                failed: 1,
-                // The peer of the one did not run, and neither did the others.
-                skipped: GOALS.len() as u64 - 3
-            }
-        );
+        // The peer of one did not run, and neither did the others.
+        let skipped = GOALS.len() as u64 - 3;
+        assert_eq!(judge(&medians).0, Counts { passed: 1, failed: 2, skipped });
     }
 }

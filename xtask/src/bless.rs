@@ -1,16 +1,18 @@
 //! `cargo xtask bless`: rewrite golden files.
 
-use crate::repo::{self, BLESS, Repo, output_of};
-use crate::report::Report;
+use crate::repo::{self, BLESS, output_of};
+use crate::session::Session;
 
 /// Runs the tests whose name contains `name` with the variable that makes them write, runs them
 /// again without it, and lists what changed.
-pub fn run(repo: &Repo, report: &mut Report, name: &str) {
-    let tests = || repo.cargo(&["test", "--workspace", "--no-fail-fast", name]);
-    report.step("rewrite golden files", || repo::run(tests().env(BLESS, "1")));
-    report.command("compare again", tests());
+pub fn run(s: &mut Session, name: Option<&str>) {
+    let name = name.unwrap_or("golden");
+    let tests = || s.repo.cargo(&["test", "--workspace", "--no-fail-fast", name]);
+    s.report.step("rewrite golden files", || repo::run(tests().env(BLESS, "1")));
+    let again = tests();
+    s.report.command("compare again", again);
     let status = ["status", "--short", "--", "*golden*"];
-    match output_of(repo.command("git").args(status)) {
+    match output_of(s.repo.command("git").args(status)) {
         Some(changed) if changed.is_empty() => println!("\nNo golden file changed."),
         Some(changed) => {
             println!("\nGolden files that differ from the last commit; look at each, and commit them apart:");

@@ -1,51 +1,47 @@
-//! `cargo xtask c`: the library for C. Its programs on this machine, the canned swarms on an emulated part, templates for firmware of others.
+//! `cargo xtask c`: the library for C. Its programs on this machine, the canned swarms on an
+//! emulated part, templates for firmware of others.
 
-use crate::apt;
-use crate::device::{Toolchain, Toolchains};
+use crate::apt::Tools;
+use crate::device::{STM32F405, Toolchain};
 use crate::emulate;
+use crate::files;
 use crate::firmware::sections;
-use crate::part::{Part, part};
 use crate::repo::{Repo, output_of, run as run_command_line, shown};
-use crate::report::Report;
-use std::fs;
+use crate::session::Session;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What all must give.
+/// The rows that every program must print.
 const TABLE: &str = "tests/golden/cases.txt";
-const PART: &str = "stm32f405";
-/// Debian's packages of the compiler for it; no library of C is needed.
-const PACKAGES: [&str; 2] = ["gcc-arm-none-eabi", "binutils-arm-none-eabi"];
-const PROGRAMS: [&str; 3] = ["arm-none-eabi-gcc", "arm-none-eabi-g++", "arm-none-eabi-nm"];
-const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install gcc-arm-none-eabi`";
-/// What the sources must pass without a word.
+/// Debian's packages of the compiler for the part; no library of C is needed.
+const COMPILER: Tools = Tools {
+    packages: &["gcc-arm-none-eabi", "binutils-arm-none-eabi"],
+    programs: &["arm-none-eabi-gcc", "arm-none-eabi-g++", "arm-none-eabi-nm"],
+};
+/// Warnings that the sources must not cause.
 const STRICT: [&str; 6] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wno-variadic-macros", "-ffp-contract=off"];
 const INCLUDES: [&str; 2] = ["-Icontroller/c/include", "-Icontroller/c/tests"];
-/// What Rust's standard library, which the library has on a host, asks of the system.
+/// System libraries that Rust's standard library needs on a host.
 const SYSTEM: [&str; 3] = ["-lm", "-lpthread", "-ldl"];
-/// What the panic handler calls, and nobody defines.
+/// The symbol that the panic handler calls and that no crate defines.
 const PANIC: &str = "staya_panic_is_reachable";
 
-/// The command.
-pub fn run_command(repo: &Repo, report: &mut Report) {
-    run(repo, report, &mut Toolchains::default());
-}
-
 /// On the host, on the emulated part, and for other people's firmware.
-pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    on_host(repo, report);
-    sanitized(repo, report);
-    on_part(repo, report, toolchains);
+pub fn run(s: &mut Session) {
+    on_host(s);
+    sanitized(s);
+    on_part(s);
 }
 
-fn on_host(repo: &Repo, report: &mut Report) {
+fn on_host(s: &mut Session) {
+    let repo = &s.repo;
     let name = "the library for C, on this machine";
     for compiler in ["cc", "c++"] {
         if output_of(repo.command(compiler).arg("--version")).is_none() {
-            return report.skip(name, &format!("no {compiler}; on Debian run, as root, `apt-get install g++`"));
+            return s.report.skip(name, &format!("no {compiler}; on Debian run, as root, `apt-get install g++`"));
         }
     }
-    report.step(name, || {
+    s.report.step(name, || {
         run_command_line(&mut repo.cargo(&["build", "--locked", "--package", "staya-c"]))?;
         let library = repo.target.join("debug/libstaya_c.a");
         let swarms = ["controller/c/tests/swarms.c", "controller/c/tests/host.c"];
@@ -59,31 +55,31 @@ fn on_host(repo: &Repo, report: &mut Report) {
     });
 }
 
-/// Machines for which rustup's and Debian's stable Rust have the run-time part of AddressSanitizer.
-const SANITIZED: [&str; 2] = ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"];
-
-/// The tests of the library, misuse above all, with each access to memory checked: the sanitizer ends a test at the first byte that is not
-/// the library's to touch. Stable Rust has it behind the variable that lets it take unstable options.
-fn sanitized(repo: &Repo, report: &mut Report) {
+/// The tests of the library, misuse above all, with each access to memory checked: the sanitizer
+/// ends a test at the first byte that is not the library's to touch. Stable Rust has it behind the
+/// variable that lets it take unstable options.
+fn sanitized(s: &mut Session) {
+    let repo = &s.repo;
     let name = "the library for C, each access to memory checked";
-    let Some(host) = SANITIZED.into_iter().find(|host| has_sanitizer(repo, host)) else {
-        return report.skip(name, "this Rust has no librustc-stable_rt.asan.a; rustup's for Linux has");
+    let Some(host) = sanitized_host(repo) else {
+        return s.report.skip(name, "this Rust has no librustc-stable_rt.asan.a; rustup's for Linux has");
     };
-    report.step(name, || {
-        let mut test = repo.cargo(&["test", "--locked", "--package", "staya-c", "--target", host]);
-        // A folder of its own, or flags that differ would have everything compiled anew.
+    s.report.step(name, || {
+        let mut test = repo.cargo(&["test", "--locked", "--package", "staya-c", "--target", &host]);
+        // A folder of its own, or flags that differ would compile everything again.
         test.env("CARGO_TARGET_DIR", repo.target.join("asan")).env("CARGO_INCREMENTAL", "0");
         test.env("RUSTC_BOOTSTRAP", "1").env("RUSTFLAGS", "-Zsanitizer=address").env("RUST_MIN_STACK", "16777216");
         run_command_line(test.args(["--config", "profile.dev.opt-level=0", "--config", "profile.dev.debug=1"]))
     });
 }
 
-/// Whether this machine is such a one and has it.
-fn has_sanitizer(repo: &Repo, host: &str) -> bool {
-    let about = output_of(repo.command("rustc").arg("-vV")).unwrap_or_default();
-    let root = output_of(repo.command("rustc").args(["--print", "sysroot"])).unwrap_or_default();
-    let library = Path::new(root.trim()).join("lib/rustlib").join(host).join("lib/librustc-stable_rt.asan.a");
-    about.lines().any(|line| line.strip_prefix("host: ") == Some(host)) && library.is_file()
+/// This machine's target, if the Rust here has the run-time part of AddressSanitizer for it.
+fn sanitized_host(repo: &Repo) -> Option<String> {
+    let about = output_of(repo.command("rustc").arg("-vV"))?;
+    let host = about.lines().find_map(|line| line.strip_prefix("host: "))?;
+    let root = output_of(repo.command("rustc").args(["--print", "sysroot"]))?;
+    let library = Path::new(&root).join("lib/rustlib").join(host).join("lib/librustc-stable_rt.asan.a");
+    library.is_file().then(|| host.to_string())
 }
 
 /// Compiles a program, runs it, and gives what it prints.
@@ -99,54 +95,42 @@ fn program(repo: &Repo, library: &Path, compiler: &str, standard: &str, sources:
     output_of(&mut start).map(|text| text + "\n").ok_or_else(|| format!("{} fails", to.display()))
 }
 
-fn on_part(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
+fn on_part(s: &mut Session) {
     let name = "the library for C, on the emulated stm32f405";
-    let Some(part) = part(PART) else {
-        return;
-    };
-    let ready = compilers(repo).and_then(|()| emulate::prepare(repo, part));
-    match ready.and_then(|()| toolchains.find(repo, part.target)) {
-        Err(reason) => report.skip(name, &reason),
-        Ok(toolchain) => {
-            report.step(name, || {
-                let library = library(repo, &toolchain, part)?;
-                has_no_panic(repo, &library)?;
-                templates(repo)?;
-                let elf = link(repo, &library)?;
-                let output = emulate::run(repo, part, &elf)?;
-                let (stack, rows): (Vec<&str>, Vec<&str>) = output.lines().partition(|line| line.starts_with(STACK));
-                let stack = stack
-                    .first()
-                    .and_then(|line| line.strip_prefix(STACK))
-                    .ok_or("the program says nothing of its stack")?;
-                println!("{} bytes of stack at most, the program's own included", stack.trim());
-                compare(repo, &rows.join("\n"))
-            });
-        }
+    if let Err(reason) = compilers(&s.repo).and_then(|()| emulate::prepare(&s.repo, STM32F405)) {
+        return s.report.skip(name, &reason);
     }
+    s.with_toolchain(name, STM32F405.target, |repo, toolchain| {
+        let library = library(repo, toolchain)?;
+        has_no_panic(repo, &library)?;
+        templates(repo)?;
+        let output = emulate::run(repo, STM32F405, &link(repo, &library)?, "none")?;
+        let (stack, rows): (Vec<&str>, Vec<&str>) = output.lines().partition(|line| line.starts_with(STACK));
+        let stack = stack.first().and_then(|line| line.strip_prefix(STACK));
+        let stack = stack.ok_or("the program says nothing of its stack")?;
+        println!("{} bytes of stack at most, the program's own included", stack.trim());
+        compare(repo, &rows.join("\n"))
+    });
 }
 
 /// Makes sure that the compiler for the part is there; unpacks it on Debian.
 pub fn compilers(repo: &Repo) -> Result<(), String> {
-    let are_there = || PROGRAMS.iter().all(|name| output_of(repo.command(name).arg("--version")).is_some());
-    if are_there() {
-        return Ok(());
-    }
-    apt::unpack(repo, &PACKAGES, &PROGRAMS).map_err(|reason| format!("no arm-none-eabi-gcc ({reason}); {REMEDY}"))?;
-    are_there().then_some(()).ok_or_else(|| format!("no arm-none-eabi-gcc; {REMEDY}"))
+    let starts = |name: &&str| output_of(repo.command(name).arg("--version")).is_some();
+    COMPILER.prepare(repo, || COMPILER.programs.iter().all(starts))
 }
 
 /// The library as a user of the part makes it.
-pub fn library(repo: &Repo, toolchain: &Toolchain, part: &Part) -> Result<PathBuf, String> {
-    let mut build = toolchain.cargo(repo, part.target, "build");
+pub fn library(repo: &Repo, toolchain: &Toolchain) -> Result<PathBuf, String> {
+    let mut build = toolchain.cargo(repo, STM32F405.target, "build");
     run_command_line(build.args(["--locked", "--profile", "firmware", "--package", "staya-c"]))?;
-    Ok(toolchain.target_folder(repo).join(part.target).join("firmware/libstaya_c.a"))
+    Ok(toolchain.target_folder(repo).join(STM32F405.target).join("firmware/libstaya_c.a"))
 }
 
-/// What the program on the part puts before the deepest stack that it has seen.
+/// The word before the deepest stack that the program on the part has seen.
 const STACK: &str = "stack";
 
-/// Everything that C can call is in the library, and what is left of the panic handler would be undefined in it.
+/// Everything that C can call is in the library, and what is left of the panic handler would be
+/// undefined in it.
 fn has_no_panic(repo: &Repo, library: &Path) -> Result<(), String> {
     let symbols = output_of(repo.command("arm-none-eabi-nm").arg("--undefined-only").arg(library));
     let symbols = symbols.ok_or("arm-none-eabi-nm cannot read the library")?;
@@ -197,7 +181,7 @@ fn link(repo: &Repo, library: &Path) -> Result<PathBuf, String> {
 
 /// Compares with the rows of the golden table that C can make.
 fn compare(repo: &Repo, output: &str) -> Result<(), String> {
-    let table = fs::read_to_string(repo.root.join(TABLE)).map_err(|error| format!("{TABLE}: {error}"))?;
+    let table = files::read(&repo.root.join(TABLE))?;
     let faults = foreign(&table, output);
     let rows = output.lines().count();
     println!("{rows} rows, {} differ", faults.len());
@@ -218,7 +202,7 @@ fn foreign<'a>(table: &str, output: &'a str) -> Vec<&'a str> {
 
 fn folder(repo: &Repo) -> Result<PathBuf, String> {
     let folder = repo.target.join("c");
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    files::make(&folder)?;
     Ok(folder)
 }
 

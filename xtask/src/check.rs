@@ -1,65 +1,140 @@
 //! `cargo xtask check`: everything that can be said without running the code.
 
-use crate::device::FeatureChecks;
-use crate::repo::{Repo, output_of};
-use crate::report::Report;
+use crate::device::{PARTS, Part};
+use crate::files;
+use crate::firmware;
+use crate::python;
+use crate::repo::{ended, output_of};
+use crate::session::Session;
+use std::thread::JoinHandle;
 
 /// Workspaces of their own, and how to leave out what needs more than a stable compiler.
 const OTHERS: [(&str, &[&str]); 2] = [("tests/peers", &[]), ("tests/fuzz", &["--no-default-features"])];
 
-/// What a user's own firmware depends on.
+/// Packages that a user's own firmware depends on.
 const PACKAGES: [&str; 4] = ["staya-controller", "staya-mavlink", "staya-robot", "staya-voxel"];
 
-/// Formatting, layers, lints, documentation; the quick ones first, and beside the lints what has folders of its own.
-pub fn run(repo: &Repo, report: &mut Report) {
-    if has(repo, "fmt", "rustfmt", report) {
+/// Formatting, layers, lints, documentation; the quick ones first, and beside the lints what has
+/// folders of its own.
+pub fn run(s: &mut Session) {
+    if has(s, "fmt", "rustfmt") {
         let check = ["fmt", "--all", "--check"];
-        report.command("formatting", repo.cargo(&check));
+        s.report.command("formatting", s.repo.cargo(&check));
         let others = OTHERS.map(|(folder, _)| folder);
-        for folder in others.into_iter().chain([crate::example::FOLDER]) {
+        for folder in others.into_iter().chain([firmware::EXAMPLE]) {
             let name = format!("formatting of {folder}");
-            report.command(&name, repo.cargo_in(folder, &check));
+            s.report.command(&name, s.repo.cargo_in(folder, &check));
         }
     }
-    report.step("layers of the controller", || crate::layers::check(&repo.root.join("controller/src")));
-    report.step("no circles between modules", || crate::circles::check(&repo.root));
-    report.step("no log that panics", || crate::plants::check_logs(&repo.root));
-    crate::minimal::check(repo, report);
-    report.step("what the documentation names", || crate::documents::check(&repo.root));
-    let feature_checks = FeatureChecks::begin(repo);
-    if has(repo, "clippy", "clippy", report) {
+    s.report.step("layers of the controller", || crate::layers::check(&s.repo.root.join("controller/src")));
+    s.report.step("no circles between modules", || crate::circles::check(&s.repo.root));
+    s.report.step(crate::weight::SHARED, || crate::weight::check_shared(&s.repo));
+    s.report.step("no log that panics", || crate::plants::check_logs(&s.repo.root));
+    crate::minimal::check(s);
+    s.report.step("what the documentation names", || crate::documents::check(&s.repo.root));
+    let feature_checks = begin_feature_checks(s);
+    if has(s, "clippy", "clippy") {
         let deny = ["--", "-D", "warnings"];
         let arguments = |arguments: &[&'static str]| [&["clippy", "--locked"], arguments, &deny].concat();
-        let own = ["--workspace", "--all-targets", "--features", crate::python_package::FEATURE];
-        let mut clippy = repo.cargo(&arguments(&own));
-        clippy.envs(crate::python_package::WITHOUT_PYTHON);
-        report.command("clippy", clippy);
+        let own = ["--workspace", "--all-targets", "--features", python::FEATURE];
+        let mut clippy = s.repo.cargo(&arguments(&own));
+        clippy.envs(python::WITHOUT_PYTHON);
+        s.report.command("clippy", clippy);
         let packages = PACKAGES.iter().flat_map(|name| ["--package", name]);
         let defmt: Vec<_> = packages.chain(["--features", "staya-controller/defmt"]).collect();
-        report.command("clippy with defmt", repo.cargo(&arguments(&defmt)));
+        s.report.command("clippy with defmt", s.repo.cargo(&arguments(&defmt)));
         for (folder, features) in OTHERS {
             let clippy = arguments(&[&["--all-targets"], features].concat());
             let name = format!("clippy of {folder}");
-            report.command(&name, repo.cargo_in(folder, &clippy));
+            s.report.command(&name, s.repo.cargo_in(folder, &clippy));
         }
     }
     let bare = ["clippy", "--locked", "--package", "staya-c", "--no-default-features", "--", "-D", "warnings"];
-    report.command("clippy of the library for C without features", repo.cargo(&bare));
-    let mut package = repo.cargo(&["package", "--locked", "--allow-dirty", "--no-verify"]);
+    s.report.command("clippy of the library for C without features", s.repo.cargo(&bare));
+    let mut package = s.repo.cargo(&["package", "--locked", "--allow-dirty", "--no-verify"]);
     package.args(PACKAGES.iter().flat_map(|name| ["--package", name]));
-    report.command("packages that users depend on", package);
-    let mut doc = repo.cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
+    s.report.command("packages that users depend on", package);
+    let mut doc = s.repo.cargo(&["doc", "--locked", "--workspace", "--no-deps"]);
     doc.env("RUSTDOCFLAGS", "-D warnings");
-    report.command("rustdoc", doc);
-    feature_checks.end(report);
+    s.report.command("rustdoc", doc);
+    end_feature_checks(s, feature_checks);
 }
 
 /// Whether a component of the toolchain is there; records a skipped part otherwise.
-fn has(repo: &Repo, subcommand: &str, component: &str, report: &mut Report) -> bool {
-    let found = output_of(&mut repo.cargo(&[subcommand, "--version"])).is_some();
+fn has(s: &mut Session, subcommand: &str, component: &str) -> bool {
+    let found = output_of(&mut s.repo.cargo(&[subcommand, "--version"])).is_some();
     if !found {
         let reason = format!("not installed; run `rustup component add {component}`");
-        report.skip(component, &reason);
+        s.report.skip(component, &reason);
     }
     found
+}
+
+/// Checks of the controller for a part with each set of features that its manifest lists: the name of
+/// the step, and the thread that runs it while other steps run, or why none does.
+type FeatureCheck = (String, Result<JoinHandle<Result<(), String>>, String>);
+
+/// Begins them, one thread a part: the compiler has one thread for one crate. The part with a
+/// Cortex-M0 has no FPU and takes the sets with fixed point.
+fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
+    let sets = feature_sets(&files::read(&s.repo.root.join("controller/Cargo.toml")).unwrap_or_default());
+    let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
+    let mut check = |part: &Part| {
+        let has_fpu = part.target.ends_with("hf");
+        let fits = |features: &&String| has_fpu || features.split(',').any(|feature| feature == "fixed");
+        let toolchain = s.toolchains.find(&s.repo, part.target)?;
+        // Cargo lets one command at a time into a folder.
+        let folder = toolchain.target_folder(&s.repo).join("sets").join(part.target);
+        let commands = sets.iter().filter(fits).map(|features| {
+            let mut check = toolchain.cargo(&s.repo, part.target, "check");
+            // Quiet, because other steps run beside it.
+            check.args(["--locked", "--quiet", "--package", "staya-controller", "--no-default-features"]);
+            check.args(["--features", features]).env("CARGO_TARGET_DIR", &folder);
+            (features.clone(), check)
+        });
+        let mut commands: Vec<_> = commands.collect();
+        Ok(std::thread::spawn(move || {
+            let mut checks = commands.iter_mut();
+            checks.try_for_each(|(set, check)| ended(check.status()).map_err(|reason| format!("`{set}`: {reason}")))
+        }))
+    };
+    let named = |part: &Part| format!("feature sets of the controller for {}", part.target);
+    parts.map(|part| (named(part), check(part))).collect()
+}
+
+/// Waits for them: one step a part.
+fn end_feature_checks(s: &mut Session, checks: Vec<FeatureCheck>) {
+    for (name, check) in checks {
+        match check {
+            Ok(check) => {
+                s.report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
+            }
+            Err(reason) => s.report.skip(&name, &reason),
+        }
+    }
+}
+
+/// The list `feature-sets` in a manifest's metadata, and the set without any feature.
+fn feature_sets(manifest: &str) -> Vec<String> {
+    let manifest: Option<toml::Table> = manifest.parse().ok();
+    let sets = manifest.as_ref().and_then(|manifest| {
+        let metadata = manifest.get("package")?.get("metadata")?.get("staya")?;
+        metadata.get("feature-sets")?.as_array()
+    });
+    let names = sets.into_iter().flatten().filter_map(toml::Value::as_str);
+    let mut names: Vec<String> = std::iter::once("").chain(names).map(String::from).collect();
+    names.dedup();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn feature_sets_are_those_of_the_manifest_and_the_empty_one() {
+        let manifest = "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
+        assert_eq!(feature_sets(manifest), ["", "orca", "orca,fixed"]);
+        assert_eq!(feature_sets("[package]\n"), [""]);
+    }
 }

@@ -1,132 +1,36 @@
 //! Modules of one folder do not use each other in a circle, in any crate of the workspace.
 
+use crate::source::{Content, Module, members, modules};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 
-/// A module's names from the crate's root down; none for the root itself.
-type Module = Vec<String>;
 /// Which modules of a folder use which others of the same folder.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
-/// Reads every crate of the workspace. The error counts the circles, which are printed with their folder.
+/// Reads every crate of the workspace. The error names the first circle; all are printed with their
+/// folder.
 pub fn check(root: &Path) -> Result<(), String> {
-    let manifest = fs::read_to_string(root.join("Cargo.toml")).map_err(|error| error.to_string())?;
-    let manifest: toml::Table = manifest.parse().map_err(|error| format!("{error}"))?;
-    let members = manifest.get("workspace").and_then(|workspace| workspace.get("members"));
-    let members = members.and_then(toml::Value::as_array).into_iter().flatten();
     let mut found = BTreeSet::new();
-    for member in members.filter_map(toml::Value::as_str) {
-        let source = root.join(member).join("src");
-        let mut modules = BTreeMap::new();
-        if source.is_dir() {
-            read(&source, &mut Vec::new(), &mut modules).map_err(|error| format!("{member}: {error}"))?;
-        }
-        for (folder, uses) in uses(&modules) {
-            let place = [member, "src"].into_iter().chain(folder.iter().map(String::as_str));
+    for member in members(root)? {
+        for (folder, uses) in uses(&modules(&root.join(&member).join("src"))?) {
+            let place = [member.as_str(), "src"].into_iter().chain(folder.iter().map(String::as_str));
             let place = place.collect::<Vec<_>>().join("/");
-            found.extend(circles(&uses).into_iter().map(|circle| (place.clone(), circle)));
+            let faults = circles(&uses).into_iter();
+            found.extend(faults.map(|circle| format!("{place}: {circle} use each other in a circle")));
         }
     }
-    let faults: Vec<String> =
-        found.iter().map(|(place, circle)| format!("{place}: {circle} use each other in a circle")).collect();
-    faults.iter().for_each(|fault| println!("{fault}"));
-    faults.first().map_or(Ok(()), |first| Err(first.clone()))
+    found.iter().for_each(|fault| println!("{fault}"));
+    found.into_iter().next().map_or(Ok(()), Err)
 }
 
-/// Each module below a folder with the paths that it names, tests left out.
-fn read(folder: &Path, above: &mut Module, modules: &mut BTreeMap<Module, Vec<Module>>) -> std::io::Result<()> {
-    for entry in fs::read_dir(folder)? {
-        let path = entry?.path();
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if path.is_dir() && name != "bin" {
-            above.push(name);
-            read(&path, above, modules)?;
-            above.pop();
-        } else if path.extension().is_some_and(|extension| extension == "rs") && name != "tests" {
-            let mut module = above.clone();
-            if !["lib", "main", "mod"].contains(&name.as_str()) {
-                module.push(name);
-            }
-            let named = named(&fs::read_to_string(&path)?, &module);
-            modules.insert(module, named);
-        }
-    }
-    Ok(())
-}
-
-/// What a file names by paths from `crate`, `super` and `self`, from the crate's root down.
-fn named(text: &str, module: &Module) -> Vec<Module> {
-    let text = text.split("#[cfg(test)]").next().unwrap_or_default();
-    let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
-    let code = lines.collect::<Vec<_>>().join("\n");
-    let mut found = Vec::new();
-    for start in ["crate::", "super::", "self::"] {
-        for (at, _) in code.match_indices(start) {
-            let before = code.get(..at).unwrap_or_default();
-            let is_whole = !before.ends_with(|c: char| c.is_alphanumeric() || "_$:".contains(c));
-            if is_whole {
-                branches(code.get(at..).unwrap_or_default(), &Vec::new(), &mut found);
-            }
-        }
-    }
-    found.into_iter().map(|path| absolute(&path, module)).collect()
-}
-
-/// Adds the paths that begin here: `a::b`, `a::{b, c::d}`. Returns what comes behind them.
-fn branches<'a>(text: &'a str, before: &Module, found: &mut Vec<Module>) -> &'a str {
-    let text = text.trim_start();
-    if let Some(mut rest) = text.strip_prefix('{') {
-        loop {
-            rest = branches(rest, before, found).trim_start();
-            match rest.strip_prefix(',') {
-                Some(more) => rest = more,
-                None => return rest.strip_prefix('}').unwrap_or(rest),
-            }
-        }
-    }
-    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_');
-    let (name, rest) = text.split_at(end.unwrap_or(text.len()));
-    let mut path = before.clone();
-    if name.is_empty() {
-        return rest.strip_prefix('*').unwrap_or(rest);
-    }
-    path.push(name.to_string());
-    match rest.strip_prefix("::") {
-        Some(rest) => branches(rest, &path, found),
-        None => {
-            found.push(path);
-            // An `as` and a new name.
-            let next = rest.find([',', '}', ';', '\n']).unwrap_or(rest.len());
-            rest.split_at(next).1
-        }
-    }
-}
-
-/// A path as the module means it, from the crate's root.
-fn absolute(path: &[String], module: &Module) -> Module {
-    let mut base = match path.first().map(String::as_str) {
-        Some("crate") => Vec::new(),
-        _ => module.clone(),
-    };
-    for name in path {
-        match name.as_str() {
-            "crate" | "self" => {}
-            "super" => drop(base.pop()),
-            name => base.push(name.to_string()),
-        }
-    }
-    base
-}
-
-/// In each folder of modules: who uses whom, by what they or modules below them name.
-fn uses(modules: &BTreeMap<Module, Vec<Module>>) -> BTreeMap<Module, Uses> {
+/// The uses between the modules of each folder, by the paths in them and in modules below them.
+fn uses(modules: &BTreeMap<Module, Content>) -> BTreeMap<Module, Uses> {
     let mut all: BTreeMap<Module, Uses> = BTreeMap::new();
-    for (user, named) in modules {
+    for (user, Content { named, .. }) in modules {
         for used in named {
             let common = user.iter().zip(used).take_while(|(a, b)| a == b).count();
             let (Some(above), Some(below)) = (user.get(common), used.get(common)) else {
-                continue; // a module uses what it is in, or what is in it
+                continue; // a module uses its parent or its child
             };
             let is_module =
                 modules.keys().any(|module| used.get(..=common).is_some_and(|used| module.starts_with(used)));
@@ -162,14 +66,16 @@ fn circles(uses: &Uses) -> BTreeSet<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::source::Code;
 
     fn module(path: &str) -> Module {
         path.split('/').filter(|name| !name.is_empty()).map(String::from).collect()
     }
 
     fn of(files: &[(&str, &str)]) -> Vec<(String, String)> {
-        let modules = files.iter().map(|(path, text)| (module(path), named(text, &module(path))));
-        let found = uses(&modules.collect());
+        let mut code = Code::default();
+        files.iter().for_each(|(path, text)| code.file(text, &module(path)).expect("sound code"));
+        let found = uses(&code.without_tests());
         let all =
             found.iter().flat_map(|(folder, uses)| circles(uses).into_iter().map(|circle| (folder.join("/"), circle)));
         all.collect()
@@ -197,6 +103,29 @@ mod tests {
         assert_eq!(of(&[("a", "pub use b::T; use self::b::U;"), ("a/b", "use super::V; use crate::a::W;")]), []);
         assert_eq!(of(&[("a", "use crate::b;"), ("b", "// crate::a\n#[cfg(test)] use crate::a;")]), []);
         assert_eq!(of(&[("a", "use crate::b;"), ("b", "use other_crate::a; use $crate::a; use crate::A;")]), []);
+    }
+
+    #[test]
+    fn only_the_item_behind_a_test_attribute_is_left_out() {
+        let circle = [(String::new(), String::from("a, b"))];
+        for head in [
+            "#[cfg(test)] mod tests;",
+            "#[cfg(test)]\n#[path = \"x.rs\"]\nmod tests { fn f() { \"}\"; } }",
+            "#[cfg(test)] use crate::{c, d};",
+            "#[cfg(test)] pub(super) fn f<A, B>(a: [u8; 3]) -> A { '{'; a }",
+            "#[cfg(all(test, feature = \"x\"))] const A: u8 = { 1 };",
+            "struct S { #[cfg(test)] field: Vec<u8>, other: u8 }",
+        ] {
+            assert_eq!(of(&[("a", &format!("{head} use crate::b;")), ("b", "use crate::a;")]), circle, "{head}");
+        }
+        for tests in
+            ["mod tests { use crate::b; }", "mod tests; #[cfg(test)] use crate::b;", "fn f() -> crate::b::T {}"]
+        {
+            assert_eq!(of(&[("a", &format!("#[cfg(test)] {tests}")), ("b", "use crate::a;")]), []);
+        }
+        // A file that only tests have is none of the others' business.
+        let files = [("a", "#[cfg(test)] mod oracle;"), ("a/oracle", "use crate::b;"), ("b", "use crate::a;")];
+        assert_eq!(of(&files), []);
     }
 
     #[test]

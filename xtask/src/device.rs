@@ -1,97 +1,53 @@
-//! The controller compiled for microcontrollers, with whatever toolchain there is.
+//! Microcontrollers, and what compiles for them: rustup's targets or Debian's packages.
 
-use crate::debian;
-use crate::part::PARTS;
-use crate::repo::{Repo, ended, output_of};
-use crate::report::Report;
+use crate::apt::Tools;
+use crate::repo::{Repo, output_of};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread::JoinHandle;
+
+/// A microcontroller that there is firmware for.
+pub struct Part {
+    /// As in `hil/firmware` and on the command line.
+    pub name: &'static str,
+    /// The target that its code is compiled for.
+    pub target: &'static str,
+    /// The emulator that runs it.
+    pub emulator: &'static str,
+}
+
+/// Every part.
+pub const PARTS: [Part; 3] = [
+    Part { name: "stm32f405", target: "thumbv7em-none-eabihf", emulator: "qemu-system-arm" },
+    Part { name: "nrf51", target: "thumbv6m-none-eabi", emulator: "qemu-system-arm" },
+    Part { name: "riscv32", target: "riscv32imac-unknown-none-elf", emulator: "qemu-system-riscv32" },
+];
+
+/// The part with an FPU and room for all of the controller.
+pub const STM32F405: &Part = &PARTS[0];
+
+/// The parts of these names; all of them without names.
+pub fn parts(names: &[&str]) -> Vec<&'static Part> {
+    PARTS.iter().filter(|part| names.is_empty() || names.contains(&part.name)).collect()
+}
+
+/// Debian's packaged Rust, which can build `core` from source for any target.
+const DEBIAN: Tools =
+    Tools { packages: &["rustc-web", "cargo-web", "rust-web-src", "lld"], programs: &["rustc", "cargo", "ld.lld"] };
+const REMEDY: &str = "run `rustup target add thumbv7em-none-eabihf thumbv6m-none-eabi riscv32imac-unknown-none-elf`";
 
 /// Where `core` for a microcontroller comes from.
 pub enum Toolchain {
     /// The toolchain that runs this program has the target.
     Own,
     /// Debian's packages build it from source.
-    Debian(debian::Rust),
+    Debian(Debian),
 }
 
 /// Finds toolchains; looks for Debian's packages (and fetches them) once, and only if a target
 /// needs them.
 #[derive(Default)]
 pub struct Toolchains {
-    debian: Option<Result<debian::Rust, String>>,
-}
-
-/// Checks of the controller with each set of features that its manifest lists, which go on while other steps run: on the part
-/// with a Cortex-M4F; on the one with a Cortex-M0, which has no FPU, with those that have fixed point.
-pub struct FeatureChecks {
-    /// Names of steps, and what checks them or why nothing does.
-    checks: Vec<(String, Result<Check, String>)>,
-}
-
-/// What came out, when it has ended.
-type Check = JoinHandle<Result<(), String>>;
-
-impl FeatureChecks {
-    /// Begins them, one thread a part: the compiler has one thread for one crate.
-    pub fn begin(repo: &Repo) -> Self {
-        let manifest = std::fs::read_to_string(repo.root.join("controller/Cargo.toml"));
-        let sets = feature_sets(&manifest.unwrap_or_default());
-        let mut toolchains = Toolchains::default();
-        let parts = PARTS.iter().filter(|part| part.target.starts_with("thumb"));
-        let checks = parts.map(|part| {
-            let has_fpu = part.target.ends_with("hf");
-            let fits = |features: &&String| has_fpu || features.split(',').any(|feature| feature == "fixed");
-            let check = toolchains.find(repo, part.target).map(|toolchain| {
-                // Cargo lets one command at a time into a folder.
-                let folder = toolchain.target_folder(repo).join("sets").join(part.target);
-                let commands = sets.iter().filter(fits).map(|features| {
-                    let mut check = toolchain.cargo(repo, part.target, "check");
-                    check.args(["--locked", "--quiet", "--package", "staya-controller"]);
-                    check.args(["--no-default-features", "--features", features]);
-                    check.env("CARGO_TARGET_DIR", &folder);
-                    (features.clone(), check)
-                });
-                let commands: Vec<_> = commands.collect();
-                std::thread::spawn(move || check_each(commands))
-            });
-            (format!("feature sets of the controller for {}", part.target), check)
-        });
-        Self { checks: checks.collect() }
-    }
-
-    /// Waits for them: one step a part.
-    pub fn end(self, report: &mut Report) {
-        for (name, check) in self.checks {
-            match check {
-                Ok(check) => {
-                    report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
-                }
-                Err(reason) => report.skip(&name, &reason),
-            }
-        }
-    }
-}
-
-/// Quiet, because other steps run beside it, but for what the compiler finds.
-fn check_each(commands: Vec<(String, Command)>) -> Result<(), String> {
-    commands
-        .into_iter()
-        .try_for_each(|(features, mut check)| ended(check.status()).map_err(|reason| format!("`{features}`: {reason}")))
-}
-
-/// The list `feature-sets` in a manifest's metadata, and the set without any feature.
-fn feature_sets(manifest: &str) -> Vec<String> {
-    let manifest: Option<toml::Table> = manifest.parse().ok();
-    let sets = manifest.as_ref().and_then(|manifest| {
-        let metadata = manifest.get("package")?.get("metadata")?.get("staya")?;
-        metadata.get("feature-sets")?.as_array()
-    });
-    let names = sets.into_iter().flatten().filter_map(toml::Value::as_str);
-    let mut names: Vec<String> = std::iter::once("").chain(names).map(String::from).collect();
-    names.dedup();
-    names
+    debian: Option<Result<Debian, String>>,
 }
 
 impl Toolchains {
@@ -100,7 +56,7 @@ impl Toolchains {
         if has_target(repo, target) {
             return Ok(Toolchain::Own);
         }
-        let ready = self.debian.get_or_insert_with(|| debian::prepare(repo));
+        let ready = self.debian.get_or_insert_with(|| prepare(repo));
         ready.clone().map(Toolchain::Debian)
     }
 }
@@ -119,7 +75,7 @@ impl Toolchain {
             }
         };
         command.args(["--target", target]);
-        // The same for every command: another level builds everything that logs anew.
+        // The same for every command: another level rebuilds everything that logs.
         if std::env::var_os("DEFMT_LOG").is_none() {
             command.env("DEFMT_LOG", "info");
         }
@@ -130,7 +86,7 @@ impl Toolchain {
     pub fn target_folder(&self, repo: &Repo) -> PathBuf {
         match self {
             Self::Own => repo.target.clone(),
-            Self::Debian(_) => debian::target_folder(repo),
+            Self::Debian(_) => debian_folder(repo),
         }
     }
 }
@@ -143,14 +99,82 @@ fn has_target(repo: &Repo, target: &str) -> bool {
     output_of(&mut question).is_some_and(|folder| Path::new(&folder).is_dir())
 }
 
+/// Debian's Rust, with the sources of `core`.
+#[derive(Clone)]
+pub struct Debian {
+    /// The folder of its programs.
+    bin: PathBuf,
+}
+
+/// Finds the packages, or unpacks them. The error says why they are not there, and what to do.
+fn prepare(repo: &Repo) -> Result<Debian, String> {
+    let find = || {
+        let places = [PathBuf::from("/usr/bin"), repo.tools()];
+        places.into_iter().map(|bin| Debian { bin }).find(|rust| rust.is_complete(repo))
+    };
+    DEBIAN.prepare(repo, || find().is_some()).map_err(|reason| format!("{reason}; or {REMEDY}"))?;
+    find().ok_or_else(|| String::from(REMEDY))
+}
+
+impl Debian {
+    /// Its cargo with these arguments, with its rustc, allowed to build `core`, in a target folder
+    /// of its own: two compilers in one folder would rebuild everything at each change.
+    fn cargo(&self, repo: &Repo, arguments: &[&str]) -> Command {
+        let mut command = repo.command(self.bin.join("cargo"));
+        // Cargo and rustup tell their children which toolchain runs; that is another one here.
+        for (name, _) in std::env::vars_os() {
+            if name.to_str().is_some_and(names_a_toolchain) {
+                command.env_remove(name);
+            }
+        }
+        command
+            .args(arguments)
+            .env("RUSTC", self.bin.join("rustc"))
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env("CARGO_TARGET_DIR", debian_folder(repo));
+        command
+    }
+
+    /// Whether compiler, cargo, linker and the sources of `core` are all there.
+    fn is_complete(&self, repo: &Repo) -> bool {
+        let sysroot = output_of(repo.command(self.bin.join("rustc")).args(["--print", "sysroot"]));
+        let sources = sysroot.map(|root| Path::new(&root).join("lib/rustlib/src/rust/library/core/src/lib.rs"));
+        let programs = DEBIAN.programs.iter().all(|program| self.bin.join(program).is_file());
+        programs && sources.is_some_and(|sources| sources.is_file())
+    }
+}
+
+/// Where Debian's cargo builds.
+fn debian_folder(repo: &Repo) -> PathBuf {
+    repo.target.join("debian")
+}
+
+/// Whether an environment variable chooses a compiler, its flags or its libraries.
+fn names_a_toolchain(variable: &str) -> bool {
+    const NAMES: [&str; 5] =
+        ["CARGO", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET", "LD_LIBRARY_PATH"];
+    const BEGINNINGS: [&str; 4] = ["RUST", "CARGO_BUILD_RUSTC", "CARGO_PKG_", "CARGO_MANIFEST_"];
+    NAMES.contains(&variable) || BEGINNINGS.iter().any(|start| variable.starts_with(start))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn feature_sets_are_those_of_the_manifest_and_the_empty_one() {
-        let manifest = "[package.metadata.staya]\nfeature-sets = [\"\", \"orca\", \"orca,fixed\"]\n";
-        assert_eq!(feature_sets(manifest), ["", "orca", "orca,fixed"]);
-        assert_eq!(feature_sets("[package]\n"), [""]);
+    fn toolchain_of_the_parent_does_not_leak() {
+        for name in ["RUSTC", "RUSTUP_TOOLCHAIN", "RUSTC_WRAPPER", "CARGO", "CARGO_BUILD_RUSTC_WRAPPER"] {
+            assert!(names_a_toolchain(name), "{name}");
+        }
+        for name in ["PATH", "HOME", "CARGO_HOME", "CARGO_BUILD_JOBS", "CARGO_HTTP_PROXY"] {
+            assert!(!names_a_toolchain(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn parts_are_found_by_their_names() {
+        let names = |names: &[&str]| parts(names).iter().map(|part| part.name).collect::<Vec<_>>();
+        assert_eq!(names(&["nrf51"]), ["nrf51"]);
+        assert_eq!(names(&[]), PARTS.each_ref().map(|part| part.name));
     }
 }

@@ -1,6 +1,7 @@
-//! What the documentation names exists: paths, links and their headings, and the code that README.md quotes.
+//! What the documentation names exists: paths, links and their headings, and the code that
+//! README.md quotes.
 
-use std::fs;
+use crate::files;
 use std::path::{Path, PathBuf};
 
 /// Folders at the top that only runs make, so that documentation may name what is not there.
@@ -8,24 +9,22 @@ const MADE: [&str; 2] = ["target", "out"];
 /// Says what was, not what is.
 const HISTORY: &str = "CHANGELOG.md";
 
-/// Reads every Markdown file of the repository. The error counts the faults, which are printed by file and line.
+/// Reads every Markdown file of the repository. The error counts the faults, which are printed by
+/// file and line.
 pub fn check(root: &Path) -> Result<(), String> {
     let folders = folders(root)?;
-    let mut files = Vec::new();
-    list(root, "md", &mut files)?;
     let mut faults = Vec::new();
-    for file in &files {
-        let text = read(file)?;
+    for file in &list(root, "md")? {
+        let text = files::read(file)?;
         let shown = file.strip_prefix(root).unwrap_or(file);
         if shown != Path::new(HISTORY) {
             let document = Document { root, file, folders: &folders };
             faults.extend(document.faults(&text).map(|(line, fault)| format!("{}:{line}: {fault}", shown.display())));
         }
     }
-    let mut examples = Vec::new();
-    list(&root.join("examples"), "rs", &mut examples)?;
-    let examples = examples.iter().map(|file| read(file)).collect::<Result<Vec<_>, _>>()?;
-    let readme = read(&root.join("README.md"))?;
+    let examples = list(&root.join("examples"), "rs")?;
+    let examples = examples.iter().map(|file| files::read(file)).collect::<Result<Vec<_>, _>>()?;
+    let readme = files::read(&root.join("README.md"))?;
     let quotes = quotes(&readme);
     let strange = quotes.iter().filter(|quote| !examples.iter().any(|example| is_in(quote, example)));
     faults.extend(strange.map(|quote| format!("README.md: in no file of examples/: {}", quote.join(" "))));
@@ -67,12 +66,11 @@ impl Document<'_> {
             path => self.here().join(path),
         };
         heading.is_empty() && file.exists()
-            || fs::read_to_string(file)
-                .is_ok_and(|text| text.lines().any(|line| anchor(line).as_deref() == Some(heading)))
+            || files::read(&file).is_ok_and(|text| text.lines().any(|line| anchor(line).as_deref() == Some(heading)))
     }
 
-    /// Words that begin with a top folder, and in backticks files and folders beside, below or above the last of those
-    /// in the same line, or in the document's own folder.
+    /// Words that begin with a top folder, and in backticks files and folders beside, below or
+    /// above the last of those in the same line, or in the document's own folder.
     fn missing_paths<'t>(&self, line: &'t str) -> Vec<&'t str> {
         let mut missing = Vec::new();
         let mut near = vec![self.here().join("src"), self.here()];
@@ -110,7 +108,7 @@ fn is_placeholder(part: &str) -> bool {
     part.contains('*') || !stem.is_empty() && stem != "README" && stem.chars().all(|c| c.is_uppercase() || c == '_')
 }
 
-/// What a link to a heading names it by; `None` for other lines.
+/// The name of a heading in links; `None` for other lines.
 fn anchor(line: &str) -> Option<String> {
     let heading = line.trim_start_matches('#').strip_prefix(' ').filter(|_| line.starts_with('#'))?;
     let kept = heading.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
@@ -131,38 +129,20 @@ fn is_in(quote: &[&str], text: &str) -> bool {
 
 /// The folders at the top that are the repository's own.
 fn folders(root: &Path) -> Result<Vec<String>, String> {
-    let names = entries(root)?.into_iter().filter(|path| path.is_dir());
-    let names = names.filter_map(|path| path.file_name()?.to_str().map(str::to_string));
-    Ok(names.filter(|name| !is_foreign(name)).collect())
+    let folders = files::entries(root)?.into_iter().filter(|path| path.is_dir()).map(|path| files::name(&path));
+    Ok(folders.filter(|name| !is_foreign(name)).collect())
 }
 
-/// Collects the files with this extension.
-fn list(folder: &Path, extension: &str, files: &mut Vec<PathBuf>) -> Result<(), String> {
-    for path in entries(folder)? {
-        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
-        if path.is_dir() && !is_foreign(name) {
-            list(&path, extension, files)?;
-        } else if path.extension().is_some_and(|e| e == extension) {
-            files.push(path);
-        }
-    }
-    Ok(())
+/// The files with this extension.
+fn list(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, String> {
+    files::below(folder, &|path| {
+        if path.is_dir() { !is_foreign(&files::name(path)) } else { path.extension().is_some_and(|e| e == extension) }
+    })
 }
 
 /// Whether a folder is hidden or made by runs.
 fn is_foreign(name: &str) -> bool {
     name.starts_with('.') || MADE.contains(&name)
-}
-
-fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    let entries = fs::read_dir(folder).and_then(|entries| entries.map(|e| e.map(|e| e.path())).collect());
-    let mut paths: Vec<PathBuf> = entries.map_err(|error| format!("{}: {error}", folder.display()))?;
-    paths.sort();
-    Ok(paths)
-}
-
-fn read(file: &Path) -> Result<String, String> {
-    fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))
 }
 
 #[cfg(test)]

@@ -1,18 +1,20 @@
 //! A program of the firmware in the emulator of its part, from its start to its end.
 
-use crate::part::Part;
-use crate::qemu;
-use crate::repo::{Repo, shown};
-use std::io::Read;
+use crate::apt::Tools;
+use crate::device::{PARTS, Part};
+use crate::firmware::{self, Profile};
+use crate::repo::{Repo, output_of, shown};
+use crate::session::Session;
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::Stdio;
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// After so long a program counts as hanging: the longest takes a minute on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(600);
 
-/// What the part's emulator is told to be.
+/// The machine that the part's emulator models.
 fn machine(part: &Part) -> &'static [&'static str] {
     match part.name {
         "stm32f405" => &["-machine", "netduinoplus2"],
@@ -22,19 +24,43 @@ fn machine(part: &Part) -> &'static [&'static str] {
     }
 }
 
-/// Whether the part's emulator is there; unpacks it on Debian.
+/// Debian's packages of both emulators.
+const QEMU: Tools =
+    Tools { packages: &["qemu-system-arm", "qemu-system-misc"], programs: &["qemu-system-arm", "qemu-system-riscv32"] };
+
+/// The command that fetches the emulators.
+pub fn run_command(s: &mut Session) {
+    for part in &PARTS {
+        s.report.step(&format!("the emulator of the {}", part.name), || prepare(&s.repo, part));
+    }
+}
+
+/// Makes sure that the part's emulator is there: unpacks it on Debian.
 pub fn prepare(repo: &Repo, part: &Part) -> Result<(), String> {
-    qemu::prepare(repo, part.emulator).map(drop)
+    QEMU.prepare(repo, || output_of(repo.command(part.emulator).arg("--version")).is_some())
 }
 
-/// Runs a program that prints and ends by itself; what it printed. Each instruction takes a nanosecond of
-/// the part's time.
-pub fn run(repo: &Repo, part: &Part, elf: &Path) -> Result<String, String> {
-    run_on_line(repo, part, elf, "none")
+/// A step with programs of the firmware on a part: builds them, all if none is named. Skipped if
+/// program or emulator is missing.
+pub fn on_part(
+    s: &mut Session,
+    name: &str,
+    part: &Part,
+    (profile, bins): (Profile, &[&str]),
+    work: impl FnOnce(&Repo) -> Result<(), String>,
+) {
+    if !firmware::build(s, part, profile, bins) {
+        return s.report.skip(name, "there is no firmware");
+    }
+    match prepare(&s.repo, part) {
+        Err(reason) => s.report.skip(name, &reason),
+        Ok(()) => drop(s.report.step(name, || work(&s.repo))),
+    }
 }
 
-/// The same with the part's UART on one of QEMU's devices; what goes to `stdio` is what is returned.
-pub fn run_on_line(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<String, String> {
+/// Runs a program that ends by itself, with the part's UART on one of QEMU's devices, `none` or
+/// `stdio`; what it printed. Each instruction takes a nanosecond of the part's time.
+pub fn run(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<String, String> {
     let mut command = repo.command(part.emulator);
     command
         .args(machine(part))
@@ -42,52 +68,26 @@ pub fn run_on_line(repo: &Repo, part: &Part, elf: &Path, line: &str) -> Result<S
         .args(["-monitor", "none", "-serial", line])
         .args(["-semihosting-config", "enable=on,target=native"])
         .arg("-kernel")
-        .arg(elf)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+        .arg(elf);
     println!("$ {}", shown(&command));
-    let mut child = command.spawn().map_err(|error| format!("cannot start {}: {error}", part.emulator))?;
-    let output = reader(child.stdout.take());
-    let complaints = reader(child.stderr.take());
-    let ended = wait(&mut child);
-    let output = output.join().unwrap_or_default();
-    let complaints = complaints.join().unwrap_or_default();
-    match ended {
-        Ok(()) => Ok(output),
-        Err(reason) => {
-            print!("{output}");
-            let first = complaints.lines().next().unwrap_or_default();
-            let last = output.lines().last().unwrap_or_default();
-            Err(format!("{reason}; {last} {first}"))
-        }
+    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let child = child.map_err(|error| format!("cannot start {}: {error}", part.emulator))?;
+    let (ended, waiting) = mpsc::channel::<()>();
+    let mut kill = repo.command("kill");
+    kill.arg(child.id().to_string());
+    let watch = thread::spawn(move || {
+        let hangs = waiting.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout);
+        hangs && kill.status().is_ok()
+    });
+    let output = child.wait_with_output().map_err(|error| error.to_string())?;
+    drop(ended);
+    let hung = watch.join().unwrap_or_default();
+    let [said, complaints] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    if output.status.success() && !hung {
+        return Ok(said);
     }
-}
-
-fn reader(pipe: Option<impl Read + Send + 'static>) -> thread::JoinHandle<String> {
-    thread::spawn(move || {
-        let mut text = Vec::new();
-        if let Some(mut pipe) = pipe {
-            // What came before an error still says something.
-            let _ = pipe.read_to_end(&mut text);
-        }
-        String::from_utf8_lossy(&text).into_owned()
-    })
-}
-
-/// Waits for the end, and brings it about when it does not come.
-fn wait(child: &mut Child) -> Result<(), String> {
-    let start = Instant::now();
-    loop {
-        match child.try_wait() {
-            Ok(Some(status)) if status.success() => return Ok(()),
-            Ok(Some(status)) => return Err(status.to_string()),
-            Ok(None) if start.elapsed() < PATIENCE => thread::sleep(Duration::from_millis(20)),
-            Ok(None) => {
-                let _ = child.kill();
-                let _ = child.wait();
-                return Err(format!("did not end within {} s", PATIENCE.as_secs()));
-            }
-            Err(error) => return Err(error.to_string()),
-        }
-    }
+    print!("{said}");
+    let reason = if hung { format!("did not end within {} s", PATIENCE.as_secs()) } else { output.status.to_string() };
+    let last = said.lines().last().unwrap_or_default();
+    Err(format!("{reason}; {last} {}", complaints.lines().next().unwrap_or_default()))
 }

@@ -1,76 +1,79 @@
 //! Fleets of emulated parts: the runner's tests that need the firmware and both emulators.
 
-use crate::device::Toolchains;
+use crate::device::{Part, STM32F405};
 use crate::emulate;
 use crate::firmware::{Profile, build_own};
 use crate::install;
-use crate::part::{PARTS, part};
-use crate::repo::{Repo, run_reading};
-use crate::report::Report;
+use crate::repo::run_reading;
+use crate::session::{MAIN, Session};
 use crate::tally::counted;
 use std::process::Command;
 
 /// A crate with a guidance law of its own, as people copy it.
 const OWN: &str = "examples/own_part";
 
-/// Runs the tests with the firmware that was built before, or says why not.
-pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
+/// Runs the tests on these parts with the firmware that was built before, or says why not.
+pub fn run(s: &mut Session, parts: &[&'static Part]) {
     let name = "robots on emulated parts";
     let mut missing = Vec::new();
-    for part in &PARTS {
-        if !Profile::Firmware.elf(repo, part, "lockstep").is_file() {
+    for part in parts {
+        if !Profile::Firmware.elf(&s.repo, part, "lockstep").is_file() {
             missing.push(format!("no firmware for {}", part.name));
         }
-        missing.extend(emulate::prepare(repo, part).err());
+        missing.extend(emulate::prepare(&s.repo, part).err());
     }
     missing.dedup();
     if !missing.is_empty() {
-        return report.skip(name, &missing.join("; "));
+        return s.report.skip(name, &missing.join("; "));
     }
-    let stm32f405 = part("stm32f405").unwrap_or(&PARTS[0]);
-    if !build_own(repo, report, toolchains, stm32f405, &repo.root.join(OWN)) {
-        return report.skip(name, &format!("no firmware of {OWN}"));
+    if !build_own(s, STM32F405, &s.repo.root.join(OWN)) {
+        return s.report.skip(name, &format!("no firmware of {OWN}"));
     }
-    run_installed(repo, report);
-    // Of the whole workspace, as the other tests: alone, the runner would be built anew with other features.
-    let mut tests = repo.cargo(&["test", "--locked", "--workspace", "--test", "emulated"]);
-    tests.env("STAYA_FIRMWARE", repo.target.join("firmware"));
-    report.part(name, || counted(&mut tests, ""));
+    run_installed(s);
+    // Of the whole workspace, as the other tests: alone, the runner would be built once more with
+    // other features.
+    let mut tests = s.repo.cargo(&["test", "--locked", "--workspace", "--test", "emulated"]);
+    tests.env("STAYA_FIRMWARE", s.repo.target.join("firmware"));
+    tests.env("STAYA_PARTS", parts.iter().map(|part| part.name).collect::<Vec<_>>().join(","));
+    s.report.part(name, || counted(&mut tests, ""));
 }
 
-/// What `cargo xtask install` installs finds its firmware beside itself, from a folder that knows of no repository: it neither asks for
-/// cargo, which is not there, nor for this folder's.
-fn run_installed(repo: &Repo, report: &mut Report) {
-    let prefix = repo.target.join("tmp/installed");
-    if !install::put_step(repo, report, &install::Request::of_tests(prefix.clone())) {
+/// What `cargo xtask install` installs finds its firmware beside itself, from a folder that knows
+/// of no repository: it neither asks for cargo, which is not there, nor for this folder's.
+fn run_installed(s: &mut Session) {
+    let prefix = s.repo.target.join("tmp/installed");
+    if !install::put_step(s, &prefix, "debug") {
         return;
     }
-    report.step("an installed program finds its firmware", || {
-        let mut staya = repo.command(prefix.join("bin/staya"));
-        staya.arg("hil").arg(repo.root.join("scenarios/six-robots.toml"));
-        staya.args(["--device", "qemu:stm32f405", "--ticks", "20"]);
-        staya
-            .current_dir(&prefix)
-            .env("CARGO", "no-cargo")
-            .env_remove("STAYA_FIRMWARE")
-            .env_remove("CARGO_MANIFEST_DIR");
-        is_the_same(&mut staya)
+    s.report.step("an installed program finds its firmware", || {
+        let mut staya = s.repo.command(prefix.join("bin").join(MAIN));
+        staya.arg("hil").arg(s.repo.root.join("scenarios/six-robots.toml"));
+        staya.args(["--device", "qemu:stm32f405", "--ticks", "20"]).current_dir(&prefix).env("CARGO", "no-cargo");
+        is_the_same(staya.env_remove("STAYA_FIRMWARE").env_remove("CARGO_MANIFEST_DIR"))
     });
 }
 
-/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one without devices. The
-/// program is the one that its own tests have brought.
-pub fn run_ten(repo: &Repo, report: &mut Report) {
-    report.step("ten robots of a formation as firmware, 1000 steps", || {
-        let mut staya = repo.command(repo.target.join("debug").join(format!("staya{}", std::env::consts::EXE_SUFFIX)));
-        staya.args(["hil", "scenarios/ten-robots.toml", "--ticks", "1000"]);
-        staya.args(["--device", "qemu:stm32f405", "--devices", "10"]);
-        staya.arg("--firmware").arg(repo.target.join("firmware"));
-        is_the_same(&mut staya)
+/// Ten emulated parts for a thousand steps, each compared with its shadow: the run is the one
+/// without devices. The program is the one that its own tests have brought.
+pub fn run_ten(s: &mut Session) {
+    s.report.step("ten robots of a formation as firmware, 1000 steps", || {
+        let mut staya = s.repo.command(s.repo.program("debug", MAIN));
+        staya.args([
+            "hil",
+            "scenarios/ten-robots.toml",
+            "--ticks",
+            "1000",
+            "--device",
+            "qemu:stm32f405",
+            "--devices",
+            "10",
+        ]);
+        is_the_same(staya.arg("--firmware").arg(s.repo.target.join("firmware")))
     });
 }
 
-/// Runs `staya hil`, which fails by itself when a device and its shadow differ; the whole run must also be the one without devices.
+/// Runs `staya hil`, which fails by itself when a device and its shadow differ; the whole run must
+/// also be the one without devices.
 fn is_the_same(staya: &mut Command) -> Result<(), String> {
     let mut verdict = None;
     run_reading(staya, |line| {

@@ -1,13 +1,15 @@
 //! How much `cargo xtask test` tests.
 
-/// Why tests are left out that only [`Extent::All`] runs.
-pub const LONG: &str = "long proofs run with `cargo xtask test --all`";
+/// Where tests are that the command leaves out.
+pub const LONG: &str = "a part of `cargo xtask test --all`";
 
 /// How much is tested.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
-    /// What every change should pass: all tests on the host but the long ones, clients, each part once.
+    /// The tests that every change should pass: all tests on the host but the long ones, clients,
+    /// two parts.
     Short,
-    /// All there is: besides, peers, every program on every part, debug builds, budgets, long tests.
+    /// All there is: besides, peers, every program on every part, debug builds, budgets, long
+    /// tests, goals of benchmarks.
     All,
 }

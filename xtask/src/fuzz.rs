@@ -1,60 +1,41 @@
 //! `cargo xtask fuzz`: a fuzzer looks for bytes that break what must hold for any bytes.
 
+use crate::files;
 use crate::repo::{Repo, output_of};
-use crate::report::Report;
-use std::fs;
+use crate::session::Session;
 use std::process::Command;
 
 const FOLDER: &str = "tests/fuzz";
 /// How long each target runs unless the command line says otherwise; libFuzzer takes 0 for ever.
-pub const SECONDS: &str = "60";
+const SECONDS: &str = "60";
 
-/// What the fuzzer needs: the question whether it is there, and what to do if not.
+/// Requirements of the fuzzer: the command that finds each, and the remedy without it.
 const NEEDS: [(&[&str], &str); 3] = [
     (&["rustup", "run", "nightly", "cargo", "--version"], "no nightly Rust; run `rustup toolchain install nightly`"),
     (&["rustup", "run", "nightly", "cargo", "fuzz", "--version"], "no cargo-fuzz; run `cargo install cargo-fuzz`"),
     (&["c++", "--version"], "no C++ compiler, which libFuzzer needs; on Debian run, as root, `apt-get install g++`"),
 ];
 
-/// Targets whose bytes are choices and no words to be guessed, in code without `unsafe`: what the fuzzer otherwise follows (each comparison, each
-/// access to memory) finds nothing there and takes nine tenths of the time.
+/// Targets whose bytes are choices, not words to be guessed, in code without `unsafe`: what the
+/// fuzzer otherwise follows (each comparison, each access to memory) finds nothing there and takes
+/// nine tenths of the time.
 const STORIES: [&str; 1] = ["requests_model"];
 
 /// Runs each target for some seconds. New inputs stay in `tests/fuzz/corpus`, those that break
 /// something in `tests/fuzz/artifacts`.
-pub fn run(repo: &Repo, report: &mut Report, seconds: &str) {
-    let missing = NEEDS.iter().find(|(question, _)| {
-        let [program, arguments @ ..] = *question else {
-            return false;
-        };
-        output_of(repo.command(program).args(arguments)).is_none()
-    });
-    let targets = targets(repo);
+pub fn run(s: &mut Session, seconds: Option<&str>) {
+    let is_missing = |question: &[&str]| output_of(s.repo.command(question[0]).args(&question[1..])).is_none();
+    let missing = NEEDS.iter().find(|(question, _)| is_missing(question));
+    let targets = files::entries(&s.repo.root.join(FOLDER).join("fuzz_targets")).unwrap_or_default();
     if targets.is_empty() {
-        report.step("fuzz targets", || Err(format!("none in {FOLDER}")));
+        s.report.step("fuzz targets", || Err(format!("none in {FOLDER}")));
     }
-    for target in targets {
+    for target in targets.iter().map(|file| files::stem(file)) {
         match missing {
-            None => {
-                report.command(&target, fuzz(repo, &target, seconds));
-            }
-            Some((_, reason)) => report.skip(&target, reason),
+            None => drop(s.report.command(&target, fuzz(&s.repo, &target, seconds.unwrap_or(SECONDS)))),
+            Some((_, reason)) => s.report.skip(&target, reason),
         }
     }
-}
-
-/// The names of the targets, sorted.
-fn targets(repo: &Repo) -> Vec<String> {
-    let folder = repo.root.join(FOLDER).join("fuzz_targets");
-    let files = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> = files
-        .filter_map(|file| {
-            let name = file.file_name().into_string().ok()?;
-            name.strip_suffix(".rs").map(String::from)
-        })
-        .collect();
-    names.sort();
-    names
 }
 
 fn fuzz(repo: &Repo, target: &str, seconds: &str) -> Command {

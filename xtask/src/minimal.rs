@@ -1,51 +1,50 @@
 //! The oldest Rust that the workspace declares (`rust-version`) compiles it.
 
+use crate::files;
 use crate::repo::{Repo, output_of};
-use crate::report::Report;
+use crate::session::Session;
 
 const NAME: &str = "the declared minimal Rust";
 
-/// If the toolchain here is that Rust, all that is compiled shows it; else rustup's of that version has to check the workspace.
-pub fn check(repo: &Repo, report: &mut Report) {
-    let declared = match declared(repo) {
+/// If the toolchain here is that Rust, all that is compiled shows it; else rustup's of that version
+/// has to check the workspace.
+pub fn check(s: &mut Session) {
+    let declared = match declared(&s.repo) {
         Ok(declared) => declared,
         Err(reason) => {
-            report.step(NAME, || Err(reason));
+            s.report.step(NAME, || Err(reason));
             return;
         }
     };
-    let here = output_of(repo.command("rustc").arg("--version")).unwrap_or_default();
+    let here = output_of(s.repo.command("rustc").arg("--version")).unwrap_or_default();
+    let rustup = |arguments: &[&str]| {
+        let mut command = s.repo.command("rustup");
+        command.args(["run", &declared]).args(arguments);
+        command
+    };
     if is_release_of(&here, &declared) {
-        report.step(NAME, || {
-            println!("{here} compiles everything here");
-            Ok(())
-        });
-        return;
-    }
-    let mut check = repo.command("rustup");
-    check.args(["run", &declared, "cargo"]);
-    if output_of(repo.command("rustup").args(["run", &declared, "rustc", "--version"])).is_some() {
-        check.args(["check", "--locked", "--workspace", "--target-dir"]);
-        check.arg(repo.target.join("minimal"));
-        report.command(NAME, check);
+        println!("{here} compiles everything here");
+        s.report.step(NAME, || Ok(()));
+    } else if output_of(&mut rustup(&["rustc", "--version"])).is_some() {
+        let mut check = rustup(&["cargo", "check", "--locked", "--workspace", "--target-dir"]);
+        check.arg(s.repo.target.join("minimal"));
+        s.report.command(NAME, check);
     } else {
-        let reason = format!(
-            "this is {here}; run `rustup toolchain install {declared}`, or declare another rust-version in Cargo.toml"
-        );
-        report.skip(NAME, &reason);
+        let remedy = "or declare another rust-version in Cargo.toml";
+        s.report.skip(NAME, &format!("this is {here}; run `rustup toolchain install {declared}`, {remedy}"));
     }
 }
 
 /// `rust-version` of the workspace.
 fn declared(repo: &Repo) -> Result<String, String> {
     let path = repo.root.join("Cargo.toml");
-    let manifest = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let value = manifest.lines().find_map(|line| line.strip_prefix("rust-version = \""));
-    let version = value.and_then(|value| value.strip_suffix('"'));
-    version.map(String::from).ok_or_else(|| format!("{}: no line rust-version = \"...\"", path.display()))
+    let manifest: toml::Table = files::read(&path)?.parse().map_err(|error| format!("{}: {error}", path.display()))?;
+    let version = manifest["workspace"]["package"].get("rust-version").and_then(toml::Value::as_str);
+    version.map(String::from).ok_or_else(|| format!("{}: no rust-version", path.display()))
 }
 
-/// Whether what `rustc --version` says is a release of `version`, such as `rustc 1.95.0 (...)` of `1.95`.
+/// Whether what `rustc --version` says is a release of `version`, such as `rustc 1.95.0 (...)` of
+/// `1.95`.
 fn is_release_of(said: &str, version: &str) -> bool {
     let release = said.split_whitespace().nth(1).and_then(|release| release.strip_prefix(version));
     release.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

@@ -1,22 +1,21 @@
-//! Firmware with a panic does not link: panics are planted in a copy of the sources, one at a time, and the linker must refuse each.
+//! Firmware with a panic does not link: panics are planted in a copy of the sources, one at a time,
+//! and the linker must refuse each.
 //!
 //! That the sources as they are link, without one, is seen whenever the firmware is built.
 
-use crate::device::{Toolchain, Toolchains};
-use crate::part::{Part, part};
+use crate::device::{Part, STM32F405, Toolchain};
+use crate::files;
 use crate::repo::{Repo, shown};
-use crate::report::Report;
-use std::fs;
-use std::path::Path;
+use crate::session::Session;
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-/// What the panic handler calls, and nobody defines.
+/// The symbol that the panic handler calls and that no crate defines.
 const SYMBOL: &str = "staya_panic_is_reachable";
-/// The part whose firmware has all of them.
-const PART: &str = "stm32f405";
 /// Where the copy is, in the target folder.
 const COPY: &str = "planted";
-/// What the copy consists of: manifests, sources and their pages, linker scripts, MAVLink's messages.
+/// The files in the copy: manifests, sources and their pages, linker scripts, MAVLink's
+/// messages.
 const FOLDERS: [&str; 6] = ["controller", "examples", "hil", "sim-host", "tests", "xtask"];
 const FILES: [&str; 3] = ["Cargo.toml", "Cargo.lock", "memory.x"];
 const ENDINGS: [&str; 5] = ["rs", "toml", "md", "x", "xml"];
@@ -38,92 +37,44 @@ struct Plant {
 }
 
 /// Each kind of code that the proof is for.
+#[rustfmt::skip]
 const PLANTS: [Plant; 6] = [
-    Plant {
-        name: "the UART's ring",
-        file: "hil/firmware/src/ring.rs",
+    Plant { name: "the UART's ring", file: "hil/firmware/src/ring.rs", bin: "lockstep", is_long: false,
         right: "self.bytes.get(tail)?.load(",
-        wrong: "self.bytes[tail].load(",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "the UART's interrupt",
-        file: "hil/firmware/src/part/stm32f405.rs",
+        wrong: "self.bytes[tail].load(" },
+    Plant { name: "the UART's interrupt", file: "hil/firmware/src/part/stm32f405.rs", bin: "lockstep", is_long: false,
         right: "RECEIVED.push(byte);",
-        wrong: "RECEIVED.push(byte.checked_add(1).unwrap());",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "start-up",
-        file: "hil/firmware/src/part/stm32f405.rs",
+        wrong: "RECEIVED.push(byte.checked_add(1).unwrap());" },
+    Plant { name: "start-up", file: "hil/firmware/src/part/stm32f405.rs", bin: "lockstep", is_long: false,
         right: "    if !comes(|| RCC.cr().read().pllrdy()) {",
-        wrong: "    assert!(comes(|| RCC.cr().read().pllrdy()));\n    if false {",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "lockstep itself",
-        file: "hil/firmware/src/lockstep.rs",
+        wrong: "    assert!(comes(|| RCC.cr().read().pllrdy()));\n    if false {" },
+    Plant { name: "lockstep itself", file: "hil/firmware/src/lockstep.rs", bin: "lockstep", is_long: false,
         right: "fault::over_the_link(format_args!(\"stack overflow: all of {} bytes used\", stack::size()));",
-        wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "logs",
-        file: "hil/firmware/src/log.rs",
+        wrong: "panic!(\"stack overflow: all of {} bytes used\", stack::size());" },
+    Plant { name: "logs", file: "hil/firmware/src/log.rs", bin: "lockstep", is_long: false,
         right: "if let Some(place) = self.bytes.get_mut(self.used) {",
-        wrong: "{\n                let place = &mut self.bytes[self.used];",
-        bin: "lockstep",
-        is_long: false,
-    },
-    Plant {
-        name: "an operator's orders",
-        file: "controller/src/agent/commanded.rs",
+        wrong: "{\n                let place = &mut self.bytes[self.used];" },
+    Plant { name: "an operator's orders", file: "controller/src/agent/commanded.rs", bin: "nopanic_operator", is_long: true,
         right: "self.wish = wish;",
-        wrong: "self.wish = [wish][core::hint::black_box(1)];",
-        bin: "nopanic_operator",
-        is_long: true,
-    },
+        wrong: "self.wish = [wish][core::hint::black_box(1)];" },
 ];
 
-/// The command: all of them.
-pub fn run_command(repo: &Repo, report: &mut Report) {
-    plant(repo, report, &mut Toolchains::default(), |_| true);
-}
-
-/// Those that take no minutes.
-pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    plant(repo, report, toolchains, |plant| !plant.is_long);
-}
-
-fn plant(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, is_wanted: impl Fn(&Plant) -> bool) {
-    let Some(part) = part(PART) else {
-        return;
-    };
-    let toolchain = toolchains.find(repo, part.target);
-    for plant in PLANTS.iter().filter(|plant| is_wanted(plant)) {
+/// Plants on the part whose firmware has them all; those that take minutes only if `all` is set.
+pub fn run(s: &mut Session, all: bool) {
+    for plant in PLANTS.iter().filter(|plant| all || !plant.is_long) {
         let name = format!("a panic in {} does not link", plant.name);
-        match &toolchain {
-            Err(reason) => report.skip(&name, reason),
-            Ok(toolchain) => drop(report.step(&name, || is_refused(repo, toolchain, part, plant))),
-        }
+        s.with_toolchain(&name, STM32F405.target, |repo, toolchain| is_refused(repo, toolchain, STM32F405, plant));
     }
 }
 
-/// That no source names one of the macros of `defmt` that panic: those have a panic of their own, of which the linker is told that it is in
-/// order (`hil/firmware/build.rs`).
+/// That no source names one of the macros of `defmt` that panic: those have a panic of their own,
+/// of which the linker is told that it is in order (`hil/firmware/build.rs`).
 pub fn check_logs(root: &Path) -> Result<(), String> {
-    let mut files = Vec::new();
-    for folder in LOGGED {
-        list(root, folder, &mut files).map_err(|error| format!("{folder}: {error}"))?;
-    }
-    for name in files {
-        let text = fs::read_to_string(root.join(&name)).map_err(|error| format!("{name}: {error}"))?;
-        if let Some(found) = panicking_log(&text) {
-            return Err(format!("{name}: `{found}` panics behind the proof's back; log, and go on or reset"));
+    for file in LOGGED.iter().map(|folder| list(&root.join(folder))).collect::<Result<Vec<_>, _>>()?.concat() {
+        let bytes = files::bytes(&file)?;
+        if let Some(found) = panicking_log(&String::from_utf8_lossy(&bytes)) {
+            let file = file.display();
+            return Err(format!("{file}: `{found}` panics behind the proof's back; log, and go on or reset"));
         }
     }
     Ok(())
@@ -141,7 +92,7 @@ fn panicking_log(text: &str) -> Option<&str> {
 
 fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) -> Result<(), String> {
     let copy = repo.target.join(COPY);
-    copy_sources(&repo.root, &copy, plant).map_err(|error| format!("{}: {error}", copy.display()))??;
+    copy_sources(&repo.root, &copy, plant)?;
     let mut build = toolchain.cargo(repo, part.target, "build");
     build.current_dir(&copy).args(["--locked", "--profile", "firmware"]);
     build.args(["--package", "staya-firmware", "--bin", plant.bin]);
@@ -159,50 +110,35 @@ fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) ->
     }
 }
 
-/// The sources with the plant in them. What is as it should be is left alone, so that cargo builds only what differs.
-fn copy_sources(root: &Path, copy: &Path, plant: &Plant) -> std::io::Result<Result<(), String>> {
-    let mut files: Vec<String> = FILES.map(String::from).into();
-    for folder in FOLDERS {
-        list(root, folder, &mut files)?;
-    }
-    let mut is_planted = false;
-    for name in files {
-        let mut bytes = fs::read(root.join(&name))?;
-        if name == plant.file {
+/// The sources with the plant in them. What is as it should be is left alone, so that cargo builds
+/// only what differs.
+fn copy_sources(root: &Path, copy: &Path, plant: &Plant) -> Result<(), String> {
+    let mut sources = FILES.map(|file| root.join(file)).to_vec();
+    sources.extend(FOLDERS.iter().map(|folder| list(&root.join(folder))).collect::<Result<Vec<_>, _>>()?.concat());
+    for file in sources {
+        let mut bytes = files::bytes(&file)?;
+        if file == root.join(plant.file) {
             let text = String::from_utf8_lossy(&bytes);
             if text.matches(plant.right).count() != 1 {
-                return Ok(Err(format!("{name}: not once `{}`: bring PLANTS up to date", plant.right)));
+                return Err(format!("{}: not once `{}`: bring PLANTS up to date", plant.file, plant.right));
             }
             bytes = text.replace(plant.right, plant.wrong).into_bytes();
-            is_planted = true;
         }
-        let to = copy.join(&name);
-        if fs::read(&to).is_ok_and(|there| there == bytes) {
+        let to = copy.join(file.strip_prefix(root).unwrap_or(&file));
+        if files::bytes(&to).is_ok_and(|there| there == bytes) {
             continue;
         }
-        fs::create_dir_all(to.parent().unwrap_or(copy))?;
-        fs::write(&to, bytes)?;
-    }
-    Ok(if is_planted { Ok(()) } else { Err(format!("no {}: bring PLANTS up to date", plant.file)) })
-}
-
-/// Adds the files of a folder and all within it, as paths from `root`; what builds leave there is left out.
-fn list(root: &Path, folder: &str, files: &mut Vec<String>) -> std::io::Result<()> {
-    for entry in fs::read_dir(root.join(folder))? {
-        let entry = entry?;
-        let Ok(name) = entry.file_name().into_string() else {
-            continue;
-        };
-        let path = format!("{folder}/{name}");
-        if entry.file_type()?.is_dir() {
-            if name != "target" {
-                list(root, &path, files)?;
-            }
-        } else if Path::new(&name).extension().is_some_and(|end| ENDINGS.iter().any(|known| end == *known)) {
-            files.push(path);
-        }
+        files::write(&to, bytes)?;
     }
     Ok(())
+}
+
+/// The sources in a folder and all within it; what builds leave there is left out.
+fn list(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    files::below(folder, &|path| {
+        let is_source = path.extension().is_some_and(|end| ENDINGS.iter().any(|known| end == *known));
+        if path.is_dir() { files::name(path) != "target" } else { is_source }
+    })
 }
 
 #[cfg(test)]
@@ -220,7 +156,7 @@ mod tests {
     fn every_plant_has_its_place() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         for plant in &PLANTS {
-            let text = fs::read_to_string(root.join(plant.file)).expect(plant.file);
+            let text = files::read(&root.join(plant.file)).expect(plant.file);
             assert_eq!(text.matches(plant.right).count(), 1, "{}", plant.name);
         }
     }

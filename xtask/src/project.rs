@@ -1,19 +1,22 @@
-//! What `staya new` makes compiles, and its tests run: a project of each kind in `target/new`, in the target folder that all share.
+//! Projects that `staya new` makes compile, and their tests run: a project of each kind in
+//! `target/new`, in the target folder that all share.
 
-use crate::apt;
+use crate::apt::Tools;
 use crate::c;
-use crate::device::Toolchains;
+use crate::device::STM32F405;
+use crate::emulate;
 use crate::extent::Extent;
+use crate::files;
 use crate::firmware::build_own;
-use crate::part::part;
-use crate::python_package;
+use crate::python;
 use crate::repo::{Repo, output_of, run as run_command_line};
-use crate::report::Report;
-use crate::{emulate, python};
-use std::fs;
+use crate::report::Counts;
+use crate::session::{MAIN, Session};
+use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+const MAKE: Tools = Tools { packages: &["make"], programs: &["make"] };
 /// Parts of `staya new`, and what their code is compiled for.
 const PARTS: [(&str, &str); 4] = [
     ("stm32f405", "thumbv7em-none-eabihf"),
@@ -21,49 +24,38 @@ const PARTS: [(&str, &str); 4] = [
     ("nrf52840", "thumbv7em-none-eabihf"),
     ("esp32c3", "riscv32imc-unknown-none-elf"),
 ];
-/// The part that is emulated.
-const EMULATED: &str = "stm32f405";
-
-/// The command: all of it, with the program built first.
-pub fn run_command(repo: &Repo, report: &mut Report) {
-    let build = repo.cargo(&["build", "--locked", "--package", "staya"]);
-    let is_compiled = report.command("staya", build);
-    run(repo, report, &mut Toolchains::default(), Extent::All, is_compiled);
-}
-
-/// Rust on this machine; of all extent also C, firmware for each part, the law on the emulated one, Python. `is_compiled`: the program
-/// has been built.
-pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, extent: Extent, is_compiled: bool) {
-    if !is_compiled {
-        return report.skip("new projects", "`staya` is not compiled");
+/// Rust on this machine; of all extent also C, firmware for each part, the law on the emulated one,
+/// Python.
+pub fn run(s: &mut Session, extent: Extent) {
+    if s.staya("debug").is_none() {
+        return s.report.skip("new projects", "`staya` is not compiled");
     }
-    let rust = "a new project in Rust";
-    let is_made = report.step(rust, || {
-        let folder = make(repo, EMULATED, &[])?;
-        run_command_line(repo.cargo(&["test", "--quiet"]).current_dir(&folder))?;
-        let mut keep = repo.cargo(&["run", "--quiet", "--example", "run", "--", "run.staya"]);
+    let is_made = s.report.step("a new project in Rust", || {
+        let folder = make(&s.repo, STM32F405.name, &[])?;
+        run_command_line(s.repo.cargo(&["test", "--quiet"]).current_dir(&folder))?;
+        let mut keep = s.repo.cargo(&["run", "--quiet", "--example", "run", "--", "run.staya"]);
         run_command_line(keep.current_dir(folder))
     });
     if extent == Extent::Short {
         return;
     }
-    match make_is_there(repo) {
-        Err(reason) => report.skip(C, &reason),
+    match make_is_there(&s.repo) {
+        Err(reason) => s.report.skip(C, &reason),
         Ok(()) => {
-            report.step(C, || {
-                let folder = make(repo, "c", &["--c"])?;
-                run_command_line(make_in(repo, &folder).arg("test"))
+            s.report.step(C, || {
+                let folder = make(&s.repo, "c", &["--c"])?;
+                run_command_line(make_in(&s.repo, &folder).arg("test"))
             });
         }
     }
     for (name, target) in PARTS {
-        firmware(repo, report, toolchains, name, target);
+        firmware(s, name, target);
     }
-    firmware_in_c(repo, report, toolchains);
+    firmware_in_c(s);
     if is_made {
-        on_emulated_part(repo, report, toolchains);
+        on_emulated_part(s);
     }
-    in_python(repo, report);
+    in_python(s);
 }
 
 const C: &str = "a new project in C";
@@ -74,22 +66,14 @@ fn make_is_there(repo: &Repo) -> Result<(), String> {
     if !is_there("cc") {
         return Err(String::from("no cc; on Debian run, as root, `apt-get install gcc libc6-dev`"));
     }
-    if is_there("make") {
-        return Ok(());
-    }
-    apt::unpack(repo, &["make"], &["make"])
-        .map_err(|reason| format!("no make ({reason}); on Debian run, as root, `apt-get install make`"))
+    MAKE.prepare(repo, || is_there("make"))
 }
 
 /// The folder of a project that was just made.
 fn make(repo: &Repo, kind: &str, options: &[&str]) -> Result<PathBuf, String> {
     let folder = repo.target.join("new").join(format!("pack-{kind}"));
-    if folder.exists() {
-        fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    }
-    let parent = folder.parent().unwrap_or(&folder);
-    fs::create_dir_all(parent).map_err(|error| format!("{}: {error}", parent.display()))?;
-    let mut new = repo.command(repo.target.join("debug/staya"));
+    files::make_empty(&folder)?;
+    let mut new = repo.command(repo.program("debug", MAIN));
     run_command_line(new.args(["new", "--quiet"]).args(options).arg("--staya").arg(&repo.root).arg(&folder))?;
     Ok(folder)
 }
@@ -102,90 +86,63 @@ fn make_in(repo: &Repo, folder: &Path) -> Command {
 }
 
 /// The robot's firmware: that it links is the test, since no emulator has the parts' clocks.
-fn firmware(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, name: &str, target: &str) {
-    let step = format!("a new robot's firmware for {name}");
-    match toolchains.find(repo, target) {
-        Ok(toolchain) => {
-            report.step(&step, || {
-                let folder = make(repo, &format!("robot-{name}"), &["--part", name])?;
-                let mut build = toolchain.cargo(repo, target, "build");
-                // As quick to compile as can be linked; the part that `cargo xtask example` has compiled for release is that.
-                if name == EMULATED {
-                    build.arg("--release");
-                }
-                run_command_line(build.arg("--quiet").current_dir(folder.join("firmware")))
-            });
-        }
-        Err(reason) => report.skip(&step, &reason),
-    }
-}
-
-fn firmware_in_c(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    let step = "a new robot's firmware in C";
-    let Some(part) = part(EMULATED) else {
-        return;
-    };
-    match make_is_there(repo).and_then(|()| c::compilers(repo)).and_then(|()| toolchains.find(repo, part.target)) {
-        Ok(toolchain) => {
-            report.step(step, || {
-                let library = c::library(repo, &toolchain, part)?;
-                for name in [EMULATED, "nrf52840"] {
-                    let folder = make(repo, &format!("c-{name}"), &["--c", "--part", name])?;
-                    let mut build = make_in(repo, &folder);
-                    run_command_line(
-                        build.arg("build/firmware.elf").arg(format!("LIBRARY_FIRMWARE={}", library.display())),
-                    )?;
-                }
-                Ok(())
-            });
-        }
-        Err(reason) => report.skip(step, &reason),
-    }
-}
-
-/// `staya hil` with the project's law.
-fn on_emulated_part(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    let step = "a new law on the emulated stm32f405";
-    let Some(part) = part(EMULATED) else {
-        return;
-    };
-    let folder = repo.target.join("new").join(format!("pack-{EMULATED}")).join("hil");
-    if let Err(reason) = emulate::prepare(repo, part) {
-        return report.skip(step, &reason);
-    }
-    if !build_own(repo, report, toolchains, part, &folder) {
-        return report.skip(step, "no firmware of it");
-    }
-    report.step(step, || {
-        let mut hil =
-            repo.cargo(&["run", "--quiet", "--", "../scenario.toml", "--device", "qemu:stm32f405", "--devices", "2"]);
-        hil.args(["--quiet", "--ticks", "100", "--firmware", "target/firmware"]);
-        run_command_line(hil.current_dir(&folder))
+fn firmware(s: &mut Session, name: &str, target: &str) {
+    s.with_toolchain(&format!("a new robot's firmware for {name}"), target, |repo, toolchain| {
+        let folder = make(repo, &format!("robot-{name}"), &["--part", name])?;
+        let mut build = toolchain.cargo(repo, target, "build");
+        // As quick to compile as can be linked; the part that `cargo xtask example` has compiled
+        // for release is that.
+        build.args((name == STM32F405.name).then_some("--release"));
+        run_command_line(build.arg("--quiet").current_dir(folder.join("firmware")))
     });
 }
 
+fn firmware_in_c(s: &mut Session) {
+    let step = "a new robot's firmware in C";
+    if let Err(reason) = make_is_there(&s.repo).and_then(|()| c::compilers(&s.repo)) {
+        return s.report.skip(step, &reason);
+    }
+    s.with_toolchain(step, STM32F405.target, |repo, toolchain| {
+        let library = c::library(repo, toolchain)?;
+        [STM32F405.name, "nrf52840"].into_iter().try_for_each(|name| {
+            let folder = make(repo, &format!("c-{name}"), &["--c", "--part", name])?;
+            let mut build = make_in(repo, &folder);
+            run_command_line(build.arg("build/firmware.elf").arg(format!("LIBRARY_FIRMWARE={}", library.display())))
+        })
+    });
+}
+
+/// `staya hil` with the project's law.
+fn on_emulated_part(s: &mut Session) {
+    let step = "a new law on the emulated stm32f405";
+    let folder = s.repo.target.join("new").join(format!("pack-{}", STM32F405.name)).join("hil");
+    if let Err(reason) = emulate::prepare(&s.repo, STM32F405) {
+        return s.report.skip(step, &reason);
+    }
+    if !build_own(s, STM32F405, &folder) {
+        return s.report.skip(step, "there is no firmware of it");
+    }
+    let mut hil = s.repo.cargo(&["run", "--quiet", "--", "../scenario.toml", "--device", "qemu:stm32f405"]);
+    hil.args(["--devices", "2", "--quiet", "--ticks", "100", "--firmware", "target/firmware"]).current_dir(&folder);
+    s.report.command(step, hil);
+}
+
 /// In the environment in which the package for Python has been tested.
-fn in_python(repo: &Repo, report: &mut Report) {
+fn in_python(s: &mut Session) {
     let step = "a new project in Python";
-    let python = match python_package::installed(repo) {
+    let python = match python::with_wheel(&s.repo) {
         Ok(python) => python,
-        Err(reason) => return report.skip(step, &reason),
+        Err(reason) => return s.report.skip(step, &reason),
     };
-    report.part(step, || {
-        let made = make(repo, "python", &["--python"]).and_then(|folder| {
-            let mut install = repo.command(&python);
-            install.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-deps", "--editable"]);
-            run_command_line(install.arg(&folder))?;
-            run_command_line(repo.command(&python).arg("show.py").current_dir(&folder))?;
+    s.report.part(step, || {
+        let made = make(&s.repo, "python", &["--python"]).and_then(|folder| {
+            python::pip(&s.repo, &python, &["--no-deps", "--editable", &folder.display().to_string()])?;
+            run_command_line(s.repo.command(&python).arg("show.py").current_dir(&folder))?;
             Ok(folder)
         });
         match made {
-            Ok(folder) => {
-                let mut tests = repo.command(&python);
-                tests.args(["-m", "pytest", "-q", "--color", "no", "-p", "no:cacheprovider"]);
-                python::pytest(tests.current_dir(folder), "")
-            }
-            Err(reason) => (crate::report::Counts { failed: 1, ..Default::default() }, reason),
+            Ok(folder) => counted(python::pytest(&s.repo, &python, &[]).current_dir(folder), ""),
+            Err(reason) => (Counts { failed: 1, ..Default::default() }, reason),
         }
     });
 }

@@ -1,114 +1,191 @@
-//! Python for tests: an environment of its own in the target folder.
+//! Tests in Python, each suite in an environment of its own in the target folder.
 
-use crate::apt;
-use crate::repo::{Repo, output_of, run, run_reading};
-use crate::report::Counts;
+use crate::apt::Tools;
+use crate::extent::Extent;
+use crate::files;
+use crate::repo::{Repo, output_of, run};
+use crate::session::Session;
+use crate::tally::counted;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const PACKAGES: [&str; 2] = ["python3", "python3-venv"];
-const REMEDY: &str = "on Debian run, as root, `apt-get update && apt-get install python3 python3-venv`";
+const PYTHON: Tools = Tools { packages: &["python3", "python3-venv"], programs: &["Python 3 with venv"] };
+/// Looks into a capture.
+const TSHARK: Tools = Tools { packages: &["tshark"], programs: &["tshark"] };
+/// A browser without windows, and its fonts.
+const CHROMIUM: Tools = Tools {
+    packages: &["chromium-headless-shell", "chromium-common", "fontconfig-config", "fonts-dejavu-core"],
+    programs: &["chromium-headless-shell"],
+};
+/// Slurm's daemons and clients, and GNU parallel.
+const CLUSTER: Tools = Tools {
+    packages: &["slurmctld", "slurmd", "slurm-client", "parallel"],
+    programs: &["slurmctld-wlm", "slurmd-wlm", "slurmstepd-wlm", "sbatch", "squeue", "scontrol", "scancel", "parallel"],
+};
+/// The package for Python, which has nothing in it without this feature.
+pub const FEATURE: &str = "staya-python/module";
+/// For lints on a machine that may have no Python: links against no libpython, as in a wheel, and
+/// asks no interpreter.
+pub const WITHOUT_PYTHON: [(&str, &str); 2] = [("PYO3_BUILD_EXTENSION_MODULE", "1"), ("PYO3_NO_PYTHON", "1")];
+/// The environment with the wheel.
+const PACKAGE: &str = "python-package";
 
-/// The environment of clients and of what drives a browser.
-pub const CLIENTS: &str = "python";
+/// MAVLink clients against `staya`: the tests whose names contain `only`; long ones only if all are
+/// wanted.
+pub fn clients(s: &mut Session, only: Option<&str>, extent: Extent) {
+    // Tests wait for real time more than they compute.
+    let mut arguments = vec!["tests/python", "-n", "12", "--dist", "worksteal"];
+    arguments.extend(only.into_iter().flat_map(|name| ["-k", name]));
+    if extent == Extent::Short {
+        arguments.extend(["-m", "not long"]);
+    }
+    let program = s.staya("debug");
+    suite(s, "MAVLink clients", Suite { program, arguments: &arguments, ..Suite::default() }, client_tools);
+}
 
-/// Makes an environment in a folder of the target folder if it is not there. Returns its Python; the error says why there is none.
-pub fn environment(repo: &Repo, folder: &str) -> Result<PathBuf, String> {
+/// Pages of `staya view` in a browser.
+pub fn browser(s: &mut Session) {
+    let prepare = |repo: &Repo| {
+        CHROMIUM.prepare(repo, || output_of(repo.command(CHROMIUM.programs[0]).arg("--version")).is_some())?;
+        environment(repo, "python", "tests/browser/requirements.txt")
+    };
+    let program = s.staya("debug");
+    let environment = vec![("CHROMIUM", CHROMIUM.programs[0].to_string())];
+    let arguments = &["tests/browser", "--timeout", "120"];
+    suite(s, "pages in a browser", Suite { program, environment, arguments }, prepare);
+}
+
+/// Sweeps on Slurm and GNU parallel.
+pub fn cluster(s: &mut Session) {
+    let prepare = |repo: &Repo| {
+        // Slurm's clients want a configuration before they say anything.
+        let question = "slurmctld-wlm -V && slurmd-wlm -V && command -v sbatch && parallel --version";
+        CLUSTER.prepare(repo, || output_of(repo.command("sh").args(["-c", question])).is_some())?;
+        client_environment(repo)
+    };
+    let program = s.staya("debug");
+    let environment = vec![("STAYA_TOOLS", s.repo.target.join("tools").display().to_string())];
+    let arguments = &["tests/cluster", "--timeout", "300"];
+    suite(s, "sweeps on Slurm and GNU parallel", Suite { program, environment, arguments }, prepare);
+}
+
+/// The package for Python: a wheel, the types of its Python code, tests.
+pub fn package(s: &mut Session) {
+    const NAME: &str = "the package for Python";
+    let python = match package_environment(&s.repo) {
+        Ok(python) => python,
+        Err(reason) => return s.report.skip(NAME, &reason),
+    };
+    if !s.report.step("the wheel", || wheel(&s.repo, &python)) {
+        return s.report.skip(NAME, "the wheel was not built");
+    }
+    let mut types = s.repo.command(&python);
+    types.args(["-m", "mypy", "--strict", "--python-executable"]).arg(&python).arg("sim-host/python/python/staya");
+    types.arg("--cache-dir").arg(s.repo.target.join(PACKAGE).join("mypy"));
+    s.report.command("types of the package for Python", types);
+    let arguments = &["tests/python-package", "--timeout", "300"];
+    suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
+}
+
+/// The setting of a suite.
+#[derive(Default)]
+pub struct Suite<'a> {
+    /// The program under test, in the variable `STAYA`; the suite is skipped without it.
+    pub program: Option<PathBuf>,
+    /// Further variables.
+    pub environment: Vec<(&'static str, String)>,
+    /// pytest's arguments.
+    pub arguments: &'a [&'a str],
+}
+
+/// Runs a suite with the Python that `prepare` gives.
+pub fn suite(s: &mut Session, name: &str, suite: Suite<'_>, prepare: impl FnOnce(&Repo) -> Result<PathBuf, String>) {
+    let program = suite.program.ok_or_else(|| String::from("the program was not built"));
+    match program.and_then(|program| Ok((program, prepare(&s.repo)?))) {
+        Err(reason) => s.report.skip(name, &reason),
+        Ok((program, python)) => {
+            let mut tests = pytest(&s.repo, &python, suite.arguments);
+            tests.env("STAYA", program).envs(suite.environment);
+            s.report.part(name, || counted(&mut tests, ""));
+        }
+    }
+}
+
+/// pytest with these arguments.
+pub fn pytest(repo: &Repo, python: &Path, arguments: &[&str]) -> Command {
+    let mut tests = repo.command(python);
+    tests.args(["-m", "pytest", "-q", "--color", "no", "-p", "no:cacheprovider"]).args(arguments);
+    tests
+}
+
+/// An environment in a folder of the target folder, brought up to date with a list of packages from
+/// PyPI. Returns its Python.
+fn environment(repo: &Repo, folder: &str, list: &str) -> Result<PathBuf, String> {
     let folder = repo.target.join(folder);
     let python = folder.join("bin/python");
-    if output_of(repo.command(&python).arg("--version")).is_some() {
-        return Ok(python);
+    if output_of(repo.command(&python).arg("--version")).is_none() {
+        let has_venv = || output_of(repo.command("python3").args(["-c", "import venv, ensurepip"])).is_some();
+        if !has_venv() {
+            PYTHON.install(repo)?;
+        }
+        run(repo.command("python3").args(["-m", "venv", "--clear"]).arg(&folder))
+            .map_err(|reason| format!("no environment for Python ({reason})"))?;
     }
-    if output_of(repo.command("python3").args(["-c", "import venv, ensurepip"])).is_none() {
-        apt::install(repo, &PACKAGES).map_err(|reason| format!("no Python 3 with venv ({reason}); {REMEDY}"))?;
-    }
-    let mut venv = repo.command("python3");
-    run(venv.args(["-m", "venv", "--clear"]).arg(&folder))
-        .map_err(|reason| format!("no environment for Python ({reason}); {REMEDY}"))?;
+    pip(repo, &python, &["--requirement", list])?;
     Ok(python)
 }
 
-/// Brings it up to date with a list of packages from PyPI, a path from the top of the repository.
-pub fn install(repo: &Repo, python: &Path, list: &str, options: &[&str]) -> Result<(), String> {
+/// Installs packages into an environment.
+pub fn pip(repo: &Repo, python: &Path, arguments: &[&str]) -> Result<(), String> {
     let mut pip = repo.command(python);
-    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
-    pip.args(options).args(["--requirement", list]);
-    run(&mut pip).map_err(|reason| format!("pip could not install {list} from PyPI ({reason})"))
+    pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]).args(arguments);
+    run(&mut pip).map_err(|reason| format!("pip could not install {} ({reason})", arguments.join(" ")))
 }
 
-/// Before figures that a test prints for the closing table.
-const FIGURES: &str = "figures: ";
-
-/// Runs tests and reads how many did what. The note says what went wrong, else `why_skipped` if any were; and the figures that
-/// were found last.
-pub fn pytest(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
-    let (mut counts, mut figures) = (None, None);
-    let ended = run_reading(tests, |line| {
-        counts = closing_line(line).or(counts);
-        figures = line.strip_prefix(FIGURES).map(String::from).or_else(|| figures.take());
-    });
-    let note = |why: &str| {
-        [Some(why), figures.as_deref()]
-            .into_iter()
-            .flatten()
-            .filter(|part| !part.is_empty())
-            .collect::<Vec<_>>()
-            .join(": ")
-    };
-    match (ended, counts) {
-        (Ok(()), Some(counts)) if counts.skipped > 0 => (counts, note(why_skipped)),
-        (Ok(()), Some(counts)) => (counts, note("")),
-        (Err(_), Some(counts)) if counts.failed > 0 => (counts, note("see above")),
-        (ended, counts) => {
-            let reason = ended.err().unwrap_or_else(|| String::from("no closing line"));
-            let mut counts = counts.unwrap_or_default();
-            counts.failed += 1;
-            (counts, format!("pytest: {reason}"))
-        }
-    }
+/// The environment of clients: pytest, pymavlink and the dialect.
+pub fn client_environment(repo: &Repo) -> Result<PathBuf, String> {
+    let python = environment(repo, "python", "tests/python/requirements.txt")?;
+    run(repo.command(&python).arg("tests/python/dialect.py"))
+        .map_err(|reason| format!("the dialect could not be made for Python ({reason})"))?;
+    Ok(python)
 }
 
-/// The counts in pytest's last line: `1 failed, 2 passed, 1 skipped in 3.21s`.
-fn closing_line(line: &str) -> Option<Counts> {
-    let (counts, time) = line.trim_matches(['=', ' ']).rsplit_once(" in ")?;
-    if !time.contains('s') || !time.starts_with(|first: char| first.is_ascii_digit()) {
-        return None;
-    }
-    let mut sum = Counts::default();
-    for field in counts.split(", ") {
-        let (number, what) = field.split_once(' ')?;
-        let number: u64 = number.parse().ok()?;
-        match what {
-            "passed" => sum.passed += number,
-            "failed" | "error" | "errors" | "xpassed" => sum.failed += number,
-            "skipped" | "deselected" | "xfailed" => sum.skipped += number,
-            _ => {}
+/// The same with MAVProxy and tshark.
+pub fn client_tools(repo: &Repo) -> Result<PathBuf, String> {
+    let python = client_environment(repo)?;
+    if output_of(repo.command("tshark").arg("--version")).is_none() {
+        // For root it reads its data from where it was built for, and nowhere else. Without it one
+        // test is skipped.
+        if let Err(reason) = TSHARK.install(repo).or_else(|_| TSHARK.unpack(repo)) {
+            println!("no tshark ({reason}); on Debian run, as root, `apt-get update && apt-get install tshark`");
         }
     }
-    Some(sum)
+    pip(repo, &python, &["--no-deps", "--requirement", "tests/python/mavproxy.txt"])?;
+    Ok(python)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn package_environment(repo: &Repo) -> Result<PathBuf, String> {
+    environment(repo, PACKAGE, "tests/python-package/requirements.txt")
+}
 
-    #[test]
-    fn closing_line_is_counted() {
-        let line = "==== 1 failed, 12 passed, 2 skipped, 1 error in 63.21s (0:01:03) ====";
-        let counts = Counts { passed: 12, failed: 2, skipped: 2 };
-        assert_eq!(closing_line(line), Some(counts));
-        assert_eq!(closing_line("3 passed in 0.12s").map(|counts| counts.passed), Some(3));
+/// The Python of an environment in which the wheel is.
+pub fn with_wheel(repo: &Repo) -> Result<PathBuf, String> {
+    let python = package_environment(repo)?;
+    if output_of(repo.command(&python).args(["-c", "import staya"])).is_none() {
+        wheel(repo, &python)?;
     }
+    Ok(python)
+}
 
-    #[test]
-    fn other_lines_are_not() {
-        for line in [
-            "",
-            "tests/python/test_a.py ....  [100%]",
-            "FAILED test_a.py::test_b - assert 1 in (2, 3)",
-            "no tests ran in 0.01s",
-        ] {
-            assert_eq!(closing_line(line), None, "{line}");
-        }
-    }
+/// Builds the wheel with the profile of tests, which is quick to compile and fast enough, and
+/// installs it.
+fn wheel(repo: &Repo, python: &Path) -> Result<(), String> {
+    let wheels = repo.target.join(PACKAGE).join("wheels");
+    files::make_empty(&wheels)?;
+    let mut build = repo.command(python);
+    build.args(["-m", "maturin", "build", "--locked", "--profile", "dev", "--target-dir"]).arg(&repo.target);
+    run(build.arg("--out").arg(&wheels))?;
+    let built: Vec<String> = files::entries(&wheels)?.iter().map(|wheel| wheel.display().to_string()).collect();
+    let wheels = built.iter().map(String::as_str);
+    pip(repo, python, &["--force-reinstall", "--no-deps"].into_iter().chain(wheels).collect::<Vec<_>>())
 }

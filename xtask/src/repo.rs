@@ -35,7 +35,8 @@ impl Repo {
         self.target.join("tools/bin")
     }
 
-    /// A program to run at the top of the repository, without standard input; it and what it starts find [`Repo::tools`] as well.
+    /// A program to run at the top of the repository, without standard input; it and what it starts
+    /// find [`Repo::tools`] as well.
     pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);
         let path = std::env::var_os("PATH").unwrap_or_default();
@@ -51,6 +52,11 @@ impl Repo {
         command
     }
 
+    /// A program that was built by the profile `debug` or `release`.
+    pub fn program(&self, profile: &str, name: &str) -> PathBuf {
+        self.target.join(profile).join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
+    }
+
     /// The cargo that runs this program, with these arguments.
     pub fn cargo(&self, arguments: &[&str]) -> Command {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -59,8 +65,8 @@ impl Repo {
         command
     }
 
-    /// The same for a workspace of its own inside the repository. It builds in the same folder: with the same profiles
-    /// it finds there what it shares with the others.
+    /// The same for a workspace of its own inside the repository. It builds in the same folder:
+    /// with the same profiles it finds there what it shares with the others.
     pub fn cargo_in(&self, folder: &str, arguments: &[&str]) -> Command {
         let mut command = self.cargo(arguments);
         command.current_dir(self.root.join(folder));
@@ -104,13 +110,13 @@ pub fn run_reading(command: &mut Command, mut seen: impl FnMut(&str)) -> Result<
     ended(child.wait())
 }
 
-/// What a quiet command prints; `None` unless it succeeds.
+/// The output of a quiet command; `None` unless it succeeds.
 pub fn output_of(command: &mut Command) -> Option<String> {
     let output = command.stderr(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim_end().to_string())
 }
 
-/// What is wrong with how a command ended.
+/// The reason why a command did not succeed.
 pub fn ended(status: std::io::Result<std::process::ExitStatus>) -> Result<(), String> {
     match status {
         Ok(status) if status.success() => Ok(()),

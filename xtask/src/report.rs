@@ -1,4 +1,4 @@
-//! What passed, what failed, what was skipped and why.
+//! The parts of a command: passed, failed, or skipped with a reason.
 
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
@@ -54,12 +54,13 @@ impl Part {
 #[derive(Default)]
 pub struct Report {
     parts: Vec<Part>,
-    /// What does not run has failed.
+    /// Skipped parts count as failed.
     is_strict: bool,
 }
 
 impl Report {
-    /// Under `CI=true` all that is skipped is a failure: a machine that lacks something must not look like one that passes.
+    /// Under `CI=true` all that is skipped is a failure: a machine that lacks something must not
+    /// look like one that passes.
     pub fn new() -> Self {
         Self { is_strict: std::env::var_os("CI").is_some_and(|value| value == "true"), ..Self::default() }
     }
@@ -128,15 +129,17 @@ impl Report {
     }
 }
 
-/// What this program and the commands that have ended have worked so far (`/proc/self/stat` of Linux: a machine that
-/// is shared makes parts take longer, but hardly work more). What is started from a server of its own does not count.
-fn processor_time() -> Option<Duration> {
+/// What this program and the commands that have ended have worked so far (`/proc/self/stat` of
+/// Linux: a machine that is shared makes parts take longer, but hardly work more). What is started
+/// from a server of its own does not count.
+pub fn processor_time() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let hundredths = hundredths_worked(&stat)?;
     Some(Duration::from_millis(hundredths.checked_mul(10)?))
 }
 
-/// The fields utime, stime, cutime and cstime of proc_pid_stat(5): hundredths of seconds on every Linux of today.
+/// The fields utime, stime, cutime and cstime of proc_pid_stat(5): hundredths of seconds on every
+/// Linux of today.
 fn hundredths_worked(stat: &str) -> Option<u64> {
     // The name in brackets may hold blanks; behind it the fields begin with the third.
     let (_, fields) = stat.rsplit_once(')')?;

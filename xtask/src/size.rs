@@ -4,59 +4,48 @@ mod bench;
 mod budget;
 mod reach;
 
-use crate::device::Toolchains;
-use crate::emulate;
+use crate::device::{PARTS, Part};
+use crate::emulate::{self, on_part};
+use crate::files;
 use crate::firmware::{self, Profile, Sections};
-use crate::part::{PARTS, Part};
 use crate::repo::Repo;
-use crate::report::Report;
+use crate::session::Session;
 use bench::Row;
 use budget::Budget;
 use serde::Serialize;
-use std::fs;
 
 /// Where the limits are.
 const BUDGETS: &str = "hil/budgets.toml";
 
-/// What was measured on a part.
+/// The measurements of a part.
 #[derive(Serialize)]
 struct Measured {
     part: &'static str,
     /// Programs with their sections, bytes.
     programs: Vec<(String, Sections)>,
     rows: Vec<Row>,
-    /// What each behaviour's step needs of flash.
+    /// The flash that each behaviour's step needs.
     steps: Vec<reach::Step>,
-    /// What it takes to write and to read frames of each wire format.
+    /// The flash that encoder and decoder of each wire format need.
     formats: Vec<reach::Step>,
 }
 
-/// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON instead of as tables.
-pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains, is_json: bool) {
+/// Measures all parts; one step for each part's budget. `is_json`: prints the figures as JSON
+/// instead of as tables.
+pub fn run(s: &mut Session, is_json: bool) {
     let mut all = Vec::new();
     for part in &PARTS {
-        let name = format!("budget of the {}", part.name);
-        if !firmware::build_step(repo, report, toolchains, part, Profile::Firmware) {
-            report.skip(&name, "there is no firmware");
-            continue;
-        }
-        if let Err(reason) = emulate::prepare(repo, part) {
-            report.skip(&name, &reason);
-            continue;
-        }
-        report.step(&name, || {
+        on_part(s, &format!("budget of the {}", part.name), part, (Profile::Firmware, &[]), |repo| {
             let measured = measure(repo, part)?;
-            let budget = read(repo, part)?;
+            let text = files::read(&repo.root.join(BUDGETS))?;
+            let budget = Budget::read(&text, part.name).map_err(|error| format!("{BUDGETS}: {error}"))?;
             let breaches = budget.breaches(&measured);
             if !is_json {
                 print!("{}", measured.table());
             }
             all.push(measured);
-            if breaches.is_empty() {
-                return Ok(());
-            }
             breaches.iter().for_each(|breach| println!("{breach}"));
-            Err(breaches.join("; "))
+            if breaches.is_empty() { Ok(()) } else { Err(breaches.join("; ")) }
         });
     }
     if is_json {
@@ -71,8 +60,8 @@ fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
     let elf = |program: &str| Profile::Firmware.elf(repo, part, program);
     let programs = ["lockstep", "replay", "bench"];
     let sections = |program: &&str| Ok((program.to_string(), firmware::sections(&elf(program))?));
-    let rows = bench::rows(&emulate::run(repo, part, &elf("bench"))?)?;
-    let bytes = fs::read(elf("bench")).map_err(|error| error.to_string())?;
+    let rows = bench::rows(&emulate::run(repo, part, &elf("bench"), "none")?)?;
+    let bytes = files::bytes(&elf("bench"))?;
     let program = reach::Program::read(&bytes)?;
     Ok(Measured {
         part: part.name,
@@ -81,12 +70,6 @@ fn measure(repo: &Repo, part: &'static Part) -> Result<Measured, String> {
         steps: reach::steps(&program),
         formats: reach::formats(&program),
     })
-}
-
-fn read(repo: &Repo, part: &Part) -> Result<Budget, String> {
-    let text = fs::read_to_string(repo.root.join(BUDGETS));
-    let text = text.map_err(|error| format!("{BUDGETS}: {error}"))?;
-    Budget::read(&text, part.name).map_err(|error| format!("{BUDGETS}: {error}"))
 }
 
 impl Measured {

@@ -1,85 +1,81 @@
-//! The canned swarms on every target: the same hashes.
+//! The canned swarms on every target: the same hashes. And firmware that goes wrong on purpose.
 
-use crate::device::Toolchains;
-use crate::emulate;
-use crate::firmware::{self, Profile};
-use crate::part::{PARTS, Part};
+use crate::device::{PARTS, Part, STM32F405, parts};
+use crate::emulate::{self, on_part};
+use crate::files;
+use crate::firmware::Profile;
 use crate::repo::{Repo, output_of, run as run_command, shown};
-use crate::report::Report;
-use std::fs;
+use crate::session::Session;
 
-/// What all must give: `case number hash steps` in each line. The tests on the host compare it too, and write it.
+/// The golden rows: `case number hash steps` in each line. The tests on the host compare it too,
+/// and write it.
 const TABLE: &str = "tests/golden/cases.txt";
 /// Steps of one agent in the worst company, with more neighbours than the small part has room for.
 const WORST: &str = "worst_";
 
 /// Host in release (in debug the golden test does it), then the parts.
-pub fn run(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    report.step("canned swarms on the host, release", || {
+pub fn run(s: &mut Session) {
+    s.report.step("canned swarms on the host, release", || {
         let example = ["--package", "staya-cases", "--example", "hashes"];
-        let build = ["build", "--quiet", "--locked", "--release"];
-        run_command(repo.cargo(&build).args(example))?;
-        let mut host = repo.cargo(&["run", "--quiet", "--locked", "--release"]);
+        run_command(s.repo.cargo(&["build", "--quiet", "--locked", "--release"]).args(example))?;
+        let mut host = s.repo.cargo(&["run", "--quiet", "--locked", "--release"]);
         host.args(example);
         println!("$ {}", shown(&host));
         let output = output_of(&mut host).ok_or("does not run")?;
-        compare(repo, &output, |_| true)
+        compare(&s.repo, &output, |_| true)
     });
     for part in &PARTS {
-        for profile in profiles(part) {
-            on_part(repo, report, toolchains, part, *profile, &[]);
-        }
+        replay(s, part, Profile::Firmware, &[]);
     }
+    // Without optimisation an operation too many or too few would show.
+    replay(s, STM32F405, Profile::Debug, &[]);
 }
 
-/// Programs that show on each part what matters most: devices in lockstep, canned swarms; and, on the part that has room for all
-/// of the controller, that no panic is reachable.
-pub fn run_short(repo: &Repo, report: &mut Report, toolchains: &mut Toolchains) {
-    for part in &PARTS {
-        let bins: &[&str] = match part.name {
-            "stm32f405" => &["lockstep", "replay", "nopanic"],
-            _ => &["lockstep", "replay"],
-        };
-        on_part(repo, report, toolchains, part, Profile::Firmware, bins);
-    }
-}
-
-/// The part with an FPU also without optimisation: there an operation too many or too few would show.
-fn profiles(part: &Part) -> &'static [Profile] {
-    match part.name {
-        "stm32f405" => &[Profile::Firmware, Profile::Debug],
-        _ => &[Profile::Firmware],
+/// The programs that tests on emulated parts need, for these parts: devices in lockstep, canned
+/// swarms.
+pub fn run_short(s: &mut Session, parts: &[&'static Part]) {
+    for part in parts {
+        replay(s, part, Profile::Firmware, &["lockstep", "replay"]);
     }
 }
 
 /// The programs of `bins` (all if it names none), then the canned swarms.
-fn on_part(
-    repo: &Repo,
-    report: &mut Report,
-    toolchains: &mut Toolchains,
-    part: &Part,
-    profile: Profile,
-    bins: &[&str],
-) {
-    let name = match profile {
-        Profile::Firmware => format!("canned swarms on the {}", part.name),
-        Profile::Debug => format!("canned swarms on the {}, debug", part.name),
-    };
-    if !firmware::build_some(repo, report, toolchains, part, profile, bins) {
-        return report.skip(&name, "there is no firmware");
-    }
-    match emulate::prepare(repo, part) {
-        Err(reason) => report.skip(&name, &reason),
-        Ok(()) => {
-            report.step(&name, || {
-                let output = emulate::run(repo, part, &profile.elf(repo, part, "replay"))?;
-                compare(repo, &output, |row| is_for(part, row))
-            });
-        }
+fn replay(s: &mut Session, part: &Part, profile: Profile, bins: &[&str]) {
+    let debug = if profile == Profile::Debug { ", debug" } else { "" };
+    on_part(s, &format!("canned swarms on the {}{debug}", part.name), part, (profile, bins), |repo| {
+        let output = emulate::run(repo, part, &profile.elf(repo, part, "replay"), "none")?;
+        compare(repo, &output, |row| is_for(part, row))
+    });
+}
+
+/// Firmware that goes wrong says why over its line, and starts again with its count of starts kept;
+/// on these parts, or all if none is named.
+pub fn faults(s: &mut Session, names: &[&str]) {
+    for part in parts(names) {
+        on_part(s, &format!("faults on the {}", part.name), part, (Profile::Firmware, &["faults"]), |repo| {
+            // The program ends with 0 only at its third start.
+            let said = emulate::run(repo, part, &Profile::Firmware.elf(repo, part, "faults"), "stdio")?;
+            misses(part, &said).map_or(Ok(()), |text| Err(format!("nothing of `{text}`")))
+        });
     }
 }
 
-/// Whether a row of the table is for a part: the one without FPU and with little flash computes in fixed point only.
+/// The first thing that should have been said in this order and was not.
+fn misses(part: &Part, said: &str) -> Option<String> {
+    let expected = [
+        String::from("faults.rs:"),
+        format!(": on purpose on {}", part.name),
+        String::from("exception of the processor at 0x"),
+    ];
+    let mut rest = Some(said);
+    expected.into_iter().find(|text| {
+        rest = rest.and_then(|rest| rest.split_once(text.as_str())).map(|(_, after)| after);
+        rest.is_none()
+    })
+}
+
+/// Whether a row of the table is for a part: the one without FPU and with little flash computes in
+/// fixed point only.
 fn is_for(part: &Part, row: &str) -> bool {
     let mut words = row.split(' ');
     let (case, number) = (words.next().unwrap_or(""), words.next());
@@ -89,7 +85,7 @@ fn is_for(part: &Part, row: &str) -> bool {
 
 /// Compares with the rows of the table that `wanted` names, in order.
 fn compare(repo: &Repo, output: &str, wanted: impl Fn(&str) -> bool) -> Result<(), String> {
-    let table = fs::read_to_string(repo.root.join(TABLE)).map_err(|e| format!("{TABLE}: {e}"))?;
+    let table = files::read(&repo.root.join(TABLE))?;
     let wanted: Vec<&str> = table.lines().filter(|row| wanted(row)).collect();
     let faults = differences(&wanted, &output.lines().collect::<Vec<_>>());
     println!("{} rows, {} differ", wanted.len(), faults.len());
@@ -117,7 +113,6 @@ fn differences(wanted: &[&str], got: &[&str]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::part::part;
 
     #[test]
     fn every_row_that_differs_or_is_missing_is_told() {
@@ -131,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_small_part_computes_in_fixed_point_only() {
-        let [large, small] = ["stm32f405", "nrf51"].map(|name| part(name).unwrap());
+        let [large, small] = [STM32F405, &PARTS[1]];
         for (row, is_small) in [
             ("route f32 0 1", false),
             ("route Q16 0 1", true),
@@ -141,5 +136,16 @@ mod tests {
             assert!(is_for(large, row));
             assert_eq!(is_for(small, row), is_small, "{row}");
         }
+    }
+
+    #[test]
+    fn what_is_missing_or_in_another_order_is_told() {
+        let part = &PARTS[0];
+        let panic = "\0..faults.rs:20: on purpose on stm32f405..\0";
+        let trap = "\0..exception of the processor at 0x08000b1a..\0";
+        assert_eq!(misses(part, &format!("{panic}{trap}")), None);
+        assert!(misses(part, panic).is_some_and(|text| text.starts_with("exception")));
+        assert!(misses(part, &format!("{trap}{panic}")).is_some());
+        assert!(misses(&PARTS[1], &format!("{panic}{trap}")).is_some());
     }
 }

@@ -1,5 +1,6 @@
-//! What test programs say of themselves, added up.
+//! The closing lines of test programs, added up.
 
+use crate::extent::LONG;
 use crate::repo::run_reading;
 use crate::report::Counts;
 use std::process::Command;
@@ -11,6 +12,12 @@ const NAMED: usize = 8;
 #[derive(Default)]
 struct Tally {
     counts: Counts,
+    /// Tests that another command has.
+    others: u64,
+    /// Whether a program has said how it ended.
+    is_closed: bool,
+    /// The last figures that a test printed for the closing table.
+    figures: Option<String>,
     /// Whether a program has begun and not yet said how it ended.
     runs: bool,
     /// The last test of that program that was said to take long.
@@ -21,9 +28,12 @@ struct Tally {
 
 impl Tally {
     fn read(&mut self, line: &str) {
-        if let Some(counts) = parse_test_result(line) {
+        if let Some((counts, others)) = cargo_line(line).or_else(|| pytest_line(line)) {
             self.counts += counts;
-            (self.runs, self.slow) = (false, None);
+            self.others += others;
+            (self.is_closed, self.runs, self.slow) = (true, false, None);
+        } else if let Some(figures) = line.strip_prefix("figures: ") {
+            self.figures = Some(figures.to_string());
         } else if line.starts_with("running ") && (line.ends_with(" tests") || line.ends_with(" test")) {
             self.crashed();
             self.runs = true;
@@ -54,30 +64,41 @@ impl Tally {
     }
 }
 
-/// The counts in one line of a test program's output, if it is its closing line. What the command
-/// line filtered out was skipped.
-fn parse_test_result(line: &str) -> Option<Counts> {
-    let rest = line.strip_prefix("test result: ")?;
-    let (_, counts) = rest.split_once(". ")?;
-    let mut sum = Counts::default();
-    for field in counts.split("; ") {
-        let (number, what) = field.split_once(' ')?;
-        let Ok(number) = number.parse::<u64>() else {
-            continue; // "finished in 0.01s"
-        };
-        match what {
-            "passed" => sum.passed += number,
-            "failed" => sum.failed += number,
-            "ignored" | "filtered out" => sum.skipped += number,
-            _ => {}
-        }
-    }
-    Some(sum)
+/// The counts in the closing line of a program of `cargo test`, and the number of ignored tests, which
+/// another command has. Tests that the command line filters out were skipped.
+fn cargo_line(line: &str) -> Option<(Counts, u64)> {
+    let (_, counts) = line.strip_prefix("test result: ")?.split_once(". ")?;
+    // "finished in 0.01s" is not a count.
+    add_up(counts.split("; ").filter(|field| field.starts_with(|first: char| first.is_ascii_digit())))
 }
 
-/// Runs test programs and adds up their closing lines. A program that ends without one (it
-/// crashed), and a command that fails without any test that does (it did not compile), is one failure each.
-/// The note names what failed; `why_skipped` is part of it if anything was.
+/// The counts in the closing line of pytest, `1 failed, 2 passed, 1 skipped in 3.21s`, or of the soak,
+/// and the number of tests that were not wanted.
+fn pytest_line(line: &str) -> Option<(Counts, u64)> {
+    let (counts, time) = line.trim_start_matches("soak: ").trim_matches(['=', ' ']).rsplit_once(" in ")?;
+    let is_time = time.contains('s') && time.starts_with(|first: char| first.is_ascii_digit());
+    add_up(counts.split(", ").filter(|_| is_time)).filter(|_| is_time)
+}
+
+fn add_up<'a>(mut fields: impl Iterator<Item = &'a str>) -> Option<(Counts, u64)> {
+    fields.try_fold((Counts::default(), 0), |(mut sum, mut others), field| {
+        let (number, what) = field.split_once(' ')?;
+        let number: u64 = number.parse().ok()?;
+        match what {
+            "passed" => sum.passed += number,
+            "failed" | "error" | "errors" | "xpassed" => sum.failed += number,
+            "filtered out" | "skipped" | "xfailed" => sum.skipped += number,
+            "ignored" | "deselected" => others += number,
+            _ => {}
+        }
+        Some((sum, others))
+    })
+}
+
+/// Runs test programs of Rust or pytest and adds up their closing lines. A program that ends without one
+/// (it crashed), and a command that fails without any test that does (it did not compile), is one failure
+/// each. The note names the failed tests and the figures that were found last; `why_skipped` is part of it
+/// if tests were skipped.
 pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
     let mut tally = Tally::default();
     let ended = run_reading(tests, |line| tally.read(line));
@@ -85,15 +106,16 @@ pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
     let mut notes = Vec::new();
     notes.extend(tally.note());
     let mut counts = tally.counts;
+    let ended = if tally.is_closed { ended } else { ended.and(Err(String::from("no closing line"))) };
     if let Err(reason) = ended {
-        if counts.failed == 0 {
-            counts.failed = 1;
-        }
-        notes.push(format!("cargo test: {reason}, see above"));
+        counts.failed = counts.failed.max(1);
+        notes.push(format!("{reason}, see above"));
     }
     if counts.skipped > 0 && !why_skipped.is_empty() {
         notes.push(why_skipped.to_string());
     }
+    notes.extend((tally.others > 0).then(|| format!("{} tests: {LONG}", tally.others)));
+    notes.extend(tally.figures);
     (counts, notes.join("; "))
 }
 
@@ -105,15 +127,39 @@ mod tests {
     fn closing_line_of_a_test_program_is_counted() {
         let line = "test result: FAILED. 12 passed; 3 failed; 1 ignored; 0 measured; \
                     4 filtered out; finished in 0.02s";
-        let counts = parse_test_result(line).unwrap();
-        assert_eq!(counts, Counts { passed: 12, failed: 3, skipped: 5 });
+        let counts = Counts { passed: 12, failed: 3, skipped: 4 };
+        assert_eq!(cargo_line(line), Some((counts, 1)));
+    }
+
+    #[test]
+    fn closing_line_of_pytest_and_of_the_soak_is_counted() {
+        let line = "==== 1 failed, 12 passed, 2 skipped, 7 deselected, 1 error in 63.21s (0:01:03) ====";
+        assert_eq!(pytest_line(line), Some((Counts { passed: 12, failed: 2, skipped: 2 }, 7)));
+        let soak = "soak: 27 passed, 1 failed in 3.0 minutes; load of the machine 1.9";
+        assert_eq!(pytest_line(soak), Some((Counts { passed: 27, failed: 1, skipped: 0 }, 0)));
     }
 
     #[test]
     fn other_lines_are_not_counted() {
-        for line in ["", "running 3 tests", "test a::b ... ok", "  test result: ok. 1 passed;"] {
-            assert_eq!(parse_test_result(line), None, "{line:?}");
+        for line in [
+            "",
+            "running 3 tests",
+            "test a::b ... ok",
+            "  test result: ok. 1 passed;",
+            "tests/python/test_a.py ....  [100%]",
+            "FAILED test_a.py::test_b - assert 1 in (2, 3)",
+            "no tests ran in 0.01s",
+            "flood     ok      memory is flat",
+        ] {
+            assert_eq!(cargo_line(line).or_else(|| pytest_line(line)), None, "{line:?}");
         }
+    }
+
+    #[test]
+    fn deselected_tests_are_not_counted_and_figures_are_noted() {
+        let (counts, note) = counted(&mut shell("echo figures: 3 m; echo 3 passed, 2 deselected in 0.12s"), "");
+        assert_eq!((counts, note), (Counts { passed: 3, ..Counts::default() }, format!("2 tests: {LONG}; 3 m")));
+        assert_eq!(counted(&mut shell("true"), "").0.failed, 1);
     }
 
     fn shell(script: &str) -> Command {
@@ -122,14 +168,14 @@ mod tests {
         command
     }
 
-    const PASSED: &str = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
-    const FAILED: &str = "test result: FAILED. 2 passed; 1 failed; 3 ignored; 0 measured; 0 filtered out";
+    const PASSED: &str = "test result: ok. 2 passed; 0 failed; 1 ignored; 0 measured; 2 filtered out";
+    const FAILED: &str = "test result: FAILED. 2 passed; 1 failed; 0 ignored; 0 measured; 3 filtered out";
 
     #[test]
     fn closing_lines_add_up() {
         let (counts, note) = counted(&mut shell(&format!("echo '{PASSED}'; echo '{PASSED}'")), "why");
-        assert_eq!(counts, Counts { passed: 4, failed: 0, skipped: 2 });
-        assert_eq!(note, "why");
+        assert_eq!(counts, Counts { passed: 4, failed: 0, skipped: 4 });
+        assert_eq!(note, format!("why; 2 tests: {LONG}"));
     }
 
     #[test]

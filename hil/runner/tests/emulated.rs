@@ -1,5 +1,5 @@
-//! Fleets of emulated parts. `cargo xtask test` builds the firmware and runs these; by hand:
-//! `cargo xtask firmware && cargo test -p staya-runner --test emulated`.
+//! Fleets of emulated parts. `cargo xtask test` builds the firmware of two parts and runs these on them, `cargo xtask test --all`
+//! does so with all parts; by hand: `cargo xtask firmware && cargo test -p staya-runner --test emulated`.
 //!
 //! The firmware is looked for in `$STAYA_FIRMWARE`, or in `firmware` beside the folder that this test was built in.
 
@@ -20,6 +20,18 @@ fn firmware() -> PathBuf {
     let program = std::env::current_exe().expect("this test's path");
     let target = program.ancestors().nth(3).expect("a target folder");
     target.join("firmware")
+}
+
+/// The parts in `$STAYA_PARTS`, by the folders of their firmware (`stm32f405,nrf51`); without it, all.
+fn parts() -> Vec<Part> {
+    let wanted = std::env::var("STAYA_PARTS");
+    let is_wanted = |part: &Part| match &wanted {
+        Ok(names) => names.split(',').any(|name| name == part.firmware_name()),
+        Err(_) => true,
+    };
+    let parts: Vec<Part> = Part::ALL.into_iter().filter(is_wanted).collect();
+    assert!(!parts.is_empty(), "STAYA_PARTS names no part: {wanted:?}");
+    parts
 }
 
 fn options() -> Options {
@@ -71,7 +83,7 @@ fn is_alive(process: u32) -> bool {
 
 #[test]
 fn every_part_decides_as_its_shadow() {
-    let parts = Part::ALL.into_iter().cycle().take(6);
+    let parts = parts().into_iter().cycle().take(6);
     let configs = parts.zip(1..).map(|(part, robot)| config(robot, &format!("qemu:{}", part.name())));
     let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
     assert_eq!(run(&mut fleet, 100), [0; 6]);
@@ -85,7 +97,7 @@ fn every_part_decides_as_its_shadow() {
 
 #[test]
 fn every_part_speaks_mavlink() {
-    let configs = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
+    let configs = parts().into_iter().zip(1..).map(|(part, robot)| {
         let mut config = config(robot, &format!("qemu:{}", part.name()));
         config.setup.format = Format::Mavlink;
         config
@@ -107,14 +119,14 @@ fn every_part_speaks_mavlink() {
 
 #[test]
 fn emulated_parts_restart_on_request_and_rejoin_over_a_bad_line() {
-    let configs = Part::ALL.into_iter().zip(1..).map(|(part, robot)| {
+    let configs = parts().into_iter().zip(1..).map(|(part, robot)| {
         let mut config = config(robot, &format!("qemu:{}", part.name()));
         config.faults = LineFaults { loss: 0.05, bit_errors: 1e-5, delay: Duration::from_millis(1), seed: 9 };
         config.resets = vec![Reset { tick: 20, down_ticks: 5 }];
         config
     });
     let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
-    assert_eq!(run(&mut fleet, 60), [5; 3]);
+    assert_eq!(run(&mut fleet, 60), vec![5; parts().len()]);
     for statistics in fleet.statistics() {
         print(&statistics);
         assert_eq!((statistics.steps, statistics.mismatches, statistics.resets), (55, 0, 1));

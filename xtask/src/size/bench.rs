@@ -1,4 +1,4 @@
-//! What the program `bench` prints.
+//! The output of the program `bench`.
 
 use serde::Serialize;
 use std::fmt::{self, Display};

@@ -1,8 +1,9 @@
-//! What a function needs of a program: the code and the constants that can be reached from it.
+//! The part of a program that a function needs: the code and the constants that can be reached from
+//! it.
 //!
-//! From the relocations that `bench` is linked with (`--emit-relocs`): each says which function refers to what. Calls through
-//! pointers are followed where the pointer is stored. Constants without a name reach up to the next thing that somebody
-//! refers to.
+//! From the relocations that `bench` is linked with (`--emit-relocs`): each says which function
+//! refers to what. Calls through pointers are followed where the pointer is stored. Constants
+//! without a name reach up to the next thing with a reference to it.
 
 use object::{Object as _, ObjectSection as _, ObjectSymbol as _, RelocationFlags, SymbolKind, elf};
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,7 +17,7 @@ pub struct Reach {
     pub rodata: u64,
 }
 
-/// Who refers to what in a program.
+/// The references between functions and constants of a program.
 pub struct Program {
     /// Functions and constants by their address: bytes, and whether it is code.
     things: BTreeMap<u64, (u64, bool)>,
@@ -145,7 +146,8 @@ pub struct Step {
     pub reach: Reach,
 }
 
-/// The functions of `bench` that are one step of an agent each, those with most neighbours, and what they need.
+/// The functions of `bench` that are one step of an agent each, those with most neighbours, and
+/// what they need.
 pub fn steps(program: &Program) -> Vec<Step> {
     const ROOT: &str = "bench::program::step::<";
     let roots = program.functions(ROOT).filter_map(|(name, at)| {
@@ -161,8 +163,8 @@ pub fn steps(program: &Program) -> Vec<Step> {
     steps
 }
 
-/// The functions of `bench` that write or read one frame of a wire format, and what they need: of another one's constants and code
-/// they share some.
+/// The functions of `bench` that write or read one frame of a wire format, and what they need: of
+/// another one's constants and code they share some.
 pub fn formats(program: &Program) -> Vec<Step> {
     let mut formats = Vec::new();
     for direction in ["encode", "decode"] {

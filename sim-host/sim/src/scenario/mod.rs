@@ -35,11 +35,10 @@ pub use plane::{
     PlaneSetup, PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, Start, Target, WallEntry, circle_starts,
 };
 pub use ranges::within;
-pub use robots::{Formation, Robot};
+pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
     AttackKind, AttackTable, AuthenticationTable, ChangeTable, Crop, DriftTable, EntropyTable, FaultTable, Lie,
-    MisnumberedTable, NaturalTable, RobotEntry, RobotsTable, RollTable, ScatteredEntry, ScenEntry, ScenarioFile,
-    ScoutingTable, TerrainTable, UniformTable,
+    MisnumberedTable, NaturalTable, RollTable, ScenarioFile, ScoutingTable, TerrainTable, UniformTable,
 };
 pub use setting::{Setting, text_with, with_settings};
 pub use source::ScenarioError;

@@ -1,7 +1,10 @@
-//! Who takes part: from the `[robots]` table to robots with starts and goals.
+//! The robots of a scenario: from the `[robots]` table to robots with starts and goals.
+
+mod table;
+
+pub use table::{RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 
 use super::formation::FormationEntry;
-use super::schema::{RobotEntry, ScatteredEntry, ScenEntry};
 use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use crate::terrain::Terrain;

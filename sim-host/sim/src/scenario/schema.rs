@@ -4,11 +4,12 @@
 //! simulated. File names are relative to the scenario file.
 
 use super::claims::ClaimsTable;
-use super::formation::{self, FormationEntry};
+use super::formation::FormationEntry;
 use super::intervention::InterventionTable;
 use super::maps::MapsTable;
 use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::PlaneTable;
+use super::robots::RobotsTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
 use serde::Deserialize;
@@ -258,53 +259,6 @@ pub struct Crop {
     pub y: u16,
     pub width: u16,
     pub height: u16,
-}
-
-/// `[robots]`: exactly one of these.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RobotsTable {
-    /// Each robot by itself.
-    pub list: Option<Vec<RobotEntry>>,
-    /// A formation that travels together, or several: `[[robots.formation]]`.
-    #[serde(default, deserialize_with = "formation::one_or_more")]
-    pub formation: Vec<FormationEntry>,
-    /// The first robots of a Moving AI multi-agent scenario.
-    pub scen: Option<ScenEntry>,
-    /// Robots at random places.
-    pub scattered: Option<ScatteredEntry>,
-}
-
-/// One robot of `robots.list`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct RobotEntry {
-    /// Its number, 1 or more. Default: its place in the list, counted from 1.
-    pub id: Option<u32>,
-    /// The cell where it starts.
-    pub start: [i16; 2],
-    /// The cell where it should go.
-    pub goal: [i16; 2],
-}
-
-/// `robots.scen`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ScenEntry {
-    /// The `.scen` file; its map must be the terrain, uncropped.
-    pub file: PathBuf,
-    /// How many robots to take from it, from the top.
-    pub count: u32,
-}
-
-/// `robots.scattered`.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ScatteredEntry {
-    /// How many robots, each in a cell of its own.
-    pub count: u32,
-    /// Farthest distance of a goal from its start in cells along each axis. Default: the whole map.
-    pub travel: Option<u16>,
 }
 
 /// `[[fault]]`: a robot whose computer goes down and comes up again, having forgotten everything

@@ -14,6 +14,7 @@ fn every_field_is_in_the_table_of_the_readme() {
         include_str!("../schema.rs"),
         include_str!("../params.rs"),
         include_str!("../plane/table.rs"),
+        include_str!("../robots/table.rs"),
         include_str!("../../radio/params.rs"),
     ];
     let mut fields = 0;
