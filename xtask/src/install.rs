@@ -10,13 +10,6 @@ use crate::session::{MAIN, Session, programs};
 use std::fs;
 use std::path::Path;
 
-/// Where completions of a shell are looked for below a prefix.
-const COMPLETIONS: [(&str, &str); 3] = [
-    ("bash", "share/bash-completion/completions/staya"),
-    ("zsh", "share/zsh/site-functions/_staya"),
-    ("fish", "share/fish/vendor_completions.d/staya.fish"),
-];
-
 /// The command. Firmware for a part that no toolchain here builds is skipped, and was not there
 /// before.
 pub fn run_command(s: &mut Session, options: &Options<'_>) {
@@ -58,15 +51,8 @@ fn put(repo: &Repo, prefix: &Path, profile: &str) -> Result<(), String> {
         }
     }
     let program = prefix.join("bin").join(files::name(&repo.program(profile, MAIN)));
-    run(repo.command(&program).arg("man").arg(prefix.join("share/man/man1")))?;
-    for (shell, file) in COMPLETIONS {
-        let output = repo.command(&program).args(["completions", shell]).output();
-        let output = output.map_err(|error| format!("{}: {error}", program.display()))?;
-        if !output.status.success() {
-            return Err(format!("`staya completions {shell}` failed"));
-        }
-        files::write(&prefix.join(file), &output.stdout)?;
-    }
+    let mut shell = repo.cargo(&["run", "--quiet", "--locked", "--package", "staya-shell"]);
+    run(shell.args((profile == "release").then_some("--release")).arg("--").arg(prefix))?;
     println!("{}; is {} in PATH?", program.display(), prefix.join("bin").display());
     Ok(())
 }
