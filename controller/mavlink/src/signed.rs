@@ -68,8 +68,8 @@ impl<const N: usize> Wire for Signed<N> {
         let frame = Mavlink.decode(bytes)?;
         let raw = RawFrame::new(bytes).ok_or(DecodeError::Crc)?;
         match self.signing.verify(&raw) {
-            Verdict::Authentic | Verdict::Unsigned => Ok(frame),
-            Verdict::RefusedUnsigned => Err(DecodeError::Unsigned),
+            Verdict::Authentic => Ok(frame),
+            Verdict::Unsigned => Err(DecodeError::Unsigned),
             Verdict::Forged => Err(DecodeError::Forged),
             Verdict::Replayed => Err(DecodeError::Replayed),
             Verdict::Ahead => Err(DecodeError::Ahead),

@@ -51,10 +51,8 @@ impl core::error::Error for SignError {}
 pub enum Verdict {
     /// Signed with the key, and not seen before.
     Authentic,
-    /// Not signed, but of a message that may be: see [`Signing::with_unsigned`].
-    Unsigned,
     /// Not signed: to be dropped.
-    RefusedUnsigned,
+    Unsigned,
     /// Signed with another key, or changed on the way: to be dropped.
     Forged,
     /// Signed with the key, but seen before or too old: to be dropped.
@@ -69,7 +67,7 @@ impl Verdict {
     /// Whether the frame is to be heard.
     #[must_use]
     pub const fn is_accepted(self) -> bool {
-        matches!(self, Self::Authentic | Self::Unsigned)
+        matches!(self, Self::Authentic)
     }
 }
 
@@ -81,8 +79,6 @@ pub struct Counts {
     pub authentic: u32,
     /// [`Verdict::Unsigned`].
     pub unsigned: u32,
-    /// [`Verdict::RefusedUnsigned`].
-    pub refused_unsigned: u32,
     /// [`Verdict::Forged`].
     pub forged: u32,
     /// [`Verdict::Replayed`].
@@ -98,14 +94,13 @@ impl Counts {
     #[must_use]
     pub const fn refused(&self) -> u32 {
         let of_key = self.replayed.saturating_add(self.ahead).saturating_add(self.no_room);
-        self.refused_unsigned.saturating_add(self.forged).saturating_add(of_key)
+        self.unsigned.saturating_add(self.forged).saturating_add(of_key)
     }
 
     fn count(&mut self, verdict: Verdict) {
         let count = match verdict {
             Verdict::Authentic => &mut self.authentic,
             Verdict::Unsigned => &mut self.unsigned,
-            Verdict::RefusedUnsigned => &mut self.refused_unsigned,
             Verdict::Forged => &mut self.forged,
             Verdict::Replayed => &mut self.replayed,
             Verdict::Ahead => &mut self.ahead,
@@ -159,15 +154,7 @@ pub struct Signing<const N: usize = STREAMS> {
     clock: Option<u64>,
     lead: Option<u64>,
     streams: ReplayGuard<N>,
-    #[serde(deserialize_with = "none_unsigned")]
-    may_be_unsigned: &'static [u32],
     counts: Counts,
-}
-
-/// Who is heard without a signature is the program's, and has no place in a state: there is none.
-fn none_unsigned<'de, D: serde::Deserializer<'de>>(from: D) -> Result<&'static [u32], D::Error> {
-    use serde::Deserialize as _;
-    heapless::Vec::<u32, 0>::deserialize(from).map(|_| &[][..])
 }
 
 impl<const N: usize> Signing<N> {
@@ -182,25 +169,8 @@ impl<const N: usize> Signing<N> {
             clock: None,
             lead: None,
             streams: ReplayGuard::new(),
-            may_be_unsigned: &[],
-            counts: Counts {
-                authentic: 0,
-                unsigned: 0,
-                refused_unsigned: 0,
-                forged: 0,
-                replayed: 0,
-                ahead: 0,
-                no_room: 0,
-            },
+            counts: Counts { authentic: 0, unsigned: 0, forged: 0, replayed: 0, ahead: 0, no_room: 0 },
         }
-    }
-
-    /// The same, but messages of these ids are heard without a signature too. Without this call none is. Telemetry radios cannot sign their
-    /// `RADIO_STATUS` (109).
-    #[must_use]
-    pub const fn with_unsigned(mut self, message_ids: &'static [u32]) -> Self {
-        self.may_be_unsigned = message_ids;
-        self
     }
 
     /// The same, but frames may be so far ahead of the clock, or without one of the own timestamp: tens of microseconds, by default [`MINUTE`] and
@@ -308,11 +278,7 @@ impl<const N: usize> Signing<N> {
         let (Some(signature), Some((signed, _))) =
             (frame.signature(), frame.bytes().split_last_chunk::<SIGNATURE_LEN>())
         else {
-            return if self.may_be_unsigned.contains(&frame.message_id()) {
-                Verdict::Unsigned
-            } else {
-                Verdict::RefusedUnsigned
-            };
+            return Verdict::Unsigned;
         };
         let &[link, a, b, c, d, e, f, ref value @ ..] = signature;
         let stamp = [link, a, b, c, d, e, f];

@@ -51,7 +51,7 @@ mod program {
             signed.signing_mut().speak();
             signed.signing_mut().forget();
             talk(&mut signed);
-            let mut signing = Signing::<8>::new(key(), 0, black_box(1)).with_unsigned(black_box(&[109]));
+            let mut signing = Signing::<8>::new(key(), 0, black_box(1));
             let mut bytes = [0; 300];
             black_box(signing.sign(black_box(&mut bytes)).is_ok());
             let mut rest = black_box(&bytes[..]);

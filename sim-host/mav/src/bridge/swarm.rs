@@ -252,15 +252,15 @@ impl Swarm {
             self.ignored += 1;
             return Ok(0);
         };
-        let verdict = self.options.signing.as_mut().map_or(Verdict::Unsigned, |signing| signing.verify(&frame));
+        let verdict = self.options.signing.as_mut().map(|signing| signing.verify(&frame));
         let reasons = &mut self.refused;
         let reason = match verdict {
-            Verdict::Authentic | Verdict::Unsigned => None,
-            Verdict::RefusedUnsigned => Some(&mut reasons.unsigned),
-            Verdict::Forged => Some(&mut reasons.forged),
-            Verdict::Replayed => Some(&mut reasons.replayed),
-            Verdict::Ahead => Some(&mut reasons.ahead),
-            Verdict::NoRoom => Some(&mut reasons.no_room),
+            None | Some(Verdict::Authentic) => None,
+            Some(Verdict::Unsigned) => Some(&mut reasons.unsigned),
+            Some(Verdict::Forged) => Some(&mut reasons.forged),
+            Some(Verdict::Replayed) => Some(&mut reasons.replayed),
+            Some(Verdict::Ahead) => Some(&mut reasons.ahead),
+            Some(Verdict::NoRoom) => Some(&mut reasons.no_room),
         };
         if let Some(reason) = reason {
             *reason += 1;

@@ -7,7 +7,7 @@ use staya_controller::grid::Dir;
 use staya_mavlink::constants::{MAV_COMP_ID_AUTOPILOT1, MAV_SEVERITY_WARNING, MAV_TYPE_GCS};
 use staya_mavlink::dialect::{HEARTBEAT_DATA, MavMessage};
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode};
-use staya_mavlink::signing::{Signing, Verdict};
+use staya_mavlink::signing::Signing;
 use staya_mavlink::wire::MAX_ROBOT;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
@@ -143,10 +143,10 @@ impl Station<'_> {
             let Some(frame) = RawFrame::new(&received.frame) else {
                 continue;
             };
-            let verdict = self.signing.as_mut().map_or(Verdict::Unsigned, |signing| signing.verify(&frame));
+            let is_believed = self.signing.as_mut().is_none_or(|signing| signing.verify(&frame).is_accepted());
             let Sender { system, component, .. } = frame.sender();
             let is_robot = component == MAV_COMP_ID_AUTOPILOT1 && (1..=MAX_ROBOT).contains(&system);
-            if !is_robot || !matches!(verdict, Verdict::Authentic | Verdict::Unsigned) {
+            if !is_robot || !is_believed {
                 continue;
             }
             self.lines.believe(received.line, received.peer);
