@@ -145,15 +145,21 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 
     fn goes_to_cells(&self) -> bool {
-        each!(self, law => Guidance::<S>::goes_to_cells(law))
+        !matches!(self, Self::Waypoint(_) | Self::Lattice(_) | Self::GoalFlock(_) | Self::Boids(_))
     }
 
     fn goes_by_velocity(&self) -> bool {
-        each!(self, law => Guidance::<S>::goes_by_velocity(law))
+        !self.goes_to_cells() || matches!(self, Self::Route(_) | Self::Formation(_))
     }
 
     fn has_own_goal(&self) -> bool {
-        each!(self, law => Guidance::<S>::has_own_goal(law))
+        match self {
+            Self::Waypoint(law) => law.has_own_goal(),
+            Self::Lattice(law) => law.has_own_goal(),
+            Self::GoalFlock(law) => law.has_own_goal(),
+            Self::Boids(law) => law.has_own_goal(),
+            _ => false,
+        }
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

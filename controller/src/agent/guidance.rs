@@ -170,57 +170,6 @@ pub trait Teamwork {
     }
 }
 
-/// A law in memory of its own.
-#[cfg(feature = "host")]
-impl<S: Scalar, G: Guidance<S>> Guidance<S> for alloc::boxed::Box<G> {
-    type Input<'a> = G::Input<'a>;
-    type Destination = G::Destination;
-    type Workspace = G::Workspace;
-    type Payload = G::Payload;
-
-    fn decide(
-        &mut self,
-        input: &GuidanceInput<'_, S, Self::Payload>,
-        here: &Self::Input<'_>,
-        rng: &mut Rng,
-        workspace: &mut Self::Workspace,
-    ) -> Result<Decision<S>, BadInput> {
-        (**self).decide(input, here, rng, workspace)
-    }
-
-    fn goes_to_cells(&self) -> bool {
-        G::goes_to_cells(self)
-    }
-
-    fn goes_by_velocity(&self) -> bool {
-        G::goes_by_velocity(self)
-    }
-
-    fn has_own_goal(&self) -> bool {
-        G::has_own_goal(self)
-    }
-
-    fn tracker(&mut self) -> Option<&mut Tracker<S>> {
-        (**self).tracker()
-    }
-
-    fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {
-        (**self).assign_waypoint(index, waypoint)
-    }
-
-    fn payload(&mut self, now: Instant) -> Self::Payload {
-        (**self).payload(now)
-    }
-
-    fn parameter(&self, parameter: Parameter) -> Option<S> {
-        (**self).parameter(parameter)
-    }
-
-    fn tune(&mut self, parameter: Parameter, value: S) -> bool {
-        (**self).tune(parameter, value)
-    }
-}
-
 /// The functions of [`Teamwork`] in a law around another one, `$inside`, that does nothing of its own in them: `orders` those
 /// about formations, `land` those about the land. A function that is forgotten in such a law is lost without a word
 /// (`tests/wrapped.rs` looks).
@@ -257,12 +206,6 @@ macro_rules! pass_on {
     };
 }
 pub(super) use pass_on;
-
-#[cfg(feature = "host")]
-impl<G: Teamwork> Teamwork for alloc::boxed::Box<G> {
-    pass_on!(orders: self => (**self));
-    pass_on!(land: self => (**self));
-}
 
 /// Where a guidance law can be sent: one of [`ToCells`], [`ToWaypoints`], [`Roams`] and [`ToAny`].
 pub trait Destination {

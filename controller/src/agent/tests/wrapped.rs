@@ -91,11 +91,3 @@ fn a_law_of_a_robot_with_eyes_hears_all() {
     passes_orders_on(&mut law, NeighborTracking::inside);
     passes_land_on(&mut law, NeighborTracking::inside);
 }
-
-#[cfg(feature = "host")]
-#[test]
-fn a_law_in_memory_of_its_own_hears_all() {
-    let mut law = Box::new(Listener::default());
-    passes_orders_on(&mut law, |law| law);
-    passes_land_on(&mut law, |law| law);
-}
