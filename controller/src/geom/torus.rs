@@ -47,18 +47,6 @@ impl<S: Scalar> Torus<S> {
         };
         Position::from_mm([near(x, own_x, width), near(y, own_y, height), z])
     }
-
-    /// The world place on [0, size), in whole millimetres; heights stay.
-    #[must_use]
-    pub fn wrap_position(&self, place: Position) -> Position {
-        let [x, y, z] = place.mm;
-        let [width, height] = self.size_m;
-        let wrap = |mm: i32, size: S| {
-            let size_mm = size.to_milli().filter(|size_mm| *size_mm > 0);
-            size_mm.and_then(|size_mm| mm.checked_rem_euclid(size_mm)).unwrap_or(mm)
-        };
-        Position::from_mm([wrap(x, width), wrap(y, height), z])
-    }
 }
 
 fn wrap<S: Scalar>(x: S, size: S) -> S {

@@ -57,12 +57,6 @@ impl Kind {
         let mode = if self.needs_stream() { (custom_mode >> 16) & 0xFF } else { custom_mode };
         mode == self.outside_control()
     }
-
-    /// The mode's name.
-    #[must_use]
-    pub const fn mode_name(self) -> &'static str {
-        if self.needs_stream() { "OFFBOARD" } else { "GUIDED" }
-    }
 }
 
 #[cfg(test)]
