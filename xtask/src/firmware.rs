@@ -107,7 +107,7 @@ pub fn build_own(s: &mut Session, part: &Part, folder: &Path) -> bool {
         let folder = std::path::absolute(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
         let manifest = folder.join("Cargo.toml");
         if !manifest.is_file() {
-            return Err(format!("{} is not there; docs/own.md says what such a crate has", manifest.display()));
+            return Err(format!("{} is not there; docs/project.md says what such a crate has", manifest.display()));
         }
         let mut cargo = toolchain.cargo(repo, part.target, "build");
         let (profile, built) = Profile::Firmware.names();

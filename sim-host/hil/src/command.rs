@@ -21,7 +21,7 @@ pub struct HilCommand {
     #[command(flatten)]
     hil: HilArgs,
     /// Robots go by the guidance law of the crate in this folder: its program is built, and does the same with these arguments
-    /// (docs/own.md says how to write one).
+    /// (docs/project.md says how to write one).
     #[arg(long = "crate", value_name = "DIR")]
     folder: Option<PathBuf>,
 }
@@ -43,7 +43,7 @@ impl HilCommand {
 fn run_crate(folder: &Path) -> Result<Ended> {
     let manifest = folder.join("Cargo.toml");
     if !manifest.is_file() {
-        bail!("--crate {}: there is no Cargo.toml; docs/own.md says what such a crate has", folder.display());
+        bail!("--crate {}: there is no Cargo.toml; docs/project.md says what such a crate has", folder.display());
     }
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);

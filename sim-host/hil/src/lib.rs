@@ -29,7 +29,7 @@
 //! }
 //! ```
 //!
-//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. docs/own.md has all of it.
+//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. docs/project.md has all of it.
 
 pub mod cli;
 mod command;

@@ -1,6 +1,6 @@
 //! The command line: `mpirun -n 4 staya-mpi run SCENARIO`. One world over ranks, with the trace hash of `staya run`.
 //!
-//! Rank 0 writes the results and prints them. docs/mpi.md says how to build it, and what it costs.
+//! Rank 0 writes the results and prints them. docs/sweeps.md says how to build it, and what it costs.
 
 mod link;
 mod run;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// What to write besides.
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Files besides the results; docs/recordings.md")]
+#[command(next_help_heading = "Files besides the results; docs/tour.md")]
 pub struct AlsoArgs {
     /// Record the run for `staya page`: where everybody is, tick by tick. Each file is replaced.
     #[arg(long, value_name = "FILE")]

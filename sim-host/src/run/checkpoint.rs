@@ -9,7 +9,7 @@ use std::time::Instant;
 
 /// Whether to write checkpoints, and whether to go on from one.
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Checkpoints; docs/checkpoints.md")]
+#[command(next_help_heading = "Checkpoints; docs/sweeps.md")]
 pub struct CheckpointArgs {
     /// Write all that it takes to go on with this run beside the folder of results, as FOLDER.checkpoint, the one before it as
     /// FOLDER.checkpoint.old: so often (600s, 10min, 2h of real time, or 1000ticks), and at Ctrl-C.

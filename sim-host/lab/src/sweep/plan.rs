@@ -72,7 +72,7 @@ impl Plan {
     /// See [`Plan::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, SweepError> {
         let source = Source::new(path, text)?;
-        let file: PlanFile = toml::from_str(text).map_err(|error| source.serde_error(&error, LIST))?;
+        let file: PlanFile = source.read(LIST)?;
         let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         if file.name.is_empty() || file.name.len() > 100 || !file.name.chars().all(allowed) {
             let what = format!("{:?} cannot name a folder of results", file.name);

@@ -201,7 +201,7 @@ impl Config {
     /// See [`Config::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
-        let file: ConfigFile = toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
+        let file: ConfigFile = source.read(LIST)?;
         let origin = Origin::new(Global {
             latitude_deg: file.origin.latitude_deg,
             longitude_deg: file.origin.longitude_deg,

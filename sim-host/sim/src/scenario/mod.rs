@@ -6,6 +6,7 @@
 mod authentication;
 mod check;
 mod claims;
+mod de;
 mod field;
 mod fingerprint;
 mod formation;
@@ -216,7 +217,7 @@ impl Scenario {
     /// See [`Scenario::load`].
     pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
-        let mut file: ScenarioFile = toml::from_str(source.text()).map_err(|error| source.serde_error(&error, LIST))?;
+        let mut file: ScenarioFile = source.read(LIST)?;
         file.seed = overrides.seed.unwrap_or(file.seed);
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
         check::general(&source, &file)?;
@@ -303,7 +304,7 @@ impl Scenario {
             keeping,
             claims: Claims::ANY,
             attacks,
-            parameters: parameters(source.text(), &file),
+            parameters: parameters(&source, &file),
         };
         scenario.claims = claims::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
         Ok(scenario)
@@ -338,8 +339,8 @@ impl Scenario {
 }
 
 /// The fields of a scenario's text, which is sound, with the seed and the ticks that are in force.
-fn parameters(text: &str, file: &ScenarioFile) -> serde_json::Value {
-    let mut fields: serde_json::Value = toml::from_str(text).unwrap_or_default();
+fn parameters(source: &Source<'_>, file: &ScenarioFile) -> serde_json::Value {
+    let mut fields: serde_json::Value = source.read(LIST).unwrap_or_default();
     if let Some(fields) = fields.as_object_mut() {
         fields.insert("seed".into(), file.seed.into());
         fields.insert("ticks".into(), file.ticks.into());

@@ -88,7 +88,7 @@ fn read(path: &Path) -> Result<String, ScenarioError> {
 
 fn set(source: &Source<'_>, settings: &[Setting]) -> Result<String, ScenarioError> {
     let mut table: toml::Table =
-        source.text().parse().map_err(|error: toml::de::Error| source.serde_error(&error, super::LIST))?;
+        source.text().parse().map_err(|error: toml::de::Error| source.error("", error.message(), "check the file"))?;
     for Setting { field, value } in settings {
         field.set(&mut table, value.clone()).map_err(|what| {
             source.error(field.name(), format!("{what} (by --set)"), "name a field as the scenario's file has it")

@@ -1,6 +1,8 @@
 //! A text in TOML (a scenario, or another file that goes with one), and errors that point into it.
 
+use super::de;
 use crate::file::read_remedy;
+use serde::Deserialize;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -107,18 +109,26 @@ impl<'a> Source<'a> {
         self.root.get_ref()
     }
 
-    /// What serde says of a field, said with file, line and field; `list` is where all fields are listed.
-    pub fn serde_error(&self, error: &toml::de::Error, list: &str) -> ScenarioError {
+    /// Reads the whole file; `list` is the page that lists all fields.
+    ///
+    /// # Errors
+    /// A field is unknown, is missing, or has a value of another type; with file, line and field.
+    pub fn read<'s, T: Deserialize<'s>>(&'s self, list: &str) -> Result<T, ScenarioError> {
+        de::read(&self.root).map_err(|error| self.serde_error(&error.message, error.span, list))
+    }
+
+    /// An error of serde with file, line and field.
+    fn serde_error(&self, message: &str, span: Option<Range<usize>>, list: &str) -> ScenarioError {
         let mut field = String::new();
         // The span of the whole file is empty.
-        if let Some(span) = error.span().filter(|span| !span.is_empty()) {
-            deepest(self.root.get_ref(), &span, &mut field);
+        if let Some(span) = span.as_ref().filter(|span| !span.is_empty()) {
+            deepest(self.root.get_ref(), span, &mut field);
         }
         ScenarioError::Field {
             path: self.path.to_owned(),
-            line: line_of(self.text, error.span()),
+            line: line_of(self.text, span),
             field,
-            what: in_words(&first_line(error.message())),
+            what: in_words(&first_line(message)),
             remedy: format!("{list} lists all fields with their units"),
         }
     }

@@ -1,0 +1,217 @@
+//! Reads the tables of a parsed file with serde. The deserializer of the crate `toml` does the same for any source of events, and its
+//! generic layers take three times as much machine code for the tables of scenarios.
+
+use serde::de::value::StrDeserializer;
+use serde::de::{
+    DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer as _, MapAccess, SeqAccess, Unexpected,
+    VariantAccess, Visitor,
+};
+use serde::{Deserialize, forward_to_deserialize_any};
+use std::borrow::Cow;
+use std::fmt;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A value that does not fit its field.
+#[derive(Debug)]
+pub struct Error {
+    /// The cause.
+    pub message: String,
+    /// Where the value or its key stands in the text, bytes.
+    pub span: Option<Range<usize>>,
+}
+
+impl Error {
+    /// Adds a place unless a nearer one is known.
+    fn at(mut self, span: Range<usize>) -> Self {
+        self.span.get_or_insert(span);
+        self
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl serde::de::Error for Error {
+    fn custom<T: fmt::Display>(message: T) -> Self {
+        Self { message: message.to_string(), span: None }
+    }
+}
+
+/// Reads a whole file.
+///
+/// # Errors
+/// A field is unknown, is missing, or has a value of another type.
+pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeTable<'de>>) -> Result<T, Error> {
+    T::deserialize(Table(root.get_ref())).map_err(|error| error.at(root.span()))
+}
+
+/// A table.
+struct Table<'a, 'de>(&'a DeTable<'de>);
+
+impl<'a> Deserializer<'a> for Table<'a, '_> {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_map(Entries { entries: Box::new(self.0.iter()), value: None })
+    }
+
+    forward_to_deserialize_any! {
+        <W: Visitor<'a>>
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit unit_struct
+        newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
+    }
+}
+
+type Entry<'a, 'de> = (&'a Spanned<Cow<'de, str>>, &'a Spanned<DeValue<'de>>);
+
+/// The entries of a table that have not been read yet.
+struct Entries<'a, 'de> {
+    entries: Box<dyn Iterator<Item = Entry<'a, 'de>> + 'a>,
+    value: Option<&'a Spanned<DeValue<'de>>>,
+}
+
+impl<'a> MapAccess<'a> for Entries<'a, '_> {
+    type Error = Error;
+
+    fn next_key_seed<K: DeserializeSeed<'a>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
+        let Some((key, value)) = self.entries.next() else {
+            return Ok(None);
+        };
+        self.value = Some(value);
+        let name: StrDeserializer<'_, Error> = key.get_ref().as_ref().into_deserializer();
+        seed.deserialize(name).map(Some).map_err(|error| error.at(key.span()))
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Error> {
+        let value = self.value.take().ok_or_else(|| Error::custom("a value without a key"))?;
+        seed.deserialize(Node(value))
+    }
+}
+
+/// The elements of a list that have not been read yet.
+struct Elements<'a, 'de>(std::slice::Iter<'a, Spanned<DeValue<'de>>>);
+
+impl<'a> SeqAccess<'a> for Elements<'a, '_> {
+    type Error = Error;
+
+    fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
+        self.0.next().map(|value| seed.deserialize(Node(value))).transpose()
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.0.len())
+    }
+}
+
+/// A value.
+struct Node<'a, 'de>(&'a Spanned<DeValue<'de>>);
+
+impl<'a> Deserializer<'a> for Node<'a, '_> {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        let read = match self.0.get_ref() {
+            DeValue::String(text) => visitor.visit_str(text),
+            DeValue::Boolean(value) => visitor.visit_bool(*value),
+            DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
+                Ok(value) => visitor.visit_i64(value),
+                Err(_) => match u64::from_str_radix(integer.as_str(), integer.radix()) {
+                    Ok(value) => visitor.visit_u64(value),
+                    Err(_) => Err(Error::custom("a whole number beyond 64 bits")),
+                },
+            },
+            DeValue::Float(float) => match float.as_str().parse() {
+                Ok(value) => visitor.visit_f64(value),
+                Err(_) => Err(Error::custom("invalid number")),
+            },
+            DeValue::Datetime(_) => Err(Error::invalid_type(Unexpected::Other("date"), &visitor)),
+            DeValue::Array(list) => visitor.visit_seq(Elements(list.iter())),
+            DeValue::Table(table) => Table(table).deserialize_any(visitor),
+        };
+        read.map_err(|error| error.at(self.0.span()))
+    }
+
+    fn deserialize_option<V: Visitor<'a>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'a>>(self, _: &'static str, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_enum<V: Visitor<'a>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        let span = self.0.span();
+        let read = match self.0.get_ref() {
+            DeValue::String(name) => visitor.visit_enum(Variant { name, value: None }),
+            DeValue::Table(table) if table.len() == 1 => match table.iter().next() {
+                Some((name, value)) => visitor.visit_enum(Variant { name: name.get_ref(), value: Some(value) }),
+                None => Err(Error::custom("an empty table")),
+            },
+            _ => Err(Error::custom("expected a word, or a table with one entry")),
+        };
+        read.map_err(|error| error.at(span))
+    }
+
+    forward_to_deserialize_any! {
+        <W: Visitor<'a>>
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
+        tuple_struct map struct identifier ignored_any
+    }
+}
+
+/// A variant of an enum: its name, and its content if it has one.
+struct Variant<'a, 'de> {
+    name: &'a str,
+    value: Option<&'a Spanned<DeValue<'de>>>,
+}
+
+impl<'a> EnumAccess<'a> for Variant<'a, '_> {
+    type Error = Error;
+    type Variant = Self;
+
+    fn variant_seed<V: DeserializeSeed<'a>>(self, seed: V) -> Result<(V::Value, Self), Error> {
+        let name: StrDeserializer<'_, Error> = self.name.into_deserializer();
+        Ok((seed.deserialize(name)?, self))
+    }
+}
+
+impl<'a, 'de> Variant<'a, 'de> {
+    fn content(self) -> Result<Node<'a, 'de>, Error> {
+        self.value.map(Node).ok_or_else(|| Error::custom(format!("{} needs a value: {} = ...", self.name, self.name)))
+    }
+}
+
+impl<'a> VariantAccess<'a> for Variant<'a, '_> {
+    type Error = Error;
+
+    fn unit_variant(self) -> Result<(), Error> {
+        match self.value {
+            None => Ok(()),
+            Some(_) => Err(Error::custom(format!("{} takes no value", self.name))),
+        }
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'a>>(self, seed: T) -> Result<T::Value, Error> {
+        seed.deserialize(self.content()?)
+    }
+
+    fn tuple_variant<V: Visitor<'a>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
+        self.content()?.deserialize_any(visitor)
+    }
+
+    fn struct_variant<V: Visitor<'a>>(self, _: &'static [&'static str], visitor: V) -> Result<V::Value, Error> {
+        self.content()?.deserialize_any(visitor)
+    }
+}
