@@ -96,34 +96,42 @@ where
     assert_eq!(format!("{:?}", other.outcome()), format!("{:?}", one.outcome()), "{name}");
 }
 
-/// Robots times ticks of a check: enough for what happens, and done in seconds.
-const WORK: usize = 30_000;
-/// More are too many for a test; `scenarios/scale-small.toml` has all that `scale.toml` has.
-const MOST: usize = 2_000;
-
-fn everything(scenario: &Scenario, name: &str) {
-    let ticks = (WORK / scenario.robots.len()).clamp(20, 500) as u32;
+/// Continues `scenario` from saved states for about `work` robots times ticks.
+fn everything(scenario: &Scenario, name: &str, work: usize) {
+    let ticks = (work / scenario.robots.len()).clamp(20, 500) as u32;
     let ticks = ticks.min(scenario.ticks);
     let at = [1, ticks / 3, ticks - 2];
     with_engines!(scenario, goes_on(name, ticks, &at));
     with_engines!(scenario, moves(name, ticks / 2, ticks));
 }
 
-#[test]
-fn every_scenario_goes_on_from_what_was_saved() {
+/// Continues every scenario of at most `most` robots from saved states.
+fn every_scenario(work: usize, most: usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("the folder is there") {
         let path = entry.expect("it can be read").path();
         if path.extension().is_some_and(|extension| extension == "toml") {
             let scenario = Scenario::load(&path, &Overrides::default()).expect("a good scenario");
-            if scenario.robots.len() <= MOST {
-                everything(&scenario, &scenario.name);
+            if scenario.robots.len() <= most {
+                everything(&scenario, &scenario.name, work);
                 count += 1;
             }
         }
     }
     assert!(count > 20, "{count} scenarios");
+}
+
+#[test]
+fn every_scenario_goes_on_from_what_was_saved() {
+    every_scenario(1_500, 200);
+}
+
+/// More than 2000 robots are too many for a test; `scenarios/scale-small.toml` has all that `scale.toml` has.
+#[test]
+#[ignore = "30,000 robots times ticks of each scenario: half a minute"]
+fn every_scenario_goes_on_for_long_from_what_was_saved() {
+    every_scenario(30_000, 2_000);
 }
 
 const KEY: &str = "[authentication]\nkey = \"passphrase: of the tests\"\n";
