@@ -52,14 +52,14 @@ impl<'de> Deserialize<'de> for Q16 {
     }
 }
 
-#[cfg(any(test, feature = "fixed"))]
+#[cfg(feature = "fixed")]
 impl From<fixed::types::I16F16> for Q16 {
     fn from(value: fixed::types::I16F16) -> Self {
         Self(value.to_bits())
     }
 }
 
-#[cfg(any(test, feature = "fixed"))]
+#[cfg(feature = "fixed")]
 impl From<Q16> for fixed::types::I16F16 {
     fn from(value: Q16) -> Self {
         Self::from_bits(value.0)
