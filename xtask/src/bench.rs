@@ -30,7 +30,7 @@ const GOALS: [(&str, f64, &str); 6] = [
 /// Runs the benchmarks whose name contains `name` and judges their medians.
 pub fn run(s: &mut Session, name: Option<&str>) {
     if !SCRIPTS.iter().any(|(script, ..)| name == Some(script)) {
-        criterion(s, name, &["--workspace", "--exclude", "staya-view"]);
+        criterion(s, name);
     }
     for (_, row, file) in SCRIPTS.iter().filter(|(script, ..)| name.is_none_or(|name| script.contains(name))) {
         script(s, row, file);
@@ -44,7 +44,7 @@ pub fn run(s: &mut Session, name: Option<&str>) {
 /// Runs the benchmarks that have goals, and those that the goals compare with.
 pub fn run_goals(s: &mut Session) {
     let names: Vec<&str> = GOALS.iter().flat_map(|(name, _, other)| [*name, *other]).collect();
-    criterion(s, Some(&format!("^({})$", names.join("|"))), &["--package", "staya-controller"]);
+    criterion(s, Some(&format!("^({})$", names.join("|"))));
     SCRIPTS.iter().for_each(|(_, row, file)| script(s, row, file));
 }
 
@@ -63,18 +63,13 @@ fn script(s: &mut Session, name: &str, file: &str) {
     }
 }
 
-/// Runs the workspace's benchmarks in the packages that `own` names, and those beside peers.
-fn criterion(s: &mut Session, filter: Option<&str>, own: &[&str]) {
+/// Runs the benchmarks, all of which stand beside peers.
+fn criterion(s: &mut Session, filter: Option<&str>) {
     let home = s.repo.target.join("criterion");
     let start = SystemTime::now();
-    let mut benches = s.repo.cargo(&["bench", "--locked"]);
-    // Only targets that are benchmarks: a library's own tests need no release build.
-    benches.args(own).args(["--bench", "*"]);
-    let peers = s.repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
-    for (what, mut bench) in [("benchmarks", benches), ("benchmarks beside peers", peers)] {
-        bench.env("CRITERION_HOME", &home).args(filter.map(|name| ["--", name]).into_iter().flatten());
-        s.report.command(what, bench);
-    }
+    let mut benches = s.repo.cargo_in(PEERS, &["bench", "--locked", "--bench", "*"]);
+    benches.env("CRITERION_HOME", &home).args(filter.map(|name| ["--", name]).into_iter().flatten());
+    s.report.command("benchmarks", benches);
     s.report.part("goals", || {
         let (mut counts, note) = judge(&medians(&home, start));
         if filter.is_some_and(|name| !name.starts_with('^')) {

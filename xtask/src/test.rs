@@ -17,10 +17,14 @@ const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 pub fn run(s: &mut Session, extent: Extent) {
     let repo = &s.repo;
     let options: &[&str] = if extent == Extent::All { &["--include-ignored"] } else { &[] };
-    let arguments = ["test", "--locked", "--workspace", "--no-fail-fast"];
+    // Examples are compiled by `check`; doc tests are a command of their own for cargo.
+    let arguments = ["test", "--locked", "--workspace", "--no-fail-fast", "--lib", "--bins", "--tests"];
     let mut build = repo.cargo(&arguments);
     build.arg("--no-run");
-    let is_compiled = s.report.command("tests on the host, compiled", build);
+    s.report.command("tests on the host, compiled", build);
+    // Tests of the command line start them.
+    s.staya("debug");
+    let repo = &s.repo;
     let mut tests = repo.cargo(&arguments);
     tests.arg("--").args(options);
     if std::env::var_os(SEED.0).is_none() {
@@ -29,10 +33,8 @@ pub fn run(s: &mut Session, extent: Extent) {
     // Tests wait more than they compute, the clients' most of all.
     let firmware = (extent == Extent::All).then(|| crate::firmware::begin(s)).flatten();
     s.report.part("tests on the host", || counted(&mut tests, ""));
-    if is_compiled {
-        // The program's own tests have brought it.
-        s.built.push(("debug", true));
-    }
+    let mut examples = s.repo.cargo(&["test", "--locked", "--workspace", "--doc"]);
+    s.report.part("code in documentation", || counted(&mut examples, ""));
     crate::python::clients(s, None, extent);
     if extent == Extent::Short {
         crate::project::run(s, extent);
