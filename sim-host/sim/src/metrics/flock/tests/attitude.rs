@@ -1,7 +1,7 @@
 use super::super::*;
 
 #[test]
-fn a_body_flies_nose_first_and_level_from_side_to_side() {
+fn the_nose_points_along_the_velocity_and_the_wings_are_level() {
     let velocities: [[f64; 3]; 7] = [
         [3.0, 0.0, 0.0],
         [0.0, -2.0, 0.5],
