@@ -53,7 +53,7 @@ fn range_is_inclusive_and_may_be_infinite() {
 }
 
 #[test]
-fn coincident_and_non_finite_positions_are_valid() {
+fn coincident_robots_and_an_empty_swarm_are_valid() {
     let params = RadioParams { range_m: 0.0, ..RadioParams::default() };
     let mut crowd = radio(params, 5);
     let counts = crowd.carry(0, &[[2.0, 3.0]; 5], |_| &FRAME);
