@@ -1,8 +1,8 @@
 //! Checkpoints: one file from which a run resumes with the same trace hash and the same records.
 //!
 //! ```text
-//! "staya checkpoint" format:u32, then head, state, history, trace.csv and series.csv so far, each as
-//! length:u64 bytes crc32:u32, of length and bytes
+//! "staya checkpoint" format:u32, then head, state, history, trace.csv and series.csv so far,
+//! each as length:u64 bytes crc32:u32, of length and bytes
 //! ```
 //!
 //! Integers are little-endian; head, state and history are in postcard format. The file is replaced
@@ -24,10 +24,8 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 const MAGIC: &[u8; 16] = b"staya checkpoint";
-/// Format version; incremented when head, state or history change.
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// Sections of the file, in order.
 const PARTS: [&str; 5] = ["head", "state", "history", "trace.csv", "series.csv"];
 const TRACE: usize = 3;
 const SERIES: usize = 4;
@@ -170,7 +168,6 @@ fn write_part(out: &mut impl Write, length: u64, from: &mut dyn Read) -> io::Res
     out.write_all(&crc.finalize().to_le_bytes())
 }
 
-/// Copies `length` bytes.
 fn copy(length: u64, from: &mut dyn Read, crc: &mut Hasher, out: &mut dyn Write) -> io::Result<()> {
     let mut block = [0; 1 << 16];
     let mut left = length;
@@ -185,7 +182,6 @@ fn copy(length: u64, from: &mut dyn Read, crc: &mut Hasher, out: &mut dyn Write)
     Ok(())
 }
 
-/// A section of a file.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     /// Offset of the first byte.
@@ -349,7 +345,6 @@ impl Checkpoint {
     }
 }
 
-/// Reads a section of a file.
 fn part(file: &mut File, part: Part, out: &mut dyn Write) -> io::Result<()> {
     file.seek(SeekFrom::Start(part.at))?;
     copy(part.length, file, &mut Hasher::new(), out)

@@ -66,8 +66,7 @@ mod tests {
     use crate::scenario::{Overrides, Scenario};
     use std::ops::ControlFlow;
 
-    /// From a third of the way on, the prediction is within a third, although the limit is five
-    /// times higher.
+    /// From a third of the way on, the prediction is within a third of the actual end.
     #[test]
     fn the_end_is_predicted_early() {
         let text = "name = 'duel'\nticks = 700\ntick_s = 0.1\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n\

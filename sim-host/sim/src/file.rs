@@ -120,7 +120,6 @@ mod tests {
             (error.to_string().as_str(), read_remedy(&error)),
             ("it has 3 bytes of at most 2", "choose a smaller file")
         );
-        // A sparse file of terabytes.
         File::create(&path).expect("mine").set_len(1 << 42).expect("a hole");
         assert_eq!(read(&path, MAP).expect_err("too large").kind(), ErrorKind::FileTooLarge);
         assert_eq!(read(&path, u64::MAX).expect_err("no memory").kind(), ErrorKind::OutOfMemory);
@@ -140,7 +139,6 @@ mod tests {
             let error = read(path, TEXT).expect_err("no file");
             assert_eq!(read_remedy(&error), "name a regular file", "{error}");
         }
-        // This file reports a length of 0 but is not empty.
         assert!(!read("/proc/meminfo".as_ref(), TEXT).expect("a text").is_empty());
         assert!(has_memory(1 << 20) && !has_memory(1 << 60) && !has_memory(u64::MAX));
     }

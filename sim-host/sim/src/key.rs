@@ -114,7 +114,6 @@ fn is_open(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|about| about.mode() & 0o077 != 0)
 }
 
-/// Always false: file permissions are not checked on this system.
 #[cfg(not(unix))]
 fn is_open(_: &Path) -> bool {
     false

@@ -41,7 +41,6 @@ impl Arrivals {
         self.count = count.sum();
     }
 
-    /// Restores the arrival of robot `index`.
     pub(crate) fn set(&mut self, index: usize, at: Option<u64>) {
         let before = std::mem::replace(&mut self.at[index], at);
         self.count = self.count + usize::from(at.is_some()) - usize::from(before.is_some());

@@ -24,7 +24,6 @@ pub struct Summary {
     pub version: &'static str,
     seed: u64,
     robots: usize,
-    /// Number of completed ticks.
     ticks: u32,
     sim_seconds: f64,
     /// Duration of the simulation, without file input and plotting.
@@ -42,7 +41,6 @@ pub struct Summary {
     /// Arrival of each robot; null if per-robot data is left out.
     pub arrivals: Option<Vec<Arrival>>,
     packets: PacketCounts,
-    /// Whether the robots have a key.
     is_authenticated: bool,
     /// Packets that exceeded a robot's bandwidth and were not transmitted.
     packets_throttled: u64,
@@ -83,9 +81,7 @@ pub struct Summary {
     trace_hash: String,
     /// Fields of the scenario file with the command-line overrides, without defaults.
     parameters: serde_json::Value,
-    /// Obstacles in the plane at the start.
     obstacles: Vec<Obstacle>,
-    /// Files that were written.
     files: Vec<PathBuf>,
 }
 
@@ -117,7 +113,6 @@ impl From<&Solid> for Obstacle {
     }
 }
 
-/// A cause of waiting, with totals over the run.
 #[derive(Clone, Debug, Serialize)]
 struct Waited {
     #[serde(rename = "for")]
@@ -126,9 +121,7 @@ struct Waited {
     robots: usize,
     /// Robots that wait for this cause at the end.
     at_the_end: usize,
-    /// Sum of their waiting times.
     robot_seconds: f64,
-    /// Longest uninterrupted wait.
     longest_seconds: f64,
 }
 
@@ -405,7 +398,6 @@ mod tests {
     const DUEL: &str = "name = 'duel'\nticks = 40\ntick_s = 0.1\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n\
         [plane.robots.circle]\ncount = 4\nradius_m = 3\n";
 
-    /// Numbers and Booleans of a JSON object, by dotted names.
     fn flat(prefix: &str, value: &Value, found: &mut BTreeMap<String, Option<f64>>) {
         let dotted = |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
         match value {

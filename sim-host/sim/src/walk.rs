@@ -31,7 +31,6 @@ pub struct Walk {
 pub struct Walker<const CELLS: usize, const M: usize = VISITS, const L: usize = 0> {
     field: Box<CostField<CELLS>>,
     path: Vec<Cell>,
-    /// The terrain with a border of walls.
     walled: Vec<u8>,
 }
 

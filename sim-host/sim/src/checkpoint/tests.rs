@@ -15,7 +15,6 @@ fn of(rest: &str) -> Scenario {
     scenario(rest, &Overrides::default())
 }
 
-/// Runs a scenario with records in `dir/whole` and checkpoints after `ticks` in `dir/checkpoint`.
 fn run(dir: &Path, scenario: &Scenario, ticks: &[u32]) -> Place {
     run_with(dir, scenario, ticks, Options::default())
 }

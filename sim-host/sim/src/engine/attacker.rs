@@ -20,7 +20,6 @@ use std::f64::consts::TAU;
 const STARTS: u8 = u8::MAX;
 /// Restart number of an insider: one above that of the robot it replaces.
 const TAKEN: u8 = 1;
-/// Distance of an insider's invented robots from the lure, metres.
 const RING_M: f64 = 1.5;
 
 /// An attacker's radio and state.
@@ -34,10 +33,8 @@ pub struct Attacker {
     radius_mm: u16,
     wire: HostWire,
     starts: u8,
-    /// Number of the next frame.
     sequence: u16,
     version: u8,
-    /// Received inboxes with their ticks, oldest first.
     heard: VecDeque<(u32, Vec<u8>)>,
     outbox: Vec<u8>,
 }
@@ -70,12 +67,10 @@ impl Attacker {
         }
     }
 
-    /// Serializes the mutable part of the attacker.
     pub(super) fn state(&self) -> impl Serialize {
         (&self.wire, self.sequence, self.version, &self.heard)
     }
 
-    /// Restores the mutable part.
     pub(super) fn restore(&mut self, (wire, sequence, version, heard): AttackerState) {
         (self.wire, self.sequence, self.version, self.heard) = (wire, sequence, version, heard);
     }
@@ -95,13 +90,11 @@ impl Attacker {
         &self.outbox
     }
 
-    /// Robot whose keys the attacker takes over in this tick.
     pub(super) fn takes(&self, tick: u32) -> Option<RobotId> {
         let is_now = self.attack.kind == AttackKind::Insider && tick == self.attack.from_tick;
         is_now.then_some(self.attack.claims)
     }
 
-    /// Uses the keys of the robot from now on.
     pub(super) fn take(&mut self, ring: &Ring) {
         self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
     }
@@ -120,7 +113,6 @@ impl Attacker {
         }
     }
 
-    /// Processes the received frames and prepares the frames of this tick.
     pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
         self.outbox.clear();
         let is_active = (self.attack.from_tick..self.attack.to_tick).contains(&tick);
@@ -171,7 +163,6 @@ impl Attacker {
         }
     }
 
-    /// A beacon of a stationary robot.
     fn beacon(&self, [x_m, y_m]: [f64; 2], tick: u32) -> Beacon {
         let cell = self.cell([x_m, y_m]);
         Beacon {
@@ -185,7 +176,6 @@ impl Attacker {
         }
     }
 
-    /// Orders all robots to the lure, on the grid and in the plane.
     fn lure(&mut self) {
         self.version = self.version.wrapping_add(1);
         let [x_m, y_m] = self.attack.lure_m;

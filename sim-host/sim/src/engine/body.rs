@@ -6,7 +6,6 @@ use staya_controller::agent::KinematicState;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Dir, GridFrame, UNIT};
 
-/// Conversion from cells and [`UNIT`]ths of ticks to metres and seconds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kinematics {
     frame: GridFrame<f64>,

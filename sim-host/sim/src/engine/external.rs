@@ -42,7 +42,6 @@ pub struct Decision {
     pub status: Status,
 }
 
-/// The external controllers and the parts of their setup.
 pub(super) struct External {
     pub(super) controllers: Box<dyn ExternalController>,
     /// Robot index, law and safety layer, sorted by index.
@@ -70,7 +69,6 @@ where
         self
     }
 
-    /// Starts the steps of external controllers.
     pub(super) fn send_out(&mut self) {
         let Some(external) = &mut self.external else {
             return;
@@ -88,7 +86,7 @@ where
         }
     }
 
-    /// Stores the decisions of external controllers. Returns the number of frames they rejected.
+    /// Stores the decisions of external controllers and counts the frames that they rejected.
     pub(super) fn collect(&mut self) -> u64 {
         let Some(external) = &mut self.external else {
             return 0;

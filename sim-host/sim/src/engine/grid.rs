@@ -73,7 +73,6 @@ impl Grid {
         }
     }
 
-    /// Number of the robot of a body.
     fn number(&self, index: usize) -> usize {
         self.numbers[index] as usize
     }
@@ -94,7 +93,6 @@ pub struct GridBody {
     seen: Option<Memory>,
 }
 
-/// Restores the measurements of a formation meter.
 pub(super) fn restore_meter(
     meter: &mut Option<FormationMeters>,
     measured: Option<FormationMeters>,
@@ -111,7 +109,6 @@ pub(super) fn restore_meter(
     Ok(())
 }
 
-/// Start time of `tick` in [`UNIT`]ths of a tick.
 fn units(tick: u32) -> u64 {
     u64::from(tick) * u64::from(UNIT)
 }

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
 
-/// Random stream of the initial values.
 const START: u32 = 0x0048_0001;
 
 /// Running hash of all states of one robot.
@@ -27,7 +26,6 @@ impl Chain {
     }
 }
 
-/// State of a body on the grid as words.
 pub(super) fn grid_words(tick: u32, body: &Body, mode: Mode) -> [u64; 2] {
     let column = u64::from(body.cell.x.cast_unsigned());
     let row = u64::from(body.cell.y.cast_unsigned());

@@ -183,7 +183,6 @@ where
     }
 }
 
-/// Half-spaces of ORCA for the recorded input.
 fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Permitted> {
     let Asked { body, nearby, obstacles, .. } = asked;
     match layer {

@@ -168,7 +168,6 @@ where
         Ok(())
     }
 
-    /// Whether the computer of a robot runs.
     pub(super) fn is_up(&self, index: usize) -> bool {
         self.tick >= self.computers[index].down_until
     }

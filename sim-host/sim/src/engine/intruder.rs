@@ -19,7 +19,6 @@ pub struct Intruder {
     /// Current position, metres.
     pub position_m: [f64; 2],
     wire: HostWire,
-    /// Number of the next frame.
     sequence: u16,
     outbox: Vec<u8>,
 }

@@ -77,13 +77,11 @@ impl Keeper {
         &self.outbox
     }
 
-    /// Serializes the mutable part of the key server.
     pub(super) fn state(&self) -> impl Serialize {
         let Self { wire, rolls, revoked, generation, phase, until, held, .. } = self;
         (wire, rolls.len(), revoked, generation, phase, until, held)
     }
 
-    /// Restores the mutable part.
     pub(super) fn restore(&mut self, state: KeeperState) {
         let left = self.rolls.len().saturating_sub(state.rolls_left);
         self.rolls.drain(..left);
@@ -92,7 +90,6 @@ impl Keeper {
         (self.revoked, self.generation, self.phase, self.until, self.held) = (revoked, generation, phase, until, held);
     }
 
-    /// Processes the received frames and prepares the frames of this tick.
     pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
         self.outbox.clear();
         let mut rest = inbox;

@@ -83,11 +83,8 @@ pub struct Computer<G: Guidance<f32>, A> {
     agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
     /// Frames of the last step, without spare capacity.
     outbox: Vec<u8>,
-    /// Events of the last step, if they are recorded.
     events: Vec<Event>,
-    /// Frames from the operator.
     mail: Vec<u8>,
-    /// Number of restarts.
     boot: u8,
     /// Tick at which its clock showed 0.
     epoch: u32,
@@ -99,13 +96,11 @@ pub struct Computer<G: Guidance<f32>, A> {
 }
 
 impl<G: Guidance<f32>, A> Computer<G, A> {
-    /// Time on the computer's own clock.
     const fn now(&self, tick: u32, tick_us: u32) -> Instant {
         Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
     }
 }
 
-/// State that all robots see at the beginning of a tick.
 struct Tick<'a, W> {
     tick: u32,
     ground: &'a W,
@@ -113,7 +108,6 @@ struct Tick<'a, W> {
 }
 
 impl<W: Ground> Tick<'_, W> {
-    /// Sensor data and received frames of robot `index`.
     fn inputs<'b, G: Guidance<f32>, A>(
         &'b self,
         index: usize,
@@ -162,7 +156,6 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     /// below. Contains all robots unless other MPI ranks hold some.
     pub here: Vec<u32>,
     faults: Vec<Fault>,
-    /// Rules that change the terrain.
     changes: Vec<LandChange>,
     /// Pending interventions, sorted by tick.
     pub interventions: VecDeque<(u32, Intervention)>,
@@ -172,7 +165,6 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     brains: Brains<G, A>,
     #[doc(hidden)]
     pub ground: W,
-    /// Periodic borders, if the plane has them.
     torus: Option<Torus<f32>>,
     #[doc(hidden)]
     pub radio: Radio,
@@ -290,7 +282,6 @@ where
         engine
     }
 
-    /// Id of a robot in this process.
     fn id(&self, index: usize) -> RobotId {
         self.robots[self.number(index)].id
     }
@@ -300,13 +291,11 @@ where
         self.here[index] as usize
     }
 
-    /// Configuration of robot `index` for its restart number `boot`.
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
         AgentConfig { boot, seed: self.seed, claims: self.claims, ..self.ground.config(self.number(index), tick) }
     }
 
-    /// Creates the computer of robot `index` with a new agent.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let number = self.number(index);
         let (guidance, safety) = (self.brains)(number);
@@ -344,7 +333,6 @@ where
         }
     }
 
-    /// Restarts the computer of robot `index`, in this process or outside.
     fn restart(&mut self, index: usize, boot: u8) {
         self.ground.forget(index);
         let (config, task) = (self.config(index, boot), self.ground.task(self.number(index), self.tick));
@@ -419,7 +407,6 @@ where
         refused
     }
 
-    /// Steps the agents of this process in parallel.
     fn decide_here(&mut self) -> PacketCounts {
         let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
         let moment = Tick { tick, ground: &self.ground, radio: &self.radio };

@@ -126,7 +126,6 @@ where
     Box::new(OperatedEngine { engine, row, wire, own, number: key.map(|_| number), sequence: 0 })
 }
 
-/// A swarm and its operator's radio.
 struct OperatedEngine<W, G: Guidance<f32>> {
     engine: Engine<W, Commanded<f32, G>, SafetyOf>,
     /// The swarm's record row of the last tick.
@@ -136,7 +135,6 @@ struct OperatedEngine<W, G: Guidance<f32>> {
     own: Option<OperatorWire<1>>,
     /// Sender id if the robots have a key; otherwise the header gives it.
     number: Option<RobotId>,
-    /// Number of the next frame.
     sequence: u16,
 }
 

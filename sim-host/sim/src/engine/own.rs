@@ -69,7 +69,6 @@ pub fn operated_own<G: OwnLaw>(
     Ok(boxed(scenario, engine(scenario, law)?))
 }
 
-/// Law of an agent, which an operator may override.
 type GuidanceOf<G> = Commanded<f32, NeighborTracking<f32, AnyWorld<G>>>;
 
 fn engine<G: OwnLaw>(

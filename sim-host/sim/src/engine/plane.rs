@@ -47,7 +47,6 @@ pub struct PlaneGround {
     #[doc(hidden)]
     pub meter: Option<FormationMeters>,
     changed: Changed,
-    /// Detection of other robots, if they have sensors.
     sight: Option<Sight>,
     is_mute: bool,
     /// Robots' knowledge of terrain outside their sight.
@@ -58,7 +57,6 @@ pub struct PlaneGround {
     radius: u8,
     tick_us: u32,
     delay_us: u32,
-    /// By robot: tick in which its first goal was set.
     since: Vec<u32>,
     format: Format,
     key: Option<Key>,
@@ -194,7 +192,6 @@ impl PlaneGround {
         disc(id, &self.setup, number)
     }
 
-    /// Number of the robot of a body.
     fn number(&self, index: usize) -> usize {
         self.numbers[index] as usize
     }
@@ -424,7 +421,6 @@ impl Ground for PlaneGround {
         }
         let (mut target, mut since) = match &self.setup.starts[number].places[..] {
             [one] => (one, 0),
-            // Robots choose among several goals.
             _ => return None,
         };
         for order in self.ordered(number, tick) {

@@ -12,7 +12,6 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// The swarm's record row before the first tick.
     pub(super) fn first_row(&mut self) -> TickRow {
         let keeping = self.ground.keeping(false);
         self.row(keeping, PacketCounts::default())

@@ -153,7 +153,6 @@ pub(super) enum AnyEngine {
 }
 
 impl AnyEngine {
-    /// Creates the engine before the first tick.
     pub(super) fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
         Ok(if let Some(setup) = &scenario.plane {
             let ground = PlaneGround::new(scenario, setup);
@@ -200,7 +199,6 @@ pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) +
     }
 }
 
-/// Runs until the end.
 pub(super) fn go<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
@@ -224,7 +222,6 @@ where
     ticks(scenario, engine, watch)
 }
 
-/// Runs until the end from a saved state.
 fn go_on<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,

@@ -114,14 +114,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Appends a value.
 fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
     // Cannot fail: all sequences have a length, and a `Vec` accepts every byte.
     let done = postcard::to_extend(value, std::mem::take(bytes));
     *bytes = done.expect("states have a form");
 }
 
-/// Mutable state of a robot apart from its agent.
 #[derive(Serialize, Deserialize)]
 struct Robot<B> {
     mail: Vec<u8>,
@@ -138,13 +136,11 @@ struct Robot<B> {
     body: B,
 }
 
-/// Mutable state of the whole run.
 #[derive(Serialize, Deserialize)]
 struct Whole<S> {
     seed: u64,
     robots: usize,
     tick: u32,
-    /// Number of pending interventions.
     interventions: usize,
     faults: Vec<Fault>,
     tuned: Vec<Tuned>,

@@ -25,7 +25,6 @@ impl Status {
         Self { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None }
     }
 
-    /// Status of a robot whose computer is down.
     pub(super) const fn fall_silent(&mut self) {
         (self.mode, self.leader, self.wait) = (Mode::Fault, RobotId::NOBODY, None);
     }

@@ -13,7 +13,6 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
-/// A scenario on flat land of 20 x 20 cells of 2 m.
 fn scenario(robots: &str, rest: &str) -> Scenario {
     let text = format!(
         "name = \"t\"\nticks = 200\ntick_s = 0.5\n[terrain]\ncell_m = 2\n\
@@ -27,7 +26,6 @@ const TWO: &str = "list = [{ start = [3, 3], goal = [12, 3] }, { start = [5, 3],
 const LOSSY: &str = "[radio]\nrange_m = 9\nloss = 0.3\njitter_ms = 900\nduplicate = 0.1\n\
                      bit_error_rate = 0.001\nburst = { share = 0.2, mean_ms = 2000 }\n";
 
-/// Inputs of a decision.
 #[derive(Clone, Debug, PartialEq)]
 struct Known {
     id: u32,
@@ -81,7 +79,6 @@ impl Guidance<f32> for Scout {
     }
 }
 
-/// Records of all scouts.
 type Notes = Arc<Mutex<Vec<Known>>>;
 
 fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Notes) {
@@ -137,7 +134,6 @@ fn a_down_robot_is_stationary_and_silent_and_restarts_its_clock() {
     let scenario = scenario(TWO, fault);
     let (mut engine, known) = scouts(&scenario);
     let rows: Vec<_> = (0..8).map(|_| engine.step()).collect();
-    // Down in ticks 2, 3 and 4.
     let sent: Vec<_> = rows.iter().map(|row| row.packets.sent).collect();
     assert_eq!(sent, [2, 2, 1, 1, 1, 2, 2, 2]);
     let known = known.lock().expect("no test panics");

@@ -134,7 +134,6 @@ impl<const D: usize> FlockMeter<D> {
         energy
     }
 
-    /// Number of components, and the size of the largest.
     fn components(&mut self, robots: usize) -> (usize, usize) {
         let mut sizes = vec![0_usize; robots];
         for robot in 0..robots as u32 {
@@ -248,7 +247,6 @@ fn length<const D: usize>(a: [f64; D]) -> f64 {
     squared(a).sqrt()
 }
 
-/// Mean of at least one vector.
 fn mean<const D: usize>(vectors: &[[f64; D]]) -> [f64; D] {
     let mut sum = [0.0; D];
     for vector in vectors {

@@ -95,7 +95,6 @@ impl FormationMeter {
         }
     }
 
-    /// Whether both meters measure the same formation.
     pub(crate) fn is_of(&self, other: &Self) -> bool {
         self.places == other.places && self.errors.len() <= self.places.len()
     }
@@ -169,7 +168,6 @@ impl FormationMeter {
         }
     }
 
-    /// Number of missed places with another lost robot near them.
     fn taken(&self, bodies: &[[f64; 2]], top: [f64; 2]) -> usize {
         let is_near = |place: usize, robot: usize| {
             let [x, y] = offset(bodies[robot], self.places[place]);
@@ -246,7 +244,6 @@ mod tests {
             templates: Vec::new(),
             first: 0,
         };
-        // Diagonal: 5 cells.
         FormationMeter::new(&formation, eps, &Terrain::flat(5, 4), 4.0)
     }
 
@@ -293,7 +290,6 @@ mod tests {
         // Robots 2 and 3 have swapped places: m0 = m1 = 2.
         let now = meter(&places, 2).measure(&bodies(&[(10, 0), (4, 0), (7, 0)]));
         assert_eq!(now.graph_distance, 4.0);
-        // Just within eps.
         let now = meter(&places, 3).measure(&bodies(&[(10, 0), (4, 0), (7, 0)]));
         assert!((now.graph_distance - 6.0 / 5.0).abs() < 1e-12);
     }

@@ -21,7 +21,6 @@ pub struct FormationKept {
 pub struct FormationMeters {
     /// Robot indices and meter of each formation; at least one.
     each: Vec<(Range<usize>, FormationMeter)>,
-    /// Id of each robot.
     numbers: Vec<u32>,
 }
 
@@ -35,7 +34,6 @@ impl FormationMeters {
         (!each.is_empty()).then_some(Self { each, numbers })
     }
 
-    /// Whether both measure the same formations.
     pub(crate) fn is_of(&self, other: &Self) -> bool {
         let mut pairs = self.each.iter().zip(&other.each);
         self.numbers == other.numbers
@@ -88,7 +86,6 @@ impl FormationMeters {
         Some(PlaceError { mean_m: mean_over(errors.iter().map(|(robots, error)| (*robots, error.mean_m))), ..worst })
     }
 
-    /// Place error with the robot's id instead of its place.
     fn place_error_of(&self, (members, meter): &(Range<usize>, FormationMeter)) -> Option<PlaceError> {
         let error = meter.place_error()?;
         let place = (error.robot as usize).checked_sub(1);
@@ -117,7 +114,6 @@ impl FormationMeters {
     }
 }
 
-/// Combines formations with their numbers of robots.
 fn together(kept: &[(usize, Keeping)]) -> Keeping {
     let mean = |figure: fn(&Keeping) -> f64| mean_over(kept.iter().map(|(robots, kept)| (*robots, figure(kept))));
     Keeping {

@@ -19,11 +19,9 @@ pub struct WaitCount {
     pub longest_ticks: u32,
 }
 
-/// Waiting state of one robot.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Robot {
     wait: Option<Wait>,
-    /// Ticks of the current wait.
     ticks: u32,
     /// Causes for which it has waited: one bit each.
     seen: u8,
@@ -71,7 +69,6 @@ impl Waits {
         self.robots[index]
     }
 
-    /// Restores the waiting state of robot `index`.
     pub(crate) fn set_robot(&mut self, index: usize, robot: Robot) {
         let before = std::mem::replace(&mut self.robots[index], robot);
         for (bit, count) in self.counts.iter_mut().enumerate() {

@@ -15,11 +15,9 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub struct Cells<R, const D: usize> {
     space: Space<R, D>,
-    /// Requested side of a cell.
     side: R,
     /// Corner of the first cell.
     origin: [R; D],
-    /// Cells along each axis, 1 or more.
     counts: [u32; D],
     /// Cells per unit of length along each axis.
     scale: [R; D],
@@ -29,7 +27,6 @@ pub struct Cells<R, const D: usize> {
     starts: Vec<u32>,
     /// Indices of the points by cell, ascending in each.
     order: Vec<u32>,
-    /// Folded points in that order.
     points: Vec<[R; D]>,
     /// Scratch: the cell of each point.
     cell_of: Vec<u32>,
@@ -66,7 +63,6 @@ impl<R: Real, const D: usize> Cells<R, D> {
         self.starts.len() - 1
     }
 
-    /// Sets the grid's geometry for the points.
     fn lay(&mut self, points: &[[R; D]]) {
         let (low, length) = match self.space.period() {
             Some(period) => ([R::ZERO; D], period),
@@ -147,7 +143,6 @@ impl<R: Real, const D: usize> Cells<R, D> {
         safe > R::ZERO && nearest.is_beyond(safe)
     }
 
-    /// Offers every point of a row of cells.
     #[inline]
     fn scan(&self, at: [R; D], row: usize, columns: Range<u32>, nearest: &mut Nearest<'_, R, D>) {
         let from = self.starts[row + columns.start as usize] as usize;
@@ -252,7 +247,6 @@ impl<R: Real, const D: usize> Search<R, D> for Cells<R, D> {
     }
 }
 
-/// Lower corner and sides of the bounding box of all finite points.
 fn extent<R: Real, const D: usize>(points: &[[R; D]]) -> ([R; D], [R; D]) {
     let (mut low, mut high) = ([R::MAX; D], [-R::MAX; D]);
     for point in points {

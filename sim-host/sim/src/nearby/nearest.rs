@@ -99,7 +99,6 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
         }
     }
 
-    /// Keeps only the requested number, and lowers the limit.
     fn shrink(&mut self) {
         if self.found.len() > self.most {
             let (_, last, _) = self.found.select_nth_unstable_by(self.most - 1, Found::order);

@@ -88,7 +88,6 @@ impl<R: Real, const D: usize> Space<R, D> {
     }
 }
 
-/// Shortest difference of folded coordinates.
 #[inline]
 fn shortest<R: Real>(way: R, period: R) -> R {
     let half = period * R::HALF;

@@ -190,7 +190,6 @@ proptest! {
         points in crowd::<2>(), queries in questions::<2>(), side in 0.1_f32..9.0, far in -1e4_f64..1e4,
     ) {
         let mut points: Vec<[f32; 2]> = points.iter().map(|at| at.map(|c| (c + far) as f32)).collect();
-        // Cells begin far from most points.
         points.push([(-3.0 * far) as f32; 2]);
         let queries: Vec<_> = queries
             .iter()

@@ -10,7 +10,6 @@ pub struct Sent {
     pub(crate) sender: RobotId,
     /// Index among the sender's packets of this tick, throttled packets included.
     pub(crate) number: u32,
-    /// Position of the sender, metres.
     pub(crate) from_m: [f64; 2],
     pub(crate) bytes: Vec<u8>,
 }
@@ -78,7 +77,6 @@ impl Radio {
         behind.for_each(|(id, end)| self.push(id, Some(end)));
     }
 
-    /// Removes all receivers from `index` on and returns their state.
     fn take_from(&mut self, index: usize) -> Vec<(RobotId, End)> {
         let bytes = |index| postcard::to_stdvec(&self.end(index)).expect("memory takes every byte");
         let end = |index| postcard::from_bytes(&bytes(index)).expect("these bytes are an end");
@@ -96,7 +94,6 @@ impl Radio {
         }
     }
 
-    /// Adapts all buffers to the number of receivers.
     fn resize(&mut self) {
         self.medium.resize(self.receivers.len());
         self.inboxes.resize_with(self.receivers.len().div_ceil(BLOCK), Inboxes::new);

@@ -25,7 +25,6 @@ struct Channel {
     loss: u32,
 }
 
-/// Radio parameters as integers for random draws.
 #[derive(Clone, Debug)]
 pub(super) struct Fates {
     seed: u64,
@@ -39,7 +38,6 @@ pub(super) struct Fates {
     reorder_us: u32,
     /// ln(1 - bit error rate); 0: no errors.
     ln_intact: f64,
-    /// Microseconds after the start.
     blackouts: Vec<[f64; 2]>,
 }
 
@@ -120,7 +118,6 @@ impl Fates {
         Some(due_us)
     }
 
-    /// Start of the step after `tick`, microseconds after the start.
     pub(super) fn next_step_us(&self, tick: u32) -> u64 {
         (u64::from(tick) + 1) * self.tick_us
     }

@@ -19,7 +19,6 @@ pub(super) struct Packet {
     pub(super) sender: RobotId,
     /// Index among the sender's packets of this tick.
     pub(super) number: u32,
-    /// Seed of its random draws.
     pub(super) key: u64,
     pub(super) from_m: [f64; 2],
     /// Location of its bytes: index of the [`Part`], start and length.
@@ -28,10 +27,8 @@ pub(super) struct Packet {
     length: u16,
 }
 
-/// Senders per parallel task.
 const PART: usize = 1024;
 
-/// Packets of one part of the senders.
 #[derive(Clone, Debug, Default)]
 struct Part {
     bytes: Vec<u8>,
@@ -55,10 +52,8 @@ pub(super) struct Medium {
     wire: AnyWire,
     seed: u64,
     range_m: f64,
-    /// Side lengths of the torus, metres.
     torus_m: Option<[f64; 2]>,
     buckets: Option<Buckets>,
-    /// Sorted by sender.
     parts: Vec<Part>,
     /// Sorted by cell, then by sender and number.
     packets: Vec<Packet>,
@@ -167,13 +162,11 @@ impl Medium {
         self.parts.iter().map(|part| part.counts).fold(Counts::default(), Add::add)
     }
 
-    /// Packets with their bytes.
     pub(super) fn sent(&self) -> impl Iterator<Item = (&Packet, &[u8])> {
         let queue = self.parts.iter().flat_map(|part| &part.queue);
         queue.map(|(_, packet)| (packet, self.bytes(packet)))
     }
 
-    /// Adds packets that other ranks sent in `tick`.
     pub(super) fn add(&mut self, tick: u32, elsewhere: &[Sent]) {
         if elsewhere.is_empty() {
             return;
@@ -200,7 +193,6 @@ impl Medium {
         }
     }
 
-    /// Counting sort by cell, stable within a cell.
     fn sort(&mut self) {
         let cells = self.lattice.columns * self.lattice.rows;
         let queue = || self.parts.iter().flat_map(|part| &part.queue);
@@ -243,7 +235,6 @@ impl Medium {
         heard.dedup();
     }
 
-    /// Adds the packets in range of a position, unsorted.
     fn add_heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
         let reach = self.range_m * self.range_m;
         for cells in self.lattice.around(at_m) {
@@ -309,7 +300,6 @@ impl Lattice {
         Self { corner_m: low, side_m, columns: count(extent[0]), rows: count(extent[1]) }
     }
 
-    /// Whether a position is within `reach_m` of the cells.
     fn is_within(&self, at_m: [f64; 2], reach_m: f64) -> bool {
         let counts = [self.columns, self.rows];
         (0..2).all(|axis| {
@@ -346,7 +336,6 @@ impl Buckets {
     }
 }
 
-/// Takes the price of a packet from a bucket, if it has enough tokens.
 fn take(tokens: &mut u64, bytes: usize) -> bool {
     let price = bytes as u64 * 1_000_000;
     let enough = *tokens >= price;

@@ -63,7 +63,6 @@ impl AddAssign for Counts {
 /// A delayed packet at one receiver. Arrivals are ordered by time, then by sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 struct Held {
-    /// Arrival time, microseconds after the start.
     due_us: u64,
     sender: RobotId,
     sent: u32,
@@ -74,19 +73,16 @@ struct Held {
     length: u32,
 }
 
-/// State of one receiver.
 #[derive(Clone, Debug, Default)]
 struct Receiver {
     id: RobotId,
     /// Range of its inbox in its block's [`Inboxes`].
     inbox: Range<u32>,
-    /// Delayed packets, if there are any.
     late: Option<Box<Late>>,
     /// Fate of the last tick's packets, if the log is enabled.
     log: Option<Vec<(RobotId, Reception)>>,
 }
 
-/// Packets that were sent and have not arrived.
 #[derive(Clone, Debug, Default)]
 struct Late {
     held: Vec<Held>,
@@ -95,7 +91,6 @@ struct Late {
     spare: Vec<u8>,
 }
 
-/// Number of receivers whose inboxes share one buffer.
 const BLOCK: usize = 64;
 
 /// Concatenated inboxes of a block of receivers.
@@ -118,9 +113,7 @@ pub struct Radio {
     fates: Fates,
     medium: Medium,
     receivers: Vec<Receiver>,
-    /// One per block of receivers.
     inboxes: Vec<Inboxes>,
-    /// Totals over all ticks.
     total: Counts,
 }
 
@@ -195,7 +188,6 @@ impl Radio {
         self.deliver(tick, positions_m, sent)
     }
 
-    /// Delivers the packets on the air to all receivers.
     fn deliver(&mut self, tick: u32, positions_m: &[[f64; 2]], sent: Counts) -> Counts {
         let positions_m = &positions_m[..self.receivers.len()];
         let (medium, fates) = (&self.medium, &self.fates);

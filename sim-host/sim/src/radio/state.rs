@@ -3,7 +3,6 @@
 use super::{BLOCK, Counts, Held, Late, Radio};
 use serde::{Deserialize, Serialize};
 
-/// State of one receiver and sender.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct End {
     inbox: Vec<u8>,
@@ -13,7 +12,6 @@ pub(crate) struct End {
     tokens: Option<u64>,
 }
 
-/// State shared by all robots.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Weather {
     loss_q32: u32,
@@ -22,7 +20,6 @@ pub(crate) struct Weather {
 }
 
 impl Radio {
-    /// State of robot `index`.
     pub(crate) fn end(&self, index: usize) -> impl Serialize {
         let receiver = &self.receivers[index];
         let (held, bytes) = receiver.late.as_ref().map_or((&[][..], &[][..]), |late| (&late.held, &late.bytes));
@@ -59,7 +56,6 @@ impl Radio {
         Weather { loss_q32: self.fates.loss_q32(), range_m: self.medium.range_m(), total: self.total }
     }
 
-    /// Restores the shared state.
     pub(crate) const fn set_weather(&mut self, weather: Weather) {
         self.fates.set_loss_q32(weather.loss_q32);
         self.medium.set_range_m(weather.range_m);

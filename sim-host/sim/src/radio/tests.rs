@@ -8,7 +8,6 @@ fn radio(params: RadioParams, robots: u32) -> Radio {
     Radio::new(&params, 11, TICK_US, (1..=robots).map(RobotId))
 }
 
-/// Robots on a line, one metre apart.
 fn line(robots: u32) -> Vec<[f64; 2]> {
     (0..robots).map(|i| [f64::from(i), 0.0]).collect()
 }
@@ -152,7 +151,6 @@ fn bits_flip_at_their_rate_but_never_in_the_delimiter() {
             inbox.iter().zip(sent).map(|(a, b): (&u8, u8)| (a ^ b).count_ones()).sum::<u32>()
         })
         .sum();
-    // 20,000 packets of 24 bits that can flip.
     let rate = share(u64::from(flipped), 480_000);
     assert!((0.0095..0.0105).contains(&rate), "{rate}");
     let hit = share(radio.total().corrupted, 20_000);

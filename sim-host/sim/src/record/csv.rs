@@ -6,7 +6,6 @@ use staya_controller::robot::Mode;
 use std::io::Write;
 use std::path::Path;
 
-/// Name, type, unit and meaning of one column.
 type Column = (&'static str, &'static str, &'static str, &'static str);
 
 /// `trace.csv`: one row per robot and sampled tick.

@@ -45,7 +45,6 @@ const YOUNG: Duration = Duration::from_secs(60);
 /// Attempts to move a folder while other processes interfere.
 const TRIES: usize = 32;
 
-/// Number of runs that this process has started.
 static BEGUN: AtomicU32 = AtomicU32::new(0);
 
 /// Results of an active run. If dropped before [`Results::finish`], they are removed and the old
@@ -175,7 +174,6 @@ impl Results {
         outcome
     }
 
-    /// Moves files into an existing folder.
     fn move_in(&self, names: &BTreeSet<String>) -> io::Result<()> {
         let own = own(&self.target).unwrap_or_default();
         fs::create_dir_all(&self.target)?;
@@ -218,7 +216,6 @@ fn resolved(target: &Path) -> Result<PathBuf, Error> {
     target.canonicalize().map_err(Error::new("find directory", target))
 }
 
-/// Parent and name of the folder.
 fn split(target: &Path) -> (PathBuf, String) {
     let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty());
     let name = target.file_name().unwrap_or_default().to_string_lossy();
@@ -339,7 +336,6 @@ fn is_in_the_way(error: &io::Error) -> bool {
     refused || matches!(error.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists)
 }
 
-/// Ignores the error that a file does not exist.
 fn gone(result: io::Result<()>) -> io::Result<()> {
     result.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
 }
@@ -354,7 +350,6 @@ fn step_aside(path: &Path) -> io::Result<()> {
     if fs::symlink_metadata(path).is_ok() { fs::rename(path, free(path)?) } else { Ok(()) }
 }
 
-/// Appends `.mine` to the name, with a number if that exists.
 fn free(path: &Path) -> io::Result<PathBuf> {
     for number in 0..10_000 {
         let mut name = path.as_os_str().to_owned();
@@ -404,7 +399,6 @@ fn clear(place: &Path, name: &str, target: &Path) {
     }
 }
 
-/// Whether the run that created this folder has ended.
 fn is_dead(partial: &Path) -> bool {
     match File::options().read(true).write(true).open(partial.join(MARKER)) {
         Ok(marker) => match marker.try_lock() {

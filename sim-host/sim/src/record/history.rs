@@ -196,7 +196,6 @@ impl History {
         }
     }
 
-    /// Stores the last frame if it was not due.
     pub(super) fn close(&mut self) {
         let last = self.frames.last().map(|frame| frame.tick);
         if self.ticks > 0 && last != Some(self.latest.tick) {

@@ -16,7 +16,6 @@ use std::path::Path;
 /// Largest coordinate in metres, measured from the south-west corner: the range of a packet field.
 const FARTHEST_M: f64 = 2_000_000.0;
 
-/// Reads the keys; `None` if the file has no `[authentication]`.
 pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<Option<Keys>, ScenarioError> {
     let Some(table) = &file.authentication else {
         return Ok(None);
@@ -75,7 +74,6 @@ pub(super) struct Keys {
     pub keeping: Option<Keeping>,
 }
 
-/// Checks the fields of an operator that holds the master secret.
 fn keeping(
     source: &Source<'_>,
     file: &ScenarioFile,

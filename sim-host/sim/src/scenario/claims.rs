@@ -44,7 +44,6 @@ fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> Claims<f32> 
     }
 }
 
-/// Limits for bodies in the plane with ids up to `last`.
 pub(super) fn in_plane(setup: &PlaneSetup, tick_us: u32, last: u32) -> Claims<f32> {
     let norm = |v: [f64; 3]| libm::sqrt(v.iter().map(|v| v * v).sum());
     let kinds = setup.kinds().map(|group| (group.radius_m, group.abilities.max_speed_mps));
@@ -55,7 +54,6 @@ pub(super) fn in_plane(setup: &PlaneSetup, tick_us: u32, last: u32) -> Claims<f3
     usual(radius_m, speed_mps, tick_us, last)
 }
 
-/// Limits for bodies that occupy one cell each.
 pub(super) fn on_grid(cell_m: f64, tick_us: u32, last: u32) -> Claims<f32> {
     usual(cell_m / 2.0, cell_m * 1e6 / f64::from(tick_us), tick_us, last)
 }

@@ -67,7 +67,6 @@ impl Field {
     }
 }
 
-/// Follows `places` as indices into nested lists.
 fn element<'a>(mut value: &'a mut Value, name: &str, places: &[usize]) -> Result<&'a mut Value, String> {
     for &place in places {
         let list = value.as_array_mut().ok_or_else(|| format!("{name} is no list in the scenario"))?;

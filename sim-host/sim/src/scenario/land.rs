@@ -10,7 +10,6 @@ use crate::terrain::change::{ChangeKind, LandChange};
 use staya_controller::grid::Cell;
 use std::num::NonZeroU32;
 
-/// Longest time, seconds.
 const LONGEST_S: f64 = 4000.0 * 3600.0;
 
 struct Entry<'a> {

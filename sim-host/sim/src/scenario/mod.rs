@@ -63,7 +63,6 @@ use staya_controller::robot::RobotId;
 use std::ops::Range;
 use std::path::Path;
 
-/// Page that lists all fields; error texts refer to it.
 const LIST: &str = "scenarios/README.md";
 
 /// Command-line values that replace fields of the file.

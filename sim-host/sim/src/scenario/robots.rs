@@ -70,7 +70,6 @@ impl Formation {
     }
 }
 
-/// A robot and the field that defines it.
 struct Entry {
     robot: Robot,
     field: String,

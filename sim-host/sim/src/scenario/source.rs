@@ -160,7 +160,6 @@ impl<'a> Source<'a> {
         false
     }
 
-    /// Position of a field, or of the innermost existing table on the way to it.
     fn span(&self, field: &str) -> Option<Range<usize>> {
         let mut span = None;
         let mut table = self.root.get_ref();
@@ -189,7 +188,6 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Appends the path to the innermost field around `span`.
 fn deepest(table: &DeTable<'_>, span: &Range<usize>, field: &mut String) {
     for (key, value) in table {
         if holds(&key.span(), span) || holds(&value.span(), span) {

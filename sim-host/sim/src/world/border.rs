@@ -80,7 +80,6 @@ pub struct Settled {
     pub(crate) by: Dir,
 }
 
-/// A body that may move in this tick.
 struct Mover {
     priority: u64,
     id: RobotId,
@@ -100,9 +99,7 @@ pub struct Contest {
     movers: Vec<Mover>,
     /// Index in `movers` of each body of another rank.
     beside: HashMap<RobotId, usize>,
-    /// Cells of all bodies of other ranks.
     cells: Vec<Cell>,
-    /// Occupancy before this round.
     before: Vec<(usize, u32)>,
 }
 

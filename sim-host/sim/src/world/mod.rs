@@ -55,7 +55,6 @@ pub struct Body {
 }
 
 impl Body {
-    /// A body that has not moved yet.
     pub(crate) const fn at_rest(id: RobotId, cell: Cell) -> Self {
         Self { id, cell, entered_by: Dir::Stay, free_at: 0, crossing: 0, is_shut_in: false }
     }
@@ -167,7 +166,6 @@ impl World {
         true
     }
 
-    /// Whether each body has a cell of its own.
     pub(crate) fn is_sound(&self) -> bool {
         self.bodies.iter().enumerate().all(|(index, body)| self.body_at(body.cell) == Some(index))
     }
@@ -263,7 +261,6 @@ impl World {
         Body { id: body.id, cell, entered_by: dir, free_at: start + crossing, crossing, is_shut_in: false }
     }
 
-    /// Whether a body in `from` may move by `dir` now.
     fn is_open(&self, from: Cell, dir: Dir) -> bool {
         let step = dir.offset();
         let to = from + step;

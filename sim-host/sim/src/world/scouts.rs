@@ -73,7 +73,6 @@ impl Scouts {
         &self.memories[index]
     }
 
-    /// Restores the memory of a robot.
     pub(crate) fn put(&mut self, index: usize, memory: Memory) {
         self.memories[index] = memory;
     }

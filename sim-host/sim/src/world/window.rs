@@ -86,7 +86,6 @@ fn copy(terrain: &Terrain, cell: Cell, radius: u8, buffer: &mut Vec<u8>) -> Opti
     Some(origin)
 }
 
-/// Writes cells into a copied window; cells outside are ignored.
 fn put(buffer: &mut [u8], origin: Cell, side: u16, cells: impl Iterator<Item = (Cell, u8)>) {
     for (cell, class) in cells {
         let at = |at: i16, from: i16| u16::try_from(i32::from(at) - i32::from(from)).ok().filter(|&at| at < side);

@@ -52,7 +52,6 @@ impl Guidance<f32> for Highest {
 
 const ROBOTS: u32 = 9;
 
-/// A line of robots that hear only their neighbours.
 fn line(rest: &str) -> Scenario {
     let robots: Vec<_> = (0..ROBOTS).map(|i| format!("{{ start_m = [{i}, 0], goal_m = [{i}, 0] }}")).collect();
     let text = format!(

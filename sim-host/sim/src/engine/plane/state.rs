@@ -31,7 +31,6 @@ pub struct PlaneShared {
     changed: Changed,
     solids: Vec<Solid>,
     orders: Vec<Order>,
-    /// Position and velocity of each intruder.
     intruders: Vec<[[f64; 3]; 2]>,
     /// Past positions of all bodies, for sensors with a delay.
     past: VecDeque<Vec<[f64; 3]>>,

@@ -58,8 +58,7 @@ fn an_attacked_swarm_with_a_key_is_unaffected_and_counts_refusals() {
     assert_eq!(hashes[0], hashes[1], "tags and signatures are not news");
 }
 
-/// Each kind of attack alone, without a key: robots follow the orders, and reject replayed packets
-/// by their sequence numbers.
+/// Each kind of attack alone.
 #[test]
 fn without_a_key_robots_follow_an_attackers_orders() {
     let open = without(HIJACK, "authentication");
@@ -76,7 +75,6 @@ fn without_a_key_robots_follow_an_attackers_orders() {
     }
 }
 
-/// With plausibility limits, an insider's lies do not delay its neighbours; without limits they do.
 #[test]
 fn a_lying_insider_delays_no_robot() {
     let in_time = 250;
@@ -109,7 +107,6 @@ fn honest_robots_stay_within_the_limits() {
     }
 }
 
-/// Effect of a compromised robot before and after its revocation.
 #[test]
 fn a_compromised_robot_cannot_order_and_is_locked_out_by_a_rotation() {
     let revoked = run(REVOKED);
@@ -133,7 +130,6 @@ fn a_compromised_robot_cannot_order_and_is_locked_out_by_a_rotation() {
     assert_ne!(ends_at_m(&one_key), goal_m);
 }
 
-/// Final position of the top leader, metres.
 fn ends_at_m(text: &str) -> [f64; 2] {
     let scenario = Scenario::parse(text, Path::new("revoked.toml"), &Overrides::default());
     let mut end_m = [0.0; 2];
@@ -146,7 +142,6 @@ fn ends_at_m(text: &str) -> [f64; 2] {
     end_m
 }
 
-/// A key rotation without attackers does not affect the run, at any packet loss.
 #[test]
 fn a_key_rotation_does_not_affect_the_run() {
     let quiet = without(&without(REVOKED, "attack"), "fault");

@@ -86,7 +86,6 @@ fn outcome(scenario: &Scenario, elsewhere: Option<Nearby>) -> Outcome {
     simulate_with(scenario, boxed, &mut |_, _| ControlFlow::Continue(())).expect("free starts")
 }
 
-/// A scenario of the repository with fewer ticks.
 fn shipped(name: &str, ticks: u32) -> Scenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let path = path.join(name).with_extension("toml");

@@ -55,7 +55,6 @@ fn robots_pass_a_gate_once_it_opens() {
         let gate = "[[terrain.change]]\nclass = 0\ncells = [[15, 3]]\nfor_s = 60\n";
         let kept = run(&door(ONE, gate, &route)).0;
         assert_eq!((free.arrived, kept.arrived), (1, 1), "{replan}");
-        // The gate opens before tick 120, and half of the way is left.
         let ticks = kept.ticks;
         assert!(free.ticks < 60 && (130..300).contains(&ticks), "{replan}: {} and {ticks}", free.ticks);
     }
@@ -169,12 +168,10 @@ proptest! {
         let replan = if until_changed { "[route]\nreplan = \"until_changed\"\n" } else { "" };
         let scouting = if is_scouted { "[scouting]\nradius = 8\nunknown = 0.3\nwrong = 0.3\n" } else { "" };
         let scenario = door(EIGHT, &(gates + &drift), &format!("{replan}{scouting}"));
-        // `run` contains the assertions.
         run(&Scenario { ticks: 250, ..scenario });
     }
 }
 
-/// Two discs on a road of 12 x 3 m that a gate closes at x = 5 to 7 m.
 fn discs(first: [f64; 2], second: [f64; 2], change: &str) -> Scenario {
     parse(&format!(
         "name = \"t\"\nticks = 900\ntick_s = 0.1\n[terrain]\nuniform = {{ width = 12, height = 3, classes = 1 }}\n\

@@ -5,7 +5,6 @@ use staya_controller::agent::{Parameter, Waypoint, Wish};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::wire::{GoalAssignment, Header, Message};
 
-/// Two discs with crossing paths, and a third one that goes down for a while.
 const DISCS: &str = "name = \"t\"\nticks = 120\ntick_s = 0.05\n[radio]\nrange_m = 5\nloss = 0.1\n\
      [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [4, 0]\n\
      [[plane.robots.list]]\nstart_m = [4, 0]\ngoal_m = [0, 0]\n[[plane.robots.list]]\nstart_m = [2, 3]\n\
@@ -127,12 +126,10 @@ fn random_commands_cause_no_collisions() {
                     0 => Wish::Own,
                     1 => Wish::Hold,
                     6 if speed < 0.05 => Wish::Off,
-                    // Faster than the discs can go.
                     2 | 3 => Wish::Velocity {
                         velocity_mps: Vec3::new(x as f32 / 1000.0, y as f32 / 1000.0, 0.0),
                         valid: Duration::from_millis(700),
                     },
-                    // All to one place.
                     4 => Wish::Waypoint { waypoint: Waypoint::fixed(Position::ORIGIN), valid: None },
                     _ => Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_mm([x, y, 0])), valid: None },
                 };

@@ -4,7 +4,6 @@ use super::*;
 use crate::scenario::{Order, Target};
 use staya_controller::wire::{Format, Message, decode, frames};
 
-/// Robots of 0.2 m that go 1 m/s and decide ten times a second.
 fn in_plane(plane: &str, rest: &str) -> Scenario {
     let text = format!(
         "name = \"t\"\nticks = 300\ntick_s = 0.1\n{rest}\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n{plane}\n"
@@ -13,7 +12,6 @@ fn in_plane(plane: &str, rest: &str) -> Scenario {
     scenario.unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// The outcome, and the rows of all robots after each tick.
 fn tracks(scenario: &Scenario) -> (Outcome, Vec<Vec<RobotRow>>) {
     let mut rows = Vec::new();
     let outcome = simulate(scenario, |_, robots| {

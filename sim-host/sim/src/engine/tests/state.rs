@@ -5,7 +5,6 @@ use super::super::state::State;
 use super::*;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// Runs a check with the scenario's engine type.
 macro_rules! with_engines {
     ($scenario:expr, $check:ident($($rest:expr),*)) => {{
         let make = || AnyEngine::new($scenario).expect("robots can be placed");
@@ -18,7 +17,6 @@ macro_rules! with_engines {
     }};
 }
 
-/// Hash of all recorded data of a tick.
 fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, row: &TickRow) -> u64 {
     let mut hasher = DefaultHasher::new();
     format!("{:?}", engine.moment(row)).hash(&mut hasher);
@@ -98,7 +96,6 @@ where
     assert_eq!(format!("{:?}", other.outcome()), format!("{:?}", one.outcome()), "{name}");
 }
 
-/// Resumes `scenario` from saved states for about `work` robots times ticks.
 fn everything(scenario: &Scenario, name: &str, work: usize) {
     let ticks = (work / scenario.robots.len()).clamp(20, 500) as u32;
     let ticks = ticks.min(scenario.ticks);
@@ -107,7 +104,6 @@ fn everything(scenario: &Scenario, name: &str, work: usize) {
     with_engines!(scenario, moves(name, ticks / 2, ticks));
 }
 
-/// Resumes every scenario with at most `most` robots from saved states.
 fn every_scenario(work: usize, most: usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut count = 0;
@@ -129,8 +125,7 @@ fn every_scenario_resumes_from_a_saved_state() {
     every_scenario(1_500, 200);
 }
 
-/// More than 2000 robots take too long for a test; `scenarios/scale-small.toml` has all features of
-/// `scale.toml`.
+/// At most 2000 robots: `scenarios/scale-small.toml` has all features of `scale.toml`.
 #[test]
 #[ignore = "30,000 robots times ticks of each scenario: half a minute"]
 fn every_scenario_resumes_for_a_long_time_from_a_saved_state() {

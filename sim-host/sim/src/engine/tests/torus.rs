@@ -47,7 +47,6 @@ fn run(starts: &[([f64; 2], [f64; 2])], torus: bool, shift_m: [f64; 2], ticks: u
     moments
 }
 
-/// Shortest distance on the torus.
 fn between(from: [f64; 2], to: [f64; 2]) -> f64 {
     let [x, y] = [0, 1].map(|axis| {
         let way = (to[axis] - from[axis]).rem_euclid(SIDES_M[axis]);

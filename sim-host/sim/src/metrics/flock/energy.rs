@@ -6,7 +6,6 @@ use serde::Serialize;
 use staya_controller::flock::action::{PhiAlpha, SPACING, sigma_norm, sigmoid_shift};
 use staya_controller::flock::lattice::{Algorithm, LatticeParams};
 
-/// Intervals of the pair potential's table.
 const INTERVALS: usize = 4096;
 
 /// Energy of a flock at one moment, in the paper's units (a spacing is 7, a second 1, a mass 1).

@@ -4,7 +4,6 @@ mod energy;
 use super::*;
 use proptest::prelude::*;
 
-/// Three rows of a triangular lattice of side d.
 fn lattice(d: f64) -> Vec<[f64; 2]> {
     let height = d * 3.0_f64.sqrt() / 2.0;
     (0..9)
@@ -55,7 +54,6 @@ fn energy_mismatch_radius_and_order_of_three_robots_by_hand() {
     let measure = meter.look(&places, &velocities).expect("robots");
     assert_eq!(meter.edges(), [(0, 1), (1, 2)]);
     let centre = 20.0 / 3.0;
-    // Four ordered pairs, each off by 1.
     let expected = [4.0 / 5.0 / 49.0, 14.0 - centre];
     for (got, expected) in [measure.deviation_energy, measure.radius_m].iter().zip(expected) {
         assert!((got - expected).abs() < 1e-12, "{got} {expected}");
@@ -132,7 +130,6 @@ fn the_verdict_has_the_start_of_each_condition() {
         strict: Some(4),
     };
     assert_eq!(alpha_flocking(&trace, &limits), expected);
-    // A crowd that breaks up at the end has not flocked.
     let broken: Vec<_> = trace.into_iter().chain([moment(5, 0.0, 0.0, 9.0)]).collect();
     let verdict = alpha_flocking(&broken, &limits);
     assert_eq!((verdict.alpha_flocking, verdict.quasi_flock), (None, None));

@@ -11,7 +11,6 @@ fn read(path: PathBuf) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// Starts a run that writes `text` to each of `files`.
 fn begun(target: &Path, files: &[&str], text: &str) -> Results {
     let results = Results::begin(target).unwrap();
     for file in files {
@@ -68,7 +67,6 @@ fn results_are_complete_wherever_a_run_died() {
     let next = Results::begin(&target).unwrap();
     assert_eq!(read(target.join("summary.json")), "one", "it is back");
     drop(next);
-    // After both renames.
     fs::create_dir(dir.path().join(".run.old-8-0")).unwrap();
     let old = dir.path().join(".run.old-8-0");
     fs::write(old.join(MARKER), "made by\nsummary.json\ntrace.csv\n").unwrap();

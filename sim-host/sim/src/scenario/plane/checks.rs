@@ -117,7 +117,6 @@ pub(super) fn list(source: &Source<'_>, spec: &Spec, list: &[PlaneRobotEntry]) -
     Ok(())
 }
 
-/// Checks waypoints between start and goal.
 fn via(source: &Source<'_>, field: &str, guidance: GuidanceKind, robot: &PlaneRobotEntry) -> Result<(), ScenarioError> {
     let (count, most) = (robot.via_m.len(), WAYPOINTS - 1);
     if count == 0 {
@@ -167,7 +166,6 @@ pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Scen
         index.within(&query, &mut found);
         for near in &found {
             let apart_m = own_m + setup.group(near.index as usize).radius_m;
-            // Allows for rounding.
             if near.distance_squared.sqrt() < apart_m - 1e-6 {
                 let (one, two) = (number + 1, near.index + 1);
                 let what = format!("robots {one} and {two} overlap at the start");

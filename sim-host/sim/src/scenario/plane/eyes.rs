@@ -13,10 +13,8 @@ const MOST_TICKS: u32 = 1000;
 /// Standard deviation of positions in beacons, metres: they are rounded to millimetres, and
 /// simulated robots know their exact position.
 const HEARD_M: f64 = 0.002;
-/// Standard deviation of velocities in beacons, m/s.
 const HEARD_MPS: f64 = 0.01;
 
-/// Checks `[plane.eyes]`; `None` if it is absent.
 pub(in super::super) fn eyes(
     source: &Source<'_>,
     file: &ScenarioFile,

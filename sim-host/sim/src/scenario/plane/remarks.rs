@@ -7,7 +7,6 @@ use staya_controller::agent::{GuidanceKind, SafetySetup};
 /// Number of affected robots that a warning names; it counts the rest.
 const NAMED: usize = 3;
 
-/// Corners of a closed wall, metres.
 type Loop = Vec<[f64; 2]>;
 
 /// Warns about ticks that are too long for the bodies, closed walls that cross themselves, and
@@ -107,7 +106,6 @@ fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
 }
 
-/// Warns about two sides of a closed wall that cross.
 fn crossing(corners: &[[f64; 2]]) -> Option<String> {
     let count = corners.len();
     let ends = |index: usize| (corners[index], corners[(index + 1) % count]);

@@ -18,12 +18,10 @@ const BALLS: u32 = 0x0053_0005;
 /// Draws of a place before the scenario is refused as too crowded.
 pub(super) const TRIES: u32 = 1000;
 
-/// Uniform on [0, 1).
 pub(super) fn unit(rng: &mut Rng) -> f64 {
     (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Uniform in the box between two corners.
 pub(super) fn between(rng: &mut Rng, from: Place, to: Place) -> [f64; 3] {
     let mut place = [0.0; 3];
     for (axis, place) in place.iter_mut().enumerate() {
@@ -113,7 +111,6 @@ pub(super) fn starts(
     Ok(starts)
 }
 
-/// Draws the balls of `[[plane.balls]]`.
 pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> Result<Vec<Solid>, ScenarioError> {
     let mut balls = Vec::new();
     for (number, entry) in (0..).zip(entries) {

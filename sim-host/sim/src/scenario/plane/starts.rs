@@ -17,7 +17,6 @@ use staya_controller::rand::Rng;
 /// Random stream of this module.
 const STARTS: u32 = 0x0053_0003;
 
-/// Robots of the grid, at the centres of their cells.
 pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
     let center = |cell: Cell| {
         let [x, y] = terrain.center_m(cell);
@@ -32,7 +31,6 @@ pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
     robots.iter().map(start).collect()
 }
 
-/// Places groups of robots in the plane, one after the other.
 pub(super) struct Placing<'a> {
     pub source: &'a Source<'a>,
     pub file: &'a ScenarioFile,
@@ -109,7 +107,6 @@ impl Placing<'_> {
         Ok(())
     }
 
-    /// Positions and radii in metres of all robots placed so far.
     fn others(&self) -> Vec<([f64; 3], f64)> {
         let others = self.starts.iter().map(|start| {
             let radius_m = start.group.map_or(self.general_m, |group| self.groups[group].radius_m);

@@ -193,7 +193,6 @@ fn fill(field: &[u64], sizes: &[usize]) -> Vec<u8> {
     cells
 }
 
-/// Terrain whose total edge is changed by exchanging cells.
 struct Search {
     cells: Vec<u8>,
     width: usize,

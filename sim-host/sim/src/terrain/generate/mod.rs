@@ -137,7 +137,6 @@ fn sample(total: u32, count: u32, rng: &mut Rng) -> Vec<u32> {
 
 /// Impassability around one obstacle; 1 outside the square.
 struct Hill {
-    /// Half the side of the square.
     reach: usize,
     square: Vec<u8>,
 }

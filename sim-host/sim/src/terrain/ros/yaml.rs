@@ -38,7 +38,6 @@ pub struct Meta {
     pub classes: Option<u8>,
 }
 
-/// Line and value of a key.
 type Entry<'a> = Option<(usize, &'a str)>;
 
 #[derive(Default)]

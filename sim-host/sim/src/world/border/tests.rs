@@ -8,7 +8,6 @@ use staya_controller::rand::Rng;
 struct Crowd {
     whole: World,
     parts: Vec<World>,
-    /// Indices in `whole` of each rank's bodies.
     here: Vec<Vec<u32>>,
 }
 

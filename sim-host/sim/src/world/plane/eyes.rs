@@ -145,7 +145,6 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Distance of a point from the segment between two others, metres.
 fn distance_m(from: [f64; 3], to: [f64; 3], point: [f64; 3]) -> f64 {
     let (way, off) = (minus(to, from), minus(point, from));
     let square = dot(way, way);
@@ -154,7 +153,6 @@ fn distance_m(from: [f64; 3], to: [f64; 3], point: [f64; 3]) -> f64 {
     libm::sqrt(dot(rest, rest))
 }
 
-/// Whether an obstacle or a closed cell is between two positions.
 fn is_walled(plane: &Plane, from: [f64; 3], to: [f64; 3]) -> bool {
     let way = minus(to, from);
     let length_m = libm::sqrt(dot(way, way));
@@ -170,7 +168,6 @@ fn is_walled(plane: &Plane, from: [f64; 3], to: [f64; 3]) -> bool {
     })
 }
 
-/// Whether an obstacle is between two positions.
 fn hides(solid: &Solid, from: [f64; 3], to: [f64; 3]) -> bool {
     match *solid {
         Solid::Ball { center_m, radius_m } => distance_m(from, to, center_m) < radius_m,

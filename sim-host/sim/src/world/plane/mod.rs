@@ -74,9 +74,7 @@ pub struct Plane {
     centers: Vec<[f64; 3]>,
     index: Cells<f64, 3>,
     space: Space<f64, 3>,
-    /// Search radius for neighbours, metres.
     reach_m: f64,
-    /// Radius of the largest body, metres.
     largest_m: f64,
 }
 
@@ -213,7 +211,6 @@ impl Plane {
         }
     }
 
-    /// Replaces all obstacles.
     pub(crate) fn put_solids(&mut self, solids: Vec<Solid>) {
         self.solids.change(|all| *all = solids);
     }
@@ -246,7 +243,6 @@ impl Plane {
         &self.shut[index]
     }
 
-    /// Restores the value of [`Plane::shut`].
     pub(crate) fn put_shut(&mut self, index: usize, shut: Vec<(Cell, u8)>) {
         self.shut[index] = shut;
     }
@@ -383,7 +379,6 @@ impl Plane {
     /// Contribution of one body; a pair counts at its first body.
     fn clearance_of(&self, number: usize, found: &mut Vec<Found<f64, 3>>) -> Clearance {
         let disc = &self.discs[number];
-        // There are at most 2^32 - 1 bodies.
         let number = number as u32;
         let mut clearance = Clearance::FREE;
         let query = Query { at: disc.position_m, radius: self.reach_m, most: usize::MAX, except: Some(number) };
@@ -420,7 +415,6 @@ impl Plane {
 }
 
 impl Disc {
-    /// Moves at constant velocity for a tick.
     fn go(&mut self) {
         for (place, speed) in self.position_m.iter_mut().zip(self.velocity_mps) {
             *place += speed * self.abilities.step_s;

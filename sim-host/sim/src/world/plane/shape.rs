@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 /// Largest coordinate, metres.
 pub const FAR_M: f64 = 1e6;
-/// Largest number of corners of a polygon.
 const POINTS: usize = 1000;
 
 /// Shape of an added obstacle.

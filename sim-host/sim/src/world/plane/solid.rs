@@ -75,7 +75,6 @@ impl Solid {
     pub fn distance_m(&self, place_m: [f64; 3]) -> f64 {
         match (self.seen_from(place_m).nearest_point(), *self) {
             (Some((_, distance_m)), _) => distance_m,
-            // At the exact centre.
             (None, Self::Ball { radius_m, .. }) => -radius_m,
             (None, _) => f64::INFINITY,
         }

@@ -20,9 +20,7 @@ pub struct Solids {
 
 #[derive(Clone, Debug, Default)]
 struct Grid {
-    /// South-west corner, metres.
     low_m: [f64; 2],
-    /// Side of a square, metres.
     side_m: f64,
     /// Squares along each axis; 0: there is no grid.
     counts: [usize; 2],
@@ -97,7 +95,6 @@ impl Grid {
         grid
     }
 
-    /// First and last square along each axis that a box touches.
     fn span(&self, bounds: [[f64; 2]; 2]) -> [[usize; 2]; 2] {
         bounds.map(|corner| {
             [0, 1].map(|axis| {
