@@ -121,8 +121,7 @@ impl Place {
         })
     }
 
-    /// Renames the new file to the checkpoint, and the checkpoint to the old one. A checkpoint
-    /// exists at every moment.
+    /// Replaces the checkpoint and keeps the old one. A checkpoint exists at every moment.
     fn replace(&self, temporary: &Path) -> io::Result<()> {
         let link = beside(&self.path, &format!(".old.{}.tmp", std::process::id()));
         let old = beside(&self.path, ".old");
@@ -200,12 +199,10 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Opens a checkpoint of a run of `scenario`, whose number of ticks may have changed. Reads the
-    /// whole file once.
+    /// Opens a checkpoint of a run of `scenario`, with any number of ticks. Reads the file once.
     ///
     /// # Errors
-    /// It cannot be read, is damaged or truncated, or belongs to another version of the program or
-    /// another scenario.
+    /// It cannot be read, is damaged, or belongs to another program version or scenario.
     pub fn open(path: &Path, scenario: &Scenario) -> Result<Self, CheckpointError> {
         let error =
             |what: String, remedy: &str| CheckpointError { path: path.to_owned(), what, remedy: remedy.to_owned() };

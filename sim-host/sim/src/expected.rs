@@ -1,5 +1,4 @@
-//! Predicts how many ticks a run will take: most runs end long before their limit, when all robots
-//! have arrived.
+//! Predicts the number of ticks of a run, since most runs end long before their limit.
 
 use crate::record::RobotRow;
 use staya_controller::robot::Mode;

@@ -9,8 +9,7 @@ pub const TEXT: u64 = 256 << 20;
 /// Largest size of a map file, bytes.
 pub const MAP: u64 = 8 << 30;
 
-/// Opens a regular file. Devices are refused because they may never end, pipes because opening them
-/// may block.
+/// Opens a regular file. Devices may never end and pipes may block, so both are refused.
 ///
 /// # Errors
 /// The path is not a regular file, or cannot be opened.
@@ -27,8 +26,7 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// Reads a regular file of at most `most` bytes. Memory is allocated after the size is known.
 ///
 /// # Errors
-/// The path is not a regular file, the file is too large or does not fit into memory, or it cannot
-/// be read.
+/// The file is not regular, is too large, does not fit into memory, or cannot be read.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let len = file.metadata()?.len();
@@ -79,7 +77,6 @@ pub fn read_remedy(error: &Error) -> &'static str {
         ErrorKind::NotFound => "check the name",
         ErrorKind::IsADirectory => "name a file, not a directory",
         ErrorKind::PermissionDenied => "choose a file that you may read",
-        // Set by [`open`].
         ErrorKind::InvalidInput => "name a regular file",
         ErrorKind::FileTooLarge => "choose a smaller file",
         ErrorKind::OutOfMemory => "close other programs, or choose a smaller file",

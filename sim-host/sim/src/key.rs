@@ -119,8 +119,7 @@ fn is_open(_: &Path) -> bool {
     false
 }
 
-/// Current time as a timestamp of [`staya_mavlink::signing`], tens of microseconds; 0 if the clock
-/// is before 2015.
+/// Time for [`staya_mavlink::signing`], tens of microseconds; 0 if the clock is before 2015.
 #[must_use]
 pub fn timestamp() -> u64 {
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);

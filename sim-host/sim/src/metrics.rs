@@ -70,8 +70,7 @@ impl Arrivals {
     }
 
     /// End of each robot's last move, in [`UNIT`](staya_controller::grid::UNIT)ths of a tick after
-    /// the start: the travel time of KUZ eq. 7, waiting included. `None` if the robot is not at its
-    /// goal.
+    /// the start: the travel time of KUZ eq. 7, waiting included. `None` if it is not at its goal.
     #[must_use]
     pub fn times(&self) -> &[Option<u64>] {
         &self.at

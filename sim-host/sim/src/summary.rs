@@ -35,8 +35,7 @@ pub struct Summary {
     /// Mean and longest travel time, simulated seconds; null if no robot arrived.
     arrival_mean_seconds: Option<f64>,
     arrival_last_seconds: Option<f64>,
-    /// Robots in a wall or another robot's cell, or overlapping a robot or an obstacle, summed over
-    /// ticks.
+    /// Robots in walls or shared cells, or overlapping robots or obstacles, summed over ticks.
     collisions: u64,
     /// Arrival of each robot; null if per-robot data is left out.
     pub arrivals: Option<Vec<Arrival>>,
@@ -44,7 +43,6 @@ pub struct Summary {
     is_authenticated: bool,
     /// Packets that exceeded a robot's bandwidth and were not transmitted.
     packets_throttled: u64,
-    /// Causes of waiting; empty if no robot waited.
     waits: Vec<Waited>,
     /// dPhi per robot, cells, with the graph placed on the top leader; null without a formation.
     formation_error_per_agent: Option<f64>,
@@ -65,19 +63,15 @@ pub struct Summary {
     /// straight to its goal on easy land, with full acceleration and braking. Null without a
     /// formation in the plane, or if not all robots arrived.
     time_over_free_time: Option<f64>,
-    /// Smallest distance between the surfaces of two bodies, metres; null on the grid, or if no
-    /// bodies came close.
+    /// Smallest gap between two bodies, metres; null on the grid, or if none came close.
     least_gap_m: Option<f64>,
-    /// Smallest distance between a body and an obstacle, metres.
     least_obstacle_gap_m: Option<f64>,
-    /// Smallest distance between the surfaces of a robot and an intruder, metres; null without
-    /// intruders.
+    /// Smallest gap between a robot and an intruder, metres; null without intruders.
     least_intruder_gap_m: Option<f64>,
     /// Robots that overlap an intruder, summed over ticks; not counted as collisions.
     intruder_overlaps: u64,
     /// Robots in the downwash of others, summed over ticks; not counted as collisions.
     washed: u64,
-    /// 16 hex digits; equal for equal traces.
     trace_hash: String,
     /// Fields of the scenario file with the command-line overrides, without defaults.
     parameters: serde_json::Value,

@@ -1,5 +1,4 @@
-//! Attackers with a radio of the robots' type: outsiders without the key, and insiders that control
-//! a robot and its keys.
+//! Attackers with a radio: outsiders without the key, and insiders that control a robot.
 
 use crate::radio::{self, HostWire};
 use crate::scenario::{Attack, AttackKind, Lie, Scenario};
@@ -15,8 +14,7 @@ use staya_controller::wire::{
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-/// Restart number in the frames of an outsider. It is the highest, so that only the missing key
-/// exposes the attacker.
+/// Restart number of an outsider: the highest, so that only the missing key exposes it.
 const STARTS: u8 = u8::MAX;
 /// Restart number of an insider: one above that of the robot it replaces.
 const TAKEN: u8 = 1;
@@ -39,7 +37,6 @@ pub struct Attacker {
     outbox: Vec<u8>,
 }
 
-/// Deserialized form of [`Attacker::state`].
 pub(super) type AttackerState = (HostWire, u16, u8, VecDeque<(u32, Vec<u8>)>);
 
 impl Attacker {
@@ -75,8 +72,7 @@ impl Attacker {
         (self.wire, self.sequence, self.version, self.heard) = (wire, sequence, version, heard);
     }
 
-    /// Id of the attacker at the radio, where it follows `index` others; it never appears in a
-    /// frame.
+    /// Id at the radio of attacker `index`; it never appears in a frame.
     pub(super) fn id(index: usize) -> RobotId {
         RobotId(u32::MAX - 1 - u32::try_from(index).unwrap_or(u32::MAX / 2))
     }
@@ -99,8 +95,7 @@ impl Attacker {
         self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
     }
 
-    /// Answers new keys as the robot would, so that an insider stays in the swarm until it is
-    /// revoked.
+    /// Answers new keys as the robot would, until the robot is revoked.
     fn keep_up(&mut self, inbox: &[u8]) {
         let mut rest = inbox;
         while let Some(frame) = self.wire.next_frame(&mut rest) {

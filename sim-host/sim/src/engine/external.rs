@@ -9,8 +9,7 @@ use staya_controller::time::Instant;
 ///
 /// In each tick, the engine calls [`ExternalController::send`] for each robot that is up, steps its
 /// own robots, and then calls [`ExternalController::collect`], so that all controllers work in
-/// parallel. The implementation records its errors for its owner; the swarm continues without the
-/// robot.
+/// parallel. The implementation keeps its errors; the swarm continues without the robot.
 pub trait ExternalController: Send {
     /// Sorted indices of the robots whose controllers are external.
     fn robots(&self) -> Vec<usize>;

@@ -113,8 +113,7 @@ fn units(tick: u32) -> u64 {
     u64::from(tick) * u64::from(UNIT)
 }
 
-/// Time from `now_units` until a body may leave its cell at `free_at`; rounded up, so that it is
-/// not 0 too early.
+/// Time until a body may leave its cell; rounded up, so that it is not 0 too early.
 pub(super) fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
     let left = free_at.saturating_sub(now_units);
     let micros = (left * u64::from(tick_us)).div_ceil(u64::from(UNIT));

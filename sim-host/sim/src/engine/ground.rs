@@ -132,8 +132,7 @@ pub trait Ground: Send + Sync {
         (meters.mean(), place_error, meters.each(self.has_bodies()))
     }
 
-    /// Distance of a robot from its place at the last [`Ground::keeping`], cells; NaN if it has no
-    /// place.
+    /// Distance from the robot's place at the last [`Ground::keeping`], cells; NaN without one.
     fn formation_error(&self, _number: usize) -> f64 {
         f64::NAN
     }
@@ -149,8 +148,7 @@ pub trait Ground: Send + Sync {
         None
     }
 
-    /// World position that robot `index` heads for at `tick`; `None` if it has none or its law
-    /// chooses it.
+    /// Target of robot `index` at `tick`, metres; `None` if it has none or its law chooses it.
     fn target_m(&self, _index: usize, _tick: u32, _status: &Status) -> Option<[f64; 3]> {
         None
     }
@@ -189,8 +187,7 @@ pub trait Ground: Send + Sync {
     }
 }
 
-/// A guidance law in the simulator: it accepts the sensor data of every world and can move between
-/// threads.
+/// A guidance law that accepts the sensor data of every world and can change threads.
 pub trait HostLaw: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}
 
 impl<G> HostLaw for G where G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}

@@ -1,5 +1,4 @@
-//! The trace hash of a run. Equal traces have equal hashes on all machines and with any number of
-//! threads.
+//! The trace hash of a run. Equal traces have equal hashes on any machine.
 
 use crate::world::Body;
 use serde::{Deserialize, Serialize};

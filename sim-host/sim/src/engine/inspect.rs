@@ -55,8 +55,7 @@ pub struct SeenLand {
     pub width: u16,
     /// Classes row by row from the south-west corner, as in [`Terrain`](crate::terrain::Terrain).
     pub cells: Vec<u8>,
-    /// Ticks from each cell to the exit of the last search; NaN if the exit is unreachable or the
-    /// cell was not searched.
+    /// Ticks from each cell to the exit of the last search; NaN if unreachable or not searched.
     pub costs: Vec<f32>,
 }
 

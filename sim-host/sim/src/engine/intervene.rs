@@ -62,8 +62,7 @@ where
     pub fn apply_interventions(&mut self) {
         while let Some((_, what)) = self.interventions.front().filter(|(tick, _)| *tick <= self.tick) {
             let what = what.clone();
-            // An intervention that has no effect was reported when it was made by hand; repeated,
-            // it has no effect either.
+            // If it has no effect, that was reported when it was made by hand.
             let _ = self.intervene(&what);
             self.interventions.pop_front();
         }

@@ -23,7 +23,6 @@ pub struct Intruder {
     outbox: Vec<u8>,
 }
 
-/// Deserialized form of [`Intruder::state`].
 pub(super) type IntruderState = (HostWire, u16);
 
 impl Intruder {

@@ -1,5 +1,4 @@
-//! The simulation loop: each robot runs its own [`Agent`] between a world and a radio. Start with
-//! [`Engine::step`].
+//! The simulation loop, with one [`Agent`] per robot. Start with [`Engine::step`].
 //!
 //! A tick has two phases. In the first, all robots decide in parallel. Each robot sees only its own
 //! pose and cell, the land around it and the bytes that the radio delivered. In the second, the
@@ -138,8 +137,7 @@ impl<W: Ground> Tick<'_, W> {
 /// Creates the law and the safety layer of a robot by its index in [`Scenario::robots`].
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
-/// A running scenario in world `W`. `G` is the guidance law of all its robots, `A` their safety
-/// layer.
+/// A running scenario in world `W`, with guidance laws `G` and safety layers `A`.
 ///
 /// Fields are public for the crate `staya-mpi`, which steps one part of a world in each process.
 pub struct Engine<W, G: Guidance<f32>, A> {

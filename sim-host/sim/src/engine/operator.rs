@@ -64,8 +64,7 @@ pub trait Operated: Send {
     /// Results of the run so far.
     fn outcome(&self) -> Outcome;
 
-    /// Calls `watch` with the current state, in the form that [`simulate`](super::simulate) reports
-    /// after each tick.
+    /// Calls `watch` with the current state, as [`simulate`](super::simulate) does after a tick.
     fn show(&self, watch: &mut dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>));
 
     /// Whether [`simulate`](super::simulate) would end here because all robots have arrived.
@@ -128,7 +127,6 @@ where
 
 struct OperatedEngine<W, G: Guidance<f32>> {
     engine: Engine<W, Commanded<f32, G>, SafetyOf>,
-    /// The swarm's record row of the last tick.
     row: TickRow,
     wire: HostWire,
     /// Wire for robots that have keys of their own.

@@ -11,8 +11,7 @@ use staya_controller::agent::{AnyWorld, Commanded, Guidance, InPlane, NeighborTr
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// A guidance law supplied by the caller. Its state must be serializable, for checkpoints and
-/// digests.
+/// A guidance law supplied by the caller. Its state is serialized in checkpoints.
 pub trait OwnLaw:
     for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
 {
@@ -57,8 +56,7 @@ pub fn simulate_own_with<G: OwnLaw>(
     Ok(go(scenario, engine(scenario, law)?, external, watch))
 }
 
-/// Creates a run with the caller's law and an operator, before its first tick; for bridges and live
-/// views.
+/// Creates a run with the caller's law and an operator; for bridges and live views.
 ///
 /// # Errors
 /// [`NotInPlane`].

@@ -85,8 +85,7 @@ impl PlaneGround {
         let sights = setup.kinds().map(|group| group.sight_m + group.radius_m);
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
         let plane = plane.with_sight(sights.fold(0.0, f64::max)).in_space(setup.space());
-        // A scenario is three-dimensional if robots start at other heights or avoid each other
-        // vertically.
+        // Three-dimensional if robots start at other heights or fly.
         let is_flat = setup.starts.iter().all(|start| start.position_m[2] == 0.0)
             && setup.kinds().all(|group| group.safety.kind() != SafetyKind::Fly);
         let sight = scenario.eyes.map(|eyes| {
@@ -180,8 +179,7 @@ impl PlaneGround {
         }
     }
 
-    /// Orders to a robot before `tick`; an order for its first goal is superseded by a goal set
-    /// later.
+    /// Orders to a robot before `tick`; a later goal supersedes orders for the first.
     fn ordered(&self, number: usize, tick: u32) -> impl Iterator<Item = &Order> {
         let orders = self.setup.orders.iter().take_while(move |order| order.tick < tick);
         orders.filter(move |order| order.index > 0 || order.tick >= self.since[number])
@@ -196,8 +194,7 @@ impl PlaneGround {
         self.numbers[index] as usize
     }
 
-    /// Cell of a position, the offset from the cell's centre, and the side of a cell; all in
-    /// metres.
+    /// Cell of a position, offset from its centre, and side of a cell; metres.
     fn in_cell(&self, position_m: [f64; 3]) -> Option<(Cell, [f64; 2], f64)> {
         let cell = self.plane.cell(position_m)?;
         let land = self.plane.terrain()?;
@@ -453,8 +450,7 @@ impl Ground for PlaneGround {
         let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
         let places = &mut self.setup.starts[number].places;
         match places.first_mut() {
-            // In a goal flock it is one of several goals; for other laws it replaces the waypoints
-            // too.
+            // Other laws have a single goal, which replaces the waypoints too.
             Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
             _ => *places = vec![target],
         }

@@ -76,11 +76,9 @@ pub struct Outcome {
     /// Quality of each formation, in the order of
     /// [`Scenario::formations`](crate::scenario::Scenario::formations).
     pub formations: Vec<FormationKept>,
-    /// Smallest distances between bodies and to obstacles; `None` on the grid, where bodies have no
-    /// size.
+    /// Smallest distances between bodies and to obstacles; `None` on the grid.
     pub clearance: Option<Clearance>,
-    /// Hash of the trace. Equal traces have equal hashes on all machines and with any number of
-    /// threads.
+    /// Hash of the trace; equal for equal traces, on any machine and any number of threads.
     pub trace_hash: u64,
 }
 
@@ -143,8 +141,7 @@ pub type GuidanceOf =
 #[doc(hidden)]
 pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
-/// The engines for both kinds of worlds. Generic code is instantiated only here, so that it is
-/// compiled once.
+/// Engines of both worlds; instantiated only here, to compile the generic code once.
 pub(super) enum AnyEngine {
     /// In the plane or in space.
     Plane(Box<Engine<PlaneGround, GuidanceOf, SafetyOf>>),
@@ -173,8 +170,7 @@ pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) +
             group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32));
         (scenario.guidance(index), scenario.safety(index), speed_mps, tolerance_m)
     };
-    // Formation places differ from robot to robot; otherwise robots differ only by group. Each kind
-    // is created once.
+    // Members of formations differ individually, others only by group; each kind is created once.
     let groups = scenario.plane.as_ref().map_or(0, |plane| plane.groups.len());
     let group_of = |index: usize| match (scenario.formation_of(index), &scenario.plane) {
         (Some(_), _) => groups + 1 + index,

@@ -93,7 +93,6 @@ impl<'a> Reader<'a> {
         self.all.len() - self.rest.len()
     }
 
-    /// Reads the next value; errors call it `what`.
     fn read<T: DeserializeOwned>(&mut self, what: &str) -> Result<T, StateError> {
         let mut from = postcard::Deserializer::from_bytes(self.rest);
         let value = T::deserialize(&mut from);
@@ -246,8 +245,7 @@ where
         Ok(())
     }
 
-    /// Writes the part of [`Engine::save`] before the robots: the shared state and the transmitters
-    /// outside the swarm.
+    /// Writes the shared state and the transmitters outside the swarm; see [`Engine::save`].
     pub fn save_head(&self, bytes: &mut Vec<u8>) {
         let whole = Whole {
             seed: self.seed,
@@ -282,8 +280,7 @@ where
     /// tick.
     ///
     /// # Errors
-    /// The bytes are damaged, or belong to another scenario or program. Do not use the engine after
-    /// an error.
+    /// The bytes are damaged or from another scenario or program. Discard the engine then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let others = [self.attackers.len(), self.intruders.len(), usize::from(self.keeper.is_some())];
         let (at, digest) = self.restore_part(bytes, others)?;
@@ -291,8 +288,7 @@ where
     }
 
     /// Restores the robots of this process, in a run with the given numbers of attackers, beaconing
-    /// intruders and key servers (`others`). Returns the position and the value of the saved digest
-    /// of all robots.
+    /// intruders and key servers (`others`). Returns position and value of the saved digest.
     pub fn restore_part(&mut self, bytes: &[u8], others: [usize; 3]) -> Result<(usize, u64), StateError> {
         let mut from = Reader::new(bytes);
         if self.tick > 0 || self.external.is_some() {

@@ -287,8 +287,7 @@ fn different_seeds_give_different_runs() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Under any radio faults and robot failures, no robots collide, nothing panics, and sums add
-    /// up.
+    /// No radio faults and robot failures cause collisions, panics or wrong sums.
     #[test]
     fn any_radio_and_any_fault_leave_a_sound_run(
         seed: u64,

@@ -106,8 +106,7 @@ impl<const D: usize> FlockMeter<D> {
         })
     }
 
-    /// Pairs of neighbours in the last measurement: indices in the slice, the smaller first, sorted
-    /// by the first.
+    /// Pairs of neighbours in the last measurement, as sorted indices, the smaller first.
     #[must_use]
     pub fn edges(&self) -> &[(u32, u32)] {
         &self.edges
@@ -153,8 +152,7 @@ fn root(parents: &mut [u32], mut robot: u32) -> u32 {
     robot
 }
 
-/// Length of the mean direction of the velocities, 0 to 1. Zero velocities do not count; 0 if all
-/// are zero.
+/// Length of the mean direction of the nonzero velocities, 0 to 1; 0 if all are zero.
 #[must_use]
 pub fn polarisation<const D: usize>(velocities_mps: &[[f64; D]]) -> f64 {
     let directions: Vec<[f64; D]> = velocities_mps
@@ -173,11 +171,9 @@ pub struct AlphaLimits {
     pub deviation_energy: f64,
     /// Largest K / n (e2).
     pub velocity_mismatch: f64,
-    /// Smallest share of robots in the largest component of a quasi-flock. The paper says "highly
-    /// populated".
+    /// Smallest share of robots in a quasi-flock's largest component ("highly populated").
     pub quasi_flock_share: f64,
-    /// Largest R of a cohesive group, metres. The paper only asks for some bound, which every
-    /// finite trace has.
+    /// Largest R of a cohesive group, metres. The paper only asks that some bound exists.
     pub cohesion_radius_m: f64,
 }
 
@@ -190,8 +186,7 @@ impl AlphaLimits {
     }
 }
 
-/// For each condition, the index from which it holds until the end of a trace; `None` if it does
-/// not hold at the end.
+/// The moment from which each condition holds until the end of a trace; `None`: never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct AlphaVerdict {
     /// The largest component is large enough.

@@ -177,8 +177,7 @@ impl FormationMeter {
         missing.filter(|&&place| self.missing.iter().any(|&robot| is_near(place, robot))).count()
     }
 
-    /// Distance of each robot from its place in the last measurement, cells, with the graph placed
-    /// at the top leader.
+    /// Last distance of each robot from its place relative to the top leader, cells.
     #[must_use]
     pub fn errors(&self) -> &[f64] {
         &self.errors

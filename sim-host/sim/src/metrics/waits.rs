@@ -87,8 +87,7 @@ impl Waits {
         self.robots.push(Robot::default());
     }
 
-    /// Removes a robot that goes to another MPI rank with its state; the last robot takes its
-    /// index.
+    /// Removes a robot that goes to another MPI rank; the last robot takes its index.
     pub fn dismiss(&mut self, index: usize) {
         self.set_robot(index, Robot::default());
         self.robots.swap_remove(index);

@@ -5,8 +5,7 @@ use super::space::margin;
 use super::{Found, Query, Real, Search, Space, numbered};
 use std::ops::Range;
 
-/// Points sorted into squares (in space, cubes) of at least a given side; the points of a cell are
-/// contiguous in memory.
+/// Points sorted by squares (in space, cubes); the points of a cell are contiguous in memory.
 ///
 /// Built by a counting sort: O(n + cells), without hash maps, and without allocation once the
 /// buffers have grown. A query costs O(points in the cells that its ball may touch). There are at

@@ -41,8 +41,7 @@ pub trait Search<R: Real, const D: usize>: Sync {
     /// If there are more than 2^32 - 1 points.
     fn rebuild(&mut self, points: &[[R; D]]);
 
-    /// Writes the points within the radius to `found` (cleared first), sorted by (squared distance,
-    /// index).
+    /// Replaces `found` by the points in the radius, sorted by (squared distance, index).
     fn within(&self, query: &Query<R, D>, found: &mut Vec<Found<R, D>>);
 }
 

@@ -33,8 +33,7 @@ impl<R: Real, const D: usize> Found<R, D> {
 /// Collects the nearest of the offered points. Holds at most twice the requested number, or 64.
 pub struct Nearest<'a, R, const D: usize> {
     found: &'a mut Vec<Found<R, D>>,
-    /// Squared limit of the distance: the radius, later the distance of the farthest of the kept
-    /// points.
+    /// Squared limit: the radius, later the distance of the farthest kept point.
     limit: R,
     most: usize,
     except: Option<u32>,

@@ -132,8 +132,7 @@ fn the_order_by_cell_contains_every_point_once() {
     assert!(order.iter().copied().eq(0..100));
 }
 
-/// Coordinates on a coarse grid, so that points coincide, distances are equal, and radii are met
-/// exactly; some in between.
+/// Mostly on a coarse grid, so that points coincide and radii are met exactly.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => (-8_i32..=24).prop_map(|steps| f64::from(steps) / 2.0),

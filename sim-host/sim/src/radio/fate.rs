@@ -5,7 +5,6 @@ use super::params::{Burst, RadioParams};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 
-/// Random streams of this module.
 const LINK: u32 = 0x0052_0002;
 const CHANNEL: u32 = 0x0052_0003;
 

@@ -11,7 +11,6 @@ use staya_controller::wire::Wire;
 use staya_mavlink::any::AnyWire;
 use std::ops::Add;
 
-/// Random stream of this module.
 const PACKET: u32 = 0x0052_0001;
 
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +47,6 @@ struct Buckets {
 /// Packets of a tick, sorted into square cells of the radio's range.
 #[derive(Clone, Debug)]
 pub(super) struct Medium {
-    /// Separates the frames in an outbox.
     wire: AnyWire,
     seed: u64,
     range_m: f64,
@@ -117,8 +115,7 @@ impl Medium {
         true
     }
 
-    /// Replaces the packets with those sent in `tick`; `ids`, `positions_m` and `outboxes` have one
-    /// entry per robot.
+    /// Replaces the packets with those sent in `tick`; the inputs have one entry per robot.
     pub(super) fn fill(
         &mut self,
         tick: u32,

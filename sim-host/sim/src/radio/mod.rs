@@ -288,8 +288,7 @@ impl Late {
     }
 }
 
-/// Appends to a buffer that grows by an eighth: doubling so many buffers would take too much
-/// memory.
+/// Appends to a buffer that grows by an eighth, because there are many of them.
 fn append(buffer: &mut Vec<u8>, bytes: &[u8]) {
     if buffer.capacity() - buffer.len() < bytes.len() {
         buffer.reserve_exact(bytes.len() + buffer.len() / 8);

@@ -27,8 +27,7 @@ const fn certain() -> f64 {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct RadioParams {
-    /// Wire format: `postcard` (Staya's own frames) or `mavlink` (MAVLink 2, for robots up to id
-    /// 254).
+    /// Wire format: `postcard` (Staya's frames) or `mavlink` (MAVLink 2, ids up to 254).
     pub format: Format,
     /// Farthest distance at which a packet can be received, metres; `inf` for unlimited range.
     pub range_m: f64,

@@ -162,8 +162,7 @@ fn bits_flip_at_their_rate_but_never_in_the_delimiter() {
 #[test]
 fn bandwidth_caps_the_mean_and_counts_what_it_drops() {
     let params = RadioParams { bandwidth_bytes_per_s: Some(20), ..RadioParams::default() };
-    // 8 bytes ten times a second; 20 B/s allow a quarter of it, and 256 bytes are saved at the
-    // start.
+    // 80 B/s, of which 20 B/s are allowed, after 256 bytes saved at the start.
     let mut radio = radio(params, 2);
     for tick in 0..1000 {
         radio.carry(tick, &line(2), |i| if i == 0 { &FRAME } else { &[] });

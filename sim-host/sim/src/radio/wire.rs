@@ -7,8 +7,7 @@ use staya_mavlink::any::{self, AnyWire};
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::MINUTE;
 
-/// Largest number of senders that a robot with a key knows: the robots of a scenario with a key,
-/// and two operators.
+/// Most senders that a robot with a key knows: the robots of a scenario, and two operators.
 pub const PEERS: usize = 1024;
 
 /// Any wire format, with room for a key.
@@ -22,8 +21,7 @@ pub fn wire(format: Format, key: Option<&Key>, starts: u8) -> HostWire {
     on_link(format, key, starts, 0)
 }
 
-/// Wire of robot `id` with its own key. It uses the swarm's key of a stored generation, or the
-/// first key.
+/// Wire of robot `id` with its own key, and the swarm's stored or first key.
 #[must_use]
 pub fn own_wire(master: &Key, id: RobotId, stored: Option<(u16, Seed)>, starts: u8) -> HostWire {
     let master = Master::new(master);

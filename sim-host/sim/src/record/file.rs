@@ -47,12 +47,10 @@ pub fn prepare_dir(dir: &Path) -> Result<(), Error> {
     written
 }
 
-/// Writes a file through a temporary file and a rename, so that readers see either the old or the
-/// complete new file.
+/// Writes a file by way of a rename: readers see either the old or the complete new file.
 ///
 /// # Errors
-/// The temporary file cannot be written or renamed. It is then removed, and the old file is
-/// unchanged.
+/// The temporary file cannot be written or renamed; it is removed, the old file stays.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.tmp", std::process::id()));

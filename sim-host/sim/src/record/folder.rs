@@ -39,16 +39,14 @@ const KNOWN: [&str; 13] = [
     "trajectories.png",
     "trajectories.svg",
 ];
-/// A folder without a locked list counts as dead after this time: an active run locks its list
-/// immediately.
+/// Age after which a folder without a locked list counts as dead: active runs lock at once.
 const YOUNG: Duration = Duration::from_secs(60);
 /// Attempts to move a folder while other processes interfere.
 const TRIES: usize = 32;
 
 static BEGUN: AtomicU32 = AtomicU32::new(0);
 
-/// Results of an active run. If dropped before [`Results::finish`], they are removed and the old
-/// results stay.
+/// Results of an active run; removed if dropped unfinished; the old results stay.
 #[derive(Debug)]
 pub struct Results {
     target: PathBuf,
@@ -63,8 +61,7 @@ impl Results {
     /// left. `target` is not touched and does not have to exist.
     ///
     /// # Errors
-    /// The folder cannot be created, `target` is a file, or it contains files with names of results
-    /// that no run created.
+    /// The folder cannot be created, or `target` is a file or has foreign files named as results.
     pub fn begin(target: impl AsRef<Path>) -> Result<Self, Error> {
         let target = resolved(target.as_ref())?;
         let (parent, name) = split(&target);
@@ -105,8 +102,7 @@ impl Results {
     /// Moves all files to the final folder. O(files).
     ///
     /// # Errors
-    /// A file cannot be moved. The new results stay where they are, and the old ones too, as far as
-    /// possible.
+    /// A file cannot be moved. New and old results stay where they are, if possible.
     pub fn finish(mut self) -> Result<(), Error> {
         let done = self.settle();
         self.marker = None;
@@ -168,8 +164,7 @@ impl Results {
                 }
             }
         }
-        // Best effort: the next run removes the remains. Without new results the old folder is
-        // restored.
+        // Best effort: the next run removes or restores the remains.
         aside.iter().for_each(|old| drop(retire(old, &self.target)));
         outcome
     }

@@ -87,15 +87,13 @@ pub struct PacketCounts {
     pub lost: u64,
     /// Packets delivered with flipped bits.
     pub corrupted: u64,
-    /// Frames refused by a receiver: damaged, foreign or replayed. With a key, this includes the
-    /// three counts below.
+    /// Frames refused as damaged, foreign or replayed; with a key, also the three counts below.
     pub rejected: u64,
     /// Frames refused because the tag or signature was missing.
     pub unsigned: u64,
     /// Frames refused because the tag or signature was made with another key or for other content.
     pub forged: u64,
-    /// Frames refused because they were received before, or are older than the latest; includes
-    /// duplicates by the radio.
+    /// Frames refused as received before or older than the latest; includes radio duplicates.
     pub replayed: u64,
     /// Beacons with implausible content.
     pub overclaims: ClaimCounts,
@@ -133,8 +131,7 @@ impl AddAssign for ClaimCounts {
 }
 
 impl PacketCounts {
-    /// Counts the frames and beacons that a robot refused or corrected in a step; the other fields
-    /// are 0.
+    /// Counts only the frames and beacons that a robot refused or corrected in a step.
     #[must_use]
     pub fn refused(rejected: u16, why: Refused, lies: Overclaims) -> Self {
         Self {
@@ -224,8 +221,7 @@ fn write_schemas(dir: &Path, keeps_robots: bool) -> Result<(), Error> {
 
 impl Recorder {
     /// Creates a recorder that writes `trace.csv` (if it records robots), `series.csv` and their
-    /// schemas to `out_dir`. The directory is created if needed; files of an earlier run are
-    /// replaced.
+    /// schemas to `out_dir`. Creates the directory; replaces earlier files.
     ///
     /// # Errors
     /// The directory or a file in it cannot be created.
@@ -282,8 +278,7 @@ impl Recorder {
         Self { files: None, keeps_robots: options.keeps_robots, history }
     }
 
-    /// Records one tick. The order of `robots` is kept and should be the same in each tick.
-    /// O(robots).
+    /// Records one tick. `robots` should have the same order each time. O(robots).
     ///
     /// # Errors
     /// A file cannot be written. All earlier complete ticks stay readable.
@@ -296,8 +291,7 @@ impl Recorder {
             None => frame.samples.extend(robots.map(Sample::from)),
             Some((trace, trace_every)) => {
                 let since = tick.tick.wrapping_sub(first_tick);
-                // The first tick is always due, and gives the number of robots for the default
-                // interval.
+                // The first tick is always due; its robots give the default interval.
                 let due = since.checked_rem(*trace_every).is_none_or(|r| r == 0);
                 for robot in robots {
                     if due {

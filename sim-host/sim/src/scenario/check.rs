@@ -27,8 +27,7 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
 }
 
-/// Checks that the radio's format can encode the ids of the robots and, after them, those of the
-/// beaconing intruders.
+/// Checks that the radio's format can encode the ids of robots and beaconing intruders.
 pub(super) fn numbers(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -109,8 +108,7 @@ const ROBOT_BYTES: u64 = 4 << 10;
 /// Bytes per terrain cell during a run.
 const CELL_BYTES: u64 = 4;
 
-/// Refuses scenarios that do not fit into memory: the system kills such a process without an error
-/// message.
+/// Refuses scenarios that do not fit into memory, before the system kills the process.
 pub(super) fn memory(
     source: &Source<'_>,
     file: &ScenarioFile,

@@ -28,8 +28,7 @@ pub struct FormationEntry {
     pub goal: [i16; 2],
 }
 
-/// Deserializes a table or an array of tables. Not an untagged enum, so that errors name only the
-/// form that the file uses.
+/// Reads a table or an array of tables; unlike an untagged enum, errors name the form used.
 pub(super) fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<FormationEntry>, D::Error> {
     struct OneOrMore;
     impl<'de> Visitor<'de> for OneOrMore {

@@ -150,8 +150,7 @@ impl Intervention {
     }
 }
 
-/// Checks the tables. The result is sorted by tick; interventions of one tick keep the file's
-/// order.
+/// Checks the tables and sorts them by tick; the sort is stable.
 pub(super) fn interventions(
     source: &Source<'_>,
     file: &ScenarioFile,

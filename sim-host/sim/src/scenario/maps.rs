@@ -23,7 +23,6 @@ pub struct MapsTable {
     pub forget_after_s: Option<f64>,
 }
 
-/// Parameters of the map exchange; `None`: disabled.
 pub(super) fn sharing(
     source: &Source<'_>,
     file: &ScenarioFile,

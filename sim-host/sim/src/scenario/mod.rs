@@ -1,7 +1,6 @@
 //! Scenarios: simulation inputs, read from TOML and checked before a run starts.
 //!
-//! [`ScenarioFile`] documents every field. An error names the file, the line, the field and the
-//! remedy.
+//! [`ScenarioFile`] documents every field. Errors name file, line, field and remedy.
 
 mod authentication;
 mod check;
@@ -198,8 +197,7 @@ pub struct Scenario {
     pub claims: Claims<f32>,
     /// Attackers.
     pub attacks: Vec<Attack>,
-    /// Fields of the file with the command-line overrides applied, for result files; secrets are
-    /// omitted.
+    /// Fields of the file with overrides applied, for result files; without secrets.
     pub parameters: serde_json::Value,
 }
 
@@ -313,8 +311,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Warnings for the user, one line each: about the key file, unstable gains, and probable
-    /// mistakes in `[plane]`.
+    /// Warnings, one line each: key file, unstable gains, probable mistakes in `[plane]`.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let groups = self.plane.iter().flat_map(PlaneSetup::kinds);

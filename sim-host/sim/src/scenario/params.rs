@@ -35,8 +35,7 @@ pub struct RouteTable {
     pub radius: Option<u8>,
     /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
     pub exit: Option<ExitRule>,
-    /// When to plan: `"each_cell"` or `"until_changed"` (follow the planned cells; only for robots
-    /// without a formation).
+    /// When to plan: `"each_cell"` or `"until_changed"` (keeps its plan; not in formations).
     pub replan: Option<Replan>,
     /// Weight of travel time, 0 to 4095.
     pub a0: Option<f64>,
@@ -76,17 +75,14 @@ pub struct FormationTable {
     pub crowd: Option<u8>,
     /// How far ahead of the top leader's cell the followers aim, cells.
     pub lead: Option<u8>,
-    /// Weight of the land under the followers' places in the leader's cell cost, 0 to 1; rounded to
-    /// sixteenths.
+    /// Weight of the followers' land in the leader's costs, 0 to 1; rounded to sixteenths.
     pub footprint: Option<f64>,
-    /// Whether the robots behind a dead robot each move up by one place; otherwise its place stays
-    /// empty.
+    /// Whether robots behind a dead robot move up a place each; otherwise its place stays empty.
     pub closes_ranks: Option<bool>,
     /// Prediction of the other robots: `"constant"` (they continue as announced) or `"reflexive"`
     /// (they decide as this robot would in their place).
     pub prediction: Option<Prediction>,
-    /// What the top leader does while others lag: `"wait"` or `"def"` (go to where the others are
-    /// heading).
+    /// Reaction of the top leader to lag: `"wait"` or `"def"` (go where the others are heading).
     pub recovery: Option<Recovery>,
 }
 
@@ -166,7 +162,6 @@ pub(super) fn looks_ahead(table: &FormationTable) -> bool {
     table.law == Some(FormationLaw::Lookahead)
 }
 
-/// Parameters of the published law, if the file chooses it.
 pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<Option<PublishedParams>, ScenarioError> {
     if table.law != Some(FormationLaw::Paper) {
         return Ok(None);

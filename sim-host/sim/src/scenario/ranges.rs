@@ -2,7 +2,6 @@
 
 use super::source::{ScenarioError, Source};
 
-/// Seconds as whole microseconds, rounded.
 pub(super) fn micros(seconds: f64) -> u32 {
     libm::round(seconds * 1e6) as u32
 }

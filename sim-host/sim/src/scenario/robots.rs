@@ -17,7 +17,6 @@ use staya_controller::template::{Template, TemplateError};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// Random streams of this module.
 const PLACES: u32 = 0x0053_0001;
 const GOALS: u32 = 0x0053_0002;
 
@@ -117,8 +116,7 @@ pub(super) fn build(
     Ok((robots, formations))
 }
 
-/// Builds a formation of a group in the plane as if it were alone; [`Formation::of`] assigns it to
-/// robots.
+/// Builds a formation of a group in the plane; [`Formation::of`] assigns it to robots.
 pub(super) fn of_group(
     source: &Source<'_>,
     field: &str,
@@ -189,8 +187,7 @@ fn graph(
     }
     let templates =
         |rho| (0..places.len()).map(|own| Template::from_graph(&places, &edges, own, rho)).collect::<Result<_, _>>();
-    // A robot that knows more of the formation keeps it better: the largest default radius that
-    // fits.
+    // More knowledge keeps the formation better: use the largest rho that fits.
     let templates = match rho {
         Some(rho) => templates(rho),
         None => templates(3).or_else(|_| templates(2)).or_else(|_| templates(1)),

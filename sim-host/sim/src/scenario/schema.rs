@@ -127,8 +127,7 @@ pub struct TerrainTable {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChangeTable {
-    /// Time, seconds after the start. It happens before the first tick that begins at or after this
-    /// time. Default: 0.
+    /// Time, seconds after the start. Applied before the first tick from then on. Default: 0.
     #[serde(default)]
     pub at_s: f64,
     /// Period of repetition, seconds. Default: once.
@@ -237,8 +236,7 @@ const fn hundredth() -> f64 {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ScoutingTable {
-    /// An outdated map: a file that is read and cropped like that of `[terrain]`. Default: the
-    /// terrain at the start.
+    /// An outdated map, read and cropped as in `[terrain]`. Default: the terrain at the start.
     pub map: Option<PathBuf>,
     /// Share of the map's patches that are unknown, 0 to 1. Default: 0.
     pub unknown: f64,
@@ -250,8 +248,7 @@ pub struct ScoutingTable {
     pub assumed: Option<u8>,
     /// Seed of the unknown and wrong patches. Default: the scenario's seed.
     pub seed: Option<u64>,
-    /// Radius of the planning window, cells in each direction, 1 to 16, at least `route.radius`.
-    /// Default: 16.
+    /// Planning radius, cells in each direction, 1 to 16, at least `route.radius`. Default: 16.
     pub radius: Option<u8>,
 }
 
@@ -266,8 +263,8 @@ pub struct Crop {
     pub height: u16,
 }
 
-/// `[[fault]]`: a robot's computer fails and restarts. It keeps only its id, its parameters and its
-/// task.
+/// `[[fault]]`: a robot's computer fails and restarts. It keeps only id, parameters and task; its
+/// clock restarts at 0.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FaultTable {
@@ -275,14 +272,12 @@ pub struct FaultTable {
     pub robot: u32,
     /// Time of the failure, seconds after the start.
     pub at_s: f64,
-    /// Time until the restart, in which the robot is stationary and silent, seconds. Its clock
-    /// restarts at 0. Default: 0.
+    /// Time until the restart, seconds; the robot is stationary and silent. Default: 0.
     #[serde(default)]
     pub down_s: f64,
 }
 
-/// `[[misnumbered]]`: a robot that was given the id of another one. This file and the results use
-/// its correct id.
+/// `[[misnumbered]]`: a robot with the id of another one; file and results use its own.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MisnumberedTable {
@@ -308,8 +303,7 @@ pub struct AuthenticationTable {
     pub master: Option<String>,
     /// With a master: position of the operator's radio, metres. Default: the south-west corner.
     pub place_m: Option<[f64; 2]>,
-    /// With a master: longest wait for answers from all robots in each phase of a key rotation,
-    /// seconds. Default: 5.
+    /// With a master: longest wait for answers per phase of a rotation, seconds. Default: 5.
     pub overlap_s: Option<f64>,
     /// With a master: key rotations.
     #[serde(default)]

@@ -16,8 +16,7 @@ pub struct Setting {
 impl FromStr for Setting {
     type Err = String;
 
-    /// Parses `FIELD=VALUE`. The value is TOML; other text counts as a string, which avoids nested
-    /// quotes in shells.
+    /// Parses `FIELD=VALUE` with a TOML value; other text is a string, for use in shells.
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = text.split_once('=').ok_or("give FIELD=VALUE, as in radio.loss=0.3")?;
         let name = name.trim();
@@ -33,8 +32,7 @@ impl FromStr for Setting {
 }
 
 impl Scenario {
-    /// Loads a scenario like [`Scenario::load`], with settings applied. The last setting of a field
-    /// wins.
+    /// Like [`Scenario::load`], with settings applied; the last setting of a field wins.
     ///
     /// # Errors
     /// See [`Scenario::load`]. The line is that of the field in the file, if it is there.

@@ -61,8 +61,7 @@ impl Scenario {
         self.edges().map(|[a, b]| (id(a), id(b))).collect()
     }
 
-    /// Cells that a rule or an intervention sets to another class, sorted; drifting cells are
-    /// excluded. O(cells).
+    /// Sorted cells that a rule or an intervention sets, without drifting cells. O(cells).
     #[must_use]
     pub fn changing_cells(&self) -> Vec<Cell> {
         let by_rule = self.changes.iter().flat_map(|rule| match &rule.kind {

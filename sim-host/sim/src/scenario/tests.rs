@@ -22,7 +22,6 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     Scenario::load(&path, &Overrides::default())
 }
 
-/// The error's text after the folder's name.
 fn refusal(text: &str) -> String {
     let error = parse(text).expect_err("a refusal").to_string();
     let at = error.find("s.toml").unwrap_or_else(|| panic!("names no file: {error}"));

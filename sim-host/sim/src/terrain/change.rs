@@ -8,7 +8,6 @@ use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::rand::Rng;
 use std::num::NonZeroU32;
 
-/// Random stream of this module.
 const DRIFT: u32 = 0x004C_0001;
 
 /// A rule that changes the terrain.
@@ -34,8 +33,7 @@ pub enum ChangeKind {
         /// Duration of the change, ticks; `None`: until the end of the run.
         lasts: Option<NonZeroU32>,
     },
-    /// Random cells become slower or faster to cross with equal probability. Closed cells stay
-    /// closed.
+    /// Random cells become slower or faster with equal probability; closed cells stay closed.
     Drift {
         /// The cells; `None`: the whole terrain.
         cells: Option<Vec<Cell>>,
@@ -89,7 +87,6 @@ impl LandChange {
         self.phase(tick).is_some_and(|phase| phase == 0 || Some(phase) == lasts)
     }
 
-    /// Ticks since the last application; `None` before the first.
     fn phase(&self, tick: u32) -> Option<u32> {
         let since = tick.checked_sub(self.first)?;
         Some(self.every.map_or(since, |every| since % every))

@@ -1,7 +1,6 @@
 //! Terrain metrics: configuration entropy, total edge and its density.
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), section 4, definitions 2 and 3. Blocked cells count as one
-//! class.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 4, definitions 2 and 3. Blocked cells are a class.
 
 use super::Terrain;
 use serde::Serialize;

@@ -33,8 +33,7 @@ use std::path::Path;
 pub struct LoadOptions {
     /// `.map`: impassability of swamp, 1..=255 (0: blocked).
     pub swamp: u8,
-    /// `.asc`: number of cells along each side that are combined before slopes are computed, 1 or
-    /// more.
+    /// `.asc`: cells along each side that are combined before slopes are computed, 1 or more.
     pub downsample: u16,
     /// `.asc`: conversion of slopes to impassability.
     pub slope: SlopeRule,
@@ -72,8 +71,7 @@ impl Terrain {
         Self { width, height, cells, cell_m: 1.0, origin_m: [0.0; 2] }
     }
 
-    /// Creates terrain from impassabilities, row by row from the south-west corner, with cells of 1
-    /// m.
+    /// Creates terrain from impassabilities, row by row from the south-west; cells of 1 m.
     ///
     /// # Errors
     /// A [`TerrainError::Size`] unless both sides are 1..=[`MAX_SIDE`] and `cells` has `width *

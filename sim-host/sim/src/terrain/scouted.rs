@@ -1,11 +1,9 @@
-//! Incomplete and partly wrong maps of a terrain (KUZ section 3: terrain that is not fully
-//! scouted).
+//! Incomplete and partly wrong maps of a terrain (KUZ section 3).
 
 use super::Terrain;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::rand::Rng;
 
-/// Random stream of this module.
 const PATCH: u32 = 0x004C_0002;
 
 /// Differences between a map and the terrain.
@@ -13,8 +11,7 @@ const PATCH: u32 = 0x004C_0002;
 pub struct Scouted {
     /// Share of patches that the map does not show, 0 to 1.
     pub unknown: f64,
-    /// Share of patches that show another part of the terrain, 0 to 1; both shares together are at
-    /// most 1.
+    /// Share of patches that show other terrain, 0 to 1; both shares add up to at most 1.
     pub wrong: f64,
     /// Side of a patch, cells, 1 or more.
     pub patch_cells: u16,
@@ -56,8 +53,7 @@ impl Scouted {
     }
 }
 
-/// Median class of the open cells, 1 if there are none: the default assumption for unknown cells.
-/// O(cells).
+/// Median class of the open cells, 1 if there are none; the default for unknown cells. O(cells).
 #[must_use]
 pub fn usual_class(land: &Terrain) -> u8 {
     let mut counts = [0_usize; 256];

@@ -3,8 +3,7 @@
 use super::error::{MAX_SIDE, Place, TerrainError, format_error};
 use std::path::Path;
 
-/// Decodes a file without its byte order mark; an error names the line of the first byte that is
-/// not UTF-8.
+/// Decodes UTF-8 without a byte order mark; an error names the line.
 pub(super) fn text<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str, TerrainError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {

@@ -17,8 +17,7 @@ use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 
 /// Distance in cells up to which a rank knows the bodies of others. At least 2, because bodies up
-/// to two cells apart compete for a cell. A larger value takes more bytes and leaves fewer moves
-/// undecided.
+/// to two cells apart compete for a cell. A larger value takes more bytes.
 pub const DEPTH: i16 = 8;
 
 /// Occupancy mark: not decided yet.
@@ -217,8 +216,7 @@ impl World {
         own.iter().filter(|(cell, id)| least[cell] < **id).count() as u64
     }
 
-    /// Index and occupancy of the cell that a move by `dir` leads to; `None` if the terrain does
-    /// not allow the move.
+    /// Index and occupancy of the next cell; `None` if the terrain does not allow the move.
     fn at_end_of(&self, from: Cell, dir: Dir) -> Option<(usize, u32)> {
         let to = from + dir.offset();
         let passable = |x, y| self.terrain.is_passable(Cell::new(x, y));
@@ -261,8 +259,7 @@ impl Contest {
                         if let Some((at, 0)) = world.at_end_of(mover.cell, dir) {
                             self.before.push((at, 0));
                             world.occupancy[at] = OPEN;
-                            // All its competitors are known, so it moves to this free cell at the
-                            // latest.
+                            // All competitors are known, so it stops here at the latest.
                             if mover.is_seen {
                                 break;
                             }

@@ -23,7 +23,6 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use thiserror::Error;
 
-/// Random stream of this module.
 const PRIORITY: u32 = 0x0057_0001;
 
 /// Rules of movement.
@@ -47,8 +46,7 @@ pub struct Body {
     pub entered_by: Dir,
     /// Time when it may leave, in [`UNIT`]ths of a tick after the start.
     pub free_at: u64,
-    /// Duration of its last crossing, in [`UNIT`]ths of a tick; stored because the land may change.
-    /// 0 if it never moved.
+    /// Duration of its last crossing by the land of that time, [`UNIT`]ths of a tick; 0: none.
     pub crossing: u64,
     /// The cell was closed while the body was inside: it may leave, and no body may enter.
     pub is_shut_in: bool,
@@ -94,8 +92,7 @@ pub struct World {
     occupancy: Vec<u32>,
     /// Scratch: bodies that want to move in this tick, with their priority.
     movers: Vec<(u64, RobotId, u32)>,
-    /// Scratch of the collision check: one bit per cell, set if a body was seen there. Empty
-    /// between checks.
+    /// Scratch of the collision check: a bit per cell with a body. Empty between checks.
     seen: Vec<u64>,
 }
 
@@ -147,8 +144,7 @@ impl World {
         &self.terrain
     }
 
-    /// Restores body `index`. A body that is already in its cell must be moved too. Returns whether
-    /// the cell is valid.
+    /// Restores body `index` if its cell is valid. A body in that cell must be moved too.
     pub(crate) fn put(&mut self, index: usize, body: Body) -> bool {
         let may_be_there = body.is_shut_in || self.terrain.is_passable(body.cell);
         let Some(to) = self.terrain.index(body.cell).filter(|_| may_be_there) else {
@@ -270,8 +266,7 @@ impl World {
             && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)))
     }
 
-    /// Number of bodies in a blocked cell that did not close around them, or in a cell with another
-    /// body.
+    /// Number of bodies in a shared cell, or in a blocked cell that did not close around them.
     ///
     /// Uses only the bodies and the terrain, not the occupancy table of [`World::advance`], so that
     /// it can find errors in that table. O(robots).

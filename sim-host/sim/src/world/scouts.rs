@@ -1,5 +1,4 @@
-//! Robots' knowledge of terrain outside their sight: a common map, and each robot's own
-//! observations.
+//! Robots' knowledge of unseen terrain: a common map, and each robot's own observations.
 
 use super::window::known_window;
 use crate::terrain::Terrain;
@@ -14,7 +13,6 @@ pub const REMEMBERED: usize = 1024;
 /// Terrain memory of one robot.
 pub type Memory = LandMemory<REMEMBERED>;
 
-/// Smallest number of robots per parallel task.
 const BATCH: usize = 64;
 
 /// Terrain that robots know before they see it.
@@ -47,8 +45,7 @@ impl Scouts {
         self.known.sight
     }
 
-    /// Terrain around `cell` as known by the robot of body `index`: current sight first, then
-    /// memory, then the map.
+    /// Terrain around `cell` as known by a robot: from sight, else memory, else the map.
     pub fn window<'a>(&self, land: &Terrain, index: usize, cell: Cell, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
         let Scouting { map, sight } = &self.known;
         known_window(land, (map, &self.memories[index]), cell, [*sight, self.radius], buffer)

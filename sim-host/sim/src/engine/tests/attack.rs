@@ -1,5 +1,4 @@
-//! Attackers without the key have no effect, in either wire format; without authentication they
-//! divert the swarm.
+//! Attackers without the key have no effect; without authentication they divert the swarm.
 
 use crate::engine::{Moment, Outcome, simulate};
 use crate::record::RobotRow;
@@ -18,7 +17,6 @@ fn run(text: &str) -> Outcome {
     simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("free places")
 }
 
-/// Removes the tables that begin with `[name]`.
 fn without(text: &str, name: &str) -> String {
     let mut is_kept = true;
     let kept = text.lines().filter(|line| {
@@ -112,8 +110,7 @@ fn a_compromised_robot_cannot_order_and_is_locked_out_by_a_rotation() {
     let revoked = run(REVOKED);
     assert_eq!(revoked.arrived, 5, "all but the one that was taken");
     let (before, after) = (10, 25);
-    // Five robots refuse or lose two orders and a beacon per second; after the rotation none is
-    // accepted.
+    // Five robots refuse or lose two orders and a beacon per second.
     let refused = revoked.packets.forged;
     assert!(refused > u64::from(revoked.ticks - after) * 5 * 2, "{:?}", revoked.packets);
 

@@ -26,8 +26,7 @@ fn goal(robot: Option<u32>, x: f64, y: f64) -> Intervention {
     Intervention::Goal { robot, place_m: [x, y, 0.0] }
 }
 
-/// A run with interventions by hand until all robots have arrived, and a run of the scenario that
-/// results from it.
+/// A complete run with interventions by hand, and a run of the resulting scenario.
 fn by_hand_and_again(text: &str, done: &[(u32, Intervention)]) -> [Outcome; 2] {
     let scenario = parse(text);
     let mut swarm = operated(&scenario).expect("they can be placed");

@@ -87,8 +87,7 @@ fn ids_of_intruders_with_beacons_must_fit_the_format() {
     parse(&format!("{text}heard = false\n")).expect("who is silent needs no number");
 }
 
-/// Balls on two rings that swap places, and how often one was within `looked_for` above or below
-/// another.
+/// Balls on two rings swap places; counts those within `looked_for` above or below another.
 fn washed(own_downwash: f64, looked_for: f64) -> (Outcome, usize) {
     let mut list = String::new();
     for index in 0..12 {

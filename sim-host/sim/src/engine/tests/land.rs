@@ -9,8 +9,7 @@ fn parse(text: &str) -> Scenario {
     Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario")
 }
 
-/// Flat land of 30 x 7 cells with a wall from south to north at x = 15 that has a door of one cell,
-/// (15, 3).
+/// Flat land of 30 x 7 cells with a wall at x = 15 that has a door of one cell, (15, 3).
 fn door(robots: &str, changes: &str, rest: &str) -> Scenario {
     let wall = "[[terrain.change]]\nclass = 0\ncells = [[15, 0], [15, 1], [15, 2], [15, 4], [15, 5], [15, 6]]\n";
     parse(&format!(
@@ -62,8 +61,7 @@ fn robots_pass_a_gate_once_it_opens() {
 
 #[test]
 fn a_robot_takes_another_route_when_one_closes_ahead() {
-    // A second door is in the far corner; the near one closes when the robot is three cells before
-    // it.
+    // A second door is in the far corner; the near one closes three cells ahead.
     for replan in ["each_cell", "until_changed"] {
         let changes = "[[terrain.change]]\nclass = 1\ncells = [[15, 0]]\n\
             [[terrain.change]]\nat_s = 5\nclass = 0\ncells = [[15, 3]]\n";
@@ -75,8 +73,7 @@ fn a_robot_takes_another_route_when_one_closes_ahead() {
 
 #[test]
 fn a_robot_may_leave_a_closing_cell_and_none_may_enter() {
-    // Robot 1 is crossing the door, which takes nine ticks, when it closes in the third; another
-    // robot follows.
+    // The door closes in the third of nine ticks in which robot 1 crosses it.
     let robots = "list = [{ start = [14, 3], goal = [20, 3] }, { start = [11, 3], goal = [20, 4] }]";
     let changes = "[[terrain.change]]\nclass = 9\ncells = [[15, 3]]\n[[terrain.change]]\nat_s = 1\nclass = 0\ncells = [[15, 3]]\n";
     let (outcome, _) = run(&door(robots, changes, ""));

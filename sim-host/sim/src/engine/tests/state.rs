@@ -60,8 +60,7 @@ where
     }
 }
 
-/// Packs each robot at `tick` and unpacks it into an engine of the same tick whose robots are at
-/// their starts.
+/// Moves each robot at `tick` to an engine of that tick whose robots are at their starts.
 fn moves<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, tick: u32, ticks: u32)
 where
     W: Ground,

@@ -13,17 +13,14 @@ const INTERVALS: usize = 4096;
 pub struct Energy {
     /// K: half the squared velocities relative to their mean.
     pub kinetic: f64,
-    /// c1 V: the sum of the pair potential, times the gain between robots; pairs out of range count
-    /// as at the range.
+    /// c1 V: pair potential times gain, summed; pairs out of range count as at the range.
     pub lattice: f64,
-    /// c1 J: half the squared distances from the centroid, times the gain of the reference; 0
-    /// except in algorithm 2.
+    /// c1 J: half the squared distances from the centroid, times gain; 0 but in algorithm 2.
     pub reference: f64,
 }
 
 impl Energy {
-    /// Structural Hamiltonian (eq. 36): H = V + K in algorithm 1, plus the reference's part in
-    /// algorithm 2.
+    /// Structural Hamiltonian (eq. 36): H = V + K, plus the reference in algorithm 2.
     #[must_use]
     pub fn hamiltonian(&self) -> f64 {
         self.kinetic + self.lattice + self.reference
@@ -122,8 +119,7 @@ impl<const D: usize> EnergyMeter<D> {
     }
 }
 
-/// Integral of phi_alpha from d_alpha, at equidistant arguments from 0 to r_alpha, by Simpson's
-/// rule.
+/// Integral of phi_alpha from d_alpha, tabulated from 0 to r_alpha (Simpson's rule).
 fn pair_potential(phi: &PhiAlpha<f64>) -> Vec<f64> {
     let step = phi.r_alpha / INTERVALS as f64;
     let force = |z: f64| phi.at(z, phi.adjacency(z));

@@ -67,8 +67,7 @@ pub(super) fn land<'a>(
     }
 }
 
-/// Checks robots given in metres that move from cell to cell: each starts on the terrain and has
-/// one goal there.
+/// Checks robots on the grid that are given in metres: start and goal are on the terrain.
 pub(super) fn in_cells(
     source: &Source<'_>,
     spec: &Spec,

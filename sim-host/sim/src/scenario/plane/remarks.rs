@@ -65,8 +65,7 @@ fn named(robots: impl Iterator<Item = usize>) -> Option<String> {
     Some(if text.is_empty() { format!("{robots} {last}") } else { format!("{robots} {} and {last}", text.join(", ")) })
 }
 
-/// Warns if a robot moves farther in a tick than its body is wide, since collisions within the tick
-/// are not detected.
+/// Warns of undetected collisions if a robot moves more than its width in a tick.
 fn long_tick(group: &RobotGroup, tick_s: f64) -> Option<String> {
     let (speed_mps, wide_m) = (group.abilities.max_speed_mps, 2.0 * group.radius_m);
     let way_m = speed_mps * tick_s;

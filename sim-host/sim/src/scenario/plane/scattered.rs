@@ -11,7 +11,6 @@ use staya_controller::agent::GuidanceKind;
 use staya_controller::rand::Rng;
 use std::collections::HashMap;
 
-/// Random streams of this module.
 const SCATTERED: u32 = 0x0053_0004;
 const BALLS: u32 = 0x0053_0005;
 

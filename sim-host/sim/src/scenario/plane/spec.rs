@@ -105,8 +105,7 @@ impl Spec {
         &self.tables[0]
     }
 
-    /// Path of a field that applies to these robots: where the file sets it, else in the first
-    /// table.
+    /// Path of a field: where the file sets it for these robots, else in the first table.
     pub fn field(&self, source: &Source<'_>, name: &str) -> String {
         let mut fields = self.tables.iter().map(|table| format!("{table}.{name}"));
         let found = fields.find(|field| source.stands(field));

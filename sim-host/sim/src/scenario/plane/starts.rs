@@ -14,7 +14,6 @@ use crate::world::plane::Solid;
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
 
-/// Random stream of this module.
 const STARTS: u32 = 0x0053_0003;
 
 pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {

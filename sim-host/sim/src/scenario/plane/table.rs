@@ -23,8 +23,7 @@ pub struct PlaneTable {
     /// Range of obstacle detection, metres. Default: 10.
     #[serde(default = "ten")]
     pub sight_m: f64,
-    /// Side lengths of a torus that replaces the open plane, metres: a robot that leaves on one
-    /// side enters on the other.
+    /// Side lengths of a torus with periodic borders, metres. Default: the open plane.
     pub torus_m: Option<[f64; 2]>,
     /// Guidance law; `"route"` and `"formation"` need `[terrain]`, the latter also
     /// `robots.formation`.
@@ -105,7 +104,6 @@ pub struct EyesTable {
     pub beacons: bool,
     /// Standard deviation of the other robots' accelerations in the tracking filter, m/s^2.
     /// Default: their limit, at most four times the highest speed per second.
-    /// speed in a second.
     pub acceleration_mps2: Option<f64>,
     /// Gate of the assignment to a track, standard deviations. Default: 4.
     #[serde(default = "four")]
@@ -288,16 +286,14 @@ pub struct CloudEntry {
 pub struct ScatteredDiscs {
     /// Number of robots.
     pub count: u32,
-    /// Corner of the box of uniform random starts and goals, metres; those too close to others are
-    /// redrawn.
+    /// Corner of the box of uniform starts and goals, metres; those too close are redrawn.
     pub from_m: Place,
     /// Opposite corner.
     pub to_m: Place,
     /// Farthest distance of a goal from its start along each axis, metres. Default: the whole box.
     #[serde(default = "infinite")]
     pub travel_m: f64,
-    /// Smallest distance of two starts, and of two goals, metres; at least two radii. Default:
-    /// three radii.
+    /// Smallest distance of starts and of goals, metres, two radii or more. Default: three.
     pub spacing_m: Option<f64>,
 }
 
@@ -407,10 +403,9 @@ impl OrcaTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PushOutTable {
-    /// Smallest distance of two robots' centres, and of a centre from an obstacle (R_MinDist),
-    /// metres.
+    /// Smallest distance of a centre from others and from obstacles (R_MinDist), metres.
     pub min_distance_m: f64,
-    /// `"radial"` (model 1: along the radius; the default) or `"tangential"` (model 2: along the
+    /// `"radial"` (model 1, along the radius; default) or `"tangential"` (model 2, along the
     /// border).
     #[serde(default)]
     pub model: Model,
@@ -433,8 +428,7 @@ pub struct LatticeTable {
     pub c_beta: Option<f64>,
     /// Gain on positions relative to the goal (c1 of the gamma-agent), 1/s^2.
     pub c_gamma: Option<f64>,
-    /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays in place despite
-    /// it. Default: true.
+    /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays. Default: true.
     pub goal_moves: Option<bool>,
     /// Distance behind a stationary goal over which its velocity fades, metres: the flock comes to
     /// rest within it. Default: never.

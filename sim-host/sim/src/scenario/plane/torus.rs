@@ -9,8 +9,7 @@ use staya_controller::agent::{GuidanceKind, GuidanceSetup};
 
 /// Largest side, metres: up to here, whole millimetres are also exact in `f32`.
 const LARGEST_M: f64 = 16_000.0;
-/// Height of the space, metres. All bodies are at height 0, so a minimal height keeps the spatial
-/// index to one layer.
+/// Height of the space, metres. A minimal height keeps the spatial index to one layer.
 const HIGH_M: f64 = 0.001;
 
 pub(super) fn space(torus_m: Option<[f64; 2]>) -> Space<f64, 3> {

@@ -59,8 +59,7 @@ pub fn by_metrics(plan: &LandPlan, wanted: &ByMetrics) -> Result<Terrain, Terrai
     let start = search.edges;
     search.approach(wanted.total_edge);
     if search.edges.abs_diff(wanted.total_edge) > wanted.edge_tolerance {
-        // The result of the search is one end of the possible range; a search in the other
-        // direction finds the other.
+        // This search found one end of the possible range; another finds the other.
         let (low, high) = if search.edges > wanted.total_edge {
             let low = search.edges;
             let mut upward = Search::new(plan, fill(&noise, &sizes));
@@ -142,8 +141,7 @@ fn fields<'a>(plan: &'a LandPlan, noise: &'a [u64]) -> impl Iterator<Item = Vec<
     std::iter::once(noise.to_vec()).chain(smoothed).chain(std::iter::once_with(move || stripes.collect()))
 }
 
-/// Two passes of a box filter of `radius` (as sums), on a torus: no border is visible in the
-/// terrain.
+/// Two passes of a box filter of `radius` (as sums), on a torus to avoid borders.
 fn smooth(field: &[u64], width: u16, radius: u16) -> Vec<u64> {
     let (width, radius) = (usize::from(width), usize::from(radius));
     let mut field = field.to_vec();
@@ -162,8 +160,7 @@ fn smooth(field: &[u64], width: u16, radius: u16) -> Vec<u64> {
     field
 }
 
-/// For each place of a ring, the sum from `radius` before to `radius` after it (at most once
-/// round).
+/// Sums over a ring from `radius` before to `radius` after each place (at most once round).
 fn sums(ring: &[u64], radius: usize) -> Vec<u64> {
     let length = ring.len();
     let radius = radius.min((length - 1) / 2);
@@ -234,7 +231,6 @@ impl Search {
         }
     }
 
-    /// Sides of a cell towards other classes.
     fn sides(&self, at: usize) -> u64 {
         let here = self.cells[at];
         let x = at % self.width;

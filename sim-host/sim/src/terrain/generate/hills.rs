@@ -13,7 +13,6 @@ use staya_controller::grid::Norm;
 use staya_controller::names::Named;
 use staya_controller::rand::Rng;
 
-/// Random stream of rough hills.
 const ROUGH: u32 = 0x0054_0002;
 /// Scale of the slopes of rough hills.
 const ONE: u64 = 256;
@@ -31,8 +30,7 @@ pub enum Hills {
     Wide,
     /// By one per cell; overlapping hills add up.
     Added,
-    /// By 0 to 2 per cell, with a random slope for each cell: l - floor(q d), q uniform from 0 to
-    /// 2.
+    /// By a random slope for each cell: l - floor(q d), q uniform from 0 to 2.
     Rough,
 }
 
@@ -50,8 +48,7 @@ impl Named for Hills {
     }
 }
 
-/// Generates natural terrain by a given variant; see [`natural`](super::natural). O(size *
-/// obstacles).
+/// Generates natural terrain; see [`natural`](super::natural). O(size * obstacles).
 ///
 /// # Errors
 /// See [`natural`](super::natural).

@@ -15,7 +15,6 @@ use crate::file::has_memory;
 use staya_controller::grid::Norm;
 use staya_controller::rand::Rng;
 
-/// Random stream of the generators.
 const LAND: u32 = 0x0054_0001;
 
 /// Size, classes and seed of random terrain.
@@ -86,8 +85,7 @@ pub fn uniform(plan: &LandPlan) -> Result<Terrain, TerrainError> {
 /// 7b). Distances are Euclidean or Chebyshev, by `norm`. O(size + obstacles l^2).
 ///
 /// # Errors
-/// A [`TerrainError::Parameter`] if the plan is out of range, or there are more obstacles than
-/// cells.
+/// A [`TerrainError::Parameter`] for a plan out of range or more obstacles than cells.
 pub fn natural(plan: &LandPlan, obstacles: u32, norm: Norm) -> Result<Terrain, TerrainError> {
     check_obstacles(plan, obstacles)?;
     let width = usize::from(plan.width);
@@ -135,7 +133,6 @@ fn sample(total: u32, count: u32, rng: &mut Rng) -> Vec<u32> {
     }
 }
 
-/// Impassability around one obstacle; 1 outside the square.
 struct Hill {
     reach: usize,
     square: Vec<u8>,

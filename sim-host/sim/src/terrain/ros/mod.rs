@@ -25,8 +25,7 @@ use std::path::{Path, PathBuf};
 pub use pgm::parse_pgm;
 pub use yaml::{Meta, Mode, parse_meta};
 
-/// Thresholds that separate 255 classes and walls: 255 grey levels from p = 0 to 254/255, and
-/// black.
+/// Thresholds for 255 classes and walls: 255 grey levels from p = 0 to 254/255, and black.
 const FREE_THRESH: f64 = 0.0;
 const OCCUPIED_THRESH: f64 = 0.997;
 
@@ -96,8 +95,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError>
 /// of `path` gives an equal terrain.
 ///
 /// # Errors
-/// A [`TerrainError::Write`]; a [`TerrainError::Format`] if the file name cannot be written in a
-/// YAML line.
+/// A [`TerrainError::Write`]; a [`TerrainError::Format`] if YAML cannot hold the file name.
 pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
     let image: PathBuf = path.with_extension("pgm");
     let name = image.file_name().and_then(|name| name.to_str()).filter(|name| !name.contains(['"', '\\', '\n', '\r']));

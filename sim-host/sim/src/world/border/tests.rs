@@ -129,8 +129,7 @@ proptest! {
 
 #[test]
 fn a_chain_across_borders_takes_several_rounds() {
-    // A gapless row of bodies that all want to go east, free only at its end: each move depends on
-    // all before it.
+    // A gapless row of bodies that want to go east: each move depends on all before it.
     let side = 40;
     let walls: Vec<_> = (1..side).flat_map(|y| (0..side).map(move |x| (x, y))).collect();
     let strips = |cell: Cell| usize::from(cell.x.cast_unsigned()) / 2 % 2;

@@ -24,8 +24,7 @@ impl Plane {
         self.reach_m
     }
 
-    /// Keeps only the bodies with the indices `here`, in this order. The search radius does not
-    /// change.
+    /// Keeps only the bodies with the indices `here`, in this order, and the search radius.
     pub fn keep(&mut self, here: &[u32]) {
         self.discs = here.iter().map(|&index| self.discs[index as usize]).collect();
         self.shut = vec![Vec::new(); here.len()];

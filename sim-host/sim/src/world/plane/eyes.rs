@@ -8,7 +8,6 @@ use staya_controller::rand::Rng;
 use staya_controller::time::Duration;
 use std::collections::VecDeque;
 
-/// Random stream of this module.
 const PURPOSE: u32 = u32::from_be_bytes(*b"eyes");
 
 /// Properties of the sensors: `[plane.eyes]` of a scenario.

@@ -44,16 +44,14 @@ pub struct Disc {
     pub velocity_mps: [f64; 3],
     /// Speed and acceleration limits.
     pub abilities: Abilities,
-    /// Ratio of height to width of the space that other bodies should avoid because of downwash; 1:
-    /// a ball.
+    /// Ratio of height to width of the space to avoid because of downwash; 1: a ball.
     pub downwash: f64,
 }
 
 /// Speed and acceleration limits of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Abilities {
-    /// Highest speed on easy land (impassability 1) and off the map, m/s; divided by u on land of
-    /// impassability u.
+    /// Highest speed on land of impassability 1 and off the map, m/s; else divided by it.
     pub max_speed_mps: f64,
     /// Highest acceleration, m/s^2; may be infinite.
     pub max_acceleration_mps2: f64,
@@ -84,16 +82,13 @@ pub struct Clearance {
     /// Smallest distance between the surfaces of two bodies, metres, negative if they overlap;
     /// infinite if no two are within three radii of each other.
     pub bodies_m: f64,
-    /// Smallest distance between a body's surface and an obstacle, metres; infinite without
-    /// obstacles.
+    /// Smallest distance between a body and an obstacle, metres; infinite without obstacles.
     pub solids_m: f64,
     /// Pairs of bodies that overlap.
     pub overlaps: u64,
-    /// Bodies that overlap an obstacle, or whose centre is in a blocked cell that did not close
-    /// around them.
+    /// Bodies that overlap an obstacle, or are in a blocked cell that did not close around them.
     pub intrusions: u64,
-    /// Smallest distance between the surfaces of a body and an intruder, metres; infinite without
-    /// intruders.
+    /// Smallest gap between a body and an intruder, metres; infinite without intruders.
     pub intruders_m: f64,
     /// Pairs of a body and an intruder that overlap.
     pub intruder_overlaps: u64,
@@ -125,7 +120,6 @@ impl Clearance {
     }
 }
 
-/// Smallest number of bodies per parallel task.
 const BATCH: usize = 256;
 
 /// Smallest search radius for obstacles, in radii of the largest body.
@@ -202,8 +196,7 @@ impl Plane {
         self.solids.near(place_m, within_m).filter(move |solid| solid.distance_m(place_m) <= within_m)
     }
 
-    /// Restores position and velocity of body `index`; indices after the robots are those of
-    /// intruders.
+    /// Restores position and velocity of a body; intruders follow the robots.
     pub(crate) fn put(&mut self, index: usize, position_m: [f64; 3], velocity_mps: [f64; 3]) {
         let intruders = self.intruders.iter_mut();
         if let Some(disc) = self.discs.iter_mut().chain(intruders).nth(index) {
@@ -236,8 +229,7 @@ impl Plane {
         }
     }
 
-    /// Cells that closed while body `index` was inside and that it has not left, with their
-    /// previous class.
+    /// Cells that closed around body `index` and still hold it, with their previous class.
     #[must_use]
     pub fn shut(&self, index: usize) -> &[(Cell, u8)] {
         &self.shut[index]

@@ -81,8 +81,7 @@ impl Solid {
     }
 }
 
-/// Converts an obstacle to `f32`; its coordinates must be relative to the robot, and therefore
-/// small.
+/// Converts an obstacle to `f32`; its coordinates must be relative to the robot.
 pub fn narrow(obstacle: &Obstacle<f64>) -> Obstacle<f32> {
     let flat = |v: Vec2<f64>| Vec2::new(v.x as f32, v.y as f32);
     let way = |v: Vec3<f64>| Vec3::new(v.x as f32, v.y as f32, v.z as f32);

@@ -16,8 +16,7 @@ fn meter(params: &LatticeParams<f64>) -> EnergyMeter<2> {
     EnergyMeter::new(params).expect("sound")
 }
 
-/// One step of the law by the engine's rule (velocity first, then position), with complete
-/// information.
+/// One step of the law by the engine's rule: velocity first, then position.
 fn step(params: &LatticeParams<f64>, dt: f64, places: &mut [[f64; 2]], velocities: &mut [[f64; 2]]) {
     let vec = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0);
     let changes: Vec<Vec3<f64>> = (0..places.len())
