@@ -26,24 +26,20 @@ pub struct Intruder {
 pub(super) type IntruderState = (HostWire, u16);
 
 impl Intruder {
-    /// Creates the radio of `disc`; it sends frames in `format` without a key.
     pub fn new(disc: &Disc, format: Format) -> Self {
         let [x, y, _] = disc.position_m;
         let wire = radio::wire(format, None, 0);
         Self { id: disc.id, position_m: [x, y], wire, sequence: 0, outbox: Vec::new() }
     }
 
-    /// Serializes the mutable part of the intruder.
     pub fn state(&self) -> impl Serialize {
         (&self.wire, self.sequence)
     }
 
-    /// Restores the mutable part.
     pub fn restore(&mut self, (wire, sequence): IntruderState) {
         (self.wire, self.sequence) = (wire, sequence);
     }
 
-    /// Encoded frames of this tick.
     pub fn outbox(&self) -> &[u8] {
         &self.outbox
     }

@@ -11,11 +11,9 @@ use staya_controller::rand::Rng;
 /// Inputs of a safety layer in one step.
 #[derive(Clone, Debug)]
 pub struct Asked {
-    /// Own body.
     pub body: Body<f32>,
     /// Velocity chosen by the guidance law, m/s.
     pub wish_mps: Vec3<f32>,
-    /// Neighbours in range, nearest first.
     pub nearby: Vec<Nearby<f32>>,
     /// Static obstacles in sight.
     pub obstacles: Vec<Obstacle<f32>>,
@@ -34,17 +32,14 @@ pub struct Witness<A> {
 }
 
 impl<A> Witness<A> {
-    /// Wraps a layer.
     pub const fn new(inside: A) -> Self {
         Self { inside, listens: false, asked: None }
     }
 
-    /// Starts recording.
     pub const fn listen(&mut self) {
         self.listens = true;
     }
 
-    /// The wrapped layer.
     pub const fn inside(&self) -> &A {
         &self.inside
     }

@@ -27,6 +27,7 @@ impl Field {
         Some(Self { name: name.to_owned(), steps: steps.collect::<Option<_>>()? })
     }
 
+    /// The path as text.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -75,7 +75,7 @@ pub struct FormationTable {
     pub crowd: Option<u8>,
     /// How far ahead of the top leader's cell the followers aim, cells.
     pub lead: Option<u8>,
-    /// Weight of the followers' land in the leader's costs, 0 to 1; rounded to sixteenths.
+    /// Weight of the land under followers in the leader's costs, 0 to 1; rounded to sixteenths.
     pub footprint: Option<f64>,
     /// Whether robots behind a dead robot move up a place each; otherwise its place stays empty.
     pub closes_ranks: Option<bool>,

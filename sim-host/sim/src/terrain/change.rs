@@ -26,7 +26,7 @@ pub struct LandChange {
 pub enum ChangeKind {
     /// Cells get another crossing time, or close.
     Become {
-        /// Cells, each with its class after the change.
+        /// Cells, each with the class that it reverts to.
         cells: Vec<(Cell, u8)>,
         /// Ticks to cross the cells; [`BLOCKED`]: closed.
         class: u8,

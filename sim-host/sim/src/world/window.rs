@@ -36,9 +36,9 @@ pub fn window_but<'a>(
     Window::new(buffer, origin, side, side)
 }
 
-/// Terrain window as known by a robot with `sight` that plans on `radius` cells (`[sight,
-/// radius]`). It combines `land` within sight, the memory beyond it, and the map elsewhere; both
-/// terrains have the same size. `None` off the map. O(radius^2 + N).
+/// Terrain window of a robot that sees `sight` cells far and plans on `radius` cells. It combines
+/// `land` within sight, the memory beyond it, and the map elsewhere; both terrains have the same
+/// size. `None` off the map. O(radius^2 + N).
 #[must_use]
 pub fn known_window<'a, const N: usize>(
     land: &Terrain,

@@ -112,7 +112,6 @@ impl Spec {
         found.unwrap_or_else(|| format!("{}.{name}", self.tables[0]))
     }
 
-    /// Returns an error unless a value is in its range.
     pub fn within(
         &self,
         source: &Source<'_>,
