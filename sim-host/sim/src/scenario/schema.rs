@@ -331,7 +331,7 @@ pub enum AttackKind {
     Forge,
     /// Sends the same orders without tag or signature.
     Unsigned,
-    /// Controls a robot with its keys, and sends false beacons.
+    /// Controls a robot with its keys, and sends false messages.
     Insider,
 }
 
