@@ -1,13 +1,13 @@
-//! A run's checkpoint: one file with all that it takes to go on, to the same trace hash and the same records.
+//! Checkpoints: one file from which a run resumes with the same trace hash and the same records.
 //!
 //! ```text
-//! "staya checkpoint" format:u32, then head, state, history, trace.csv and series.csv so far, each as
-//! length:u64 bytes crc32:u32, of length and bytes
+//! "staya checkpoint" format:u32, then head, state, history, trace.csv and series.csv so far,
+//! each as length:u64 bytes crc32:u32, of length and bytes
 //! ```
 //!
-//! Integers are little-endian; head, state and history are postcard's. A file comes into being whole: it is written beside
-//! its place, synced and renamed; the one before it stays as `FILE.old`. Keys of the scenario are in it, so only its
-//! owner may read it.
+//! Integers are little-endian; head, state and history are in postcard format. The file is replaced
+//! atomically: it is written to a temporary file, synced and renamed. The previous checkpoint is
+//! kept as `FILE.old`. The file contains keys of the scenario, so only its owner can read it.
 
 pub use crate::engine::Every;
 
@@ -24,16 +24,14 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 const MAGIC: &[u8; 16] = b"staya checkpoint";
-/// Of the file; raised when head, state or history get another form.
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
-/// What the file holds, in order.
 const PARTS: [&str; 5] = ["head", "state", "history", "trace.csv", "series.csv"];
 const TRACE: usize = 3;
 const SERIES: usize = 4;
 const FIRST: u64 = MAGIC.len() as u64 + 4;
 
-/// A file that is no checkpoint of this scenario, or is damaged.
+/// The file is damaged, or not a checkpoint of this scenario.
 #[derive(Debug, Error)]
 #[error("{}: {what}; {remedy}", path.display())]
 pub struct CheckpointError {
@@ -42,7 +40,6 @@ pub struct CheckpointError {
     remedy: String,
 }
 
-/// Of what a checkpoint is.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Head {
     version: String,
@@ -52,7 +49,7 @@ struct Head {
     wall_seconds: f64,
 }
 
-/// Where checkpoints of a run go.
+/// Location of a run's checkpoints.
 #[derive(Clone, Debug)]
 pub struct Place {
     path: PathBuf,
@@ -61,26 +58,27 @@ pub struct Place {
 }
 
 impl Place {
-    /// The file for a run of this scenario.
+    /// Creates the location for a run of `scenario`.
     #[must_use]
     pub fn new(path: PathBuf, scenario: &Scenario) -> Self {
         Self { path, scenario: scenario.name.clone(), fingerprint: scenario.fingerprint() }
     }
 
-    /// The file.
+    /// Path of the checkpoint file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes a checkpoint of a run that is at `tick` and has taken so long. Until it is whole, the one before it stays; then that is
-    /// `FILE.old`.
+    /// Writes a checkpoint of a run at `tick` that has taken `wall_seconds`. The previous
+    /// checkpoint is replaced only when the new one is complete; it is kept as `FILE.old`.
     ///
     /// # Errors
-    /// It cannot be written, or the records so far cannot be read. The one before it is as it was.
+    /// The checkpoint cannot be written, or the records cannot be read. The previous checkpoint is
+    /// unchanged.
     ///
     /// # Panics
-    /// Some robots of the run are elsewhere.
+    /// If some robots of the run have external controllers.
     pub fn write(
         &self,
         tick: u32,
@@ -117,25 +115,25 @@ impl Place {
             self.replace(&temporary)
         })();
         done.map_err(|error| {
-            // The error that matters is the first one.
+            // Report the first error.
             let _ = fs::remove_file(&temporary);
             record::Error::new("write", &self.path)(error)
         })
     }
 
-    /// The whole new file becomes the checkpoint, the checkpoint the old one; there is one at each moment.
+    /// Replaces the checkpoint and keeps the old one. A checkpoint exists at every moment.
     fn replace(&self, temporary: &Path) -> io::Result<()> {
         let link = beside(&self.path, &format!(".old.{}.tmp", std::process::id()));
         let old = beside(&self.path, ".old");
         let kept = fs::hard_link(&self.path, &link).and_then(|()| fs::rename(&link, &old));
         match kept {
             Err(error) if error.kind() == ErrorKind::NotFound => {}
-            // Where there are no links; a rename shows for a moment.
+            // Without hard links, the checkpoint is missing for a moment.
             Err(_) => fs::rename(&self.path, &old)?,
             Ok(()) => {}
         }
         fs::rename(temporary, &self.path)?;
-        // So that the names are on the disk, too; not every system can.
+        // Syncs the directory, where the system supports it.
         let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
         Ok(())
@@ -169,7 +167,6 @@ fn write_part(out: &mut impl Write, length: u64, from: &mut dyn Read) -> io::Res
     out.write_all(&crc.finalize().to_le_bytes())
 }
 
-/// Copies so many bytes.
 fn copy(length: u64, from: &mut dyn Read, crc: &mut Hasher, out: &mut dyn Write) -> io::Result<()> {
     let mut block = [0; 1 << 16];
     let mut left = length;
@@ -184,15 +181,14 @@ fn copy(length: u64, from: &mut dyn Read, crc: &mut Hasher, out: &mut dyn Write)
     Ok(())
 }
 
-/// A part of a file.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    /// Of its first byte.
+    /// Offset of the first byte.
     at: u64,
     length: u64,
 }
 
-/// A checkpoint that was read and is whole, of this scenario and this program.
+/// A verified checkpoint of this scenario and this program.
 #[derive(Debug)]
 pub struct Checkpoint {
     path: PathBuf,
@@ -203,10 +199,10 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Opens a checkpoint of a run of `scenario`, which may be longer than it was. Reads all of it once.
+    /// Opens a checkpoint of a run of `scenario`, with any number of ticks. Reads the file once.
     ///
     /// # Errors
-    /// It cannot be read, is damaged or cut off, of another program's version or another scenario.
+    /// It cannot be read, is damaged, or belongs to another program version or scenario.
     pub fn open(path: &Path, scenario: &Scenario) -> Result<Self, CheckpointError> {
         let error =
             |what: String, remedy: &str| CheckpointError { path: path.to_owned(), what, remedy: remedy.to_owned() };
@@ -241,7 +237,7 @@ impl Checkpoint {
             file.read_exact(&mut number).map_err(of_io)?;
             let length = u64::from_le_bytes(number);
             if length > (size - at - 8).saturating_sub(4) {
-                // Or its length is damaged; the rest cannot be found either way.
+                // The length itself may be damaged; the rest cannot be found in either case.
                 return Err(cut(size, name));
             }
             parts[index] = Part { at: at + 8, length };
@@ -285,25 +281,25 @@ impl Checkpoint {
         Ok(Self { path: path.to_owned(), file, parts, head, state })
     }
 
-    /// The tick that the run is at.
+    /// Tick of the checkpoint.
     #[must_use]
     pub const fn tick(&self) -> u32 {
         self.head.tick
     }
 
-    /// How long the run has taken until then, seconds.
+    /// Duration of the run until the checkpoint, seconds.
     #[must_use]
     pub const fn wall_seconds(&self) -> f64 {
         self.head.wall_seconds
     }
 
-    /// The state of the run, for [`simulate_from`](crate::engine::simulate_from).
+    /// State of the run, for [`simulate_from`](crate::engine::simulate_from).
     #[must_use]
     pub fn state(&self) -> &[u8] {
         &self.state
     }
 
-    /// What the engine says of the state, said with the file.
+    /// Converts an engine error about the state to an error about the file.
     #[must_use]
     pub fn refused(&self, error: StateError) -> CheckpointError {
         let begin = usize::try_from(self.parts[1].at).unwrap_or(usize::MAX);
@@ -314,16 +310,17 @@ impl Checkpoint {
         }
     }
 
-    /// Whether the run kept a line of each robot: one that did not cannot have them from now on.
+    /// Whether the run recorded each robot; a run that did not cannot start doing so.
     #[must_use]
     pub const fn keeps_robots(&self) -> bool {
         self.parts[TRACE].length > 0
     }
 
-    /// A recorder that goes on in folder `dir` where this one was, with the robots' lines if they are there and wanted.
+    /// Creates a recorder in folder `dir` that continues the saved records. It records robots if
+    /// `keeps_robots` is set and the checkpoint has their records.
     ///
     /// # Errors
-    /// The records so far cannot be read, or not be written there.
+    /// The saved records cannot be read, or the files cannot be written.
     pub fn recorder(&mut self, dir: &Path, keeps_robots: bool) -> Result<Recorder, record::Error> {
         let keeps_robots = keeps_robots && self.keeps_robots();
         let reading = |error: io::Error| record::Error::new("read", &self.path)(error);
@@ -345,7 +342,6 @@ impl Checkpoint {
     }
 }
 
-/// Reads a part of a file.
 fn part(file: &mut File, part: Part, out: &mut dyn Write) -> io::Result<()> {
     file.seek(SeekFrom::Start(part.at))?;
     copy(part.length, file, &mut Hasher::new(), out)

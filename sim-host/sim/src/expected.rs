@@ -1,29 +1,29 @@
-//! How many ticks a run will take, as far as one can tell while it goes on: most end long before their last tick, when all have arrived.
+//! Predicts the number of ticks of a run, since most runs end long before their limit.
 
 use crate::record::RobotRow;
 use staya_controller::robot::Mode;
 
-/// So much of the longest way must be behind before its pace says anything.
+/// Share of the longest distance that must be done before a prediction is made.
 const BEGUN: f64 = 0.05;
 
-/// The end of a run, from how fast the longest way left grows shorter.
+/// Predicts the end of a run from the decrease of the longest remaining distance.
 #[derive(Clone, Copy, Debug)]
 pub struct Expected {
     ticks: u32,
-    /// The longest way that there was, and when, metres and ticks.
+    /// Longest distance seen, metres, and its tick.
     longest: Option<(f64, u32)>,
-    /// The longest way left in the present tick, metres.
+    /// Longest remaining distance in the current tick, metres.
     left_m: Option<f64>,
 }
 
 impl Expected {
-    /// Of a run that ends after `ticks` at the latest.
+    /// Creates a predictor for a run of at most `ticks`.
     #[must_use]
     pub const fn new(ticks: u32) -> Self {
         Self { ticks, longest: None, left_m: None }
     }
 
-    /// Takes note of a robot in the present tick. O(1).
+    /// Records a robot in the current tick. O(1).
     pub fn see(&mut self, robot: &RobotRow) {
         let Some(target_m) = robot.target_m.filter(|_| robot.mode != Mode::Arrived) else {
             return;
@@ -33,17 +33,17 @@ impl Expected {
         self.left_m = Some(self.left_m.map_or(way_m, |left_m| left_m.max(way_m)));
     }
 
-    /// The ticks that the run is going to have, once all robots were seen after tick `tick`; the most that it can have while
-    /// nothing tells.
+    /// Predicted number of ticks; call it after all robots of `tick` were recorded. Without a
+    /// prediction, it is the run's limit.
     pub fn ticks(&mut self, tick: u32) -> u32 {
         let left_m = self.left_m.take();
         let Some(left_m) = left_m else {
-            // All have arrived, or nobody has anywhere to go.
+            // All have arrived, or no robot has a goal.
             return if self.longest.is_some() { tick.min(self.ticks) } else { self.ticks };
         };
         let (longest_m, since) = match self.longest {
             Some((longest_m, since)) if longest_m >= left_m => (longest_m, since),
-            // Somebody got another goal, or it begins.
+            // The run begins, or a robot got another goal.
             _ => {
                 self.longest = Some((left_m, tick));
                 return self.ticks;
@@ -65,9 +65,9 @@ mod tests {
     use crate::scenario::{Overrides, Scenario};
     use std::ops::ControlFlow;
 
-    /// From a third of the way on the end is known within a third, though the file allows five times as many ticks.
+    /// From a third of the way on, the prediction is within a third of the actual end.
     #[test]
-    fn the_end_is_foreseen_long_before_it_comes() {
+    fn the_end_is_predicted_early() {
         let text = "name = 'duel'\nticks = 700\ntick_s = 0.1\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n\
             [plane.robots.circle]\ncount = 6\nradius_m = 6\n";
         let scenario = Scenario::parse(text, "duel.toml".as_ref(), &Overrides::default()).expect("a scenario");

@@ -1,21 +1,21 @@
-//! Files that are read whole, and errors of files that cannot be read or written, with the remedy.
+//! Reading of whole files, and remedies for read and write errors.
 
 use std::fs::{self, File};
 use std::io::{self, Error, ErrorKind, Read as _};
 use std::path::Path;
 
-/// Most bytes of a text that people write: scenarios, configurations.
+/// Largest size in bytes of a text file written by hand: scenarios, configurations.
 pub const TEXT: u64 = 256 << 20;
-/// Most bytes of a map.
+/// Largest size of a map file, bytes.
 pub const MAP: u64 = 8 << 30;
 
-/// Opens a regular file. Devices need not have an end, and pipes may never begin.
+/// Opens a regular file. Devices may never end and pipes may block, so both are refused.
 ///
 /// # Errors
-/// When it is none, or cannot be opened.
+/// The path is not a regular file, or cannot be opened.
 pub fn open(path: &Path) -> io::Result<File> {
     let about = fs::metadata(path)?;
-    // What reading says of a directory is clear enough.
+    // Directories fail later with a clear error.
     if about.is_file() || about.is_dir() {
         File::open(path)
     } else {
@@ -23,10 +23,10 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Reads a regular file of at most `most` bytes. Memory is asked for when it is known how much.
+/// Reads a regular file of at most `most` bytes. Memory is allocated after the size is known.
 ///
 /// # Errors
-/// When it is no regular file, larger, too large for the memory that there is, or cannot be read.
+/// The file is not regular, is too large, does not fit into memory, or cannot be read.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let len = file.metadata()?.len();
@@ -39,21 +39,21 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     if !is_there {
         return Err(Error::new(ErrorKind::OutOfMemory, format!("there is no memory for its {len} bytes")));
     }
-    // Some files of the system do not say how long they are.
+    // Some system files report a length of 0.
     file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
-/// The same of a text.
+/// Reads a regular text file of at most `most` bytes.
 ///
 /// # Errors
-/// As for [`read`], and when it is not UTF-8.
+/// See [`read`]; also if the file is not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     let bytes = read(path, most)?;
     String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8"))
 }
 
-/// Whether so many bytes of memory can be had, as far as the system says before they are used.
+/// Whether `bytes` of memory are available, as far as the system reports it before use.
 #[must_use]
 pub fn has_memory(bytes: u64) -> bool {
     let can_be_reserved = || {
@@ -63,7 +63,7 @@ pub fn has_memory(bytes: u64) -> bool {
     available().is_none_or(|available| bytes <= available) && can_be_reserved()
 }
 
-/// Bytes of memory that Linux could give now; `None` elsewhere.
+/// Available memory in bytes according to Linux; `None` on other systems.
 fn available() -> Option<u64> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
@@ -71,13 +71,12 @@ fn available() -> Option<u64> {
     kilobytes.checked_mul(1024)
 }
 
-/// What helps when a file cannot be read.
+/// Remedy for a file that cannot be read.
 pub fn read_remedy(error: &Error) -> &'static str {
     match error.kind() {
         ErrorKind::NotFound => "check the name",
         ErrorKind::IsADirectory => "name a file, not a directory",
         ErrorKind::PermissionDenied => "choose a file that you may read",
-        // What `read_to_string` says of other bytes.
         ErrorKind::InvalidInput => "name a regular file",
         ErrorKind::FileTooLarge => "choose a smaller file",
         ErrorKind::OutOfMemory => "close other programs, or choose a smaller file",
@@ -86,7 +85,7 @@ pub fn read_remedy(error: &Error) -> &'static str {
     }
 }
 
-/// What helps when a file or directory cannot be written.
+/// Remedy for a file or directory that cannot be written.
 pub fn write_remedy(error: &Error) -> &'static str {
     match error.kind() {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
@@ -108,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_read_if_it_is_not_too_large() {
+    fn files_are_read_up_to_the_size_limit() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a");
         fs::write(&path, "abc").expect("room");
@@ -118,7 +117,6 @@ mod tests {
             (error.to_string().as_str(), read_remedy(&error)),
             ("it has 3 bytes of at most 2", "choose a smaller file")
         );
-        // Terabytes that take no room on the disk.
         File::create(&path).expect("mine").set_len(1 << 42).expect("a hole");
         assert_eq!(read(&path, MAP).expect_err("too large").kind(), ErrorKind::FileTooLarge);
         assert_eq!(read(&path, u64::MAX).expect_err("no memory").kind(), ErrorKind::OutOfMemory);
@@ -129,7 +127,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn what_never_ends_or_never_begins_is_not_read() {
+    fn devices_and_pipes_are_refused() {
         let folder = tempfile::tempdir().expect("a folder");
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status();
@@ -138,7 +136,6 @@ mod tests {
             let error = read(path, TEXT).expect_err("no file");
             assert_eq!(read_remedy(&error), "name a regular file", "{error}");
         }
-        // Says that it is empty, and is not.
         assert!(!read("/proc/meminfo".as_ref(), TEXT).expect("a text").is_empty());
         assert!(has_memory(1 << 20) && !has_memory(1 << 60) && !has_memory(u64::MAX));
     }

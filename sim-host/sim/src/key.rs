@@ -1,7 +1,8 @@
-//! Key files: where the secret of a swarm comes from.
+//! Files with the secret key of a swarm.
 //!
-//! A text file with one line that is not empty and does not begin with `#`. Either the key itself as 64 hexadecimal digits, or
-//! `passphrase: WORDS`, whose SHA-256 is the key, as MAVProxy and Mission Planner make it of what is typed there. Blanks around the words do not count.
+//! A key file is a text file with one line, apart from empty lines and lines that begin with `#`.
+//! The line is either the key as 64 hexadecimal digits, or `passphrase: WORDS`. The SHA-256 of the
+//! words is the key, as in MAVProxy and Mission Planner. Spaces around the words are ignored.
 //!
 //! ```text
 //! # openssl rand -hex 32 > swarm.key && chmod 600 swarm.key
@@ -16,41 +17,40 @@ use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 use thiserror::Error;
 
-/// Most bytes of a key file, remarks included.
+/// Largest size of a key file in bytes, comments included.
 const LONGEST: u64 = 1 << 16;
-/// What a key file must hold.
 const WANTED: &str =
     "write one line into it: 64 hexadecimal digits (openssl rand -hex 32), or \"passphrase: \" and words";
 
-/// Why a key file is of no use. The file's content is never in it.
+/// Why a key file was refused. The error never contains the file's content.
 #[derive(Debug, Error)]
 pub enum KeyError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("cannot read the key file {}: {error}; {}", path.display(), read_remedy(error))]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause, as reported by the system.
         error: std::io::Error,
     },
-    /// It does not hold a key.
+    /// The file does not contain a key.
     #[error("{}, line {line}: {problem}; {WANTED}", path.display())]
     NoKey {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Counted from 1.
+        /// Line, counted from 1.
         line: usize,
-        /// What is wrong with it.
+        /// Cause of the error.
         problem: String,
     },
 }
 
-/// A key, and what its owner should know of the file that it came from.
+/// A key, with a warning about its file.
 #[derive(Clone, Debug)]
 pub struct KeyFile {
-    /// The secret.
+    /// The secret key.
     pub key: Key,
-    /// Others than the file's owner may read it, as a line for people that names the remedy.
+    /// Warning for the user, with a remedy, if others than the owner can read the file.
     pub remark: Option<String>,
 }
 
@@ -72,10 +72,10 @@ impl KeyFile {
     }
 }
 
-/// The key in a text; otherwise the line and what is wrong with it.
+/// Parses the content of a key file.
 ///
 /// # Errors
-/// The line, counted from 1, and what is wrong there, without a word of the secret.
+/// The line, counted from 1, and the cause, without any part of the secret.
 pub fn parse(text: &str) -> Result<Key, (usize, String)> {
     let lines = text.lines().map(str::trim).zip(1..);
     let mut lines = lines.filter(|(line, _)| !line.is_empty() && !line.starts_with('#'));
@@ -108,20 +108,18 @@ fn digits(line: &str) -> Result<Key, String> {
     }
 }
 
-/// Whether others than its owner may read a file.
 #[cfg(unix)]
 fn is_open(path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     fs::metadata(path).is_ok_and(|about| about.mode() & 0o077 != 0)
 }
 
-/// Whether others than its owner may read a file: not known here.
 #[cfg(not(unix))]
 fn is_open(_: &Path) -> bool {
     false
 }
 
-/// Now as a timestamp of [`staya_mavlink::signing`], tens of microseconds; 0 when the clock shows a time before 2015.
+/// Time for [`staya_mavlink::signing`], tens of microseconds; 0 if the clock is before 2015.
 #[must_use]
 pub fn timestamp() -> u64 {
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -145,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_key_is_refused_without_showing_it() {
+    fn invalid_keys_are_refused_without_revealing_them() {
         let hex = "00".repeat(32);
         for (text, line, problem) in [
             ("# nothing\n".to_string(), 1, "there is no key"),
@@ -160,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_named_with_the_remedy() {
+    fn errors_name_the_file_and_the_remedy() {
         let dir = tempfile::tempdir().expect("a directory");
         let path = dir.path().join("swarm.key");
         let error = KeyFile::read(&path).expect_err("no file").to_string();
@@ -175,7 +173,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_file_that_others_can_read_is_remarked_on() {
+    fn a_file_readable_by_others_causes_a_warning() {
         use std::os::unix::fs::PermissionsExt;
         let dir = tempfile::tempdir().expect("a directory");
         let path = dir.path().join("swarm.key");

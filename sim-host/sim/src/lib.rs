@@ -1,10 +1,16 @@
-//! The simulator as a library: a world, a lossy radio and any number of controllers between them.
+//! The simulator as a library: a world, a lossy radio, and any number of robot controllers.
 //!
-//! [`scenario`] reads what to simulate, [`terrain`] the land, [`engine`] runs every robot's
-//! [`staya_controller::agent::Agent`] through two-phase ticks over [`world`] and [`radio`],
-//! [`metrics`] measures, [`record`] keeps what happened, [`checkpoint`] what it takes to go on later,
-//! [`summary`] has the figures, [`expected`] says how long a run will take. [`nearby`] tells who is near whom, [`walk`] lets
-//! one robot walk, [`key`] reads the secret of a swarm.
+//! | module | content |
+//! | --- | --- |
+//! | [`scenario`] | reads and checks simulation inputs |
+//! | [`terrain`] | terrain maps: readers, generators, changes |
+//! | [`engine`] | steps each [`staya_controller::agent::Agent`] in two-phase ticks |
+//! | [`world`], [`radio`] | bodies and their motion; transmission of packets |
+//! | [`metrics`], [`summary`] | measurements and the results of a run |
+//! | [`record`], [`checkpoint`] | result files; saving and resuming a run |
+//! | [`expected`] | prediction of the remaining ticks |
+//! | [`nearby`], [`walk`] | neighbour search; simulation of a single robot |
+//! | [`key`] | files with the secret key of a swarm |
 
 pub mod checkpoint;
 pub mod engine;

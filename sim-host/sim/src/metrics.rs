@@ -1,7 +1,7 @@
-//! What a run is measured by: how well the formation is kept, and when robots arrive.
+//! Measurements of a run: formation quality and arrivals.
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), section 6. All sums run over robots in the order of their numbers, on one
-//! thread, so that every figure is the same on any machine. Distances are Euclidean, between cells.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 6. All sums run over robots by id on one thread, so
+//! that every value is identical on any machine. Distances are Euclidean, between cells.
 
 pub mod flock;
 mod formation;
@@ -15,7 +15,7 @@ pub use formations::{FormationKept, FormationMeters};
 
 use rayon::prelude::*;
 
-/// When each robot came to its target for good.
+/// Arrival times of the robots.
 #[derive(Clone, Debug)]
 pub struct Arrivals {
     at: Vec<Option<u64>>,
@@ -23,15 +23,15 @@ pub struct Arrivals {
 }
 
 impl Arrivals {
-    /// Nobody has arrived.
+    /// Creates a record in which no robot has arrived.
     #[must_use]
     pub fn new(robots: usize) -> Self {
         Self { at: vec![None; robots], count: 0 }
     }
 
-    /// Takes note of who stands at its target now: `free_at(i)` is when the last crossing of robot number i's body ends,
-    /// in [`UNIT`](staya_controller::grid::UNIT)ths of a tick; `None` for one that is not there. A robot that leaves its
-    /// target has not arrived. In parallel.
+    /// Updates the arrivals after a tick, in parallel. `free_at(i)` is the end of the last crossing
+    /// of robot `i`, in [`UNIT`](staya_controller::grid::UNIT)ths of a tick, or `None` if it is not
+    /// at its goal. A robot that leaves its goal has not arrived.
     pub fn note(&mut self, free_at: impl Fn(usize) -> Option<u64> + Sync) {
         let robots = self.at.par_iter_mut().enumerate().with_min_len(256);
         let count = robots.map(|(index, at)| {
@@ -41,37 +41,36 @@ impl Arrivals {
         self.count = count.sum();
     }
 
-    /// When robot number `index` arrived is as it was at another time.
     pub(crate) fn set(&mut self, index: usize, at: Option<u64>) {
         let before = std::mem::replace(&mut self.at[index], at);
         self.count = self.count + usize::from(at.is_some()) - usize::from(before.is_some());
     }
 
-    /// A robot comes from another rank, behind those that are here.
+    /// Appends a robot that comes from another MPI rank.
     pub fn admit(&mut self) {
         self.at.push(None);
     }
 
-    /// Robot number `index` goes to another rank; the last one takes its place.
+    /// Removes a robot that goes to another MPI rank; the last robot takes its index.
     pub fn dismiss(&mut self, index: usize) {
         self.set(index, None);
         self.at.swap_remove(index);
     }
 
-    /// How many robots stand at their targets.
+    /// Number of robots at their goals.
     #[must_use]
     pub const fn count(&self) -> usize {
         self.count
     }
 
-    /// Whether all do.
+    /// Whether all robots are at their goals.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.count == self.at.len()
     }
 
-    /// When each robot's last move was over, [`UNIT`](staya_controller::grid::UNIT)ths of a tick
-    /// after the start: the travel time of KUZ eq. 7, waiting included. `None`: not there.
+    /// End of each robot's last move, in [`UNIT`](staya_controller::grid::UNIT)ths of a tick after
+    /// the start: the travel time of KUZ eq. 7, waiting included. `None` if it is not at its goal.
     #[must_use]
     pub fn times(&self) -> &[Option<u64>] {
         &self.at
@@ -83,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_leaves_his_target_has_not_arrived() {
+    fn a_robot_that_leaves_its_goal_has_not_arrived() {
         let mut arrivals = Arrivals::new(2);
         arrivals.note(|index| (index == 0).then_some(70));
         arrivals.note(|index| (index == 0).then_some(700));

@@ -1,4 +1,4 @@
-//! The figures of a run, for programs and for readers.
+//! Summary of a run, as JSON and as text.
 
 mod groups;
 
@@ -16,84 +16,79 @@ use staya_controller::names::Named;
 use std::fmt::{Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
-/// The figures of a run, as in `summary.json` and with `--json`.
+/// Results of a run, as in `summary.json` and with `--json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     scenario: String,
-    /// Of the program; its owner says it.
+    /// Version of the program, set by the caller.
     pub version: &'static str,
     seed: u64,
     robots: usize,
-    /// Ticks done.
     ticks: u32,
     sim_seconds: f64,
-    /// Of the simulation itself, without reading and drawing.
+    /// Duration of the simulation, without file input and plotting.
     pub wall_seconds: f64,
-    /// Stopped by Ctrl-C.
+    /// Whether the run was stopped by Ctrl-C.
     pub interrupted: bool,
-    /// Robots that stand at their targets and know it.
+    /// Number of robots that are at their goal and report it.
     arrived: usize,
-    /// Mean and last of their travel times, simulated seconds; null: nobody arrived.
+    /// Mean and longest travel time, simulated seconds; null if no robot arrived.
     arrival_mean_seconds: Option<f64>,
     arrival_last_seconds: Option<f64>,
-    /// Robots in a wall, in another one's cell, or overlapping another one or an obstacle, summed over ticks.
+    /// Robots in walls or shared cells, or overlapping robots or obstacles, summed over ticks.
     collisions: u64,
-    /// When each robot arrived; null where what grows with the robots is left out.
+    /// Arrival of each robot; null if per-robot data is left out.
     pub arrivals: Option<Vec<Arrival>>,
     packets: PacketCounts,
-    /// Whether the robots have a key.
     is_authenticated: bool,
-    /// Packets beyond a robot's bandwidth, never on the air.
+    /// Packets that exceeded a robot's bandwidth and were not transmitted.
     packets_throttled: u64,
-    /// What robots waited for that did not get on; empty: all did.
     waits: Vec<Waited>,
-    /// dPhi per robot, cells, graph placed on the top leader; null: no formation.
+    /// dPhi per robot, cells, with the graph placed on the top leader; null without a formation.
     formation_error_per_agent: Option<f64>,
-    /// The same, graph placed by the best-fitting translation.
+    /// dPhi per robot, cells, with the graph placed by the best-fitting translation.
     formation_error_per_agent_best_fit: Option<f64>,
     graph_distance_mean: Option<f64>,
-    /// Robots of a formation in the plane off their places by robot 1, metres, after the first 10 s: the mean, the largest, and
-    /// whose and when that was; null: on the grid, or no formation.
+    /// Distance of robots in the plane from their formation places relative to robot 1, metres,
+    /// after the first 10 s: mean and largest, with the robot and time of the latter. Null on the
+    /// grid or without a formation.
     place_error_mean_m: Option<f64>,
     place_error_worst_m: Option<f64>,
     place_error_worst_robot: Option<u32>,
     place_error_worst_s: Option<f64>,
-    /// Groups of robots that differ, each by itself; left out where all are alike.
+    /// Results by group; omitted if all robots are alike.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     groups: Vec<GroupFigures>,
-    /// The time until the last one arrived over what the slowest would need by itself: straight to its goal on easy land,
-    /// getting going and braking as hard as it can; null: no formation in the plane, or not all arrived.
+    /// Arrival time of the last robot, divided by the longest time that a robot would need alone:
+    /// straight to its goal on easy land, with full acceleration and braking. Null without a
+    /// formation in the plane, or if not all robots arrived.
     time_over_free_time: Option<f64>,
-    /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
+    /// Smallest gap between two bodies, metres; null on the grid, or if none came close.
     least_gap_m: Option<f64>,
-    /// Least distance between a body and an obstacle, metres.
     least_obstacle_gap_m: Option<f64>,
-    /// Least distance between a robot's surface and an intruder's, metres; null: without intruders.
+    /// Smallest gap between a robot and an intruder, metres; null without intruders.
     least_intruder_gap_m: Option<f64>,
-    /// Robots that overlap an intruder, summed over ticks; they are no collisions.
+    /// Robots that overlap an intruder, summed over ticks; not counted as collisions.
     intruder_overlaps: u64,
-    /// Robots in the downwash of others, summed over ticks; they are no collisions.
+    /// Robots in the downwash of others, summed over ticks; not counted as collisions.
     washed: u64,
-    /// 16 hex digits; equal for equal traces.
     trace_hash: String,
-    /// What the scenario's file says, with what the command line says instead; defaults are not in it.
+    /// Fields of the scenario file with the command-line overrides, without defaults.
     parameters: serde_json::Value,
-    /// What stands in the plane at the start.
     obstacles: Vec<Obstacle>,
-    /// What was written.
     files: Vec<PathBuf>,
 }
 
-/// When a robot's journey was over.
+/// Arrival of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Arrival {
-    /// Its number.
+    /// Id of the robot.
     pub robot: u32,
-    /// Simulated seconds after the start; null: it is on its way.
+    /// Simulated seconds after the start; null if it has not arrived.
     pub seconds: Option<f64>,
 }
 
-/// What bodies in the plane must keep off; lengths in metres, as in scenarios.
+/// An obstacle in the plane; lengths in metres, as in scenarios.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum Obstacle {
@@ -112,18 +107,15 @@ impl From<&Solid> for Obstacle {
     }
 }
 
-/// One reason to wait, over the run.
 #[derive(Clone, Debug, Serialize)]
 struct Waited {
     #[serde(rename = "for")]
     reason: Wait,
-    /// Robots that did so at some time.
+    /// Robots that waited for this cause at any time.
     robots: usize,
-    /// Those of them that do so at the end.
+    /// Robots that wait for this cause at the end.
     at_the_end: usize,
-    /// All their times together.
     robot_seconds: f64,
-    /// The longest time on end.
     longest_seconds: f64,
 }
 
@@ -138,7 +130,7 @@ impl Waited {
         }
     }
 
-    /// For what, as a sentence goes on.
+    /// The cause, as the end of a sentence.
     const fn words(&self) -> &'static str {
         match self.reason {
             Wait::Formation => "for their formation",
@@ -160,13 +152,14 @@ impl Display for Waited {
     }
 }
 
-/// What JSON has a form for.
+/// `None` for numbers that JSON cannot represent.
 fn finite(value: Option<f64>) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
 impl Summary {
-    /// Of a run that left these files; how long it took and whether it was stopped is for the caller to add.
+    /// Creates a summary of a run with the written `files`. The caller sets the duration and
+    /// whether the run was stopped.
     #[must_use]
     pub fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
         let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
@@ -225,15 +218,15 @@ impl Summary {
         }
     }
 
-    /// 16 hex digits; equal for equal traces.
+    /// Trace hash as 16 hex digits; equal for equal traces.
     #[must_use]
     pub fn trace_hash(&self) -> &str {
         &self.trace_hash
     }
 
-    /// The figures that say how the run went and are numbers, by their names in `summary.json`, always the same and in
-    /// the same order: `packets.sent`; those of one reason to wait as `waits.radio.robots`. `None`: the run has none
-    /// such. A truth is 1 or 0.
+    /// Numeric results of the run, named as in `summary.json` and always in the same order:
+    /// `packets.sent`, or `waits.radio.robots` for a cause of waiting. `None`: the run does not
+    /// have this value. A Boolean is 1 or 0.
     #[must_use]
     pub fn figures(&self) -> Vec<(String, Option<f64>)> {
         let packets = &self.packets;
@@ -276,7 +269,7 @@ impl Summary {
         .map(|(name, value)| (name.to_owned(), finite(value)))
         .into();
         for &(name, reason) in Wait::NAMES {
-            // Who did not wait is not in the list.
+            // Causes without waiting robots are not in the list.
             let waited = self.waits.iter().find(|waited| waited.reason == reason);
             let of = |figure: fn(&Waited) -> f64| Some(waited.map_or(0.0, figure));
             figures.extend(
@@ -292,10 +285,10 @@ impl Summary {
         figures
     }
 
-    /// The figures for a reader.
+    /// Formats the results as a text table.
     ///
     /// # Errors
-    /// Never: text takes every line.
+    /// Never: writing to a string cannot fail.
     pub fn table(&self, out: &Path) -> Result<String, std::fmt::Error> {
         let mut text = String::new();
         let robot_ticks = self.robots as f64 * f64::from(self.ticks);
@@ -399,7 +392,6 @@ mod tests {
     const DUEL: &str = "name = 'duel'\nticks = 40\ntick_s = 0.1\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n\
         [plane.robots.circle]\ncount = 4\nradius_m = 3\n";
 
-    /// Numbers and truths of a JSON object, by dotted names.
     fn flat(prefix: &str, value: &Value, found: &mut BTreeMap<String, Option<f64>>) {
         let dotted = |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}.{name}") };
         match value {
@@ -417,13 +409,13 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_all_the_numbers_of_the_summary() {
+    fn figures_contain_all_numbers_of_the_summary() {
         let scenario = Scenario::parse(DUEL, "duel.toml".as_ref(), &Overrides::default()).expect("a scenario");
         let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("room for four");
         let summary = Summary::new(&scenario, &outcome, Vec::new());
         let mut written = BTreeMap::new();
         flat("", &serde_json::to_value(&summary).expect("JSON"), &mut written);
-        // What was asked for and how fast the machine was say nothing of how the run went.
+        // Parameters and the speed of the machine are not results.
         written.retain(|name, _| !name.starts_with("parameters."));
         for name in ["seed", "wall_seconds", "interrupted"] {
             assert!(written.remove(name).is_some(), "{name}");
@@ -438,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn the_summary_says_what_was_run_and_when_each_arrived() {
+    fn the_summary_contains_the_scenario_and_all_arrivals() {
         let text = format!(
             "{DUEL}[[plane.ball]]\ncenter_m = [9, 9, 0]\nradius_m = 0.5\n\
             [authentication]\nkey = '{}'\n",

@@ -1,4 +1,4 @@
-//! One robot on the move, by nothing but the controller's router.
+//! Simulation of a single robot with the controller's router.
 
 use crate::terrain::Terrain;
 use staya_controller::agent::VISITS;
@@ -8,30 +8,29 @@ use staya_controller::rand::Rng;
 use staya_controller::route::{CostField, Replan, RouteParams, Router};
 use staya_controller::shuffle::{Sharpness, weighted_shuffle};
 
-/// Moves after which a robot is lost, per cell of the map's half circumference (width + height).
+/// Moves after which a walk is aborted, per cell of width + height.
 const PATIENCE: usize = 200;
 
-/// How a walk ended.
+/// Result of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Walk {
     /// Whether the robot reached its target.
     pub arrived: bool,
-    /// Travel time by eqs. 6 and 7, in [`UNIT`](staya_controller::grid::UNIT)ths of a tick: over all moves,
-    /// length times impassability of the cell entered.
+    /// Travel time by eqs. 6 and 7, in [`UNIT`](staya_controller::grid::UNIT)ths of a tick: the sum
+    /// over all moves of length times impassability of the entered cell.
     pub cost: u64,
-    /// Length of the way in [`UNIT`](staya_controller::grid::UNIT)ths of a cell.
+    /// Length of the path in [`UNIT`](staya_controller::grid::UNIT)ths of a cell.
     pub length: u64,
-    /// Moves made.
+    /// Number of moves.
     pub moves: usize,
 }
 
-/// Scratch memory for walks of robots with windows of up to `CELLS` cells, border included, that remember visits of
-/// `M` cells and learn the costs of `L`; reusable.
+/// Reusable memory for walks with windows of up to `CELLS` cells (border included). The router
+/// stores visits of `M` cells and learned costs of `L` cells.
 #[derive(Debug)]
 pub struct Walker<const CELLS: usize, const M: usize = VISITS, const L: usize = 0> {
     field: Box<CostField<CELLS>>,
     path: Vec<Cell>,
-    /// The land with walls around it.
     walled: Vec<u8>,
 }
 
@@ -41,30 +40,32 @@ impl<const CELLS: usize, const M: usize, const L: usize> Default for Walker<CELL
     }
 }
 
-/// From where to where, across what.
+/// Inputs of a walk.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
-    /// The land.
+    /// The terrain.
     pub land: &'a Terrain,
-    /// Cells of robots that stand there all the time, in ascending order.
+    /// Cells of stationary robots, in ascending order.
     pub parked: &'a [Cell],
-    /// Start.
+    /// Start cell.
     pub from: Cell,
-    /// Target.
+    /// Target cell.
     pub to: Cell,
 }
 
 impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
-    /// Lets a robot walk.
+    /// Simulates a walk.
     ///
-    /// The router cuts the window to its radius around the robot itself, as on a robot whose sensors see farther. The robot
-    /// takes the cheapest move whose cell no other robot has (KUZ algorithm 4, without the shuffle). A walk ends at the target, where no move is left, or after 200 moves per
-    /// cell of width + height.
+    /// The router cuts the window to its radius around the robot, as if the sensors saw farther.
+    /// The robot takes the cheapest move whose cell is free (KUZ algorithm 4, without the shuffle).
+    /// A walk ends at the target, when no move is left, or after 200 moves per cell of width +
+    /// height.
     pub fn walk(&mut self, task: &Task<'_>, params: &RouteParams, replan: Replan) -> Walk {
         self.walk_shuffled(task, params, replan, Sharpness::Greedy, &mut Rng::new(0))
     }
 
-    /// The same with the shuffle (KUZ section 7): the order in which moves are tried is drawn by their weights.
+    /// Simulates a walk with the shuffle (KUZ section 7): the order in which moves are tried is
+    /// drawn by their weights.
     pub fn walk_shuffled(
         &mut self,
         task: &Task<'_>,
@@ -107,7 +108,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
                 let weights = router.weights(params, field, &window, here, to, others);
                 weighted_shuffle(&weights.ok()?, sharpness, rng).into_iter().find(is_free)
             });
-            // Land and robots that do not change offer no move later either.
+            // Terrain and robots are static, so waiting does not help.
             let Some(dir) = dir else { return walk };
             here = here + dir.offset();
             self.path.push(here);
@@ -118,15 +119,16 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
         }
     }
 
-    /// The cells of the last walk, start included.
+    /// Cells of the last walk, start included.
     #[must_use]
     pub fn path(&self) -> &[Cell] {
         &self.path
     }
 
-    /// What the router takes the travel time of the whole way to be, in [`UNIT`](staya_controller::grid::UNIT)ths of
-    /// a tick: least weight of the moves out of `from`, with a0 = 1. Exact when `CELLS` and the greatest radius (255) hold
-    /// the whole map; see [`holds`]. `None` without a way.
+    /// Travel time of the whole path as estimated by the router, in
+    /// [`UNIT`](staya_controller::grid::UNIT)ths of a tick: the least weight of the moves out of
+    /// `from`, with a0 = 1. It is exact if `CELLS` and the largest radius (255) cover the whole
+    /// map; see [`holds`]. `None` if there is no path.
     pub fn price(&mut self, land: &Terrain, params: &RouteParams, from: Cell, to: Cell) -> Option<f64> {
         if from == to {
             return Some(0.0);
@@ -140,8 +142,8 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
     }
 }
 
-/// How far beyond the map windows show walls, as [`World::window`](crate::world::World::window) does: by the radius.
-/// By nothing where the window of a robot anywhere holds the whole map, or would be too large for the search.
+/// Width of the wall border around the map, as in [`World::window`](crate::world::World::window):
+/// the radius. 0 if a window always covers the whole map, or would be too large for the search.
 fn margin(cells: usize, land: &Terrain, radius: u8) -> u16 {
     let side = 2 * usize::from(radius) + 3;
     let is_larger = u16::from(radius) + 1 >= land.width().max(land.height());
@@ -151,7 +153,7 @@ fn margin(cells: usize, land: &Terrain, radius: u8) -> u16 {
     u16::from(radius)
 }
 
-/// Writes the land with `margin` cells of wall on each side.
+/// Writes the terrain with `margin` cells of wall on each side.
 fn wall(walled: &mut Vec<u8>, land: &Terrain, margin: u16) {
     let margin = usize::from(margin);
     let row = usize::from(land.width()) + 2 * margin;
@@ -165,7 +167,7 @@ fn wall(walled: &mut Vec<u8>, land: &Terrain, margin: u16) {
     walled.resize(walled.len() + row * margin, BLOCKED);
 }
 
-/// Whether a search in `cells` cells, border included, sees all of the land from anywhere on it.
+/// Whether a search in `cells` cells, border included, covers the whole terrain from any position.
 #[must_use]
 pub fn holds(cells: usize, land: &Terrain) -> bool {
     let (width, height) = (usize::from(land.width()), usize::from(land.height()));

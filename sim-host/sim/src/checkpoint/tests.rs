@@ -15,7 +15,6 @@ fn of(rest: &str) -> Scenario {
     scenario(rest, &Overrides::default())
 }
 
-/// Runs a scenario with records in `dir/whole`, with checkpoints after `ticks` in `dir/checkpoint`.
 fn run(dir: &Path, scenario: &Scenario, ticks: &[u32]) -> Place {
     run_with(dir, scenario, ticks, Options::default())
 }
@@ -37,7 +36,7 @@ fn run_with(dir: &Path, scenario: &Scenario, ticks: &[u32], options: Options) ->
 }
 
 #[test]
-fn records_go_on_to_the_same_bytes() {
+fn resumed_records_are_identical() {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");
     let place = run(dir.path(), &scenario, &[5]);
@@ -59,7 +58,7 @@ fn records_go_on_to_the_same_bytes() {
 }
 
 #[test]
-fn without_traces_there_are_none_before_or_after() {
+fn a_run_without_traces_resumes_without_traces() {
     let scenario = of("");
     for (kept, wanted) in [(false, true), (false, false), (true, false)] {
         let dir = tempfile::tempdir().expect("a folder");
@@ -85,7 +84,7 @@ fn without_traces_there_are_none_before_or_after() {
 }
 
 #[test]
-fn the_last_two_are_kept_and_nothing_else() {
+fn only_the_last_two_checkpoints_are_kept() {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");
     let place = run(dir.path(), &scenario, &[2, 4, 6]);
@@ -96,14 +95,14 @@ fn the_last_two_are_kept_and_nothing_else() {
 
 #[cfg(unix)]
 #[test]
-fn only_its_owner_may_read_it() {
+fn only_the_owner_can_read_a_checkpoint() {
     use std::os::unix::fs::PermissionsExt as _;
     let dir = tempfile::tempdir().expect("a folder");
     let place = run(dir.path(), &of(""), &[2]);
     assert_eq!(fs::metadata(place.path()).expect("it is there").permissions().mode() & 0o777, 0o600);
 }
 
-/// Damages a checkpoint at every `step`-th byte, and cuts it off there.
+/// Tests damage and truncation at every `step`-th byte of a checkpoint.
 fn refuses_damage(step: usize) {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");
@@ -128,20 +127,20 @@ fn refuses_damage(step: usize) {
     Checkpoint::open(place.path(), &scenario).expect("it is whole");
 }
 
-/// 7 shares no divisor with the 8 bits of a byte: each bit is damaged somewhere.
+/// 7 and 8 are coprime, so every bit of a byte is damaged somewhere.
 #[test]
-fn what_is_damaged_or_cut_off_is_refused_by_file_and_byte() {
+fn a_damaged_or_truncated_file_is_refused_with_its_byte() {
     refuses_damage(7);
 }
 
 #[test]
 #[ignore = "each byte of the file: 8 s"]
-fn what_is_damaged_or_cut_off_at_any_byte_is_refused() {
+fn damage_or_truncation_at_any_byte_is_refused() {
     refuses_damage(1);
 }
 
 #[test]
-fn another_scenario_is_refused_and_a_longer_run_is_not() {
+fn another_scenario_is_refused_but_a_longer_run_is_accepted() {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");
     let place = run(dir.path(), &scenario, &[5]);
@@ -189,12 +188,12 @@ fn another_version_of_the_program_is_refused() {
 
 #[cfg(unix)]
 #[test]
-fn what_cannot_be_written_leaves_the_one_before() {
+fn a_write_error_leaves_the_previous_checkpoint() {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");
     let place = run(dir.path(), &scenario, &[3]);
     let before = fs::read(place.path()).expect("it is there");
-    // A device that is always full takes the place of the temporary file.
+    // A symlink to a full device takes the place of the temporary file.
     let temporary = beside(place.path(), &format!(".{}.tmp", std::process::id()));
     std::os::unix::fs::symlink("/dev/full", &temporary).expect("a link");
     let mut recorder = Recorder::new(dir.path().join("again"), Options::default()).expect("it can be made");

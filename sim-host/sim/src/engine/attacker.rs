@@ -1,4 +1,4 @@
-//! An attacker with a radio like the robots' own: without their key, or an insider, who has taken a robot with its keys.
+//! Attackers with a radio: outsiders without the key, and insiders that control a robot.
 
 use crate::radio::{self, HostWire};
 use crate::scenario::{Attack, AttackKind, Lie, Scenario};
@@ -14,37 +14,32 @@ use staya_controller::wire::{
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-/// The start number that it claims to be at without the key: so high that only the missing key gives it away.
+/// Restart number of an outsider: the highest, so that only the missing key exposes it.
 const STARTS: u8 = u8::MAX;
-/// That of an insider: one after those of the robot's own that it takes the place of.
+/// Restart number of an insider: one above that of the robot it replaces.
 const TAKEN: u8 = 1;
-/// How far from the lure an insider's robots are that do not exist, metres.
 const RING_M: f64 = 1.5;
 
-/// What it is doing.
+/// An attacker's radio and state.
 pub struct Attacker {
     attack: Attack,
     cell_m: f64,
     tick_us: u32,
-    /// The numbers of its robots that do not exist are those behind this one.
+    /// Ids of invented robots start after this one.
     last: u32,
-    /// Of the body whose place an insider has taken, millimetres.
+    /// Radius of the body that an insider controls, millimetres.
     radius_mm: u16,
     wire: HostWire,
     starts: u8,
-    /// Of its next frame.
     sequence: u16,
     version: u8,
-    /// What it heard of late, and when.
     heard: VecDeque<(u32, Vec<u8>)>,
     outbox: Vec<u8>,
 }
 
-/// What [`Attacker::state`] gave.
 pub(super) type AttackerState = (HostWire, u16, u8, VecDeque<(u32, Vec<u8>)>);
 
 impl Attacker {
-    /// One in a scenario.
     pub(super) fn new(attack: &Attack, scenario: &Scenario) -> Self {
         let guess = Key::of_passphrase(b"guessed");
         let (key, starts) = match attack.kind {
@@ -69,17 +64,15 @@ impl Attacker {
         }
     }
 
-    /// What of it changes.
     pub(super) fn state(&self) -> impl Serialize {
         (&self.wire, self.sequence, self.version, &self.heard)
     }
 
-    /// Puts it back.
     pub(super) fn restore(&mut self, (wire, sequence, version, heard): AttackerState) {
         (self.wire, self.sequence, self.version, self.heard) = (wire, sequence, version, heard);
     }
 
-    /// Its number on the air, where it is one of `index` others; never in a frame.
+    /// Id at the radio of attacker `index`; it never appears in a frame.
     pub(super) fn id(index: usize) -> RobotId {
         RobotId(u32::MAX - 1 - u32::try_from(index).unwrap_or(u32::MAX / 2))
     }
@@ -89,23 +82,20 @@ impl Attacker {
         self.attack.place_m
     }
 
-    /// What it sends in this tick.
     pub(super) fn outbox(&self) -> &[u8] {
         &self.outbox
     }
 
-    /// The robot that it takes in this tick, if it does.
     pub(super) fn takes(&self, tick: u32) -> Option<RobotId> {
         let is_now = self.attack.kind == AttackKind::Insider && tick == self.attack.from_tick;
         is_now.then_some(self.attack.claims)
     }
 
-    /// Has from now on the keys that the robot had.
     pub(super) fn take(&mut self, ring: &Ring) {
         self.wire = radio::ring_wire(ring.clone(), self.attack.claims, self.starts);
     }
 
-    /// An insider does with keys what the robot would have done, if it still gets any.
+    /// Answers new keys as the robot would, until the robot is revoked.
     fn keep_up(&mut self, inbox: &[u8]) {
         let mut rest = inbox;
         while let Some(frame) = self.wire.next_frame(&mut rest) {
@@ -118,7 +108,6 @@ impl Attacker {
         }
     }
 
-    /// Hears what arrived and decides what to send.
     pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
         self.outbox.clear();
         let is_active = (self.attack.from_tick..self.attack.to_tick).contains(&tick);
@@ -169,7 +158,6 @@ impl Attacker {
         }
     }
 
-    /// One that stands somewhere.
     fn beacon(&self, [x_m, y_m]: [f64; 2], tick: u32) -> Beacon {
         let cell = self.cell([x_m, y_m]);
         Beacon {
@@ -183,7 +171,6 @@ impl Attacker {
         }
     }
 
-    /// Sends everybody to the lure, be it on the grid or in the plane.
     fn lure(&mut self) {
         self.version = self.version.wrapping_add(1);
         let [x_m, y_m] = self.attack.lure_m;

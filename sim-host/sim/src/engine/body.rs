@@ -1,4 +1,4 @@
-//! Bodies in metres: between two cells while they cross, as the robot's sensors would see it.
+//! Poses in metres of bodies on the grid, interpolated between cells.
 
 use crate::terrain::Terrain;
 use crate::world::Body;
@@ -6,14 +6,12 @@ use staya_controller::agent::KinematicState;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Dir, GridFrame, UNIT};
 
-/// What turns cells and [`UNIT`]ths of ticks into metres and seconds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kinematics {
     frame: GridFrame<f64>,
     tick_s: f64,
 }
 
-/// Where a body is and how it moves, in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose {
     pub(super) position_m: [f64; 2],
@@ -38,9 +36,9 @@ impl Kinematics {
         Self { frame: GridFrame { origin_m: Vec2::new(x, y), cell_m: terrain.cell_m }, tick_s }
     }
 
-    /// The body at `now_units`. It holds its new cell from the start of a crossing, but gets to the
-    /// cell's centre only at its end, at even speed. A body that may still go on without losing
-    /// the fraction of a tick (see [`World::advance`](crate::world::World::advance)) keeps its speed.
+    /// The pose at `now_units`. A body holds its new cell from the start of a crossing, but reaches
+    /// the centre at the end, at constant speed. It keeps this speed while it can still continue
+    /// without losing a fraction of a tick (see [`World::advance`](crate::world::World::advance)).
     pub(super) fn pose(&self, body: &Body, now_units: u64) -> Pose {
         let center = self.frame.center(body.cell);
         let at_rest = Pose { position_m: [center.x, center.y], velocity_mps: [0.0; 2] };
@@ -68,7 +66,7 @@ mod tests {
     use staya_controller::robot::RobotId;
 
     #[test]
-    fn a_crossing_leads_evenly_from_centre_to_centre() {
+    fn a_crossing_has_constant_speed_from_centre_to_centre() {
         let mut terrain = Terrain::flat(3, 1);
         terrain.cell_m = 10.0;
         terrain.origin_m = [100.0, -10.0];
@@ -87,7 +85,7 @@ mod tests {
             assert_eq!(now.position_m, [x, -5.0], "after {ticks} ticks");
             assert_eq!(now.velocity_mps, [speed, 0.0], "after {ticks} ticks");
         }
-        // Land that changes under it changes nothing for it.
+        // A change of the land under a body does not affect its current crossing.
         let before = pose(&world, 12);
         world.change(&[(Cell::new(1, 0), 9)]);
         assert_eq!(pose(&world, 12), before);

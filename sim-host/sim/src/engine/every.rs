@@ -1,14 +1,14 @@
-//! How often checkpoints are written.
+//! The interval between checkpoints.
 
 use std::str::FromStr;
 use std::time::Duration;
 
-/// How often.
+/// Interval between checkpoints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Every {
-    /// Of real time.
+    /// Real time.
     Time(Duration),
-    /// Ticks.
+    /// Number of ticks.
     Ticks(u32),
 }
 
@@ -39,7 +39,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn how_often_has_a_unit() {
+    fn an_interval_has_a_unit() {
         let seconds = |seconds| Ok(Every::Time(Duration::from_secs(seconds)));
         assert_eq!("600s".parse(), seconds(600));
         assert_eq!("10min".parse(), seconds(600));

@@ -1,50 +1,49 @@
-//! Robots whose controllers run elsewhere: on emulated parts, or on boards.
+//! Robots whose controllers run outside the simulator: on emulated or real microcontrollers.
 
 use super::{Engine, Ground, HostLaw, Status, Tick};
 use crate::scenario::Scenario;
 use staya_controller::agent::{AnyInputs, Command, GuidanceSetup, OUTBOX, Safety, SafetySetup, Setup, Task};
 use staya_controller::time::Instant;
 
-/// Controllers external of this process. Robots are numbered as in the scenario.
+/// Controllers outside this process. Robots are numbered as in the scenario.
 ///
-/// A tick has three calls: [`ExternalController::send`] for each robot that is up, then the engine steps its own robots, then
-/// [`ExternalController::collect`], so that all work at the same time. What goes wrong is the implementation's to keep and its
-/// owner's to ask for: the swarm carries on without the robot.
+/// In each tick, the engine calls [`ExternalController::send`] for each robot that is up, steps its
+/// own robots, and then calls [`ExternalController::collect`], so that all controllers work in
+/// parallel. The implementation keeps its errors; the swarm continues without the robot.
 pub trait ExternalController: Send {
-    /// The robots whose controllers run elsewhere, rising.
+    /// Sorted indices of the robots whose controllers are external.
     fn robots(&self) -> Vec<usize>;
 
-    /// Makes the controller of robot `index` anew; `setup.agent.boot` counts its starts.
+    /// Restarts the controller of robot `index`; `setup.agent.boot` counts its starts.
     fn start(&mut self, index: usize, setup: Setup, task: Task);
 
-    /// Whether the controller of robot `index` has lost its state since it was last asked, and waits to be made anew. Asked
-    /// once at the beginning of each tick.
+    /// Whether the controller of robot `index` has lost its state since the last call and waits for
+    /// a restart. Called once at the beginning of each tick.
     fn has_restarted(&mut self, index: usize) -> bool;
 
-    /// Lets robot `index` begin its step.
+    /// Starts the step of robot `index`.
     fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>);
 
-    /// What the robot decided that was sent last; `None` when its controller is not there.
+    /// Decision that follows the last `send`; `None` if the controller does not respond.
     fn collect(&mut self, index: usize) -> Option<Decision>;
 }
 
-/// What a controller elsewhere decided.
+/// Decision of an external controller.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
-    /// For its body.
+    /// Command for the body.
     pub command: Command<f32>,
-    /// For the radio.
+    /// Encoded frames for the radio.
     pub outbox: heapless::Vec<u8, OUTBOX>,
-    /// Frames that it refused.
+    /// Number of frames that it rejected.
     pub rejected: u16,
-    /// What it is doing.
+    /// Status after the step.
     pub status: Status,
 }
 
-/// The controllers that run elsewhere, and what they are made of.
 pub(super) struct External {
     pub(super) controllers: Box<dyn ExternalController>,
-    /// By number, rising.
+    /// Robot index, law and safety layer, sorted by index.
     pub(super) robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
 }
 
@@ -54,7 +53,7 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// The same with some of its robots' controllers outside of this process; before the first tick.
+    /// Moves the controllers of some robots out of this process. Call it before the first tick.
     #[must_use]
     pub fn with_external(mut self, scenario: &Scenario, controllers: Box<dyn ExternalController>) -> Self {
         let robots = controllers.robots().into_iter();
@@ -69,7 +68,6 @@ where
         self
     }
 
-    /// Lets those begin whose controllers are elsewhere.
     pub(super) fn send_out(&mut self) {
         let Some(external) = &mut self.external else {
             return;
@@ -87,7 +85,7 @@ where
         }
     }
 
-    /// Takes in what those decided. Returns how many frames they refused.
+    /// Stores the decisions of external controllers and counts the frames that they rejected.
     pub(super) fn collect(&mut self) -> u64 {
         let Some(external) = &mut self.external else {
             return 0;

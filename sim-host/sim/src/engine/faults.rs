@@ -1,4 +1,4 @@
-//! Robots whose computers go down, and start anew.
+//! Failures and restarts of robots' computers.
 
 use super::{Engine, Ground, HostLaw};
 use staya_controller::agent::Safety;
@@ -9,8 +9,8 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// Takes computers down whose fault begins; who comes up again has forgotten everything but its
-    /// number, its parameters and its task.
+    /// Takes computers down whose fault begins in this tick. A restarted computer keeps only its
+    /// id, its parameters and its task.
     pub fn apply_faults(&mut self) {
         for at in 0..self.faults.len() {
             let fault = self.faults[at];
@@ -30,7 +30,7 @@ where
         self.revive();
     }
 
-    /// Starts those anew whose controllers outside of this process have lost their state.
+    /// Restarts external controllers that have lost their state.
     fn revive(&mut self) {
         let Some(external) = &mut self.external else {
             return;
@@ -40,7 +40,7 @@ where
         let lost: Vec<_> = robots.filter(|&index| controllers.has_restarted(index)).collect();
         for index in lost {
             let computer = &self.computers[index];
-            // One that is down anyway starts when that is over.
+            // A robot that is down restarts when its fault ends.
             if computer.down_until <= self.tick {
                 let boot = computer.boot.wrapping_add(1);
                 self.restart(index, boot);

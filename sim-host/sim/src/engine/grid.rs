@@ -1,4 +1,4 @@
-//! The world of cells as ground of the engine.
+//! The grid world as seen by the engine.
 
 use super::Status;
 use super::body::Kinematics;
@@ -18,7 +18,7 @@ use staya_controller::robot::Mode;
 use staya_controller::time::Duration;
 use std::collections::BTreeMap;
 
-/// Bodies that hold a cell each.
+/// Bodies that hold one cell each.
 pub struct Grid {
     #[doc(hidden)]
     pub world: World,
@@ -27,19 +27,19 @@ pub struct Grid {
     #[doc(hidden)]
     pub meter: Option<FormationMeters>,
     changed: Changed,
-    /// What robots know of land that they do not see.
+    /// Robots' knowledge of terrain outside their sight.
     pub scouts: Option<Scouts>,
-    /// The number of each body's robot.
+    /// Robot number of each body.
     pub numbers: Vec<u32>,
     radius: u8,
     tick_us: u32,
 }
 
 impl Grid {
-    /// The scenario's land with its robots at their starts.
+    /// Creates the scenario's terrain with the robots at their starts.
     ///
     /// # Errors
-    /// When two robots start in one cell or one starts in a wall.
+    /// Two robots start in one cell, or one starts in a wall.
     pub fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
         let starts = scenario.robots.iter().map(|robot| (robot.id, robot.start));
         let world = World::new(scenario.terrain.clone(), scenario.rules, scenario.seed, starts)?;
@@ -65,7 +65,7 @@ impl Grid {
 }
 
 impl Grid {
-    /// Robots take note of what they have seen in this tick.
+    /// Updates the robots' memory with the terrain that they see in this tick.
     pub fn look(&mut self) {
         if let Some(scouts) = &mut self.scouts {
             let bodies = self.world.bodies();
@@ -73,16 +73,15 @@ impl Grid {
         }
     }
 
-    /// The robot of a body.
     fn number(&self, index: usize) -> usize {
         self.numbers[index] as usize
     }
 }
 
-/// Cells of the land that are no longer as they were.
+/// Cells that interventions have changed, with their class.
 pub(super) type Changed = BTreeMap<(i16, i16), u8>;
 
-/// What of a body changes.
+/// Mutable state of a body.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct GridBody {
     cell: Cell,
@@ -94,7 +93,6 @@ pub struct GridBody {
     seen: Option<Memory>,
 }
 
-/// Puts back what a meter had measured.
 pub(super) fn restore_meter(
     meter: &mut Option<FormationMeters>,
     measured: Option<FormationMeters>,
@@ -111,13 +109,11 @@ pub(super) fn restore_meter(
     Ok(())
 }
 
-/// The moment at which `tick` begins.
 fn units(tick: u32) -> u64 {
     u64::from(tick) * u64::from(UNIT)
 }
 
-/// Time until a body that is free at `free_at` may leave, at `now_units`; rounded up, so that it is
-/// never 0 too early.
+/// Time until a body may leave its cell; rounded up, so that it is not 0 too early.
 pub(super) fn busy(free_at: u64, now_units: u64, tick_us: u32) -> Duration {
     let left = free_at.saturating_sub(now_units);
     let micros = (left * u64::from(tick_us)).div_ceil(u64::from(UNIT));
@@ -243,7 +239,7 @@ impl Ground for Grid {
     }
 
     fn set_goal(&mut self, number: usize, _: u32, [x, y, _]: [f64; 3]) {
-        // A place of a formation may be off the map: then as near as there is land.
+        // A place in a formation may be off the map: use the nearest cell.
         self.robots[number].goal = self.world.terrain().nearest_cell([x, y]);
     }
 

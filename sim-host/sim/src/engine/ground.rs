@@ -1,4 +1,4 @@
-//! What the engine asks of a world: what a robot senses there, and what its command does to its body.
+//! The interface between the engine and a world: sensing, and execution of commands.
 
 use super::inspect::Scratchpad;
 use super::{Change, Status};
@@ -14,181 +14,183 @@ use staya_controller::grid::Cell;
 use staya_controller::neighbor::Sighting;
 use staya_controller::time::Duration;
 
-/// A world with bodies, as the engine needs it. `number` is the place of a robot in
-/// [`Scenario::robots`](crate::scenario::Scenario::robots), `index` that of its body here: the same, unless other ranks have other robots.
+/// A world with bodies. `number` is the index of a robot in
+/// [`Scenario::robots`](crate::scenario::Scenario::robots), `index` that of its body in this
+/// process. They differ only if other MPI ranks hold part of the robots.
 pub trait Ground: Send + Sync {
-    /// Scratch memory of a thread for [`Ground::sense`].
+    /// Per-thread scratch memory of [`Ground::sense`].
     type Scratch: Default + Send;
 
-    /// What of a body changes.
+    /// Mutable state of a body.
     type Body: Serialize + DeserializeOwned;
-    /// What else of the world does.
+    /// Mutable state of the world apart from its bodies.
     type Shared: Serialize + DeserializeOwned;
 
-    /// Body `index`, with what the world keeps of it.
+    /// State of body `index`, including the world's records about it.
     fn body(&self, index: usize) -> Self::Body;
 
-    /// Puts it back. Until all are, bodies may be in each other's places.
+    /// Restores the state of a body. Until all bodies are restored, their places may collide.
     ///
     /// # Errors
-    /// No body of this world can be so.
+    /// The state is impossible in this world.
     fn set_body(&mut self, index: usize, body: Self::Body) -> Result<(), &'static str>;
 
-    /// What of the body of a robot on another rank is known here, too: where the robot is to go.
+    /// Updates what this rank stores about a robot of another rank: its goal.
     fn note(&mut self, number: usize, body: Self::Body);
 
-    /// The world but for its bodies.
+    /// State of the world apart from its bodies.
     fn shared(&self) -> Self::Shared;
 
-    /// Puts it back into a world before its first tick.
+    /// Restores the shared state in a world before its first tick.
     ///
     /// # Errors
-    /// It is of another world.
+    /// The state belongs to another world.
     fn set_shared(&mut self, shared: Self::Shared) -> Result<(), &'static str>;
 
-    /// Whether bodies are as they can be, together.
+    /// Whether the states of all bodies are consistent with each other.
     fn is_sound(&self) -> bool {
         true
     }
 
-    /// The robot of body `index` forgets what it has seen: its computer starts anew.
+    /// Clears the terrain memory of the robot of body `index`, because its computer restarts.
     fn forget(&mut self, _index: usize) {}
 
-    /// What the robot of body `index` senses at the start of `tick`; the inbox is empty.
+    /// Sensor data of the robot of body `index` at the start of `tick`; the inbox is empty.
     fn sense<'a>(&'a self, index: usize, tick: u32, scratch: &'a mut Self::Scratch) -> AnyInputs<'a, f32>;
 
-    /// Whom the robot of body `index` sees at the start of `tick`, in place of what is in `sightings`.
+    /// Replaces `sightings` with the robots that the robot of body `index` detects at the start of
+    /// `tick`.
     fn sightings(&self, _index: usize, _tick: u32, sightings: &mut Vec<Sighting<f32>>) {
         sightings.clear();
     }
 
-    /// Whether robots have no transmitter: what they would say, nobody hears.
+    /// Whether robots have no transmitter.
     fn is_mute(&self) -> bool {
         false
     }
 
-    /// How the body moves at the start of `tick`.
+    /// Motion of a body at the start of `tick`.
     fn motion(&self, index: usize, tick: u32) -> Motion;
 
-    /// Moves the bodies as their robots command.
+    /// Moves the bodies according to the commands.
     fn advance(&mut self, tick: u32, commands: &[Command<f32>]);
 
-    /// How many collisions there are after `tick`; looks at the bodies alone.
+    /// Number of collisions after `tick`, from the positions of the bodies alone.
     fn count_collisions(&mut self, tick: u32) -> u64;
 
-    /// The state of a body after `tick`, for the fingerprint.
+    /// State of a body after `tick`, for the trace hash.
     fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords;
 
-    /// When the body's journey was over, [`UNIT`](staya_controller::grid::UNIT)ths of a tick after the start;
-    /// `None` when its robot is not where it should be.
+    /// Time at which the body arrived, in [`UNIT`](staya_controller::grid::UNIT)ths of a tick after
+    /// the start; `None` if the robot is not at its goal.
     fn arrival(&self, index: usize, tick: u32, status: &Status) -> Option<u64>;
 
-    /// What a robot must know of its body and its radio.
+    /// Configuration of a robot's agent: body, radio and tick length.
     fn config(&self, number: usize, tick: Duration) -> AgentConfig<f32>;
 
-    /// What a robot has to do if it starts at `tick`.
+    /// Task of a robot that starts at `tick`.
     fn task(&self, number: usize, tick: u32) -> Task;
 
     /// Whether a body could stand at a place, metres.
     fn is_open(&self, place_m: [f64; 3]) -> bool;
 
-    /// Where a robot is to go, metres; `None`: nowhere in particular.
+    /// Goal of a robot, metres; `None`: it has no fixed goal.
     fn goal_m(&self, number: usize) -> Option<[f64; 3]>;
 
-    /// Gives it another goal from `tick` on.
+    /// Sets the goal of a robot from `tick` on.
     fn set_goal(&mut self, number: usize, tick: u32, place_m: [f64; 3]);
 
-    /// Changes the world itself before `tick`.
+    /// Changes the world before `tick`.
     ///
     /// # Errors
-    /// There is no such thing in this world.
+    /// The cell, obstacle or goal does not exist in this world.
     fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal>;
 
-    /// How well a formation is kept now, if there is one; `counts`: a tick is over.
+    /// Current quality of the formations, if there are any. If `counts` is set, the values are
+    /// added to the run's statistics.
     fn keeping(&mut self, _counts: bool) -> Option<Keeping> {
         None
     }
 
-    /// What [`Ground::keeping`] counted.
+    /// Statistics that [`Ground::keeping`] has collected.
     fn formations(&self) -> Option<&FormationMeters> {
         None
     }
 
-    /// Whether bodies are in the plane or in space: distances in metres mean something then.
+    /// Whether bodies have positions in metres rather than cells.
     fn has_bodies(&self) -> bool {
         self.clearance().is_some()
     }
 
-    /// What is known of all formations, and of each.
+    /// Mean quality of all formations, and the quality of each.
     fn kept(&self) -> (Option<Keeping>, Option<PlaceError>, Vec<FormationKept>) {
         let Some(meters) = self.formations() else {
             return (None, None, Vec::new());
         };
-        // On the grid places are cells.
+        // On the grid, places are cells.
         let place_error = meters.place_error().filter(|_| self.has_bodies());
         (meters.mean(), place_error, meters.each(self.has_bodies()))
     }
 
-    /// How far a robot was from its place in the formation when [`Ground::keeping`] last looked, cells; NaN when it
-    /// has none.
+    /// Distance from the robot's place at the last [`Ground::keeping`], cells; NaN without one.
     fn formation_error(&self, _number: usize) -> f64 {
         f64::NAN
     }
 
-    /// How near bodies have come to each other and to obstacles in the whole run, and how often they overlapped, summed over
-    /// ticks; `None` where bodies have no size.
+    /// Smallest distances to other bodies and to obstacles over the whole run, and overlaps summed
+    /// over ticks; `None` if bodies have no size.
     fn clearance(&self) -> Option<Clearance> {
         None
     }
 
-    /// The least distance between the surfaces of two bodies when collisions were last counted, metres.
+    /// Smallest distance between the surfaces of two bodies at the last collision count, metres.
     fn gap_m(&self) -> Option<f64> {
         None
     }
 
-    /// Where in the world robot `index` heads for at `tick`; `None`: nowhere, or that is for its law to choose.
+    /// Target of robot `index` at `tick`, metres; `None` if it has none or its law chooses it.
     fn target_m(&self, _index: usize, _tick: u32, _status: &Status) -> Option<[f64; 3]> {
         None
     }
 
-    /// The radius of body `index`, metres; `None` where bodies have no size.
+    /// Radius of body `index`, metres; `None` if bodies have no size.
     fn radius_m(&self, _index: usize) -> Option<f64> {
         None
     }
 
-    /// The land, if there is any.
+    /// The terrain, if there is any.
     fn terrain(&self) -> Option<&Terrain>;
 
-    /// What stands in the plane.
+    /// Static obstacles in the plane.
     fn solids(&self) -> &[Solid] {
         &[]
     }
 
-    /// The goals of a goal flock at `tick`, metres.
+    /// Goals of a goal flock at `tick`, metres.
     fn goals_m(&self, _tick: u32) -> [Option<[f64; 3]>; WAYPOINTS] {
         [None; WAYPOINTS]
     }
 
-    /// Bodies that are no robots.
+    /// Foreign bodies.
     fn intruders(&self) -> &[Disc] {
         &[]
     }
 
-    /// Bodies that are no robots and say where they are, with the cells that they are in.
+    /// Foreign bodies that send beacons, with their cells.
     fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {
         core::iter::empty()
     }
 
-    /// An order of the operator to everybody that is due at `tick`: frames.
+    /// Encoded frames of the operator's orders to all robots at `tick`.
     fn orders(&self, _tick: u32) -> Option<&[u8]> {
         None
     }
 }
 
-/// A guidance law as a host has it: it is told whatever its world senses, and threads have it in turn.
+/// A guidance law that accepts the sensor data of every world and can change threads.
 pub trait HostLaw: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}
 
 impl<G> HostLaw for G where G: for<'a> Guidance<f32, Input<'a> = AnySurroundings<'a, f32>, Workspace: Scratchpad> + Send {}
 
-/// A state in words of 64 bits.
+/// State of a body as 64-bit words.
 pub type StateWords = heapless::Vec<u64, 8>;

@@ -1,14 +1,13 @@
-//! The fingerprint of a run: equal traces, equal hashes, on any machine and any number of threads.
+//! The trace hash of a run. Equal traces have equal hashes on any machine.
 
 use crate::world::Body;
 use serde::{Deserialize, Serialize};
 use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
 
-/// Keeps these words apart from other uses of the generator.
 const START: u32 = 0x0048_0001;
 
-/// One robot's hash of everything it did: a chain of its states.
+/// Running hash of all states of one robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Chain(u64);
 
@@ -26,7 +25,6 @@ impl Chain {
     }
 }
 
-/// The words of a body on the grid.
 pub(super) fn grid_words(tick: u32, body: &Body, mode: Mode) -> [u64; 2] {
     let column = u64::from(body.cell.x.cast_unsigned());
     let row = u64::from(body.cell.y.cast_unsigned());
@@ -36,7 +34,7 @@ pub(super) fn grid_words(tick: u32, body: &Body, mode: Mode) -> [u64; 2] {
     [place, state]
 }
 
-/// The hash of a swarm: a sum, so that the order of robots plays no part.
+/// Trace hash of a swarm: a sum, so that the order of robots does not matter.
 pub fn sum(chains: &[Chain]) -> u64 {
     chains.iter().fold(0, |sum, chain| sum.wrapping_add(chain.0))
 }
@@ -64,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn every_part_of_a_state_and_its_order_count() {
+    fn the_hash_covers_every_part_of_a_state_and_their_order() {
         let moved = |x, y| Body { cell: Cell::new(x, y), ..BODY };
         let late = Body { free_at: 71, ..BODY };
         let cases = [
@@ -85,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn who_did_it_counts_but_not_the_order_of_robots() {
+    fn the_hash_covers_robot_ids_but_not_their_order() {
         let (one, two) = (Chain::new(RobotId(1)), Chain::new(RobotId(2)));
         assert_ne!(one, two);
         assert_eq!(sum(&[one, two]), sum(&[two, one]));

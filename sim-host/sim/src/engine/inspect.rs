@@ -1,4 +1,4 @@
-//! What a robot knows and is about to decide, for those who look into it: the run goes on as if nobody had looked.
+//! Read-only inspection of a robot's knowledge and its next decision. The run is not affected.
 
 use super::simulate::SafetyOf;
 use super::witness::Asked;
@@ -12,20 +12,21 @@ use staya_controller::neighbor::Neighbor;
 use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
 
-/// Another robot, as a robot knows it.
+/// Another robot, as stored by a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
-    /// Who it is.
+    /// Id of the other robot.
     pub id: RobotId,
-    /// Where the robot takes it to be now, metres.
+    /// Estimated current position, metres.
     pub position_m: [f64; 3],
-    /// How it moved when it was heard, m/s.
+    /// Velocity in its last beacon, m/s.
     pub velocity_mps: [f64; 3],
-    /// Seconds since it was heard.
+    /// Age of its last beacon, seconds.
     pub age_s: f64,
 }
 
-/// Whom an agent knows, `now`, by number. `own` is where it is by its own reckoning, `own_m` the same place in the world. O(neighbours).
+/// The neighbours of an agent at `now`, in the order of its table. `own` is the agent's estimate of
+/// its own position, `own_m` the same place in world coordinates, metres. O(neighbours).
 pub fn known<'a, P>(
     neighbors: &'a [Neighbor<f32, P>],
     own: Position,
@@ -45,16 +46,16 @@ pub fn known<'a, P>(
     })
 }
 
-/// What a robot sees of the land, and what ways cost in it.
+/// The terrain window of a robot, with path costs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeenLand {
     /// South-west cell.
     pub corner: Cell,
     /// Cells from west to east.
     pub width: u16,
-    /// Row by row from the south-west corner, as in [`Terrain`](crate::terrain::Terrain).
+    /// Classes row by row from the south-west corner, as in [`Terrain`](crate::terrain::Terrain).
     pub cells: Vec<u8>,
-    /// Ticks from each cell to the exit of the last search; NaN where there is no way or nobody looked for one.
+    /// Ticks from each cell to the exit of the last search; NaN if unreachable or not searched.
     pub costs: Vec<f32>,
 }
 
@@ -63,43 +64,43 @@ pub struct SeenLand {
 pub struct Permitted {
     /// A point on its border, m/s.
     pub point_mps: [f32; 3],
-    /// Unit vector into it.
+    /// Unit vector into the half-space.
     pub normal: [f32; 3],
-    /// Whether an obstacle, not a robot, is behind it.
+    /// Whether it comes from an obstacle, not from a robot.
     pub is_of_obstacle: bool,
 }
 
-/// What a safety layer makes of a wish.
+/// Input and result of a safety layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// The velocity that the guidance law wishes, m/s.
+    /// Velocity chosen by the guidance law, m/s.
     pub wish_mps: [f32; 3],
-    /// The one that the body is told, m/s.
+    /// Velocity commanded to the body, m/s.
     pub chosen_mps: [f32; 3],
-    /// The body's highest speed here, m/s.
+    /// The body's highest speed at this place, m/s.
     pub max_speed_mps: f32,
-    /// What ORCA permits; empty for other layers.
+    /// Half-spaces of ORCA; empty for other layers.
     pub permitted: Vec<Permitted>,
 }
 
-/// What a robot knows before its next step, and what it will decide in it.
+/// A robot's knowledge before its next step, and the decision that it will make.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Inspection {
-    /// Whom it knows, by number.
+    /// Known robots, in the order of the neighbour table.
     pub known: Vec<Known>,
-    /// On the grid.
+    /// Terrain window; only on the grid.
     pub land: Option<SeenLand>,
-    /// By velocities.
+    /// Safety decision; only for robots controlled by velocity.
     pub choice: Option<Choice>,
-    /// Its parameters.
+    /// Parameters of the robot.
     pub parameters: Vec<(Parameter, f32)>,
-    /// Bytes that it has sent since it started last.
+    /// Bytes sent since the last start.
     pub sent_bytes: u64,
-    /// Bytes that it has heard since it started last.
+    /// Bytes received since the last start.
     pub heard_bytes: u64,
 }
 
-/// What can be read in a law's scratch memory after a step.
+/// Access to a law's scratch memory after a step.
 pub trait Scratchpad: Default {
     /// Ticks from a cell to the exit of the last search.
     fn cost(&self, _cell: Cell) -> Option<f32> {
@@ -120,7 +121,7 @@ where
     W: Ground,
     G: HostLaw + Clone,
 {
-    /// Looks into robot `index`; of one that is down, or elsewhere, nothing is known. Steps a copy of it.
+    /// Inspects robot `index` by stepping a copy of its agent; empty if it is down or external.
     pub(super) fn inspect(&self, index: usize) -> Inspection {
         let computer = &self.computers[index];
         let Some(agent) = computer.agent.as_ref().filter(|_| self.is_up(index)) else {
@@ -181,7 +182,6 @@ where
     }
 }
 
-/// What ORCA permits among those that it was asked about.
 fn permitted<const K: usize>(layer: &AnySafety<f32, K>, asked: &Asked) -> Vec<Permitted> {
     let Asked { body, nearby, obstacles, .. } = asked;
     match layer {

@@ -1,4 +1,4 @@
-//! What somebody does to a run while it goes on ([`Intervention`]).
+//! Applies [`Intervention`]s to a running simulation.
 
 use super::{Engine, Ground, HostLaw};
 use crate::scenario::{Fault, Intervention};
@@ -14,9 +14,9 @@ use staya_controller::robot::RobotId;
 pub enum Change<'a> {
     /// See [`Intervention::Waypoint`].
     Waypoint {
-        /// Which of the goals.
+        /// Index of the goal.
         goal: u8,
-        /// Where it is now.
+        /// New position, metres.
         place_m: [f64; 3],
     },
     /// See [`Intervention::Solid`].
@@ -27,12 +27,13 @@ pub enum Change<'a> {
     Remove(usize),
     /// See [`Intervention::Cell`].
     Cell([i16; 2], u8),
-    /// Cells of the land, each with what it becomes, by a rule of the scenario
-    /// ([`LandChange`](crate::terrain::change::LandChange)): whoever is in one that closes may leave it, and nobody enters.
+    /// Cells with their new class, changed by a rule of the scenario
+    /// ([`LandChange`](crate::terrain::change::LandChange)). A robot inside a closing cell may
+    /// leave; no robot may enter.
     Land(&'a [(Cell, u8)]),
 }
 
-/// A parameter that was changed, of one robot (its place in the scenario) or of all.
+/// A changed parameter, of one robot (its index in the scenario) or of all.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Tuned {
     robot: Option<usize>,
@@ -46,31 +47,31 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// Changes the land as the scenario has it for this tick.
+    /// Applies the scenario's terrain changes of this tick.
     pub fn change_land(&mut self) {
         for (number, rule) in self.changes.iter().enumerate().filter(|(_, rule)| rule.is_due(self.tick)) {
             let due = self.ground.terrain().map(|land| rule.due(number, self.seed, self.tick, land));
             if let Some(cells) = due.filter(|cells| !cells.is_empty()) {
-                // There is land.
+                // Cannot fail: the terrain exists.
                 let _ = self.ground.change(self.tick, Change::Land(&cells));
             }
         }
     }
 
-    /// Does what the scenario has for this tick.
+    /// Applies the scenario's interventions of this tick.
     pub fn apply_interventions(&mut self) {
         while let Some((_, what)) = self.interventions.front().filter(|(tick, _)| *tick <= self.tick) {
             let what = what.clone();
-            // What nobody has a use for was said to whoever did it by hand, and is as void when it is repeated.
+            // If it has no effect, that was reported when it was made by hand.
             let _ = self.intervene(&what);
             self.interventions.pop_front();
         }
     }
 
-    /// Does it before the next tick.
+    /// Applies an intervention before the next tick.
     ///
     /// # Errors
-    /// It makes no sense for these robots or this world, or nobody has a use for it.
+    /// It is invalid for these robots or this world, or has no effect.
     pub fn intervene(&mut self, what: &Intervention) -> Result<(), Refusal> {
         what.check(&self.robots)?;
         let number = what.robot().and_then(|id| self.number_of(RobotId(id)));
@@ -105,7 +106,7 @@ where
         self.robots.binary_search_by_key(&id, |robot| robot.id).ok()
     }
 
-    /// Where a robot is here, if it is.
+    /// Index of a robot in this process, if it is here.
     pub(super) fn index_of(&self, id: RobotId) -> Option<usize> {
         let number = self.number_of(id)?;
         match self.here.len() == self.robots.len() && self.here[number] as usize == number {
@@ -122,7 +123,7 @@ where
             return Err(Refusal::new("place_m", "nobody can stand there", "give a place on the map and not in a wall"));
         }
         let robots = number.map_or(0..self.robots.len(), |number| number..number + 1);
-        // Where the top leader of each formation was to go: the others go beside it.
+        // Goals of the top leaders: followers get goals relative to them.
         let tops = self.shapes.iter().filter(|_| number.is_none());
         let tops: Vec<_> = tops.map(|members| (members.clone(), self.ground.goal_m(members.start))).collect();
         for number in robots.clone() {
@@ -138,7 +139,7 @@ where
             }
             let (task, is_up) = (self.ground.task(self.number(index), self.tick), self.is_up(index));
             let agent = self.computers[index].agent.as_mut();
-            // One that is down hears of it when it starts anew.
+            // A robot that is down receives the goal at its restart.
             is_of_use |= agent.filter(|_| is_up).is_none_or(|agent| agent.assign(&task).is_ok());
         }
         if is_of_use {
@@ -157,7 +158,7 @@ where
                 is_known |= agent.set_parameter(parameter, value);
             }
         }
-        // Elsewhere there may be one.
+        // A robot of another rank may have the parameter.
         if !is_known && self.here.len() == self.robots.len() {
             let what = format!("no robot that this is for has the parameter {parameter}");
             return Err(Refusal::new("name", what, "give one that its guidance law or its safety layer has"));
@@ -166,13 +167,12 @@ where
         Ok(())
     }
 
-    /// Whether the computer of a robot runs.
     pub(super) fn is_up(&self, index: usize) -> bool {
         self.tick >= self.computers[index].down_until
     }
 }
 
-/// Gives an agent that starts the parameters that robot number `number` of the scenario has by now.
+/// Sets the changed parameters of robot `number` in an agent that starts.
 pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(Parameter, f32) -> bool) {
     for Tuned { parameter, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
         set(*parameter, *value);

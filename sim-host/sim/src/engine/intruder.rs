@@ -1,4 +1,4 @@
-//! A body that is no robot of the swarm and says where it is: a vehicle with a transponder.
+//! A foreign body that sends beacons, such as a vehicle with a transponder.
 
 use crate::radio::{self, HostWire};
 use crate::world::plane::Disc;
@@ -10,47 +10,41 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
 use staya_controller::wire::{Beacon, Format, Header, Message, Wire as _};
 
-/// In nobody's way on the grid.
+/// A cell outside every map.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
-/// Its radio.
+/// Radio of an intruder.
 pub struct Intruder {
     pub id: RobotId,
-    /// Where it is, metres.
+    /// Current position, metres.
     pub position_m: [f64; 2],
     wire: HostWire,
-    /// Of its next frame.
     sequence: u16,
     outbox: Vec<u8>,
 }
 
-/// What [`Intruder::state`] gave.
 pub(super) type IntruderState = (HostWire, u16);
 
 impl Intruder {
-    /// One among robots that speak `format` without a key.
     pub fn new(disc: &Disc, format: Format) -> Self {
         let [x, y, _] = disc.position_m;
         let wire = radio::wire(format, None, 0);
         Self { id: disc.id, position_m: [x, y], wire, sequence: 0, outbox: Vec::new() }
     }
 
-    /// What of it changes.
     pub fn state(&self) -> impl Serialize {
         (&self.wire, self.sequence)
     }
 
-    /// Puts it back.
     pub fn restore(&mut self, (wire, sequence): IntruderState) {
         (self.wire, self.sequence) = (wire, sequence);
     }
 
-    /// What it sends in this tick.
     pub fn outbox(&self) -> &[u8] {
         &self.outbox
     }
 
-    /// Says where it is, how it goes, and that it gives way to nobody.
+    /// Prepares a beacon with position and velocity, of a robot that does not give way.
     pub fn speak(&mut self, disc: &Disc, cell: Option<Cell>, time: Instant) {
         let milli = |x: f64| libm::round(x * 1000.0);
         let cell = cell.unwrap_or(NO_CELL);

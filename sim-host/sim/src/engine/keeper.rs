@@ -1,4 +1,5 @@
-//! The operator who keeps the keys: sends each robot the swarm's next key under the robot's own, and hears how far it is.
+//! The operator's key server: sends the swarm's next key to each robot, encrypted with the robot's
+//! own key, and collects confirmations.
 
 use crate::radio;
 use crate::scenario::{Roll, Scenario};
@@ -8,12 +9,12 @@ use staya_controller::robot::RobotId;
 use staya_controller::wire::{KeyPhase, OperatorWire, Postcard, Wire as _};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-/// Ticks between two tries to reach who has not answered.
+/// Ticks between two attempts to reach robots that have not answered.
 const AGAIN_TICKS: u32 = 5;
-/// Tries after which those who have answered are told again: one of them may have started anew.
+/// Attempts after which all robots are contacted again, since one of them may have restarted.
 const ROUNDS: u32 = 20;
 
-/// The operator's radio.
+/// The key server and its radio.
 pub struct Keeper {
     wire: OperatorWire<{ radio::PEERS }>,
     place_m: [f64; 2],
@@ -22,14 +23,14 @@ pub struct Keeper {
     revoked: BTreeSet<RobotId>,
     generation: u16,
     phase: KeyPhase,
-    /// When this phase is over, whoever has answered.
+    /// Tick at which this phase ends even without all confirmations.
     until: u32,
     overlap_ticks: u32,
     held: BTreeMap<RobotId, (u16, KeyPhase)>,
     outbox: Vec<u8>,
 }
 
-/// What [`Keeper::state`] gave.
+/// Deserialized form of [`Keeper::state`].
 #[derive(Deserialize)]
 pub struct KeeperState {
     wire: Box<OperatorWire<{ radio::PEERS }>>,
@@ -42,7 +43,7 @@ pub struct KeeperState {
 }
 
 impl Keeper {
-    /// The operator of a scenario in which robots have keys of their own.
+    /// The key server of a scenario; `None` if robots have no keys of their own.
     pub(super) fn new(scenario: &Scenario) -> Option<Self> {
         let keeping = scenario.keeping.as_ref()?;
         let (_, id) = radio::operator(scenario.radio.format, scenario.key.as_ref(), 1);
@@ -62,7 +63,7 @@ impl Keeper {
         })
     }
 
-    /// Its number on the air; never in a frame.
+    /// Id at the radio; it never appears in a frame.
     pub(super) const fn id() -> RobotId {
         RobotId(u32::MAX - 1_000_000)
     }
@@ -72,18 +73,15 @@ impl Keeper {
         self.place_m
     }
 
-    /// What it sends in this tick.
     pub(super) fn outbox(&self) -> &[u8] {
         &self.outbox
     }
 
-    /// What of it changes.
     pub(super) fn state(&self) -> impl Serialize {
         let Self { wire, rolls, revoked, generation, phase, until, held, .. } = self;
         (wire, rolls.len(), revoked, generation, phase, until, held)
     }
 
-    /// Puts it back.
     pub(super) fn restore(&mut self, state: KeeperState) {
         let left = self.rolls.len().saturating_sub(state.rolls_left);
         self.rolls.drain(..left);
@@ -92,7 +90,6 @@ impl Keeper {
         (self.revoked, self.generation, self.phase, self.until, self.held) = (revoked, generation, phase, until, held);
     }
 
-    /// Hears what arrived and decides what to send.
     pub(super) fn act(&mut self, tick: u32, inbox: &[u8]) {
         self.outbox.clear();
         let mut rest = inbox;

@@ -1,12 +1,12 @@
-//! Ticks: every robot's own [`Agent`] between one world and one radio. Read [`Engine::step`] first.
+//! The simulation loop, with one [`Agent`] per robot. Start with [`Engine::step`].
 //!
-//! A tick has two phases. First all robots decide, in parallel: each gets its own pose and cell, the
-//! land around it and the bytes that the radio delivered, and nothing else. Then the radio carries
-//! what they sent and the world moves their bodies. What a robot does in a tick can therefore
-//! reach another one in the next tick at the earliest, and neither the number of threads nor the
-//! order of robots matters.
+//! A tick has two phases. In the first, all robots decide in parallel. Each robot sees only its own
+//! pose and cell, the land around it and the bytes that the radio delivered. In the second, the
+//! radio transmits the frames and the world moves the bodies. An action therefore affects other
+//! robots in the next tick at the earliest, and neither the number of threads nor the order of
+//! robots matters.
 //!
-//! [`simulate`] runs a whole scenario with the guidance law that it asks for.
+//! [`simulate`] runs a whole scenario with its guidance law.
 
 mod attacker;
 mod body;
@@ -72,39 +72,34 @@ use staya_controller::wire::{Format, Ring};
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
 
-/// Robots that a thread takes at least at a time: less would cost more in handing out than in work.
+/// Smallest number of robots per parallel task; smaller tasks cost more to schedule than to run.
 const BATCH: usize = 64;
 
 /// A robot's computer.
 #[derive(Debug)]
 pub struct Computer<G: Guidance<f32>, A> {
-    /// `None`: elsewhere.
+    /// `None`: the controller is external.
     agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
-    /// What the last step sent: no longer than that.
+    /// Frames of the last step, without spare capacity.
     outbox: Vec<u8>,
-    /// Of the last step, if somebody wants to know.
     events: Vec<Event>,
-    /// What the operator tells it: frames.
     mail: Vec<u8>,
-    /// Counts its starts.
     boot: u8,
-    /// The tick at which its clock showed 0.
+    /// Tick at which its clock showed 0.
     epoch: u32,
-    /// Down before this tick.
+    /// First tick in which it is up again.
     down_until: u32,
-    /// Since its start.
+    /// Bytes since its start.
     sent_bytes: u64,
     heard_bytes: u64,
 }
 
 impl<G: Guidance<f32>, A> Computer<G, A> {
-    /// Its own clock.
     const fn now(&self, tick: u32, tick_us: u32) -> Instant {
         Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
     }
 }
 
-/// The beginning of a tick, as robots see it.
 struct Tick<'a, W> {
     tick: u32,
     ground: &'a W,
@@ -112,7 +107,6 @@ struct Tick<'a, W> {
 }
 
 impl<W: Ground> Tick<'_, W> {
-    /// What robot `index` senses and hears.
     fn inputs<'b, G: Guidance<f32>, A>(
         &'b self,
         index: usize,
@@ -120,7 +114,7 @@ impl<W: Ground> Tick<'_, W> {
         senses: &'b mut W::Scratch,
         heard: &'b mut Vec<u8>,
     ) -> AnyInputs<'b, f32> {
-        // What arrived while it was down, it never heard.
+        // Frames that arrived while it was down are lost.
         let has_just_restarted = computer.boot > 0 && computer.epoch == self.tick;
         let delivered = match has_just_restarted {
             true => &[],
@@ -140,12 +134,12 @@ impl<W: Ground> Tick<'_, W> {
     }
 }
 
-/// Makes the guidance law and the safety layer of a robot by its number in [`Scenario::robots`].
+/// Creates the law and the safety layer of a robot by its index in [`Scenario::robots`].
 type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
-/// A scenario in motion on ground `W`. `G` is the guidance law of all its robots, `A` their safety layer.
+/// A running scenario in world `W`, with guidance laws `G` and safety layers `A`.
 ///
-/// What is public of it beside its functions is for the crate `staya-mpi`, which steps one part of a world in each process.
+/// Fields are public for the crate `staya-mpi`, which steps one part of a world in each process.
 pub struct Engine<W, G: Guidance<f32>, A> {
     seed: u64,
     format: Format,
@@ -154,23 +148,21 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     tick_us: u32,
     #[doc(hidden)]
     pub tick: u32,
-    /// All of the scenario, by rising number.
+    /// All robots of the scenario, sorted by id.
     pub robots: Vec<Robot>,
-    /// Which of them are here: their places in `robots`, in the order of everything below that is of one robot. All of them in
-    /// order, unless other ranks have the others.
+    /// Indices in `robots` of the robots in this process, in the order of all per-robot lists
+    /// below. Contains all robots unless other MPI ranks hold some.
     pub here: Vec<u32>,
     faults: Vec<Fault>,
-    /// How the land changes.
     changes: Vec<LandChange>,
-    /// What is still to be done to the run, by rising tick.
+    /// Pending interventions, sorted by tick.
     pub interventions: VecDeque<(u32, Intervention)>,
     tuned: Vec<Tuned>,
-    /// The robots of each formation, whose goals move together.
+    /// Robot ranges of the formations, whose goals move together.
     shapes: Vec<Range<usize>>,
     brains: Brains<G, A>,
     #[doc(hidden)]
     pub ground: W,
-    /// What robots live on instead of the open plane.
     torus: Option<Torus<f32>>,
     #[doc(hidden)]
     pub radio: Radio,
@@ -182,7 +174,7 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     pub statuses: Vec<Status>,
     #[doc(hidden)]
     pub chains: Vec<Chain>,
-    /// Of the robots, then of the attackers, of the intruders and of the keeper of keys.
+    /// Positions of the robots, the attackers, the intruders and the key server, in this order.
     pub positions_m: Vec<[f64; 2]>,
     #[doc(hidden)]
     pub attackers: Vec<Attacker>,
@@ -190,7 +182,7 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     pub intruders: Vec<Intruder>,
     #[doc(hidden)]
     pub keeper: Option<Keeper>,
-    /// Keys of robots on other ranks that attackers take in this tick.
+    /// Keys of robots on other ranks that attackers take over in this tick.
     pub taken: HashMap<RobotId, Ring>,
     master: Option<Key>,
     external: Option<External>,
@@ -213,15 +205,17 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// The scenario before its first tick, on `ground`. `brains(i)` makes guidance law and safety layer of robot number `i` in
-    /// [`Scenario::robots`], at its first start and at each restart.
+    /// Creates the engine before the first tick of `scenario`, with the bodies of `ground`.
+    /// `brains(i)` creates the law and the safety layer of robot `i` in [`Scenario::robots`], at
+    /// its first start and at each restart.
     pub fn new(scenario: &Scenario, ground: W, brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
         let here = (0..scenario.robots.len() as u32).collect();
         Self::part(scenario, ground, brains, here, true)
     }
 
-    /// The same with these robots alone, by their places in [`Scenario::robots`]; `ground` has their bodies in this order. Who is no
-    /// robot and has a radio is here or on another rank.
+    /// Creates the engine for a part of the robots: those with the indices `here` in
+    /// [`Scenario::robots`], whose bodies `ground` has in this order. If `has_others` is set, this
+    /// process also simulates the attackers, the intruders and the key server.
     pub fn part(
         scenario: &Scenario,
         ground: W,
@@ -286,29 +280,26 @@ where
         engine
     }
 
-    /// The number of a robot that is here.
     fn id(&self, index: usize) -> RobotId {
         self.robots[self.number(index)].id
     }
 
-    /// The place in [`Scenario::robots`] of a robot that is here.
+    /// Index in [`Scenario::robots`] of a robot in this process.
     fn number(&self, index: usize) -> usize {
         self.here[index] as usize
     }
 
-    /// What the computer of robot `index` must know at its start number `boot`.
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
         AgentConfig { boot, seed: self.seed, claims: self.claims, ..self.ground.config(self.number(index), tick) }
     }
 
-    /// Computer number `index` with its own agent, started now.
     fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
         let number = self.number(index);
         let (guidance, safety) = (self.brains)(number);
         let wire = match &self.master {
             None => radio::wire(self.format, self.key.as_ref(), boot),
-            // Its lasting memory has the key that it spoke last.
+            // The last key survives a restart in persistent memory.
             Some(master) => {
                 let ring = self.computers.get(index).and_then(|computer| ring(computer.agent.as_ref()?.wire()));
                 let stored = ring.and_then(|ring| ring.seeds()[0].map(|(generation, seed)| (generation, seed.clone())));
@@ -319,7 +310,7 @@ where
         if let Some(torus) = self.torus {
             agent.set_torus(torus);
         }
-        // A law that has no use for its task says so; the scenario was checked for that.
+        // Only laws without a task refuse it; the scenario was checked for that.
         let _ = agent.assign(&self.ground.task(number, self.tick));
         intervene::retune(&self.tuned, number, |parameter, value| agent.set_parameter(parameter, value));
         self.computer(Some(agent), boot)
@@ -340,7 +331,6 @@ where
         }
     }
 
-    /// Starts computer number `index` anew, here or elsewhere.
     fn restart(&mut self, index: usize, boot: u8) {
         self.ground.forget(index);
         let (config, task) = (self.config(index, boot), self.ground.task(self.number(index), self.tick));
@@ -357,7 +347,7 @@ where
         };
     }
 
-    /// One tick. Returns what the swarm as a whole looks like after it.
+    /// Runs one tick. Returns the swarm's record row.
     pub fn step(&mut self) -> TickRow {
         self.change_land();
         self.apply_interventions();
@@ -379,7 +369,7 @@ where
         self.row(keeping, packets)
     }
 
-    /// Puts on the air what everybody here sends.
+    /// Transmits the frames of this process.
     pub fn send(&mut self) -> radio::Counts {
         let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
         let keeper = self.keeper.as_ref().map_or(&[][..], Keeper::outbox);
@@ -393,7 +383,7 @@ where
         self.radio.send(self.tick, &self.positions_m, outbox)
     }
 
-    /// Takes note of a tick's packets.
+    /// Adds a tick's packets to the totals.
     pub fn count(&mut self, refused: PacketCounts, carried: radio::Counts) -> PacketCounts {
         let packets = PacketCounts {
             sent: carried.sent,
@@ -407,7 +397,7 @@ where
         packets
     }
 
-    /// Phase one: everybody decides. Returns how many frames were refused, and nothing else.
+    /// First phase: all robots decide. Returns the numbers of refused frames only.
     pub fn decide(&mut self) -> PacketCounts {
         self.send_out();
         let mut refused = self.decide_here();
@@ -415,7 +405,6 @@ where
         refused
     }
 
-    /// Steps the robots whose agents are here, in parallel.
     fn decide_here(&mut self) -> PacketCounts {
         let (tick, tick_us, keeps_events) = (self.tick, self.tick_us, self.keeps_events);
         let moment = Tick { tick, ground: &self.ground, radio: &self.radio };
@@ -456,7 +445,7 @@ where
                     let heard_bytes = inputs.inbox.len() as u64;
                     computer.heard_bytes += heard_bytes;
                     computer.sent_bytes += out.outbox.len() as u64;
-                    // Beacons are about as long as ever: no more memory than that.
+                    // Beacons have similar lengths, so the buffer does not need spare capacity.
                     computer.outbox.reserve_exact(out.outbox.len());
                     computer.outbox.extend_from_slice(&out.outbox);
                     computer.mail.clear();
@@ -476,7 +465,7 @@ where
             .reduce(PacketCounts::default, |one, other| one + other)
     }
 
-    /// Takes note of where everybody is after phase two.
+    /// Records the state of all robots after the second phase.
     pub fn observe(&mut self) {
         let (ground, tick, statuses) = (&self.ground, self.tick, &self.statuses);
         let chains = self.chains.par_iter_mut().enumerate().with_min_len(BATCH);

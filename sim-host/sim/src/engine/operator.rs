@@ -1,4 +1,4 @@
-//! A run that an operator watches and commands.
+//! Runs that an operator observes and controls.
 
 use super::simulate::{AnyEngine, SafetyOf};
 use super::{Engine, Ground, HostLaw, Inspection, Moment, Outcome, Status};
@@ -14,87 +14,91 @@ use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message, OperatorWire, Wire as _};
 use staya_mavlink::frame::MAX_FRAME_LEN;
 
-/// What an operator can see of a robot: what the robot itself knows.
+/// A robot's state as the robot itself knows it.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
-    /// How it moves.
+    /// Motion of the body.
     pub motion: Motion,
-    /// What it is doing.
+    /// Status after the last step.
     pub status: Status,
-    /// Changes with each start of its computer.
+    /// Restart number of its computer.
     pub boot: u8,
     /// Whether its computer runs.
     pub is_up: bool,
-    /// The operator's wish that it follows.
+    /// The operator's command that it follows.
     pub wish: Wish<f32>,
-    /// Robots that it knows.
+    /// Number of robots in its neighbour table.
     pub neighbors: usize,
 }
 
-/// A scenario whose robots can be commanded between ticks. Robots are numbered as in [`Scenario::robots`].
+/// A running scenario whose robots accept commands between ticks. Robots are numbered as in
+/// [`Scenario::robots`].
 ///
-/// While nobody commands, it is the run that [`simulate`](super::simulate) makes, to the bit. It goes on when all have arrived.
+/// Without commands, the run is identical to that of [`simulate`](super::simulate), bit for bit. It
+/// continues after all robots have arrived.
 pub trait Operated: Send {
-    /// One tick.
+    /// Runs one tick.
     fn advance(&mut self);
 
-    /// Robot `index` now.
+    /// State of robot `index`.
     fn observation(&self, index: usize) -> Observation;
 
-    /// What happened to it in the last tick.
+    /// Events of robot `index` in the last tick.
     fn events(&self, index: usize) -> &[Event];
 
-    /// Gives it a wish; whether it takes it: it does not while its computer is down, nor what its guidance has no use for.
+    /// Commands robot `index` and returns whether it accepted. It refuses while its computer is
+    /// down, and if its law does not support the command.
     fn command(&mut self, index: usize, wish: Wish<f32>) -> bool;
 
-    /// Lets it hear a message in the next tick, over no radio, in the format that robots speak (frames are counted here, whatever the header's number);
-    /// lost while its computer is down.
+    /// Delivers a message to robot `index` in the next tick, without the radio but in its wire
+    /// format. Frame numbers are assigned here; the one in `header` is ignored. The message is lost
+    /// while the computer is down.
     fn tell(&mut self, index: usize, header: Header, message: &Message);
 
-    /// What a parameter of it is; `None` when it has no such one or is down.
+    /// Value of a parameter; `None` if the robot does not have it or is down.
     fn parameter(&self, index: usize, parameter: Parameter) -> Option<f32>;
 
-    /// Changes a parameter; whether it has such one and takes the value.
+    /// Sets a parameter and returns whether the robot has it and accepts the value.
     fn set_parameter(&mut self, index: usize, parameter: Parameter, value: f32) -> bool;
 
-    /// What came of the run so far.
+    /// Results of the run so far.
     fn outcome(&self) -> Outcome;
 
-    /// The swarm and its robots now, as [`simulate`](super::simulate) shows them after each tick.
+    /// Calls `watch` with the current state, as [`simulate`](super::simulate) does after a tick.
     fn show(&self, watch: &mut dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>));
 
-    /// Whether [`simulate`](super::simulate) would end here: all have arrived.
+    /// Whether [`simulate`](super::simulate) would end here because all robots have arrived.
     fn is_over(&self) -> bool;
 
-    /// Does it before the next tick.
+    /// Applies an intervention before the next tick.
     ///
     /// # Errors
-    /// It makes no sense for these robots or this world, or nobody has a use for it.
+    /// It is invalid for these robots or this world, or has no effect.
     fn intervene(&mut self, what: &Intervention) -> Result<(), Refusal>;
 
-    /// What robot `index` knows, and is going to decide.
+    /// Knowledge and next decision of robot `index`.
     fn inspect(&self, index: usize) -> Inspection;
 
-    /// Where robot `index` is to go, metres; `None`: nowhere in particular.
+    /// Goal of robot `index`, metres; `None`: it has no fixed goal.
     fn goal_m(&self, index: usize) -> Option<[f64; 3]>;
 
-    /// The land as it is now, if there is any.
+    /// Current terrain, if there is any.
     fn terrain(&self) -> Option<&Terrain>;
 
-    /// What stands in the plane now.
+    /// Current obstacles in the plane.
     fn solids(&self) -> &[Solid];
 
-    /// Bodies that are no robots.
+    /// Foreign bodies.
     fn intruders(&self) -> &[Disc];
 
-    /// Whether [`Operated::receptions`] tells from the next tick on.
+    /// Enables or disables the log of [`Operated::receptions`] from the next tick on.
     fn log_receptions(&mut self, wanted: bool);
 
-    /// What became of the last tick's packets at robot `index`, with the numbers of their senders.
+    /// Fate of each packet of the last tick at robot `index`, with the sender's id.
     fn receptions(&self, index: usize) -> &[(RobotId, Reception)];
 }
 
-/// A scenario before its first tick, with an operator.
+/// Creates a run with an operator, before its first tick.
 ///
 /// # Errors
 /// [`Misplaced`] when two robots start in one cell or one starts in a wall.
@@ -121,17 +125,14 @@ where
     Box::new(OperatedEngine { engine, row, wire, own, number: key.map(|_| number), sequence: 0 })
 }
 
-/// A swarm, and what its operator speaks.
 struct OperatedEngine<W, G: Guidance<f32>> {
     engine: Engine<W, Commanded<f32, G>, SafetyOf>,
-    /// The swarm's line of the record after the last tick.
     row: TickRow,
     wire: HostWire,
-    /// For robots that have keys of their own.
+    /// Wire for robots that have keys of their own.
     own: Option<OperatorWire<1>>,
-    /// As whom it speaks if the robots have a key; otherwise as whom it is told to.
+    /// Sender id if the robots have a key; otherwise the header gives it.
     number: Option<RobotId>,
-    /// Of the next frame.
     sequence: u16,
 }
 
@@ -179,7 +180,7 @@ where
         }
         let header = Header { sender: self.number.unwrap_or(header.sender), sequence: self.sequence, ..header };
         self.sequence = self.sequence.wrapping_add(1);
-        // What the controller's messages can be fits.
+        // All messages of the controller fit into a frame.
         if self.engine.is_up(index) && self.wire.encode(header, message, &mut frame).is_ok() {
             self.engine.computers[index].mail.extend_from_slice(&frame);
         }

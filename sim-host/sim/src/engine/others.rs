@@ -1,4 +1,4 @@
-//! Who is not of the swarm and has a radio: attackers, intruders, the operator who keeps the keys.
+//! Transmitters outside the swarm: attackers, intruders and the key server.
 
 use super::{Engine, Ground, HostLaw};
 use crate::radio::HostWire;
@@ -13,7 +13,7 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// Attackers hear and speak, as robots do.
+    /// Lets attackers receive and prepare frames.
     pub fn attack(&mut self) {
         let robots = self.computers.len();
         for at in 0..self.attackers.len() {
@@ -26,13 +26,13 @@ where
         }
     }
 
-    /// The keys that a robot has that is here.
+    /// Keys of a robot in this process.
     pub fn ring_of(&self, robot: RobotId) -> Option<Ring> {
         let agent = self.computers[self.index_of(robot)?].agent.as_ref()?;
         ring(agent.wire()).cloned()
     }
 
-    /// Whoever has the master hears and speaks.
+    /// Lets the key server receive and prepare frames.
     pub fn keep_keys(&mut self) {
         let at = self.computers.len() + self.attackers.len() + self.intruders.len();
         if let Some(keeper) = &mut self.keeper {
@@ -40,7 +40,7 @@ where
         }
     }
 
-    /// Intruders say where they are.
+    /// Lets intruders prepare beacons.
     pub fn intrude(&mut self) {
         let now = Instant::from_micros(self.tick.wrapping_mul(self.tick_us));
         let first = self.computers.len() + self.attackers.len();
@@ -54,7 +54,7 @@ where
     }
 }
 
-/// The keys in a format that has more than one.
+/// Keys of a wire format that has several of them.
 pub(super) fn ring(wire: &HostWire) -> Option<&Ring> {
     match wire {
         HostWire::Sealed(sealed) => Some(sealed.ring()),

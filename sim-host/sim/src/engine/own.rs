@@ -1,4 +1,4 @@
-//! Scenarios in the plane or in space whose robots go by a guidance law that is nobody's here: the caller's own.
+//! Scenarios in the plane or in space with a guidance law supplied by the caller.
 
 use super::operator::{Operated, boxed};
 use super::simulate::{SafetyOf, go};
@@ -11,7 +11,7 @@ use staya_controller::agent::{AnyWorld, Commanded, Guidance, InPlane, NeighborTr
 use std::ops::ControlFlow;
 use thiserror::Error;
 
-/// A law of the caller's own. What it keeps between steps serde must know, for checkpoints and for its fingerprint.
+/// A guidance law supplied by the caller. Its state is serialized in checkpoints.
 pub trait OwnLaw:
     for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()> + State + Clone + Send + 'static
 {
@@ -22,14 +22,15 @@ impl<G> OwnLaw for G where
 {
 }
 
-/// A law of the plane in a scenario without one.
+/// The scenario has no `[plane]`, but the law commands velocities.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("the scenario has no table [plane], and the law goes by velocities; give it one")]
 pub struct NotInPlane;
 
-/// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the guidance law of robot number `i` in
-/// [`Scenario::robots`], made at its first start and at each restart. Everything else is the scenario's: bodies, safety layers, radio,
-/// faults, places to go to (by [`Guidance::assign_waypoint`]).
+/// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the guidance law of
+/// robot `i` in [`Scenario::robots`]. `law` is called at the first start and at each restart. The
+/// scenario determines the bodies, safety layers, radio, faults and goals (given by
+/// [`Guidance::assign_waypoint`]).
 ///
 /// # Errors
 /// [`NotInPlane`].
@@ -41,7 +42,8 @@ pub fn simulate_own<G: OwnLaw>(
     simulate_own_with(scenario, law, None, &mut watch)
 }
 
-/// The same with some of the robots' controllers outside of this process; where those have another law than `law(i)`, the run is another one.
+/// Runs [`simulate_own`] with some controllers outside this process. Those may use another law than
+/// `law(i)`, which changes the run.
 ///
 /// # Errors
 /// [`NotInPlane`].
@@ -54,7 +56,7 @@ pub fn simulate_own_with<G: OwnLaw>(
     Ok(go(scenario, engine(scenario, law)?, external, watch))
 }
 
-/// The same before its first tick, for who looks into robots and tells them what to do: bridges and live pages.
+/// Creates a run with the caller's law and an operator; for bridges and live views.
 ///
 /// # Errors
 /// [`NotInPlane`].
@@ -65,7 +67,6 @@ pub fn operated_own<G: OwnLaw>(
     Ok(boxed(scenario, engine(scenario, law)?))
 }
 
-/// What a robot's agent is made of: the law, which an operator may take over.
 type GuidanceOf<G> = Commanded<f32, NeighborTracking<f32, AnyWorld<G>>>;
 
 fn engine<G: OwnLaw>(

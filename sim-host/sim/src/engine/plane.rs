@@ -1,4 +1,4 @@
-//! The plane (or space) as ground of the engine.
+//! The plane (or space) as seen by the engine.
 
 mod orders;
 mod state;
@@ -32,7 +32,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Duration;
 use staya_controller::wire::Format;
 
-/// Walls of the land that a robot sees at a time.
+/// Most terrain walls that a robot sees at a time.
 const WALLS: usize = 16;
 
 /// Bodies that move in the plane or in space.
@@ -42,37 +42,35 @@ pub struct PlaneGround {
     setup: PlaneSetup,
     #[doc(hidden)]
     pub clearance: Clearance,
-    /// After the last tick, metres.
+    /// Smallest gap between two bodies after the last tick, metres.
     pub gap_m: Option<f64>,
     #[doc(hidden)]
     pub meter: Option<FormationMeters>,
     changed: Changed,
-    /// Whom robots see, if they have eyes.
     sight: Option<Sight>,
     is_mute: bool,
-    /// What robots know of land that they do not see.
+    /// Robots' knowledge of terrain outside their sight.
     pub scouts: Option<Scouts>,
     robots: Vec<Robot>,
-    /// The number of each body's robot.
+    /// Robot number of each body.
     pub numbers: Vec<u32>,
     radius: u8,
     tick_us: u32,
     delay_us: u32,
-    /// By robot: when it was given its first goal.
     since: Vec<u32>,
     format: Format,
     key: Option<Key>,
-    /// Frames to everybody, by rising tick.
+    /// Encoded orders to all robots, sorted by tick.
     orders: Vec<(u32, Vec<u8>)>,
 }
 
 impl PlaneGround {
-    /// The scenario's bodies at their starts.
+    /// Creates the scenario's bodies at their starts.
     #[must_use]
     pub fn new(scenario: &Scenario, setup: &PlaneSetup) -> Self {
         let discs = (0..scenario.robots.len()).map(|number| disc(scenario.robots[number].id, setup, number));
         let land = setup.has_terrain.then(|| scenario.terrain.clone());
-        // Those who are heard have the numbers behind the robots'; nobody asks for those of the others.
+        // Beaconing intruders have the ids after the robots' last; silent intruders need none.
         let last = scenario.robots.last().map_or(0, |robot| robot.id.0);
         let mut ids = (last + 1..).map(RobotId);
         let intruders = setup.intruders.iter().map(|intruder| Disc {
@@ -87,7 +85,7 @@ impl PlaneGround {
         let sights = setup.kinds().map(|group| group.sight_m + group.radius_m);
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
         let plane = plane.with_sight(sights.fold(0.0, f64::max)).in_space(setup.space());
-        // In space there are those who start at other heights, or avoid each other by going up and down.
+        // Three-dimensional if robots start at other heights or fly.
         let is_flat = setup.starts.iter().all(|start| start.position_m[2] == 0.0)
             && setup.kinds().all(|group| group.safety.kind() != SafetyKind::Fly);
         let sight = scenario.eyes.map(|eyes| {
@@ -117,13 +115,14 @@ impl PlaneGround {
         }
     }
 
-    /// The bodies and what is around them.
+    /// The bodies and their surroundings.
     #[must_use]
     pub const fn plane(&self) -> &Plane {
         &self.plane
     }
 
-    /// What the robot of body `index` would sense at a place with a velocity; the inbox is empty. Places are finite.
+    /// Sensor data that the robot of body `index` would have at a position with a velocity; the
+    /// inbox is empty. Positions must be finite.
     pub fn sense_at<'a>(
         &'a self,
         index: usize,
@@ -135,7 +134,7 @@ impl PlaneGround {
         let group = self.setup.group(self.number(index));
         let sight_m = group.sight_m + group.radius_m;
         obstacles.clear();
-        // Who says nothing is seen as what stands where he is.
+        // Robots see a silent intruder as a static ball at its current position.
         let silent = self.plane.intruders().iter().filter(|intruder| !intruder.id.is_somebody());
         let silent = silent.map(|disc| Solid::Ball { center_m: disc.position_m, radius_m: disc.radius_m });
         let silent = silent.filter(|solid| solid.distance_m(position_m) <= sight_m);
@@ -146,7 +145,7 @@ impl PlaneGround {
         let sight = self.scouts.as_ref().map_or(self.radius, Scouts::sight);
         let seen = here.and_then(|(cell, land)| window_but(land, cell, sight, self.plane.shut(index), cells));
         if let (Some((cell, off, cell_m)), Some(window)) = (place, &seen) {
-            // The frame as seen from the robot.
+            // Grid frame relative to the robot.
             let origin = |cells: i16, axis: usize| -off[axis] - (f64::from(cells) + 0.5) * cell_m;
             let frame = GridFrame {
                 origin_m: Vec2::new(origin(cell.x, 0) as f32, origin(cell.y, 1) as f32),
@@ -180,23 +179,22 @@ impl PlaneGround {
         }
     }
 
-    /// What has been ordered before `tick`, for a robot; a goal that it was given later stands.
+    /// Orders to a robot before `tick`; a later goal supersedes orders for the first.
     fn ordered(&self, number: usize, tick: u32) -> impl Iterator<Item = &Order> {
         let orders = self.setup.orders.iter().take_while(move |order| order.tick < tick);
         orders.filter(move |order| order.index > 0 || order.tick >= self.since[number])
     }
 
-    /// The body of a robot at its start.
+    /// Body of robot `number` at its start.
     pub fn disc_of(&self, number: usize, id: RobotId) -> Disc {
         disc(id, &self.setup, number)
     }
 
-    /// The robot of a body.
     fn number(&self, index: usize) -> usize {
         self.numbers[index] as usize
     }
 
-    /// Where in its cell of the land a body is.
+    /// Cell of a position, offset from its centre, and side of a cell; metres.
     fn in_cell(&self, position_m: [f64; 3]) -> Option<(Cell, [f64; 2], f64)> {
         let cell = self.plane.cell(position_m)?;
         let land = self.plane.terrain()?;
@@ -208,7 +206,6 @@ impl PlaneGround {
     }
 }
 
-/// A robot's body at its start.
 fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
     let (group, start) = (setup.group(number), &setup.starts[number]);
     Disc {
@@ -221,7 +218,7 @@ fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
     }
 }
 
-/// What a robot sees.
+/// Buffers for a robot's sensor data.
 #[derive(Default)]
 pub struct Senses {
     cells: Vec<u8>,
@@ -326,7 +323,7 @@ impl Ground for PlaneGround {
         let disc = &self.plane.discs()[index];
         let head = (u64::from(tick) << 8) | status.mode as u64;
         let numbers = disc.position_m.into_iter().chain(disc.velocity_mps);
-        // Zero has two signs that nobody can tell apart.
+        // Makes negative zero equal to zero.
         core::iter::once(head).chain(numbers.map(|x| (x + 0.0).to_bits())).collect()
     }
 
@@ -339,7 +336,7 @@ impl Ground for PlaneGround {
     }
 
     fn config(&self, number: usize, tick: Duration) -> AgentConfig<f32> {
-        // What is sent in a tick is heard in the next one, or in the first one that does not begin before the delay is over.
+        // Frames arrive in the next tick, or in the first tick that starts after the delay.
         let ticks = self.delay_us.div_ceil(self.tick_us.max(1)).max(1);
         let micros = i32::try_from(ticks * self.tick_us).unwrap_or(i32::MAX);
         let group = self.setup.group(number);
@@ -357,7 +354,7 @@ impl Ground for PlaneGround {
         if guidance.is_on_grid() {
             return Task::Cell(self.robots[number].goal);
         }
-        // One that starts anew is told what has been ordered in the meantime; what is ordered in this tick, it hears.
+        // A restarted robot gets all earlier orders here. It receives orders of this tick by radio.
         let first = (0..).zip(&self.setup.starts[number].places);
         let first = first.map(|(index, target)| (index, 0, target));
         let later = self.ordered(number, tick).map(|order| (order.index, order.tick, &order.target));
@@ -365,13 +362,13 @@ impl Ground for PlaneGround {
         for (index, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
             if guidance == GuidanceKind::Waypoint && index == 0 {
-                // It takes the place of all before it.
+                // A new first goal replaces all waypoints before it.
                 waypoints.clear();
             }
             let waypoint = waypoint(target, age_s);
             match waypoints.iter_mut().find(|(known, _)| *known == index) {
                 Some((_, known)) => *known = waypoint,
-                // The scenario was checked for having no more.
+                // Cannot fail: the scenario was checked for the number of goals.
                 None => drop(waypoints.push((index, waypoint))),
             }
         }
@@ -421,7 +418,6 @@ impl Ground for PlaneGround {
         }
         let (mut target, mut since) = match &self.setup.starts[number].places[..] {
             [one] => (one, 0),
-            // Of several, robots choose.
             _ => return None,
         };
         for order in self.ordered(number, tick) {
@@ -454,7 +450,7 @@ impl Ground for PlaneGround {
         let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
         let places = &mut self.setup.starts[number].places;
         match places.first_mut() {
-            // One of several goals; for others it takes the place of what is on the way, too.
+            // Other laws have a single goal, which replaces the waypoints too.
             Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
             _ => *places = vec![target],
         }

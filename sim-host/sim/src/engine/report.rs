@@ -1,4 +1,4 @@
-//! What a run in motion says of itself: its records, what watchers see, what came of it.
+//! Reports of a running simulation: record rows, moments for watchers, and results.
 
 use super::{Engine, HostLaw, Moment, Outcome, hash};
 use crate::engine::Ground;
@@ -12,13 +12,12 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// The swarm's line of the record before the first tick.
     pub(super) fn first_row(&mut self) -> TickRow {
         let keeping = self.ground.keeping(false);
         self.row(keeping, PacketCounts::default())
     }
 
-    /// The swarm's line of the record, with `packets` of the tick that is over.
+    /// The swarm's record row, with the `packets` of the last tick.
     pub fn row(&self, keeping: Option<Keeping>, packets: PacketCounts) -> TickRow {
         TickRow {
             tick: self.tick,
@@ -29,7 +28,7 @@ where
         }
     }
 
-    /// The robots' lines of the record, by rising number, as of now.
+    /// The robots' record rows, sorted by id.
     pub fn rows(&self) -> impl Iterator<Item = RobotRow> {
         let has_cells = self.ground.terrain().is_some();
         self.statuses.iter().enumerate().map(move |(index, status)| RobotRow {
@@ -46,7 +45,7 @@ where
         })
     }
 
-    /// What a watcher sees of the swarm, with its line of the record.
+    /// State of the swarm for watchers, with its record row.
     pub fn moment<'a>(&'a self, row: &'a TickRow) -> Moment<'a> {
         Moment {
             row,
@@ -63,7 +62,7 @@ where
         }
     }
 
-    /// Ticks done.
+    /// Number of completed ticks.
     #[must_use]
     pub const fn ticks(&self) -> u32 {
         self.tick
@@ -75,19 +74,19 @@ where
         f64::from(self.tick) * f64::from(self.tick_us) / 1e6
     }
 
-    /// Whether all robots stand at their targets and know it, and nobody is going to do anything about it.
+    /// Whether all robots have arrived and no intervention is pending.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.interventions.is_empty() && self.arrivals.is_complete()
     }
 
-    /// The ground with its bodies.
+    /// The world with its bodies.
     #[must_use]
     pub const fn ground(&self) -> &W {
         &self.ground
     }
 
-    /// What came of it so far.
+    /// Results of the run so far.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         let (formation, place_error, formations) = self.ground.kept();

@@ -1,4 +1,4 @@
-//! A whole scenario with the guidance that it asks for.
+//! Runs a whole scenario with the guidance law that it names.
 
 use super::state::{Saves, State, StateError};
 use super::witness::Witness;
@@ -21,71 +21,72 @@ use thiserror::Error;
 /// Cells of a search for windows up to radius 16 with their border: (2 * 16 + 3)^2.
 pub const WIDE: usize = 1225;
 
-/// The swarm after a tick, or (tick 0) before the first one.
+/// State of the swarm after a tick, or before the first one (tick 0).
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
-    /// The swarm's line of the record.
+    /// The swarm's record row.
     pub row: &'a TickRow,
-    /// Robots that stand at their targets and know it.
+    /// Number of robots that are at their goal and report it.
     pub arrived: usize,
-    /// Robots that have somewhere to go and do not get on.
+    /// Number of robots that have a goal and do not progress.
     pub waiting: usize,
     /// Collisions of the run so far, as in [`Outcome::collisions`].
     pub collisions: u64,
-    /// Least distance between the surfaces of two bodies now, metres; `None` on the grid, before the first tick, and where
-    /// nobody is within three radii of another one.
+    /// Current smallest distance between the surfaces of two bodies, metres; `None` on the grid,
+    /// before the first tick, and if no body is within three radii of another.
     pub gap_m: Option<f64>,
-    /// Bodies that are no robots.
+    /// Foreign bodies.
     pub intruders: &'a [Disc],
-    /// The land as it is now, if there is any.
+    /// Current terrain, if there is any.
     pub land: Option<&'a Terrain>,
-    /// What stands in the plane now.
+    /// Current obstacles in the plane.
     pub solids: &'a [Solid],
-    /// The goals of a goal flock, world coordinates in metres.
+    /// Goals of a goal flock, world coordinates in metres.
     pub goals_m: [Option<[f64; 3]>; WAYPOINTS],
-    /// Of the run so far, as in [`Outcome::trace_hash`].
+    /// Trace hash of the run so far, as in [`Outcome::trace_hash`].
     pub trace_hash: u64,
-    /// The run itself, to be saved; `None` where it is none that could be.
+    /// The run itself, for checkpoints; `None` if it cannot be saved.
     pub run: Option<&'a dyn Saves>,
 }
 
-/// What came of a run.
+/// Results of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// Ticks done.
+    /// Number of completed ticks.
     pub ticks: u32,
     /// Simulated time, seconds.
     pub seconds: f64,
-    /// Robots that stand at their targets and know it.
+    /// Number of robots that are at their goal and report it.
     pub arrived: usize,
-    /// When each robot's last move was over, [`UNIT`](staya_controller::grid::UNIT)ths of a tick
-    /// after the start; `None`: not at its target.
+    /// End of each robot's last move, [`UNIT`](staya_controller::grid::UNIT)ths of a tick after the
+    /// start; `None`: not at its goal.
     pub arrival_times: Vec<Option<u64>>,
-    /// Robots in a wall or in another one's cell, summed over ticks. The world allows none.
+    /// Robots in a wall or in another robot's cell, summed over ticks. Must be 0.
     pub collisions: u64,
     /// Packets of the whole run.
     pub packets: PacketCounts,
-    /// Packets beyond a robot's bandwidth, never on the air.
+    /// Packets that exceeded a robot's bandwidth and were not transmitted.
     pub throttled: u64,
-    /// What robots waited for.
+    /// Causes of waiting.
     pub waits: Vec<WaitCount>,
     /// Means over the run; `None` without a formation.
     pub formation: Option<Keeping>,
-    /// How far robots in the plane were from their places once they had had time to form.
+    /// Distance of robots in the plane from their formation places, after the time for forming.
     pub place_error: Option<PlaceError>,
-    /// The same of each formation, in the order of [`Scenario::formations`](crate::scenario::Scenario::formations).
+    /// Quality of each formation, in the order of
+    /// [`Scenario::formations`](crate::scenario::Scenario::formations).
     pub formations: Vec<FormationKept>,
-    /// How near bodies came to each other and to obstacles; `None` on the grid, where bodies have no size.
+    /// Smallest distances between bodies and to obstacles; `None` on the grid.
     pub clearance: Option<Clearance>,
-    /// The same for equal traces, on any machine and any number of threads.
+    /// Hash of the trace; equal for equal traces, on any machine and any number of threads.
     pub trace_hash: u64,
 }
 
-/// Looks at the swarm after each tick, and says whether to go on.
+/// Callback that sees the swarm after each tick and decides whether to continue.
 pub type Watch<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) -> ControlFlow<()> + 'a;
 
 /// Runs a scenario until all robots have arrived, its ticks are used up or `watch` breaks. `watch`
-/// sees the start as tick 0, then each tick, with the robots' lines by rising number.
+/// sees the start as tick 0, then each tick, with the robots' record rows sorted by id.
 ///
 /// # Errors
 /// See [`Grid::new`].
@@ -96,7 +97,7 @@ pub fn simulate(
     simulate_with(scenario, None, &mut watch)
 }
 
-/// The same with some of the robots' controllers outside of this process.
+/// Runs [`simulate`] with some controllers outside this process.
 ///
 /// # Errors
 /// See [`Grid::new`].
@@ -114,15 +115,16 @@ pub fn simulate_with(
 /// Why a run cannot begin.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Unable {
-    /// Its robots cannot be placed.
+    /// The robots cannot be placed.
     #[error(transparent)]
     Misplaced(#[from] Misplaced),
-    /// It cannot go on from this state.
+    /// The saved state cannot be restored.
     #[error(transparent)]
     State(#[from] StateError),
 }
 
-/// Goes on with a run from what [`Saves::save`] gave, as [`simulate`] would have; `watch` sees the ticks after that.
+/// Resumes a run from the bytes of [`Saves::save`]; the result is identical to that of an
+/// uninterrupted [`simulate`]. `watch` sees the later ticks.
 ///
 /// # Errors
 /// See [`Grid::new`] and [`Engine::restore`].
@@ -133,22 +135,21 @@ pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -
     })
 }
 
-/// What a robot's agent is made of: any guidance law, which an operator may take over, and any safety layer.
+/// Law of an agent: any built-in guidance law, which an operator may override.
 pub type GuidanceOf =
     Commanded<f32, NeighborTracking<f32, MapSharing<AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>, MAP_TILES>>>;
 #[doc(hidden)]
 pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
-/// The engines that there are. Only here are they made of generic code, so that it is compiled once.
+/// Engines of both worlds; instantiated only here, to compile the generic code once.
 pub(super) enum AnyEngine {
     /// In the plane or in space.
     Plane(Box<Engine<PlaneGround, GuidanceOf, SafetyOf>>),
-    /// Cell by cell.
+    /// On the grid.
     Cells(Box<Engine<Grid, GuidanceOf, SafetyOf>>),
 }
 
 impl AnyEngine {
-    /// A scenario before its first tick.
     pub(super) fn new(scenario: &Scenario) -> Result<Self, Misplaced> {
         Ok(if let Some(setup) = &scenario.plane {
             let ground = PlaneGround::new(scenario, setup);
@@ -160,16 +161,16 @@ impl AnyEngine {
     }
 }
 
-/// Guidance and safety layer of each robot.
+/// Returns a function that creates the law and the safety layer of a robot.
 pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) + Send + Sync + 'static + use<> {
     let kind = |index| {
-        // Cell by cell there is neither speed nor distance.
+        // The grid has neither speed nor distance.
         let group = scenario.plane.as_ref().map(|setup| setup.group(index));
         let [speed_mps, tolerance_m] =
             group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32));
         (scenario.guidance(index), scenario.safety(index), speed_mps, tolerance_m)
     };
-    // Places in a formation differ from robot to robot, otherwise groups at most: each is made once.
+    // Members of formations differ individually, others only by group; each kind is created once.
     let groups = scenario.plane.as_ref().map_or(0, |plane| plane.groups.len());
     let group_of = |index: usize| match (scenario.formation_of(index), &scenario.plane) {
         (Some(_), _) => groups + 1 + index,
@@ -187,14 +188,13 @@ pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) +
     let (maps, tracking) = (scenario.maps, scenario.eyes.map(|eyes| eyes.tracking));
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
-        // Who goes by no land has none to tell of.
+        // Robots that do not plan on terrain have no map to share.
         let maps = maps.filter(|_| guidance.kind().is_on_grid());
         let law = NeighborTracking::new(MapSharing::new(guidance.guidance(), maps), tracking);
         (Commanded::new(law, *speed_mps, *tolerance_m), Witness::new(safety.safety()))
     }
 }
 
-/// Ticks until the end.
 pub(super) fn go<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
@@ -218,7 +218,6 @@ where
     ticks(scenario, engine, watch)
 }
 
-/// Ticks until the end, from another moment than the first.
 fn go_on<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
@@ -234,7 +233,7 @@ where
     Ok(ticks(scenario, engine, watch))
 }
 
-/// Ticks until the end; the moment before the first of them has been seen.
+/// Runs until the end; the current state was already passed to the watcher.
 fn ticks<W, G, A>(scenario: &Scenario, mut engine: Engine<W, G, A>, watch: &mut Watch<'_>) -> Outcome
 where
     W: Ground,

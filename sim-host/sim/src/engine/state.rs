@@ -1,7 +1,8 @@
-//! A robot's whole state as bytes, and a run's.
+//! Saves and restores the state of single robots and of whole runs.
 //!
-//! What never changes in a run is not in it: the engine that takes it back was made of the same scenario. The bytes are
-//! postcard's, of this version of the program; numbers keep their bits. Keys are in them.
+//! Constant data is not saved: the state must be restored into an engine of the same scenario. The
+//! bytes are in postcard format and valid only for this version of the program; floats keep their
+//! bits. The bytes contain keys.
 
 use super::{Computer, Engine, Ground, HostLaw, Status};
 use crate::engine::attacker::AttackerState;
@@ -22,17 +23,17 @@ use std::collections::HashMap;
 use std::fmt;
 use thiserror::Error;
 
-/// What can be kept and put back.
+/// State that can be saved and restored.
 pub trait State: Serialize + DeserializeOwned + Sync {}
 
 impl<T: Serialize + DeserializeOwned + Sync> State for T {}
 
 /// A run that can be saved.
 pub trait Saves {
-    /// See [`Engine::save`].
+    /// Appends the state of the run; see [`Engine::save`].
     ///
     /// # Errors
-    /// See there.
+    /// See [`Engine::save`].
     fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError>;
 }
 
@@ -53,11 +54,11 @@ where
     }
 }
 
-/// Bytes that are no state, or not one of this engine's.
+/// The bytes are not a state, or not a state of this engine.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("byte {at}: {what}; {remedy}")]
 pub struct StateError {
-    /// Where in the bytes, from 0.
+    /// Position in the bytes, from 0.
     pub at: usize,
     what: String,
     remedy: &'static str,
@@ -71,14 +72,13 @@ impl StateError {
         Self { at, what: what.into(), remedy }
     }
 
-    /// The same where so many bytes stand before.
+    /// Shifts the position by the number of bytes before this section.
     #[must_use]
     pub fn after(self, bytes: usize) -> Self {
         Self { at: self.at.saturating_add(bytes), ..self }
     }
 }
 
-/// Bytes under way, and how far they are read.
 struct Reader<'a> {
     all: &'a [u8],
     rest: &'a [u8],
@@ -93,11 +93,10 @@ impl<'a> Reader<'a> {
         self.all.len() - self.rest.len()
     }
 
-    /// The next value, which is `what`.
     fn read<T: DeserializeOwned>(&mut self, what: &str) -> Result<T, StateError> {
         let mut from = postcard::Deserializer::from_bytes(self.rest);
         let value = T::deserialize(&mut from);
-        // Where it came to a stop; at worst where it began.
+        // Position at which decoding stopped; the start if it is unknown.
         let rest = from.finalize().unwrap_or(self.rest);
         let stopped_at = self.all.len() - rest.len();
         match value {
@@ -114,14 +113,12 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Appends a value.
 fn write(value: &impl Serialize, bytes: &mut Vec<u8>) {
-    // Sequences here know their lengths, and memory takes every byte.
+    // Cannot fail: all sequences have a length, and a `Vec` accepts every byte.
     let done = postcard::to_extend(value, std::mem::take(bytes));
     *bytes = done.expect("states have a form");
 }
 
-/// What of a robot changes, but for its agent.
 #[derive(Serialize, Deserialize)]
 struct Robot<B> {
     mail: Vec<u8>,
@@ -138,13 +135,11 @@ struct Robot<B> {
     body: B,
 }
 
-/// What is of the whole run.
 #[derive(Serialize, Deserialize)]
 struct Whole<S> {
     seed: u64,
     robots: usize,
     tick: u32,
-    /// Those that are still to come.
     interventions: usize,
     faults: Vec<Fault>,
     tuned: Vec<Tuned>,
@@ -162,11 +157,11 @@ where
     G: HostLaw + State,
     A: Safety<f32> + Send + State,
 {
-    /// Appends everything that belongs to robot `index` and changes: its body, its computer with agent and mail, its hash, its
-    /// accounts, its end of the radio. To be called between ticks. O(bytes).
+    /// Appends the mutable state of robot `index`: body, computer with agent and mail, hash,
+    /// statistics and radio. Call it between ticks. O(bytes).
     ///
     /// # Panics
-    /// When there is no such robot.
+    /// If `index` is out of range.
     pub fn pack(&self, index: usize, bytes: &mut Vec<u8>) {
         let computer = &self.computers[index];
         write(&(self.id(index), &computer.agent), bytes);
@@ -188,15 +183,16 @@ where
         write(&self.radio.end(index), bytes);
     }
 
-    /// Puts back what [`Engine::pack`] wrote of the same robot in an engine of the same scenario, and says how many bytes that were. O(bytes).
+    /// Restores a robot from the bytes of [`Engine::pack`] in an engine of the same scenario.
+    /// Returns the number of bytes read. O(bytes).
     ///
-    /// Robots can be put back one by one: until all are, two may be in one cell.
+    /// Robots can be restored one by one. Until all are restored, two may be in one cell.
     ///
     /// # Errors
-    /// The bytes are damaged, or of another robot; the robot may be put back in part then.
+    /// The bytes are damaged or belong to another robot. The robot may then be partly restored.
     ///
     /// # Panics
-    /// When there is no such robot.
+    /// If `index` is out of range.
     pub fn unpack(&mut self, index: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
         let own = self.id(index);
@@ -236,7 +232,7 @@ where
     /// Appends the whole run as it is between two ticks. O(bytes).
     ///
     /// # Errors
-    /// Some of its robots run elsewhere.
+    /// Some robots have external controllers.
     pub fn save(&self, bytes: &mut Vec<u8>) -> Result<(), StateError> {
         if self.external.is_some() {
             return Err(StateError::new(bytes.len(), "some robots run elsewhere", "run all of them here"));
@@ -249,7 +245,7 @@ where
         Ok(())
     }
 
-    /// What of [`Engine::save`] stands before the robots: what is of the whole, and who else has a radio.
+    /// Writes the shared state and the transmitters outside the swarm; see [`Engine::save`].
     pub fn save_head(&self, bytes: &mut Vec<u8>) {
         let whole = Whole {
             seed: self.seed,
@@ -280,18 +276,19 @@ where
         }
     }
 
-    /// Goes on where [`Engine::save`] was called, in an engine of the same scenario that has made no tick.
+    /// Restores the state of [`Engine::save`] in an engine of the same scenario before its first
+    /// tick.
     ///
     /// # Errors
-    /// The bytes are damaged, or of another scenario or program; this engine is of no use then.
+    /// The bytes are damaged or from another scenario or program. Discard the engine then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let others = [self.attackers.len(), self.intruders.len(), usize::from(self.keeper.is_some())];
         let (at, digest) = self.restore_part(bytes, others)?;
         if digest == self.digest() { Ok(()) } else { Err(Self::differs(at)) }
     }
 
-    /// The same for the robots that are here, of a run with so many attackers, intruders that are heard and keepers of keys. Returns the
-    /// digest of all robots that was saved, and where.
+    /// Restores the robots of this process, in a run with the given numbers of attackers, beaconing
+    /// intruders and key servers (`others`). Returns position and value of the saved digest.
     pub fn restore_part(&mut self, bytes: &[u8], others: [usize; 3]) -> Result<(usize, u64), StateError> {
         let mut from = Reader::new(bytes);
         if self.tick > 0 || self.external.is_some() {
@@ -311,7 +308,7 @@ where
         (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
         self.waits.set_ticks(&whole.waited);
         self.radio.set_weather(whole.weather);
-        // Those that are not here are read, and left to the rank that has them.
+        // Transmitters of other ranks are read and discarded.
         let [attackers, intruders, keepers] = others;
         for at in 0..attackers {
             let state = from.read::<AttackerState>("an attacker")?;
@@ -355,7 +352,7 @@ where
         Ok((at, digest))
     }
 
-    /// Reads a robot that is not here. Returns how many bytes that were.
+    /// Reads and discards a robot of another rank. Returns the number of bytes read.
     fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
         let _: RobotId = from.read("the number of a robot")?;
@@ -366,12 +363,12 @@ where
         Ok(from.at())
     }
 
-    /// What was restored is not what was saved.
+    /// The error for a digest mismatch after restoring.
     pub fn differs(at: usize) -> StateError {
         StateError::new(at, "what was restored is not what was saved", SAME)
     }
 
-    /// Of all agents together.
+    /// Digest of all agents.
     pub fn digest(&self) -> u64 {
         let agents = self.computers.par_iter().filter_map(|computer| computer.agent.as_ref());
         agents.map(Agent::digest).reduce(|| 0, u64::wrapping_add)

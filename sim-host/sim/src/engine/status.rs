@@ -1,4 +1,4 @@
-//! What a robot is doing, as the engine sees it.
+//! Status of a robot, as used by the engine.
 
 use crate::scenario::Robot;
 use serde::{Deserialize, Serialize};
@@ -6,26 +6,25 @@ use staya_controller::agent::Wait;
 use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
 
-/// What the rest of the engine needs to know of a robot after its decision.
+/// Public results of a robot's last decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Status {
-    /// What it is doing.
+    /// Current mode.
     pub mode: Mode,
-    /// Whom it follows.
+    /// Id of the robot that it follows.
     pub leader: RobotId,
-    /// The cell that it heads for.
+    /// Target cell.
     pub target: Cell,
-    /// What it waits for.
+    /// Cause of waiting.
     pub wait: Option<Wait>,
 }
 
 impl Status {
-    /// Of a robot before its first step.
+    /// Status of a robot before its first step.
     pub const fn before(robot: &Robot) -> Self {
         Self { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None }
     }
 
-    /// Its computer is down.
     pub(super) const fn fall_silent(&mut self) {
         (self.mode, self.leader, self.wait) = (Mode::Fault, RobotId::NOBODY, None);
     }

@@ -13,7 +13,6 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
-/// A scenario on flat land of 20 x 20 cells of 2 m.
 fn scenario(robots: &str, rest: &str) -> Scenario {
     let text = format!(
         "name = \"t\"\nticks = 200\ntick_s = 0.5\n[terrain]\ncell_m = 2\n\
@@ -27,7 +26,6 @@ const TWO: &str = "list = [{ start = [3, 3], goal = [12, 3] }, { start = [5, 3],
 const LOSSY: &str = "[radio]\nrange_m = 9\nloss = 0.3\njitter_ms = 900\nduplicate = 0.1\n\
                      bit_error_rate = 0.001\nburst = { share = 0.2, mean_ms = 2000 }\n";
 
-/// What a robot knew at a decision.
 #[derive(Clone, Debug, PartialEq)]
 struct Known {
     id: u32,
@@ -38,7 +36,7 @@ struct Known {
     others: Vec<(u32, Cell)>,
 }
 
-/// Goes east, and writes down what it knew.
+/// Goes east and records its inputs.
 struct Scout(Arc<Mutex<Vec<Known>>>);
 
 impl Teamwork for Scout {}
@@ -81,7 +79,6 @@ impl Guidance<f32> for Scout {
     }
 }
 
-/// What all scouts wrote down.
 type Notes = Arc<Mutex<Vec<Known>>>;
 
 fn scouts(scenario: &Scenario) -> (Engine<Grid, Scout, Unguarded>, Notes) {
@@ -97,7 +94,7 @@ fn watch_nothing(_: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>) -> Contr
 }
 
 #[test]
-fn everybody_decides_on_what_was_sent_a_tick_ago_whoever_comes_first() {
+fn all_robots_decide_on_messages_of_the_previous_tick_in_any_order() {
     let scenario = scenario(TWO, "");
     let (mut engine, known) = scouts(&scenario);
     for _ in 0..4 {
@@ -110,7 +107,7 @@ fn everybody_decides_on_what_was_sent_a_tick_ago_whoever_comes_first() {
             all.nth(tick as usize).expect("it decides in each tick")
         };
         let (one, two) = (at(1), at(2));
-        // Both move each tick: the cell heard of is the one before the last move.
+        // Both move each tick, so a received cell is the one before the last move.
         let heard = |id, x: i16| {
             if tick == 0 { vec![] } else { vec![(id, Cell::new(x + tick - 1, 3))] }
         };
@@ -132,12 +129,11 @@ fn a_robot_gets_its_pose_in_metres_and_a_full_window() {
 }
 
 #[test]
-fn a_robot_that_is_down_stands_in_silence_and_starts_with_a_new_clock() {
+fn a_down_robot_is_stationary_and_silent_and_restarts_its_clock() {
     let fault = "[[fault]]\nrobot = 1\nat_s = 1\ndown_s = 1.5\n";
     let scenario = scenario(TWO, fault);
     let (mut engine, known) = scouts(&scenario);
     let rows: Vec<_> = (0..8).map(|_| engine.step()).collect();
-    // Down in ticks 2, 3 and 4.
     let sent: Vec<_> = rows.iter().map(|row| row.packets.sent).collect();
     assert_eq!(sent, [2, 2, 1, 1, 1, 2, 2, 2]);
     let known = known.lock().expect("no test panics");
@@ -148,14 +144,14 @@ fn a_robot_that_is_down_stands_in_silence_and_starts_with_a_new_clock() {
     assert!(own[2].others.is_empty(), "it forgot everybody");
     assert_eq!(own[3].others.len(), 1);
     assert_eq!(engine.computers[0].boot, 1);
-    // The other one heard of its first start, then nothing new, then of its second start.
+    // The other robot receives the first start, then nothing, then the restart.
     let heard: Vec<_> = known.iter().filter(|k| k.id == 2).map(|k| k.others[..].to_vec()).collect();
     assert_eq!(heard[2], heard[5]);
     assert_eq!(heard[6][0].1, own[2].cell);
 }
 
 #[test]
-fn a_robot_that_is_down_counts_as_faulty_and_keeps_its_target() {
+fn a_down_robot_has_fault_mode_and_keeps_its_target() {
     let fault = "[[fault]]\nrobot = 2\nat_s = 0\ndown_s = 1\n";
     let (mut engine, _) = scouts(&scenario(TWO, fault));
     engine.step();
@@ -184,7 +180,7 @@ fn a_run_ends_when_all_have_arrived() {
     let scenario = scenario(apart, "");
     let outcome = simulate(&scenario, watch_nothing).expect("free starts");
     assert_eq!(outcome.arrived, 2);
-    // Nine cells of one tick each, and the tick in which robot 1 sees where it is.
+    // Nine cells of one tick each, and the tick in which robot 1 observes its arrival.
     assert_eq!(outcome.ticks, 10);
     assert_eq!(outcome.seconds, 5.0);
     assert_eq!(outcome.arrival_times, [Some(9 * 70), Some(5 * 70 + 2 * 99)]);
@@ -192,7 +188,7 @@ fn a_run_ends_when_all_have_arrived() {
 }
 
 #[test]
-fn who_starts_at_his_goal_needs_one_tick_to_know() {
+fn a_robot_that_starts_at_its_goal_arrives_after_one_tick() {
     let at_goal = "list = [{ start = [4, 4], goal = [4, 4] }]";
     let outcome = simulate(&scenario(at_goal, ""), watch_nothing).expect("free starts");
     assert_eq!((outcome.ticks, outcome.arrived), (1, 1));
@@ -200,7 +196,7 @@ fn who_starts_at_his_goal_needs_one_tick_to_know() {
 }
 
 #[test]
-fn a_run_ends_when_its_ticks_are_used_up_or_the_watcher_has_seen_enough() {
+fn a_run_ends_at_its_tick_limit_or_when_the_watcher_breaks() {
     let mut scenario = scenario(TWO, "");
     scenario.ticks = 4;
     let mut seen = Vec::new();
@@ -220,7 +216,7 @@ fn a_run_ends_when_its_ticks_are_used_up_or_the_watcher_has_seen_enough() {
 }
 
 #[test]
-fn starts_that_no_file_would_have_are_refused() {
+fn conflicting_starts_are_refused() {
     let mut scenario = scenario(TWO, "");
     scenario.robots[1].start = scenario.robots[0].start;
     assert!(simulate(&scenario, watch_nothing).is_err());
@@ -247,7 +243,7 @@ fn a_formation_is_measured_and_arrives() {
     assert!(keeping.best_fit_error_per_agent <= keeping.error_per_agent + 1.0);
 }
 
-/// Everything about a run that could depend on threads.
+/// All results of a run that could depend on threads.
 fn trace(scenario: &Scenario, threads: usize) -> (Outcome, Vec<RobotRow>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
@@ -279,7 +275,7 @@ fn neither_a_run_nor_its_hash_depends_on_the_number_of_threads() {
 }
 
 #[test]
-fn the_seed_decides() {
+fn different_seeds_give_different_runs() {
     let mut scenario = scenario(TWO, LOSSY);
     let hash = |scenario: &Scenario| trace(scenario, 1).0.packets;
     let first = hash(&scenario);
@@ -291,7 +287,7 @@ fn the_seed_decides() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Whatever the radio does and whoever fails, nobody collides, nothing panics, sums add up.
+    /// No radio faults and robot failures cause collisions, panics or wrong sums.
     #[test]
     fn any_radio_and_any_fault_leave_a_sound_run(
         seed: u64,
@@ -345,7 +341,7 @@ mod plane;
 mod state;
 mod torus;
 
-/// A swarm has a million of these: what one is made of is known, and what is rare in it lies elsewhere.
+/// A swarm may have a million robots, so the size of one is pinned; rare data is on the heap.
 #[test]
 fn a_robot_takes_no_more_memory_than_this() {
     use super::simulate::{GuidanceOf, SafetyOf};

@@ -1,4 +1,4 @@
-//! A safety layer that can tell what it was asked and what it answered.
+//! A safety layer wrapper that records its inputs.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Parameter, Safety, SafetyInput};
@@ -8,20 +8,19 @@ use staya_controller::neighbor::{Nearby, StalenessInflation};
 use staya_controller::obstacle::Obstacle;
 use staya_controller::rand::Rng;
 
-/// What a safety layer was asked in a step, and its answer.
+/// Inputs of a safety layer in one step.
 #[derive(Clone, Debug)]
 pub struct Asked {
-    /// Own body.
     pub body: Body<f32>,
-    /// The velocity that the guidance law wished, m/s.
+    /// Velocity chosen by the guidance law, m/s.
     pub wish_mps: Vec3<f32>,
-    /// Who was near by, nearest first.
     pub nearby: Vec<Nearby<f32>>,
-    /// What it saw that does not move.
+    /// Static obstacles in sight.
     pub obstacles: Vec<Obstacle<f32>>,
 }
 
-/// Layer `A`, which tells nothing unless [`Witness::listen`] was called: the same state and the same answers either way.
+/// Wraps layer `A` and records its inputs after [`Witness::listen`] was called. State and results
+/// are those of `A` in either case.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Witness<A> {
@@ -33,22 +32,19 @@ pub struct Witness<A> {
 }
 
 impl<A> Witness<A> {
-    /// Around a layer.
     pub const fn new(inside: A) -> Self {
         Self { inside, listens: false, asked: None }
     }
 
-    /// Keeps what it is asked from now on.
     pub const fn listen(&mut self) {
         self.listens = true;
     }
 
-    /// The layer.
     pub const fn inside(&self) -> &A {
         &self.inside
     }
 
-    /// What it was asked last.
+    /// Inputs of the last step, if they were recorded.
     pub fn asked(&self) -> Option<&Asked> {
         self.asked.as_deref()
     }

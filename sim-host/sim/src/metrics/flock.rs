@@ -1,11 +1,11 @@
-//! How much of a flock a crowd is, whatever made it: connected, in one place, evenly spaced, of one
-//! velocity; and whether anybody touched anybody.
+//! Flocking quality of any crowd: connectivity, cohesion, spacing, velocity match, and overlaps.
 //!
-//! Source: OLF (R. Olfati-Saber 2006) sections II.B and IX, in the plane or in space. Polarisation is that of PAV's
-//! and STA's field. All sums run in the order of the robots, on one thread: the same figures on any machine.
+//! Source: OLF (R. Olfati-Saber 2006), sections II.B and IX, in the plane or in space. Polarisation
+//! is a measure of PAV and STA. All sums run in the order of the robots on one thread, so that
+//! values are identical on any machine.
 //!
-//! [`FlockMeter::look`] measures a moment, [`alpha_flocking`] judges a trace of such moments, [`Gaps`] tells
-//! overlaps, [`EnergyMeter`] the Hamiltonian.
+//! [`FlockMeter::look`] measures a moment, [`alpha_flocking`] classifies a trace of such moments,
+//! [`Gaps`] counts overlaps, and [`EnergyMeter`] computes the Hamiltonian.
 
 mod attitude;
 mod energy;
@@ -20,27 +20,29 @@ pub use gaps::{Gaps, Obstacle, gaps};
 use crate::nearby::{Cells, Found, Query, Search as _, Space};
 use serde::{Deserialize, Serialize};
 
-/// A crowd at one moment.
+/// Flocking quality at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlockMeasure {
-    /// Robots.
+    /// Number of robots.
     pub robots: usize,
-    /// Pairs within range of each other.
+    /// Pairs of robots in range of each other.
     pub edges: usize,
-    /// Connected parts of the proximity graph.
+    /// Connected components of the proximity graph.
     pub components: usize,
-    /// Robots in the largest of them.
+    /// Robots in the largest component.
     pub largest_component: usize,
-    /// C, relative connectivity: rank of the graph's Laplacian over n - 1, which is (n - components) / (n - 1). 1 for a single robot.
+    /// C, relative connectivity: rank of the graph's Laplacian over n - 1, which is (n -
+    /// components) / (n - 1). 1 for a single robot.
     pub connectivity: f64,
     /// R, largest distance from the centroid, metres.
     pub radius_m: f64,
-    /// E / d^2, how far edges are from the wanted length: E = sum over ordered pairs of (length - d)^2, over their
-    /// number plus 1.
+    /// E / d^2, deviation of the edge lengths from d: E = sum over ordered pairs of (length - d)^2,
+    /// divided by their number plus 1.
     pub deviation_energy: f64,
     /// K / n, (m/s)^2: half the squared velocities relative to their mean, per robot.
     pub velocity_mismatch: f64,
-    /// Group order: length of the mean of the velocities' directions, 0 to 1. Robots that stand have none and do not count; 0 when all stand.
+    /// Group order: length of the mean direction of the velocities, 0 to 1. Stationary robots do
+    /// not count; 0 if all are stationary.
     pub polarisation: f64,
 }
 
@@ -56,8 +58,9 @@ pub struct FlockMeter<const D: usize> {
 }
 
 impl<const D: usize> FlockMeter<D> {
-    /// A meter for flocks of spacing d whose robots are neighbours up to `range_m` (r, for OLF (1 + e0) d).
-    /// Distances in `space`; on a torus, R and the centroid have no meaning and are those of the folded places.
+    /// Creates a meter for flocks of spacing d whose robots are neighbours up to `range_m` (r, for
+    /// OLF (1 + e0) d). Distances are those of `space`. On a torus, R and the centroid are those of
+    /// the folded positions and have no meaning.
     #[must_use]
     pub fn new(spacing_m: f64, range_m: f64, space: Space<f64, D>) -> Self {
         Self {
@@ -70,11 +73,11 @@ impl<const D: usize> FlockMeter<D> {
         }
     }
 
-    /// Measures robots at these places, metres, with these velocities, m/s. `None` when there are none or
-    /// something is not finite. O(n + edges) where robots are not much denser than the range.
+    /// Measures robots with these positions, metres, and velocities, m/s. `None` if there are none
+    /// or a value is not finite. O(n + edges) if robots are not much denser than the range.
     ///
     /// # Panics
-    /// When there are not as many velocities as places.
+    /// If there are not as many velocities as positions.
     pub fn look(&mut self, places_m: &[[f64; D]], velocities_mps: &[[f64; D]]) -> Option<FlockMeasure> {
         assert_eq!(places_m.len(), velocities_mps.len(), "one velocity a robot");
         let is_sound = |vectors: &[[f64; D]]| vectors.iter().flatten().all(|c| c.is_finite());
@@ -96,21 +99,20 @@ impl<const D: usize> FlockMeter<D> {
             largest_component,
             connectivity: if robots > 1 { (robots - components) as f64 / (robots - 1) as f64 } else { 1.0 },
             radius_m,
-            // Each pair is two ordered ones.
+            // Each pair is two ordered pairs.
             deviation_energy: 2.0 * energy / (2 * edges + 1) as f64 / (self.spacing_m * self.spacing_m),
             velocity_mismatch: kinetic / robots as f64,
             polarisation: polarisation(velocities_mps),
         })
     }
 
-    /// Pairs of robots (by place in the slice, the smaller first) that were neighbours when they were looked at last,
-    /// in ascending order of their first.
+    /// Pairs of neighbours in the last measurement, as sorted indices, the smaller first.
     #[must_use]
     pub fn edges(&self) -> &[(u32, u32)] {
         &self.edges
     }
 
-    /// Finds the edges and joins their ends; the sum of (length - d)^2 over them.
+    /// Finds the edges and joins their components. Returns the sum of (length - d)^2.
     fn link(&mut self, places_m: &[[f64; D]]) -> f64 {
         self.cells.rebuild(places_m);
         self.edges.clear();
@@ -131,7 +133,6 @@ impl<const D: usize> FlockMeter<D> {
         energy
     }
 
-    /// How many components there are, and the size of the largest.
     fn components(&mut self, robots: usize) -> (usize, usize) {
         let mut sizes = vec![0_usize; robots];
         for robot in 0..robots as u32 {
@@ -142,7 +143,7 @@ impl<const D: usize> FlockMeter<D> {
     }
 }
 
-/// The least robot of the component, halving the way there.
+/// Representative of a component, with path halving.
 fn root(parents: &mut [u32], mut robot: u32) -> u32 {
     while parents[robot as usize] != robot {
         parents[robot as usize] = parents[parents[robot as usize] as usize];
@@ -151,7 +152,7 @@ fn root(parents: &mut [u32], mut robot: u32) -> u32 {
     robot
 }
 
-/// Length of the mean of the velocities' directions, 0 to 1; those of length 0 do not count, 0 when all are.
+/// Length of the mean direction of the nonzero velocities, 0 to 1; 0 if all are zero.
 #[must_use]
 pub fn polarisation<const D: usize>(velocities_mps: &[[f64; D]]) -> f64 {
     let directions: Vec<[f64; D]> = velocities_mps
@@ -163,29 +164,29 @@ pub fn polarisation<const D: usize>(velocities_mps: &[[f64; D]]) -> f64 {
     if directions.is_empty() { 0.0 } else { length(mean(&directions)) }
 }
 
-/// What alpha-flocking asks for (OLF definition 4), and how far "few" and "bounded" go.
+/// Limits of alpha-flocking (OLF definition 4), with values for "few" and "bounded".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlphaLimits {
     /// Largest E / d^2 (e1).
     pub deviation_energy: f64,
     /// Largest K / n (e2).
     pub velocity_mismatch: f64,
-    /// Share of the robots that the largest component of a quasi-flock holds at least. The paper
-    /// says "highly populated".
+    /// Smallest share of robots in a quasi-flock's largest component ("highly populated").
     pub quasi_flock_share: f64,
-    /// Largest R of a cohesive group, metres. The paper asks that there is one, which every trace that ends has.
+    /// Largest R of a cohesive group, metres. The paper only asks that some bound exists.
     pub cohesion_radius_m: f64,
 }
 
 impl AlphaLimits {
-    /// e1 = 0.005 and e2 = 0.001 (OLF figure 12), nine tenths in one component, all within `cohesion_radius_m`.
+    /// e1 = 0.005 and e2 = 0.001 (OLF figure 12), nine tenths in one component, all within
+    /// `cohesion_radius_m`.
     #[must_use]
     pub const fn paper(cohesion_radius_m: f64) -> Self {
         Self { deviation_energy: 0.005, velocity_mismatch: 0.001, quasi_flock_share: 0.9, cohesion_radius_m }
     }
 }
 
-/// From which moment of a trace on each condition holds until its end; `None`: it does not hold at the end.
+/// The moment from which each condition holds until the end of a trace; `None`: never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct AlphaVerdict {
     /// The largest component is large enough.
@@ -196,13 +197,14 @@ pub struct AlphaVerdict {
     pub evenly_spaced: Option<usize>,
     /// K is small.
     pub of_one_velocity: Option<usize>,
-    /// All four: alpha-flocking.
+    /// All four conditions: alpha-flocking.
     pub alpha_flocking: Option<usize>,
     /// The graph is connected, E and K are small: strict alpha-flocking.
     pub strict: Option<usize>,
 }
 
-/// Judges a trace. The graphs must have been measured with r = (1 + e0) d. A moment without a measure meets no condition.
+/// Classifies a trace. The graphs must have been measured with r = (1 + e0) d. A moment without a
+/// measure meets no condition. O(moments).
 #[must_use]
 pub fn alpha_flocking(trace: &[Option<FlockMeasure>], limits: &AlphaLimits) -> AlphaVerdict {
     let from = |holds: &dyn Fn(&FlockMeasure) -> bool| {
@@ -240,7 +242,6 @@ fn length<const D: usize>(a: [f64; D]) -> f64 {
     squared(a).sqrt()
 }
 
-/// The mean of one vector or more.
 fn mean<const D: usize>(vectors: &[[f64; D]]) -> [f64; D] {
     let mut sum = [0.0; D];
     for vector in vectors {

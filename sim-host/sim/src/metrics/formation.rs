@@ -1,18 +1,18 @@
-//! How well a formation is kept (KUZ section 6).
+//! Quality of a formation (KUZ section 6).
 
 use crate::scenario::{Formation, Scenario};
 use crate::terrain::Terrain;
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 
-/// How well a formation is kept at one moment.
+/// Quality of a formation at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Keeping {
-    /// Mean over the robots of |desired - actual|, cells, when the graph is placed on where the top
-    /// leader (robot 1) is. The leader itself counts, with 0.
+    /// Mean over the robots of |desired - actual|, cells, with the graph placed at the top leader
+    /// (robot 1). The leader counts, with 0.
     pub error_per_agent: f64,
-    /// The same when the graph is placed by the translation that fits all robots best (least
-    /// squares): tells a formation that is out of shape from one that only lags behind its leader.
+    /// The mean error with the graph placed by the translation that fits all robots best (least
+    /// squares). It distinguishes a distorted formation from one that only lags behind its leader.
     pub best_fit_error_per_agent: f64,
     /// Graph distance, see [`FormationMeter`].
     pub graph_distance: f64,
@@ -26,31 +26,32 @@ impl std::ops::AddAssign for Keeping {
     }
 }
 
-/// How long a formation may take to form before its error counts, seconds.
+/// Time that a formation may take to form before its error counts, seconds.
 pub const FORMED_AFTER_S: f64 = 10.0;
 
-/// How far robots in the plane were from their places by robot 1, after the first [`FORMED_AFTER_S`].
+/// Distance of robots in the plane from their places relative to robot 1, after the first
+/// [`FORMED_AFTER_S`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaceError {
-    /// Over robots (robot 1 counts, with 0) and ticks, metres.
+    /// Mean over robots (robot 1 counts, with 0) and ticks, metres.
     pub mean_m: f64,
-    /// The largest of any robot in any tick, metres.
+    /// Largest error of any robot in any tick, metres.
     pub worst_m: f64,
-    /// Whose that was, by its place from 1; 0 if all were in place.
+    /// Place of that robot, from 1; 0 if all errors are 0.
     pub robot: u32,
-    /// When it was, seconds.
+    /// Time of the largest error, seconds.
     pub at_s: f64,
 }
 
 /// Measures a formation tick by tick: the formation error dPhi = (1/T) sum over robots and ticks of
 /// |desired - actual|, here per robot, and the graph distance.
 ///
-/// The graph distance is dist = m0 + m1 + kappa * sum of |desired - actual| over the common vertices,
-/// with kappa = 1 / diagonal of the map and the graph placed on the top leader. A vertex is common
-/// when its robot is within `eps` cells (along either axis, as in algorithm 5) of its place. m0
-/// counts the places that are missed. m1 counts those of them near which (`eps` again) another
-/// robot stands that has itself lost its place: without that condition every robot of a formation
-/// narrower than eps would stand in for all others.
+/// The graph distance is dist = m0 + m1 + kappa * sum of |desired - actual| over the common
+/// vertices, with kappa = 1 / diagonal of the map and the graph placed at the top leader. A vertex
+/// is common if its robot is within `eps` cells (along either axis, as in algorithm 5) of its
+/// place. m0 counts missed places. m1 counts missed places near which (within `eps`) another robot
+/// is that has itself lost its place. Without this condition, every robot of a formation narrower
+/// than eps would stand in for all others.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationMeter {
     places: Vec<[f64; 2]>,
@@ -75,7 +76,7 @@ struct Steady {
 }
 
 impl FormationMeter {
-    /// A meter that has measured nothing yet.
+    /// Creates a meter without measurements.
     #[must_use]
     pub fn new(formation: &Formation, eps: u8, terrain: &Terrain, tick_s: f64) -> Self {
         let [width, height] = [terrain.width(), terrain.height()].map(|side| f64::from(side) - 1.0);
@@ -94,15 +95,14 @@ impl FormationMeter {
         }
     }
 
-    /// Whether it measures the same formation as another one.
     pub(crate) fn is_of(&self, other: &Self) -> bool {
         self.places == other.places && self.errors.len() <= self.places.len()
     }
 
-    /// Takes one tick into the means; see [`FormationMeter::look`].
+    /// Measures one tick and adds it to the means; see [`FormationMeter::look`].
     ///
     /// # Panics
-    /// When there are no bodies, or more of them than places.
+    /// If there are no bodies, or more bodies than places.
     pub fn measure(&mut self, bodies: &[[f64; 2]]) -> Keeping {
         let now = self.look(bodies);
         self.sum += now;
@@ -122,18 +122,18 @@ impl FormationMeter {
         now
     }
 
-    /// How far robots were from their places after the first [`FORMED_AFTER_S`]; `None` when the run was shorter.
+    /// Place errors after the first [`FORMED_AFTER_S`]; `None` if the run was shorter.
     #[must_use]
     pub fn place_error(&self) -> Option<PlaceError> {
         let Steady { ticks, sum, worst } = self.steady;
         (ticks > 0).then(|| PlaceError { mean_m: sum / f64::from(ticks) * self.cell_m, ..worst })
     }
 
-    /// How the formation is kept right now; `bodies[i]` is where the robot of place i is, in cells. O(n), and O(m^2)
-    /// for m lost robots.
+    /// Measures the current quality; `bodies[i]` is the position of the robot of place i, in cells.
+    /// O(n), and O(m^2) for m lost robots.
     ///
     /// # Panics
-    /// When there are no bodies, or more of them than places.
+    /// If there are no bodies, or more bodies than places.
     pub fn look(&mut self, bodies: &[[f64; 2]]) -> Keeping {
         let top = offset(bodies[0], self.places[0]);
         self.errors.clear();
@@ -168,7 +168,6 @@ impl FormationMeter {
         }
     }
 
-    /// How many of the missed places have another lost robot near them.
     fn taken(&self, bodies: &[[f64; 2]], top: [f64; 2]) -> usize {
         let is_near = |place: usize, robot: usize| {
             let [x, y] = offset(bodies[robot], self.places[place]);
@@ -178,13 +177,13 @@ impl FormationMeter {
         missing.filter(|&&place| self.missing.iter().any(|&robot| is_near(place, robot))).count()
     }
 
-    /// Distance of each robot from its place when it was looked at last, cells, graph on the top leader.
+    /// Last distance of each robot from its place relative to the top leader, cells.
     #[must_use]
     pub fn errors(&self) -> &[f64] {
         &self.errors
     }
 
-    /// The means over all ticks so far; `None` before the first.
+    /// Means over all ticks so far; `None` before the first.
     #[must_use]
     pub fn mean(&self) -> Option<Keeping> {
         let ticks = f64::from(self.ticks);
@@ -196,13 +195,13 @@ impl FormationMeter {
     }
 }
 
-/// A cell's middle, in cells from that of (0, 0).
+/// Centre of a cell, in cells from that of (0, 0).
 pub fn in_cells(cell: Cell) -> [f64; 2] {
     [cell.x, cell.y].map(f64::from)
 }
 
-/// The longest that a robot of a formation in the plane would need by itself, straight to its goal on easy land,
-/// getting going and braking as hard as it can, seconds; `None` without such a formation.
+/// Longest time that a robot of a formation in the plane would need alone, seconds: straight to its
+/// goal on easy land, with full acceleration and braking. `None` without such a formation.
 #[must_use]
 pub fn free_formation_s(scenario: &Scenario) -> Option<f64> {
     let plane = scenario.plane.as_ref().filter(|_| !scenario.formations.is_empty())?;
@@ -213,7 +212,7 @@ pub fn free_formation_s(scenario: &Scenario) -> Option<f64> {
         let off = [0, 1].map(|axis| goal_m[axis] - start.position_m[axis]);
         let (way_m, speed) = (length(off), group.cruise_mps);
         let by_inertia = speed / group.abilities.max_acceleration_mps2;
-        // A way too short to get going has no top.
+        // A short way ends before the robot reaches its top speed.
         let most_m = speed * by_inertia;
         let short = 2.0 * by_inertia * libm::sqrt(way_m / most_m);
         Some(if way_m < most_m { short } else { way_m / speed + by_inertia })
@@ -244,7 +243,6 @@ mod tests {
             templates: Vec::new(),
             first: 0,
         };
-        // Diagonal: 5 cells.
         FormationMeter::new(&formation, eps, &Terrain::flat(5, 4), 4.0)
     }
 
@@ -260,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_are_per_robot_and_mean_over_ticks() {
+    fn errors_are_per_robot_and_averaged_over_ticks() {
         let mut meter = meter(&[(0, 0), (-3, 0)], 5);
         assert!(meter.mean().is_none());
         // Robot 2 is off by (3, 4), half of which a translation explains.
@@ -275,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn best_fit_does_not_blame_all_for_a_leader_that_runs_ahead() {
+    fn the_best_fit_ignores_a_leader_that_runs_ahead() {
         let mut meter = meter(&[(0, 0), (-3, 0), (-6, 0), (-9, 0)], 5);
         let now = meter.measure(&bodies(&[(14, 0), (7, 0), (4, 0), (1, 0)]));
         assert_eq!(now.error_per_agent, 3.0);
@@ -283,21 +281,20 @@ mod tests {
     }
 
     #[test]
-    fn graph_distance_counts_missing_places_and_strangers_on_them() {
+    fn the_graph_distance_counts_missed_and_taken_places() {
         let places = [(0, 0), (-3, 0), (-6, 0)];
         // The place of robot 2 is missed; robot 3 is near it but has its own: only m0.
         let now = meter(&places, 3).measure(&bodies(&[(10, 0), (90, 0), (4, 0)]));
         assert_eq!(now.graph_distance, 1.0);
-        // Robots 2 and 3 have changed places: m0 = m1 = 2.
+        // Robots 2 and 3 have swapped places: m0 = m1 = 2.
         let now = meter(&places, 2).measure(&bodies(&[(10, 0), (4, 0), (7, 0)]));
         assert_eq!(now.graph_distance, 4.0);
-        // Just within eps.
         let now = meter(&places, 3).measure(&bodies(&[(10, 0), (4, 0), (7, 0)]));
         assert!((now.graph_distance - 6.0 / 5.0).abs() < 1e-12);
     }
 
     #[test]
-    fn errors_in_metres_count_when_the_formation_has_had_time_to_form() {
+    fn errors_in_metres_count_after_the_forming_time() {
         let mut meter = meter(&[(0, 0), (-3, 0)], 5);
         for away in [90, 90] {
             meter.measure(&bodies(&[(10, 10), (away, 10)]));

@@ -1,32 +1,31 @@
-//! How well the formations of a swarm are kept: each by itself, and all together.
+//! Quality of the formations of a swarm, separately and together.
 
 use super::{FormationMeter, Keeping, PlaceError};
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// How well one formation was kept.
+/// Quality of one formation over a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormationKept {
-    /// Its robots, counted from 0.
+    /// Robot indices of the members, counted from 0.
     pub members: Range<usize>,
     /// Means over the run; `None` before the first tick.
     pub keeping: Option<Keeping>,
-    /// How far robots in the plane were from their places once they had had time to form.
+    /// Place errors of robots in the plane after the forming time.
     pub place_error: Option<PlaceError>,
 }
 
 /// Measures all formations of a scenario tick by tick.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationMeters {
-    /// Each formation's robots, counted from 0, and its meter; there is one at least.
+    /// Robot indices and meter of each formation; at least one.
     each: Vec<(Range<usize>, FormationMeter)>,
-    /// The number of each robot.
     numbers: Vec<u32>,
 }
 
 impl FormationMeters {
-    /// Meters that have measured nothing yet; `None`: nobody keeps a formation.
+    /// Creates meters without measurements; `None` if the scenario has no formation.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let meter = |graph| FormationMeter::new(graph, scenario.eps(), &scenario.terrain, scenario.tick_s());
@@ -35,7 +34,6 @@ impl FormationMeters {
         (!each.is_empty()).then_some(Self { each, numbers })
     }
 
-    /// Whether they measure the same formations as others.
     pub(crate) fn is_of(&self, other: &Self) -> bool {
         let mut pairs = self.each.iter().zip(&other.each);
         self.numbers == other.numbers
@@ -43,19 +41,20 @@ impl FormationMeters {
             && pairs.all(|((mine, one), (theirs, other))| mine == theirs && one.is_of(other))
     }
 
-    /// Takes one tick into the means; see [`FormationMeters::look`].
+    /// Measures one tick and adds it to the means; see [`FormationMeters::look`].
     ///
     /// # Panics
-    /// When there are fewer bodies than members.
+    /// If there are fewer bodies than members.
     pub fn measure(&mut self, bodies: &[[f64; 2]]) -> Keeping {
         self.over(|members, meter| meter.measure(&bodies[members]))
     }
 
-    /// How all formations are kept right now: errors are means over robots, graph distances are summed; `bodies[i]` is where
-    /// robot i is, in cells. See [`FormationMeter::look`].
+    /// Measures the current quality of all formations: errors are means over robots, graph
+    /// distances are summed. `bodies[i]` is the position of robot i, in cells. See
+    /// [`FormationMeter::look`].
     ///
     /// # Panics
-    /// When there are fewer bodies than members.
+    /// If there are fewer bodies than members.
     pub fn look(&mut self, bodies: &[[f64; 2]]) -> Keeping {
         self.over(|members, meter| meter.look(&bodies[members]))
     }
@@ -66,7 +65,7 @@ impl FormationMeters {
         together(&kept)
     }
 
-    /// The means over all ticks so far; `None` before the first.
+    /// Means over all ticks so far; `None` before the first.
     #[must_use]
     pub fn mean(&self) -> Option<Keeping> {
         let kept: Option<Vec<_>> =
@@ -74,7 +73,7 @@ impl FormationMeters {
         kept.map(|kept| together(&kept))
     }
 
-    /// How far robots were from their places once they had had time to form, all formations together.
+    /// Place errors of all formations together after the forming time.
     #[must_use]
     pub fn place_error(&self) -> Option<PlaceError> {
         let errors: Option<Vec<_>> =
@@ -87,7 +86,6 @@ impl FormationMeters {
         Some(PlaceError { mean_m: mean_over(errors.iter().map(|(robots, error)| (*robots, error.mean_m))), ..worst })
     }
 
-    /// By the robot's number instead of by its place.
     fn place_error_of(&self, (members, meter): &(Range<usize>, FormationMeter)) -> Option<PlaceError> {
         let error = meter.place_error()?;
         let place = (error.robot as usize).checked_sub(1);
@@ -95,7 +93,7 @@ impl FormationMeters {
         Some(PlaceError { robot: number.copied().unwrap_or(0), ..error })
     }
 
-    /// Each formation by itself; in metres, too, where `has_bodies`.
+    /// Quality of each formation; with place errors in metres if `has_bodies`.
     #[must_use]
     pub fn each(&self, has_bodies: bool) -> Vec<FormationKept> {
         let each = self.each.iter().map(|each| FormationKept {
@@ -106,8 +104,8 @@ impl FormationMeters {
         each.collect()
     }
 
-    /// How far robot number `index`, counted from 0, was from its place when it was looked at last, cells, its formation on
-    /// where its own top leader is; NaN when it has none.
+    /// Distance of robot `index`, counted from 0, from its place in the last measurement, cells,
+    /// with its formation placed at its own top leader. NaN without a place.
     #[must_use]
     pub fn error_of(&self, index: usize) -> f64 {
         let own = self.each.iter().find(|(members, _)| members.contains(&index));
@@ -116,7 +114,6 @@ impl FormationMeters {
     }
 }
 
-/// Formations with so many robots each, as one.
 fn together(kept: &[(usize, Keeping)]) -> Keeping {
     let mean = |figure: fn(&Keeping) -> f64| mean_over(kept.iter().map(|(robots, kept)| (*robots, figure(kept))));
     Keeping {
@@ -126,7 +123,7 @@ fn together(kept: &[(usize, Keeping)]) -> Keeping {
     }
 }
 
-/// The mean over robots; of one formation its own, to the bit.
+/// Mean over robots; for a single formation its own value, bit for bit.
 fn mean_over(each: impl ExactSizeIterator<Item = (usize, f64)> + Clone) -> f64 {
     if each.len() == 1 {
         return each.map(|(_, value)| value).sum();
@@ -141,7 +138,7 @@ mod tests {
     use crate::scenario::Overrides;
 
     #[test]
-    fn formations_are_measured_by_their_own_leaders_and_robots_by_their_numbers() {
+    fn each_formation_is_measured_at_its_own_leader() {
         let text = "name = 's'\nticks = 9\ntick_s = 6\n[terrain]\nuniform = { width = 40, height = 40, classes = 1 }\n\
             [[robots.formation]]\nrows = 1\ncolumns = 2\nstart = [4, 4]\ngoal = [4, 30]\n\
             [[robots.formation]]\nrows = 1\ncolumns = 3\nstart = [20, 4]\ngoal = [20, 30]\n";
@@ -149,7 +146,7 @@ mod tests {
         let mut meters = FormationMeters::new(&scenario).expect("two formations");
         let place = |cell: staya_controller::grid::Cell| super::super::in_cells(cell);
         let mut bodies: Vec<_> = scenario.robots.iter().map(|robot| place(robot.start)).collect();
-        // The second formation as a whole is elsewhere; robot 5 is off by (3, 4) besides.
+        // The second formation is displaced as a whole; robot 5 is off by a further (3, 4).
         bodies[2..].iter_mut().for_each(|[_, y]| *y += 11.0);
         bodies[4] = [bodies[4][0] + 3.0, bodies[4][1] + 4.0];
         for _ in 0..2 {

@@ -1,35 +1,33 @@
-//! Who waited for what, and for how long.
+//! Statistics of waiting robots.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::Wait;
 use staya_controller::names::Named;
 
-/// One reason to wait, over a run.
+/// A cause of waiting, with totals over a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitCount {
-    /// What they waited for.
+    /// The cause.
     pub wait: Wait,
-    /// Robots that did so at some time.
+    /// Robots that waited for it at any time.
     pub robots: usize,
-    /// Robots that do so now.
+    /// Robots that wait for it now.
     pub now: usize,
-    /// Ticks of all these robots together.
+    /// Sum of the waiting ticks of all robots.
     pub robot_ticks: u64,
-    /// Ticks of the longest time on end.
+    /// Longest uninterrupted wait, ticks.
     pub longest_ticks: u32,
 }
 
-/// What one robot waits for.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Robot {
     wait: Option<Wait>,
-    /// For so many ticks.
     ticks: u32,
-    /// What it has waited for at some time: a bit each.
+    /// Causes for which it has waited: one bit each.
     seen: u8,
 }
 
-/// Takes note of waits, tick by tick; 12 bytes per robot.
+/// Counts waits tick by tick; 12 bytes per robot.
 #[derive(Clone, Debug)]
 pub struct Waits {
     robots: Vec<Robot>,
@@ -37,17 +35,17 @@ pub struct Waits {
 }
 
 impl Waits {
-    /// Nobody has waited yet.
+    /// Creates statistics without waits.
     #[must_use]
     pub fn new(robots: usize) -> Self {
         let count = |&(_, wait)| WaitCount { wait, robots: 0, now: 0, robot_ticks: 0, longest_ticks: 0 };
         Self { robots: vec![Robot::default(); robots], counts: Wait::NAMES.iter().map(count).collect() }
     }
 
-    /// Takes note of what robot number `index` waits for after a tick.
+    /// Records the wait of robot `index` after a tick.
     ///
     /// # Panics
-    /// When there is no such robot.
+    /// If there is no such robot.
     pub fn note(&mut self, index: usize, wait: Option<Wait>) {
         let robot = &mut self.robots[index];
         if wait.is_none() && robot.wait.is_none() {
@@ -67,12 +65,10 @@ impl Waits {
         }
     }
 
-    /// The account of robot number `index`.
     pub(crate) fn robot(&self, index: usize) -> Robot {
         self.robots[index]
     }
 
-    /// Puts it back.
     pub(crate) fn set_robot(&mut self, index: usize, robot: Robot) {
         let before = std::mem::replace(&mut self.robots[index], robot);
         for (bit, count) in self.counts.iter_mut().enumerate() {
@@ -86,41 +82,41 @@ impl Waits {
         }
     }
 
-    /// A robot comes from another rank, behind those that are here.
+    /// Appends a robot that comes from another MPI rank.
     pub fn admit(&mut self) {
         self.robots.push(Robot::default());
     }
 
-    /// Robot number `index` goes to another rank with its account; the last one takes its place.
+    /// Removes a robot that goes to another MPI rank; the last robot takes its index.
     pub fn dismiss(&mut self, index: usize) {
         self.set_robot(index, Robot::default());
         self.robots.swap_remove(index);
     }
 
-    /// For each reason the ticks of all robots together, and of the longest time on end.
+    /// For each cause, the ticks of all robots and the longest wait.
     pub fn ticks(&self) -> Vec<(u64, u32)> {
         self.counts.iter().map(|count| (count.robot_ticks, count.longest_ticks)).collect()
     }
 
-    /// Puts them back.
+    /// Restores the value of [`Waits::ticks`].
     pub fn set_ticks(&mut self, ticks: &[(u64, u32)]) {
         for (count, &(robot_ticks, longest_ticks)) in self.counts.iter_mut().zip(ticks) {
             (count.robot_ticks, count.longest_ticks) = (robot_ticks, longest_ticks);
         }
     }
 
-    /// How many wait for something now; not those that have arrived beside their places.
+    /// Number of robots that wait now, without those that have arrived next to their goal.
     #[must_use]
     pub fn now(&self) -> usize {
         self.counts.iter().filter(|count| count.wait != Wait::Place).map(|count| count.now).sum()
     }
 
-    /// All reasons; robots that have gone to another rank have left their ticks behind.
+    /// All causes. Ticks of robots that went to another rank stay here.
     pub fn all(&self) -> &[WaitCount] {
         &self.counts
     }
 
-    /// The reasons that there were.
+    /// The causes that occurred.
     #[must_use]
     pub fn counts(&self) -> Vec<WaitCount> {
         self.counts.iter().copied().filter(|count| count.robots > 0).collect()
@@ -132,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_robots_once_and_times_on_end() {
+    fn robots_count_once_and_waits_are_uninterrupted() {
         let mut waits = Waits::new(2);
         let (turn, others) = (Some(Wait::Turn), Some(Wait::Others));
         for [one, two] in [[turn, None], [turn, others], [None, others], [turn, others], [others, None]] {

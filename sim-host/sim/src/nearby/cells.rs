@@ -1,41 +1,39 @@
-//! Lattice cells: points sorted into the squares of a uniform grid.
+//! Neighbour search with a uniform grid.
 
 use super::nearest::Nearest;
 use super::space::margin;
 use super::{Found, Query, Real, Search, Space, numbered};
 use std::ops::Range;
 
-/// Squares (in space, cubes) of at least a given side, each with its points beside each other in memory.
+/// Points sorted by squares (in space, cubes); the points of a cell are contiguous in memory.
 ///
-/// Built by counting: O(n + cells), no hash maps, no allocation once its buffers have grown. A query costs O(points in
-/// the cells that its ball may touch). There are never more than about two cells per point (or 4096 in all),
-/// however far the points are from each other: then cells are larger than wanted and queries slower. Bytes: 8 per cell, 4 + 4 + the point per point.
+/// Built by a counting sort: O(n + cells), without hash maps, and without allocation once the
+/// buffers have grown. A query costs O(points in the cells that its ball may touch). There are at
+/// most about two cells per point (or 4096 in all), however far apart the points are; if this limit
+/// applies, cells are larger and queries slower. Bytes: 8 per cell, 8 + the point per point.
 #[derive(Clone, Debug)]
 pub struct Cells<R, const D: usize> {
     space: Space<R, D>,
-    /// Side that was asked for.
     side: R,
-    /// Where the first cell begins.
+    /// Corner of the first cell.
     origin: [R; D],
-    /// Cells along each axis, 1 or more.
     counts: [u32; D],
     /// Cells per unit of length along each axis.
     scale: [R; D],
     /// Side of a cell along each axis.
     width: [R; D],
-    /// Where the points of each cell begin in `order`, and the end of the last.
+    /// Start of each cell's points in `order`, and the end of the last.
     starts: Vec<u32>,
     /// Indices of the points by cell, ascending in each.
     order: Vec<u32>,
-    /// The points in that order, folded.
     points: Vec<[R; D]>,
     /// Scratch: the cell of each point.
     cell_of: Vec<u32>,
 }
 
 impl<R: Real, const D: usize> Cells<R, D> {
-    /// A search over no points yet, in cells of about this side: best the radius of the queries, or half of
-    /// it where points are dense. Any side gives the same answers; one that is not above 0 means one cell.
+    /// Creates an empty index. The best `side` is the radius of the queries, or half of it for
+    /// dense points. The side does not affect results; one that is not above 0 means a single cell.
     #[must_use]
     pub fn new(space: Space<R, D>, side: R) -> Self {
         Self {
@@ -52,19 +50,18 @@ impl<R: Real, const D: usize> Cells<R, D> {
         }
     }
 
-    /// Indices of the points by cell. Queries in this order find what they need in the cache.
+    /// Indices of the points by cell. Queries in this order are cache-friendly.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     #[must_use]
     pub const fn cells(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Lays the grid over the points.
     fn lay(&mut self, points: &[[R; D]]) {
         let (low, length) = match self.space.period() {
             Some(period) => ([R::ZERO; D], period),
@@ -72,7 +69,7 @@ impl<R: Real, const D: usize> Cells<R, D> {
         };
         self.origin = low;
         let most = (2 * points.len() as u64).max(4096);
-        // Doubling the side ends: at last every axis has one cell.
+        // The loop ends because doubling the side leads to one cell per axis.
         let mut side = if self.side > R::ZERO { self.side } else { R::MAX };
         loop {
             self.counts = length.map(|length| length.over(side).cell(u32::MAX).max(1));
@@ -90,14 +87,13 @@ impl<R: Real, const D: usize> Cells<R, D> {
         });
     }
 
-    /// The cell's place along an axis.
     #[inline]
     fn along(&self, axis: usize, coordinate: R) -> u32 {
         let steps = (coordinate - self.origin[axis]) * self.scale[axis];
         steps.cell(self.counts[axis])
     }
 
-    /// The cell's number; cells along the first axis follow each other.
+    /// Number of a cell; cells along the first axis are consecutive.
     #[inline]
     fn cell(&self, point: &[R; D]) -> u32 {
         let mut cell = 0;
@@ -107,11 +103,11 @@ impl<R: Real, const D: usize> Cells<R, D> {
         cell
     }
 
-    /// The cells along an axis that the ball may touch.
+    /// Cells along an axis that the ball may touch.
     fn span(&self, axis: usize, at: R, radius: R) -> Span {
         let count = self.counts[axis];
-        // Both places by the same monotonous function as a point's own: no rounding can put a point that is within the
-        // radius outside. What a sum of rounding may lose is less than this margin.
+        // Both ends use the same monotonic function as the points, so rounding cannot exclude a
+        // point within the radius. The margin exceeds the rounding error of the sums.
         let around = self.space.period().map(|period| period[axis]);
         let margin = margin(at, radius + around.unwrap_or(R::ZERO));
         let reach = radius + margin;
@@ -120,7 +116,7 @@ impl<R: Real, const D: usize> Cells<R, D> {
         let Some(period) = around else {
             return straight();
         };
-        // All around: every cell once.
+        // The ball covers the whole axis: every cell once.
         if reach + reach >= period {
             return Span::Around(0, count);
         }
@@ -136,7 +132,7 @@ impl<R: Real, const D: usize> Cells<R, D> {
         if from < to { Span::Around(0, count) } else { Span::Around(from, to) }
     }
 
-    /// Whether all of the cells at this place along the axis are farther away than what still counts.
+    /// Whether all cells at this place along the axis are farther away than the current limit.
     fn is_beyond(&self, axis: usize, place: u32, at: R, nearest: &Nearest<'_, R, D>) -> bool {
         let place = R::from_f64(place.into()).unwrap_or(R::ZERO);
         let low = self.origin[axis] + place * self.width[axis];
@@ -146,7 +142,6 @@ impl<R: Real, const D: usize> Cells<R, D> {
         safe > R::ZERO && nearest.is_beyond(safe)
     }
 
-    /// Offers every point of a row of cells.
     #[inline]
     fn scan(&self, at: [R; D], row: usize, columns: Range<u32>, nearest: &mut Nearest<'_, R, D>) {
         let from = self.starts[row + columns.start as usize] as usize;
@@ -156,8 +151,8 @@ impl<R: Real, const D: usize> Cells<R, D> {
         }
     }
 
-    /// Goes through the axes from the last to the first, on each from the middle to the outside: when the nearest are
-    /// found early, the outer rows need no look.
+    /// Visits the axes from last to first, and the cells of each axis from the middle outwards, so
+    /// that outer rows can be skipped once the nearest points are found.
     fn descend(&self, at: [R; D], axis: usize, row: usize, spans: &[Span; D], nearest: &mut Nearest<'_, R, D>) {
         let row = row * self.counts[axis] as usize;
         let inner = |place: u32, nearest: &mut Nearest<'_, R, D>| {
@@ -196,17 +191,16 @@ impl<R: Real, const D: usize> Cells<R, D> {
     }
 }
 
-/// Cells along an axis.
 #[derive(Clone, Copy, Debug)]
 enum Span {
-    /// From one place to before another one, and distances along them are plain differences.
+    /// From one place to before another; distances along them are plain differences.
     Straight(u32, u32),
-    /// From the first place up to the end and from the beginning to before the second one; all when the first is the
-    /// smaller one. Distances may be shorter the other way around.
+    /// From the first place to the end and from the beginning to before the second; all if the
+    /// first is smaller. Distances may be shorter the other way around.
     Around(u32, u32),
 }
 
-/// The parts of a [`Span::Around`] on an axis with so many cells.
+/// Parts of a [`Span::Around`] on an axis with `count` cells.
 fn around(from: u32, to: u32, count: u32) -> [Range<u32>; 2] {
     if from < to { [from..to, 0..0] } else { [0..to, from..count] }
 }
@@ -229,7 +223,7 @@ impl<R: Real, const D: usize> Search<R, D> for Cells<R, D> {
             end += *start;
             *start = end;
         }
-        // Filled from the back, so that what were ends become beginnings and indices ascend.
+        // Filled from the back: ends become starts, and indices ascend.
         self.order.resize(points.len(), 0);
         self.points.resize(points.len(), [R::ZERO; D]);
         for index in (0..count).rev() {
@@ -252,7 +246,6 @@ impl<R: Real, const D: usize> Search<R, D> for Cells<R, D> {
     }
 }
 
-/// Least corner and sides of the box around all points that are finite.
 fn extent<R: Real, const D: usize>(points: &[[R; D]]) -> ([R; D], [R; D]) {
     let (mut low, mut high) = ([R::MAX; D], [-R::MAX; D]);
     for point in points {

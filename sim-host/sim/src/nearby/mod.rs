@@ -1,10 +1,10 @@
-//! Who is near whom, for everything that the host computes over whole swarms: metrics, experiments without a radio,
-//! benchmarks.
+//! Neighbour search over whole swarms: for metrics, experiments without a radio, and benchmarks.
 //!
-//! Searches with one interface, [`Search`], and equal answers, bit for bit: [`AllPairs`] is the reference, [`Cells`] is the one to
-//! use. In two or three dimensions, in f32 or f64, in the open or on a torus ([`Space`]).
+//! All searches share the interface [`Search`] and give identical results, bit for bit:
+//! [`AllPairs`] is the reference, [`Cells`] is for use. They work in two or three dimensions, in
+//! `f32` or `f64`, in open space or on a torus ([`Space`]).
 //!
-//! Robots never see any of this: they know what arrives as bytes.
+//! Robots do not use this: their information arrives as bytes.
 
 mod cells;
 mod nearest;
@@ -16,36 +16,36 @@ pub use cells::Cells;
 pub use nearest::{Found, Nearest};
 pub use space::{Real, Space, margin};
 
-/// What to look for.
+/// A search query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Query<R, const D: usize> {
-    /// Around which place.
+    /// Centre of the search.
     pub at: [R; D],
-    /// How far at most, inclusive; nothing is found within a radius that is negative or not a number.
+    /// Search radius, inclusive; a negative radius or NaN finds nothing.
     pub radius: R,
-    /// How many at most: the nearest ones, by (squared distance, index).
+    /// Largest number of results: the nearest ones, by (squared distance, index).
     pub most: usize,
-    /// The point that does not count: who asks.
+    /// Index of a point to exclude, usually that of the querying robot.
     pub except: Option<u32>,
 }
 
 /// A search for the points within a radius.
 ///
-/// All implementations give the same answers, bit for bit: distances are computed by [`Space::offset`] in the
-/// precision of `R` and summed over the axes in order.
+/// All implementations give identical results, bit for bit: distances are computed by
+/// [`Space::offset`] in the precision of `R` and summed over the axes in order.
 pub trait Search<R: Real, const D: usize>: Sync {
-    /// Takes these points instead of those before; their indices are their places in the slice. Points with a coordinate that
-    /// is not finite are never found.
+    /// Replaces all points; their indices are their positions in the slice. Points with a
+    /// coordinate that is not finite are never found.
     ///
     /// # Panics
-    /// When there are more than 2^32 - 1 points.
+    /// If there are more than 2^32 - 1 points.
     fn rebuild(&mut self, points: &[[R; D]]);
 
-    /// Puts the points within the radius into `found`, which is emptied first, in the order of (squared distance, index).
+    /// Replaces `found` by the points in the radius, sorted by (squared distance, index).
     fn within(&self, query: &Query<R, D>, found: &mut Vec<Found<R, D>>);
 }
 
-/// Looks at every point: O(n) a query, O(1) to build but for the copy.
+/// Visits every point: O(n) per query; building only copies the points.
 #[derive(Clone, Debug)]
 pub struct AllPairs<R, const D: usize> {
     space: Space<R, D>,
@@ -53,7 +53,7 @@ pub struct AllPairs<R, const D: usize> {
 }
 
 impl<R: Real, const D: usize> AllPairs<R, D> {
-    /// A search over no points yet.
+    /// Creates an empty index.
     #[must_use]
     pub const fn new(space: Space<R, D>) -> Self {
         Self { space, points: Vec::new() }
@@ -78,10 +78,10 @@ impl<R: Real, const D: usize> Search<R, D> for AllPairs<R, D> {
     }
 }
 
-/// The number of points.
+/// Number of points.
 ///
 /// # Panics
-/// When there are more than 2^32 - 1.
+/// If there are more than 2^32 - 1 points.
 #[must_use]
 pub fn numbered<R, const D: usize>(points: &[[R; D]]) -> u32 {
     u32::try_from(points.len()).expect("no more than 2^32 - 1 points")

@@ -1,19 +1,19 @@
-//! The nearest of many that are offered, in order.
+//! Collects the nearest of a sequence of points.
 
 use super::{Query, Real};
 use std::cmp::Ordering;
 
-/// Up to so many are kept in order as they come; more are sorted now and then.
+/// Up to this number of results, points are inserted in order; more are sorted at intervals.
 const FEW: usize = 32;
 
-/// A point that was found.
+/// A search result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found<R, const D: usize> {
-    /// Its place among the points.
+    /// Index of the point.
     pub index: u32,
-    /// Its squared distance.
+    /// Squared distance from the query's centre.
     pub distance_squared: R,
-    /// The way to it.
+    /// Vector from the query's centre to the point.
     pub offset: [R; D],
 }
 
@@ -30,23 +30,22 @@ impl<R: Real, const D: usize> Found<R, D> {
     }
 }
 
-/// Keeps the nearest of the points that are offered to it. Never holds more than twice what is wanted, or
-/// 64.
+/// Collects the nearest of the offered points. Holds at most twice the requested number, or 64.
 pub struct Nearest<'a, R, const D: usize> {
     found: &'a mut Vec<Found<R, D>>,
-    /// What is farther does not count: the radius, later the farthest of those that are kept.
+    /// Squared limit: the radius, later the distance of the farthest kept point.
     limit: R,
     most: usize,
     except: Option<u32>,
 }
 
 impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
-    /// Empties `found` and collects there.
+    /// Clears `found` and collects results there.
     pub fn new(query: &Query<R, D>, found: &'a mut Vec<Found<R, D>>) -> Self {
         found.clear();
-        // The square of a negative radius would be that of its opposite.
+        // Squaring would make a negative radius positive.
         let limit = if query.radius >= R::ZERO && query.most > 0 {
-            // What is infinitely far is never found.
+            // Points at infinite distance are never found.
             (query.radius * query.radius).min(R::MAX)
         } else {
             -R::ONE
@@ -54,7 +53,7 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
         Self { found, limit, most: query.most, except: query.except }
     }
 
-    /// A point at this way from the place that the query is about.
+    /// Offers a point at `offset` from the query's centre.
     #[inline]
     pub fn offer(&mut self, index: u32, offset: [R; D]) {
         let mut distance_squared = R::ZERO;
@@ -66,7 +65,7 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
         }
     }
 
-    /// Whether nothing counts any more that is at least so far away (more than 0).
+    /// Whether points at this distance or more (above 0) are out of the limit.
     #[inline]
     pub fn is_beyond(&self, distance: R) -> bool {
         distance * distance > self.limit
@@ -99,7 +98,6 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
         }
     }
 
-    /// Forgets all but the wanted ones; what is farther than those does not come in any more.
     fn shrink(&mut self) {
         if self.found.len() > self.most {
             let (_, last, _) = self.found.select_nth_unstable_by(self.most - 1, Found::order);
@@ -108,7 +106,7 @@ impl<'a, R: Real, const D: usize> Nearest<'a, R, D> {
         }
     }
 
-    /// Brings the answer into order.
+    /// Sorts the results.
     pub fn finish(mut self) {
         if self.most > FEW {
             self.shrink();

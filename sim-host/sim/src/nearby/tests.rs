@@ -17,7 +17,7 @@ fn answers<R: Real, const D: usize>(
     queries.iter().map(answer).collect()
 }
 
-/// Fails unless all searches give the same answers, the cells with any side.
+/// Asserts that all searches give equal results, the grid for any side.
 fn agree<R: Real, const D: usize>(
     space: Space<R, D>,
     sides: &[R],
@@ -28,7 +28,7 @@ fn agree<R: Real, const D: usize>(
     for &side in sides {
         let mut cells = Cells::new(space, side);
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
-        // Buffers of earlier points leave no trace.
+        // Buffers of earlier points do not affect results.
         prop_assert!(answers(&mut cells, &points[..points.len() / 2], queries).len() == queries.len());
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
     }
@@ -44,7 +44,7 @@ fn indices<R, const D: usize>(found: &[Found<R, D>]) -> Vec<u32> {
 }
 
 #[test]
-fn nearest_come_first_and_ties_go_to_the_smaller_index() {
+fn results_are_sorted_by_distance_and_index() {
     let points = [[3.0, 0.0], [0.0, 1.0], [1.0, 0.0], [0.0, 0.0], [-1.0, 0.0]];
     let mut cells = Cells::new(Space::OPEN, 1.0);
     let within = |radius, most| query([0.0, 0.0], radius, most);
@@ -85,7 +85,7 @@ fn a_torus_has_no_border() {
 }
 
 #[test]
-fn what_is_not_finite_is_never_found_and_finds_nobody() {
+fn non_finite_points_and_queries_find_nothing() {
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
     let mut points = vec![[1.0, 1.0], [2.0, 1.0]];
     points.extend(bad.map(|bad| [bad, 1.0]));
@@ -102,7 +102,7 @@ fn what_is_not_finite_is_never_found_and_finds_nobody() {
 }
 
 #[test]
-fn nobody_and_one_are_crowds_too() {
+fn no_point_and_one_point_are_valid() {
     let queries = [query([0.5, 0.5, 0.5], 1.0, 3)];
     for space in [Space::OPEN, Space::torus([2.0; 3]).expect("sound")] {
         agree(space, &[1.0], &[], &queries).expect("the same");
@@ -111,7 +111,7 @@ fn nobody_and_one_are_crowds_too() {
 }
 
 #[test]
-fn far_strays_do_not_cost_memory() {
+fn distant_points_do_not_cost_memory() {
     let mut points: Points<f64, 2> = (0..1000).map(|i| [f64::from(i % 32), f64::from(i / 32)]).collect();
     points.push([1e9, -1e9]);
     let mut cells = Cells::new(Space::OPEN, 1.0);
@@ -122,7 +122,7 @@ fn far_strays_do_not_cost_memory() {
 }
 
 #[test]
-fn order_by_cell_names_everybody_once() {
+fn the_order_by_cell_contains_every_point_once() {
     let points: Points<f32, 2> = (0..100).map(|i| [(i * 37 % 100) as f32, 0.0]).collect();
     let mut cells = Cells::new(Space::OPEN, 5.0);
     cells.rebuild(&points);
@@ -132,7 +132,7 @@ fn order_by_cell_names_everybody_once() {
     assert!(order.iter().copied().eq(0..100));
 }
 
-/// Coordinates on a coarse grid, so that points coincide, distances are equal, and radii are met exactly; some in between.
+/// Mostly on a coarse grid, so that points coincide and radii are met exactly.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => (-8_i32..=24).prop_map(|steps| f64::from(steps) / 2.0),
@@ -189,7 +189,6 @@ proptest! {
         points in crowd::<2>(), queries in questions::<2>(), side in 0.1_f32..9.0, far in -1e4_f64..1e4,
     ) {
         let mut points: Vec<[f32; 2]> = points.iter().map(|at| at.map(|c| (c + far) as f32)).collect();
-        // Cells begin far from where the others are.
         points.push([(-3.0 * far) as f32; 2]);
         let queries: Vec<_> = queries
             .iter()

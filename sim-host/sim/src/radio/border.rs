@@ -1,22 +1,21 @@
-//! Packets that come from elsewhere: a radio of which other ranks have a part.
+//! Transmission of packets between MPI ranks.
 
 use super::{BLOCK, Counts, End, Inboxes, Radio, Receiver};
 use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
 
-/// A packet on the air, for who is not where it was sent.
+/// A transmitted packet, in the form sent to other ranks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sent {
     pub(crate) sender: RobotId,
-    /// Counts the sender's packets of this tick, those that its bandwidth held back included.
+    /// Index among the sender's packets of this tick, throttled packets included.
     pub(crate) number: u32,
-    /// Where it was sent, metres.
     pub(crate) from_m: [f64; 2],
     pub(crate) bytes: Vec<u8>,
 }
 
 impl Radio {
-    /// The first half of [`Radio::carry`]: puts on the air what is sent here.
+    /// First half of [`Radio::carry`]: transmits the packets of this rank.
     pub(crate) fn send<'a>(
         &mut self,
         tick: u32,
@@ -29,7 +28,7 @@ impl Radio {
         self.medium.fill(tick, |index| receivers[index].id, positions_m, &outboxes)
     }
 
-    /// What was sent here, for who is elsewhere and can hear it there.
+    /// Packets of this rank that other ranks need, selected by their position.
     pub fn sent(&self, is_heard: impl Fn([f64; 2]) -> bool) -> impl Iterator<Item = Sent> {
         self.medium.sent().filter(move |(packet, _)| is_heard(packet.from_m)).map(|(packet, bytes)| Sent {
             sender: packet.sender,
@@ -39,7 +38,8 @@ impl Radio {
         })
     }
 
-    /// The second half of [`Radio::carry`]: everybody here receives what was sent here and elsewhere in `tick`. Returns what became of it.
+    /// Second half of [`Radio::carry`]: delivers packets of this rank and of others (`elsewhere`)
+    /// in `tick`. Returns their fate.
     pub fn receive(&mut self, tick: u32, positions_m: &[[f64; 2]], elsewhere: &[Sent], sent: Counts) -> Counts {
         if !self.receivers.is_empty() {
             self.medium.add(tick, elsewhere);
@@ -47,7 +47,7 @@ impl Radio {
         self.deliver(tick, positions_m, sent)
     }
 
-    /// Replaces what became of packets so far, and says what it was.
+    /// Replaces the packet totals and returns the previous ones.
     pub const fn replace_total(&mut self, total: Counts) -> Counts {
         std::mem::replace(&mut self.total, total)
     }
@@ -57,14 +57,15 @@ impl Radio {
         self.medium.range_m()
     }
 
-    /// A robot comes from elsewhere and is number `index`: a receiver that has heard nothing. Those behind it move up.
+    /// Inserts a receiver with an empty inbox at `index`; later indices increase by one.
     pub fn admit(&mut self, index: usize, id: RobotId) {
         let behind = self.take_from(index);
         self.push(id, None);
         behind.into_iter().for_each(|(id, end)| self.push(id, Some(end)));
     }
 
-    /// Robot number `index` goes; the last of the first `robots` takes its place, and those behind it move down.
+    /// Removes receiver `index`. The last of the first `robots` receivers takes its index; the
+    /// indices of receivers after them decrease by one.
     pub fn dismiss(&mut self, index: usize, robots: usize) {
         let mut behind = self.take_from(robots - 1).into_iter();
         if let Some((id, end)) = behind.next()
@@ -76,7 +77,6 @@ impl Radio {
         behind.for_each(|(id, end)| self.push(id, Some(end)));
     }
 
-    /// Takes away the last ones, from number `index` on.
     fn take_from(&mut self, index: usize) -> Vec<(RobotId, End)> {
         let bytes = |index| postcard::to_stdvec(&self.end(index)).expect("memory takes every byte");
         let end = |index| postcard::from_bytes(&bytes(index)).expect("these bytes are an end");
@@ -94,7 +94,6 @@ impl Radio {
         }
     }
 
-    /// As much of everything as there are receivers now.
     fn resize(&mut self) {
         self.medium.resize(self.receivers.len());
         self.inboxes.resize_with(self.receivers.len().div_ceil(BLOCK), Inboxes::new);

@@ -1,32 +1,29 @@
-//! What happens to a packet on its way to one receiver.
+//! Loss, delay and damage of a packet on its way to one receiver.
 
 use super::medium::Packet;
 use super::params::{Burst, RadioParams};
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 
-/// Keep the draws of this module apart from all others.
 const LINK: u32 = 0x0052_0002;
 const CHANNEL: u32 = 0x0052_0003;
 
-/// Whether a packet reaches the receiver.
 pub(super) enum Verdict {
     Lost,
     Arrives { copies: u32 },
 }
 
-/// The channel of a link, sampled without memory.
+/// Gilbert-Elliott channel of a link, without stored state.
 #[derive(Clone, Copy, Debug)]
 struct Channel {
-    /// Probability per tick that the state is drawn anew, Q0.32.
+    /// Probability per tick that the state is redrawn, Q0.32.
     renewal: u32,
-    /// Probability that a newly drawn state is bad, Q0.32.
+    /// Probability that a redrawn state is bad, Q0.32.
     share: u32,
     /// Probability of loss in the bad state, Q0.32.
     loss: u32,
 }
 
-/// The parameters in the integers that the draws need.
 #[derive(Clone, Debug)]
 pub(super) struct Fates {
     seed: u64,
@@ -40,13 +37,12 @@ pub(super) struct Fates {
     reorder_us: u32,
     /// ln(1 - bit error rate); 0: no errors.
     ln_intact: f64,
-    /// Microseconds after the start.
     blackouts: Vec<[f64; 2]>,
 }
 
 impl RadioParams {
-    /// How late robots that send every `period_s` seconds hear of each other, as a flock has to reckon with it: the
-    /// delay (with the longest jitter), seconds, and how many packets a second arrive.
+    /// Age of beacons that robots send every `period_s` seconds, for the design of a flock: the
+    /// delay with the longest jitter, seconds, and the number of received packets per second.
     #[must_use]
     pub fn news(&self, period_s: f64) -> (f64, f64) {
         let burst = self.burst.as_ref().map_or(0.0, |burst| burst.share * burst.loss);
@@ -77,7 +73,6 @@ impl Fates {
         self.loss = q32(loss);
     }
 
-    /// As it is kept.
     pub(super) const fn loss_q32(&self) -> u32 {
         self.loss
     }
@@ -86,7 +81,7 @@ impl Fates {
         self.loss = loss;
     }
 
-    /// The generator of everything that happens to `packet` at `receiver`.
+    /// Random generator for everything that happens to `packet` at `receiver`.
     pub(super) fn draws(&self, packet: &Packet, receiver: RobotId, tick: u32) -> Rng {
         Rng::keyed(packet.key, packet.number, receiver.0, tick)
     }
@@ -107,8 +102,8 @@ impl Fates {
         Verdict::Arrives { copies }
     }
 
-    /// When a packet sent in `tick` arrives, microseconds after the start; `None` when no packet is
-    /// ever late for the next step.
+    /// Arrival time of a packet sent in `tick`, microseconds after the start; `None` if packets
+    /// always arrive before the next step.
     pub(super) fn due_us(&self, draws: &mut Rng, tick: u32) -> Option<u64> {
         let always_in_time = self.delay_us == 0 && self.jitter_us == 0 && self.reorder == 0;
         if always_in_time {
@@ -122,13 +117,12 @@ impl Fates {
         Some(due_us)
     }
 
-    /// When the step after `tick` begins, microseconds after the start.
     pub(super) fn next_step_us(&self, tick: u32) -> u64 {
         (u64::from(tick) + 1) * self.tick_us
     }
 
-    /// Flips bits of a received packet; returns whether any flipped. The radio itself keeps
-    /// packets apart, so the zero byte that ends one is never hit.
+    /// Flips bits of a received packet and returns whether any flipped. The zero byte at the end is
+    /// never changed, since the radio itself separates packets.
     pub(super) fn damage(&self, draws: &mut Rng, packet: &mut [u8]) -> bool {
         if self.ln_intact == 0.0 {
             return false;
@@ -156,14 +150,14 @@ impl Fates {
 
 impl Channel {
     fn new(burst: &Burst, tick_us: u32) -> Self {
-        // Leaving the bad state per tick: q = renewal * (1 - share) = tick / mean.
+        // Probability per tick of leaving the bad state: q = renewal * (1 - share) = tick / mean.
         let leave = f64::from(tick_us) / (burst.mean_ms * 1000.0);
         Self { renewal: q32(leave / (1.0 - burst.share)), share: q32(burst.share), loss: q32(burst.loss) }
     }
 
-    /// The state of the link's Markov chain at `tick`, found by walking back to the last tick at
-    /// which it was drawn anew: no memory per link, and still an exact Gilbert-Elliott channel.
-    /// Takes about mean * (1 - share) ticks of work.
+    /// State of the link's Markov chain at `tick`, found by walking back to the last redraw. This
+    /// needs no memory per link and is an exact Gilbert-Elliott channel. Takes about mean * (1 -
+    /// share) ticks of work.
     fn is_bad(&self, seed: u64, sender: RobotId, receiver: RobotId, tick: u32) -> bool {
         let link = Rng::keyed(seed, LINK, sender.0, receiver.0).next_u64();
         (0..=tick)

@@ -1,4 +1,4 @@
-//! The packets that are on the air in one tick, by the place they were sent from.
+//! Packets on the air in one tick, indexed by the sender's position.
 
 use super::Counts;
 use super::border::Sent;
@@ -11,37 +11,32 @@ use staya_controller::wire::Wire;
 use staya_mavlink::any::AnyWire;
 use std::ops::Add;
 
-/// Keeps the draws of this module apart from all others.
 const PACKET: u32 = 0x0052_0001;
 
-/// A packet on the air.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Packet {
     pub(super) sender: RobotId,
-    /// Counts the sender's packets of this tick.
+    /// Index among the sender's packets of this tick.
     pub(super) number: u32,
-    /// The seed of its fates.
     pub(super) key: u64,
     pub(super) from_m: [f64; 2],
-    /// Where its bytes are: in which [`Part`], from where on, how many.
+    /// Location of its bytes: index of the [`Part`], start and length.
     part: u32,
     start: u32,
     length: u16,
 }
 
-/// Senders that a thread takes at a time.
 const PART: usize = 1024;
 
-/// What a part of the senders put on the air.
 #[derive(Clone, Debug, Default)]
 struct Part {
     bytes: Vec<u8>,
-    /// In order of sender and number, each with its cell.
+    /// Packets with their cells, sorted by sender and number.
     queue: Vec<(u32, Packet)>,
     counts: Counts,
 }
 
-/// What a robot may still send, in millionths of a byte.
+/// Token buckets of the bandwidth limit, in millionths of a byte.
 #[derive(Clone, Debug)]
 struct Buckets {
     per_tick: u64,
@@ -49,26 +44,23 @@ struct Buckets {
     tokens: Vec<u64>,
 }
 
-/// A tick's packets, sorted into square cells as wide as the radio reaches.
+/// Packets of a tick, sorted into square cells of the radio's range.
 #[derive(Clone, Debug)]
 pub(super) struct Medium {
-    /// Tells the packets in an outbox apart.
     wire: AnyWire,
     seed: u64,
     range_m: f64,
-    /// Sides of the torus that all are on, metres.
     torus_m: Option<[f64; 2]>,
     buckets: Option<Buckets>,
-    /// In order of senders.
     parts: Vec<Part>,
-    /// In order of cell, then of sender and number.
+    /// Sorted by cell, then by sender and number.
     packets: Vec<Packet>,
-    /// Where each cell's packets end in `packets`.
+    /// End of each cell's packets in `packets`.
     ends: Vec<u32>,
     lattice: Lattice,
 }
 
-/// The square cells over the rectangle that holds all robots.
+/// Square cells over the bounding box of all robots.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lattice {
     corner_m: [f64; 2],
@@ -108,12 +100,12 @@ impl Medium {
         self.range_m
     }
 
-    /// What sender `index` may still send; `None`: as much as it likes.
+    /// Remaining tokens of sender `index`; `None`: no limit.
     pub(super) fn tokens(&self, index: usize) -> Option<u64> {
         self.buckets.as_ref().map(|buckets| buckets.tokens[index])
     }
 
-    /// The same from now on; whether there is a bound just as here.
+    /// Restores the tokens of sender `index`; returns whether both have a limit or both have none.
     pub(super) fn set_tokens(&mut self, index: usize, tokens: Option<u64>) -> bool {
         match (&mut self.buckets, tokens) {
             (Some(buckets), Some(tokens)) => buckets.tokens[index] = tokens.min(buckets.capacity),
@@ -123,7 +115,7 @@ impl Medium {
         true
     }
 
-    /// Replaces the packets with those that the robots send in `tick`; `ids`, `positions_m` and `outboxes` are one each.
+    /// Replaces the packets with those sent in `tick`; the inputs have one entry per robot.
     pub(super) fn fill(
         &mut self,
         tick: u32,
@@ -167,18 +159,16 @@ impl Medium {
         self.parts.iter().map(|part| part.counts).fold(Counts::default(), Add::add)
     }
 
-    /// The packets and their bytes.
     pub(super) fn sent(&self) -> impl Iterator<Item = (&Packet, &[u8])> {
         let queue = self.parts.iter().flat_map(|part| &part.queue);
         queue.map(|(_, packet)| (packet, self.bytes(packet)))
     }
 
-    /// Puts packets on the air that were sent elsewhere in `tick`.
     pub(super) fn add(&mut self, tick: u32, elsewhere: &[Sent]) {
         if elsewhere.is_empty() {
             return;
         }
-        // A part of its own behind those of the senders here, who have it no more in the next tick.
+        // They form a separate part, which the next tick removes.
         let mut part = Part::default();
         let number = self.parts.len() as u32;
         for Sent { sender, number: place, from_m, bytes } in elsewhere {
@@ -193,14 +183,13 @@ impl Medium {
         self.sort();
     }
 
-    /// There are so many senders from now on; those that are new have not sent anything.
+    /// Changes the number of senders; new ones have full token buckets.
     pub(super) fn resize(&mut self, robots: usize) {
         if let Some(buckets) = &mut self.buckets {
             buckets.tokens.resize(robots, buckets.capacity);
         }
     }
 
-    /// Sorts the packets by cell; a counting sort keeps the order of senders within a cell.
     fn sort(&mut self) {
         let cells = self.lattice.columns * self.lattice.rows;
         let queue = || self.parts.iter().flat_map(|part| &part.queue);
@@ -209,7 +198,7 @@ impl Medium {
         for &(cell, _) in queue() {
             self.ends[cell as usize + 1] += 1;
         }
-        // Now counts; then begins, which placing turns into ends.
+        // Converts counts to starts; placing the packets converts these to ends.
         let mut begin = 0;
         for end in &mut self.ends {
             begin += *end;
@@ -226,7 +215,8 @@ impl Medium {
         }
     }
 
-    /// The packets that can be heard at a place, by sender and number; all but one's own.
+    /// Indices of the packets in range of a position, sorted by sender and number, without those of
+    /// `own`.
     pub(super) fn heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
         heard.clear();
         self.add_heard_at(at_m, own, heard);
@@ -238,11 +228,10 @@ impl Medium {
             let packet = self.packet(at);
             (packet.sender, packet.number)
         });
-        // Who reaches around the torus is heard once all the same.
+        // A packet that is in range more than once around the torus is received once.
         heard.dedup();
     }
 
-    /// Adds the packets that are in reach of a place, in no order.
     fn add_heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
         let reach = self.range_m * self.range_m;
         for cells in self.lattice.around(at_m) {
@@ -271,7 +260,7 @@ impl Medium {
     }
 }
 
-/// The bytes of each packet: a frame with its delimiter, if the format has one.
+/// Splits an outbox into packets: a frame with its delimiter, if the format has one.
 fn packets<'a>(wire: &AnyWire, outbox: &'a [u8]) -> impl Iterator<Item = &'a [u8]> {
     let mut rest = outbox;
     std::iter::from_fn(move || {
@@ -281,14 +270,14 @@ fn packets<'a>(wire: &AnyWire, outbox: &'a [u8]) -> impl Iterator<Item = &'a [u8
     })
 }
 
-/// Where a place on a torus is, too, one turn around it along each axis at most.
+/// Images of a position on a torus, shifted by at most one period along each axis.
 fn images([x, y]: [f64; 2], [width, height]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> {
     let turns = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [i, j])).filter(|turns| *turns != [0, 0]);
     turns.map(move |[i, j]| [x + f64::from(i) * width, y + f64::from(j) * height])
 }
 
 impl Lattice {
-    /// Cells at least as wide as the range, and not many more of them than robots.
+    /// Cells at least as wide as the range, and not many more cells than robots.
     fn over(positions_m: &[[f64; 2]], range_m: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for position in positions_m {
@@ -308,7 +297,6 @@ impl Lattice {
         Self { corner_m: low, side_m, columns: count(extent[0]), rows: count(extent[1]) }
     }
 
-    /// Whether a place is in the cells, or as near to them.
     fn is_within(&self, at_m: [f64; 2], reach_m: f64) -> bool {
         let counts = [self.columns, self.rows];
         (0..2).all(|axis| {
@@ -327,7 +315,7 @@ impl Lattice {
         row * self.columns + column
     }
 
-    /// The cells around a place, as up to three spans of cells that lie side by side.
+    /// The cells around a position, as up to three ranges of consecutive cells.
     fn around(&self, at_m: [f64; 2]) -> impl Iterator<Item = std::ops::Range<usize>> + use<> {
         let (column, row) = self.column_and_row(at_m);
         let columns = self.columns;
@@ -345,7 +333,6 @@ impl Buckets {
     }
 }
 
-/// Takes the price of a packet out of a robot's bucket, if there is enough in it.
 fn take(tokens: &mut u64, bytes: usize) -> bool {
     let price = bytes as u64 * 1_000_000;
     let enough = *tokens >= price;

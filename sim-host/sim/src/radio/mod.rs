@@ -1,9 +1,10 @@
-//! The radio: carries bytes between robots, and loses, delays, repeats and damages them.
+//! The radio: transmits bytes between robots, and loses, delays, duplicates and damages them.
 //!
-//! It knows nothing of messages. A packet is a frame of the wire format that the robots speak, with its delimiter if there is one.
-//! Loss, delay, jitter, repetition and order do not depend on the bytes of a packet, and so not on the format; bit errors and
-//! bandwidth do. Everything random about a packet is a function of (seed, tick, sender,
-//! number within the tick, receiver), so that neither threads nor the order of robots matter.
+//! It does not interpret messages. A packet is a frame of the robots' wire format, with its
+//! delimiter if there is one. Loss, delay, jitter, duplication and order do not depend on a
+//! packet's bytes, and therefore not on the format; bit errors and bandwidth do. All random effects
+//! on a packet are a function of (seed, tick, sender, number within the tick, receiver), so that
+//! neither threads nor the order of robots matter.
 
 mod border;
 mod fate;
@@ -25,18 +26,18 @@ use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
 use std::ops::{Add, AddAssign, Range};
 
-/// What became of packets. Each receiver in range counts on its own.
+/// Packet statistics; receptions are counted per receiver in range.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Packets that robots put on the air.
+    /// Transmitted packets.
     pub sent: u64,
-    /// Packets that a robot wanted to send beyond its bandwidth; they were never on the air.
+    /// Packets that exceeded a robot's bandwidth and were not transmitted.
     pub throttled: u64,
-    /// Receptions, repeated ones included.
+    /// Receptions, duplicates included.
     pub delivered: u64,
-    /// Receptions that failed: loss, bursts, blackouts.
+    /// Failed receptions: loss, bursts, blackouts.
     pub lost: u64,
-    /// Receptions with at least one flipped bit; they count as delivered too.
+    /// Receptions with at least one flipped bit; also counted as delivered.
     pub corrupted: u64,
 }
 
@@ -59,55 +60,50 @@ impl AddAssign for Counts {
     }
 }
 
-/// A packet on its way to one receiver. Arrivals are ordered by time, then by sender.
+/// A delayed packet at one receiver. Arrivals are ordered by time, then by sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 struct Held {
-    /// When it arrives, microseconds after the start.
     due_us: u64,
     sender: RobotId,
     sent: u32,
     number: u32,
     copy: u32,
-    /// Where its bytes are in [`Late::bytes`].
+    /// Position of its bytes in [`Late::bytes`].
     start: u32,
     length: u32,
 }
 
-/// One robot's end of the radio.
 #[derive(Clone, Debug, Default)]
 struct Receiver {
     id: RobotId,
-    /// Where in its block's [`Inboxes`] lies what arrived for the robot's next step.
+    /// Range of its inbox in its block's [`Inboxes`].
     inbox: Range<u32>,
-    /// Where packets are held back.
     late: Option<Box<Late>>,
-    /// What became of the last tick's packets, if somebody wants to know.
+    /// Fate of the last tick's packets, if the log is enabled.
     log: Option<Vec<(RobotId, Reception)>>,
 }
 
-/// Packets that were sent and have not arrived.
 #[derive(Clone, Debug, Default)]
 struct Late {
     held: Vec<Held>,
     bytes: Vec<u8>,
-    /// Takes the bytes of packets that stay held; swapped with `bytes`.
+    /// Receives the bytes of packets that remain; swapped with `bytes`.
     spare: Vec<u8>,
 }
 
-/// Receivers whose inboxes lie in one piece of memory.
 const BLOCK: usize = 64;
 
-/// The inboxes of a block of receivers, one behind the other.
+/// Concatenated inboxes of a block of receivers.
 type Inboxes = Vec<u8>;
 
-/// What became of one packet at one receiver.
+/// Fate of one packet at one receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reception {
-    /// It arrives, now or later.
+    /// Received, now or later.
     Delivered,
-    /// It does not.
+    /// Not received.
     Lost,
-    /// It arrives with flipped bits.
+    /// Received with flipped bits.
     Damaged,
 }
 
@@ -117,14 +113,12 @@ pub struct Radio {
     fates: Fates,
     medium: Medium,
     receivers: Vec<Receiver>,
-    /// Of each block of receivers.
     inboxes: Vec<Inboxes>,
-    /// Sum over all ticks.
     total: Counts,
 }
 
 impl Radio {
-    /// The radio for these robots with ticks of `tick_us` microseconds.
+    /// Creates the radio for these robots with ticks of `tick_us` microseconds.
     #[must_use]
     pub fn new(params: &RadioParams, seed: u64, tick_us: u32, robots: impl IntoIterator<Item = RobotId>) -> Self {
         let receivers: Vec<_> = robots.into_iter().map(|id| Receiver { id, ..Receiver::default() }).collect();
@@ -137,21 +131,21 @@ impl Radio {
         }
     }
 
-    /// The same on a torus with these sides, metres: packets reach over its seams, too.
+    /// Places the radio on a torus with these sides, metres: packets cross its borders.
     #[must_use]
     pub const fn on_torus(mut self, torus_m: Option<[f64; 2]>) -> Self {
         self.medium.set_torus_m(torus_m);
         self
     }
 
-    /// What robot number `index` (in the order given to [`Radio::new`]) received for its next step.
+    /// Bytes that robot `index` (in the order given to [`Radio::new`]) received for its next step.
     #[must_use]
     pub fn inbox(&self, index: usize) -> &[u8] {
         let Range { start, end } = self.receivers[index].inbox;
         &self.inboxes[index / BLOCK][start as usize..end as usize]
     }
 
-    /// The radio is another one from now on: loss as a probability, range in metres; what is not given stays.
+    /// Changes the loss probability and the range in metres; `None` keeps a value.
     pub fn change(&mut self, loss: Option<f64>, range_m: Option<f64>) {
         if let Some(loss) = loss {
             self.fates.set_loss(loss);
@@ -161,39 +155,39 @@ impl Radio {
         }
     }
 
-    /// Whether [`Radio::receptions`] tells from the next tick on.
+    /// Enables or disables the log of [`Radio::receptions`] from the next tick on.
     pub fn log_receptions(&mut self, wanted: bool) {
         for receiver in &mut self.receivers {
             receiver.log = wanted.then(Vec::new);
         }
     }
 
-    /// What became of the last tick's packets at robot number `index`, with their senders.
+    /// Fate of the last tick's packets at robot `index`, with the sender's id.
     #[must_use]
     pub fn receptions(&self, index: usize) -> &[(RobotId, Reception)] {
         self.receivers[index].log.as_deref().unwrap_or_default()
     }
 
-    /// Everything that became of packets so far.
+    /// Packet totals so far.
     #[must_use]
     pub fn total(&self) -> Counts {
         self.total
     }
 
-    /// Carries what the robots sent in `tick`: replaces all inboxes with what arrives before the
-    /// next tick. Returns what became of this tick's packets.
+    /// Transmits the packets of `tick`: replaces all inboxes with the packets that arrive before
+    /// the next tick. Returns the statistics of this tick.
     ///
-    /// `positions_m[i]` and `outbox(i)` belong to robot number `i`. O(n k) for k robots in range,
-    /// in parallel over senders and receivers; once buffers have grown, it allocates 16 bytes a robot.
+    /// `positions_m[i]` and `outbox(i)` belong to robot `i`. O(n k) for k robots in range, in
+    /// parallel over senders and receivers; once buffers have grown, it allocates 16 bytes per
+    /// robot.
     ///
     /// # Panics
-    /// When there are fewer positions than robots.
+    /// If there are fewer positions than robots.
     pub fn carry<'a>(&mut self, tick: u32, positions_m: &[[f64; 2]], outbox: impl Fn(usize) -> &'a [u8]) -> Counts {
         let sent = self.send(tick, positions_m, outbox);
         self.deliver(tick, positions_m, sent)
     }
 
-    /// Everybody receives what is on the air.
     fn deliver(&mut self, tick: u32, positions_m: &[[f64; 2]], sent: Counts) -> Counts {
         let positions_m = &positions_m[..self.receivers.len()];
         let (medium, fates) = (&self.medium, &self.fates);
@@ -236,7 +230,7 @@ impl Receiver {
             for copy in 0..copies {
                 let due_us = fates.due_us(&mut draws, tick);
                 let buffer = match due_us {
-                    // Nothing is ever held back: no detour.
+                    // Without delays, packets go directly to the inbox.
                     None => &mut *inboxes,
                     Some(_) => &mut self.late.get_or_insert_default().bytes,
                 };
@@ -271,7 +265,7 @@ impl Receiver {
 }
 
 impl Late {
-    /// Moves what is due by `now_us` into the inbox, in order of arrival.
+    /// Moves packets that are due by `now_us` to the inbox, in order of arrival.
     fn release(&mut self, now_us: u64, inbox: &mut Inboxes) {
         if self.held.is_empty() {
             return;
@@ -294,7 +288,7 @@ impl Late {
     }
 }
 
-/// Appends to memory that grows by an eighth: there are too many of these to double any.
+/// Appends to a buffer that grows by an eighth, because there are many of them.
 fn append(buffer: &mut Vec<u8>, bytes: &[u8]) {
     if buffer.capacity() - buffer.len() < bytes.len() {
         buffer.reserve_exact(bytes.len() + buffer.len() / 8);

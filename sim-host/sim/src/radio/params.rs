@@ -1,12 +1,12 @@
-//! What a radio is like: the `[radio]` table of a scenario.
+//! Parameters of a radio: the `[radio]` table of a scenario.
 
 use serde::Deserialize;
 use staya_controller::wire::Format;
 
-/// Bursts of loss on a link (Gilbert and Elliott's two-state channel).
+/// Bursts of loss on a link (Gilbert-Elliott two-state channel).
 ///
-/// Each ordered pair of robots has a channel of its own that is either good or bad; its state
-/// changes between ticks only, like a Markov chain with the given share and mean length.
+/// Each ordered pair of robots has its own channel that is either good or bad. Its state changes
+/// only between ticks, as a Markov chain with the given share and mean length.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Burst {
@@ -23,34 +23,34 @@ const fn certain() -> f64 {
     1.0
 }
 
-/// The radio of a scenario. All robots have the same one. Defaults: a perfect radio of 100 m.
+/// The radio of a scenario, equal for all robots. Defaults: a perfect radio of 100 m.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct RadioParams {
-    /// How messages become bytes: `postcard` (Staya's own frames) or `mavlink` (MAVLink 2, for robots up to number 254).
+    /// Wire format: `postcard` (Staya's frames) or `mavlink` (MAVLink 2, ids up to 254).
     pub format: Format,
-    /// Farthest distance at which a packet can be received, metres; `inf` for everywhere.
+    /// Farthest distance at which a packet can be received, metres; `inf` for unlimited range.
     pub range_m: f64,
-    /// Probability that a packet is lost at a receiver, 0 to 1.
+    /// Probability that a receiver loses a packet, 0 to 1.
     pub loss: f64,
-    /// Bursts of loss, on top of `loss`.
+    /// Bursts of loss, in addition to `loss`.
     pub burst: Option<Burst>,
-    /// Time from sending to arrival, ms. A packet is read at the first step of the receiver after
-    /// it arrived, hence never in the tick in which it was sent.
+    /// Time from sending to arrival, ms. A packet is read in the receiver's first step after its
+    /// arrival, hence never in the tick in which it was sent.
     pub delay_ms: f64,
-    /// Longest additional delay, ms; uniform, and each packet on its own.
+    /// Longest additional delay, ms; uniform and independent for each packet.
     pub jitter_ms: f64,
     /// Probability that a packet arrives twice, 0 to 1.
     pub duplicate: f64,
-    /// Probability that a packet is held back so that later ones overtake it, 0 to 1.
+    /// Probability that a packet is delayed so that later ones overtake it, 0 to 1.
     pub reorder: f64,
-    /// Longest time for which `reorder` holds a packet back, ms; uniform.
+    /// Longest delay by `reorder`, ms; uniform.
     pub reorder_ms: f64,
-    /// Probability that a bit flips on the air, 0 to 1.
+    /// Probability that a transmitted bit flips, 0 to 1.
     pub bit_error_rate: f64,
-    /// Bytes per second that a robot may send; what goes beyond is dropped and counted as throttled.
-    /// A robot that was silent may send what it saved in one second (at least 256 bytes) at once.
-    /// Default: no limit.
+    /// Bytes per second that a robot may send; packets beyond that are dropped and counted as
+    /// throttled. A silent robot saves the bytes of one second (at least 256) and may send them at
+    /// once. Default: no limit.
     pub bandwidth_bytes_per_s: Option<u32>,
     /// Spans `[from, to]` of seconds after the start during which every packet is lost.
     pub blackout_s: Vec<[f64; 2]>,

@@ -8,7 +8,6 @@ fn radio(params: RadioParams, robots: u32) -> Radio {
     Radio::new(&params, 11, TICK_US, (1..=robots).map(RobotId))
 }
 
-/// Robots on a line, one metre apart.
 fn line(robots: u32) -> Vec<[f64; 2]> {
     (0..robots).map(|i| [f64::from(i), 0.0]).collect()
 }
@@ -31,7 +30,7 @@ fn share(part: u64, whole: u64) -> f64 {
 }
 
 #[test]
-fn a_perfect_radio_delivers_in_order_of_sender_and_never_to_oneself() {
+fn a_perfect_radio_delivers_by_sender_and_not_to_the_sender() {
     let mut radio = radio(RadioParams::default(), 3);
     let frames: Vec<_> = (1..=3).map(|i| [i, 0, i, 0]).collect();
     let counts = radio.carry(0, &line(3), |i| &frames[i]);
@@ -53,7 +52,7 @@ fn range_is_inclusive_and_may_be_infinite() {
 }
 
 #[test]
-fn robots_in_one_place_or_nowhere_are_no_problem() {
+fn coincident_robots_and_an_empty_swarm_are_valid() {
     let params = RadioParams { range_m: 0.0, ..RadioParams::default() };
     let mut crowd = radio(params, 5);
     let counts = crowd.carry(0, &[[2.0, 3.0]; 5], |_| &FRAME);
@@ -113,7 +112,7 @@ fn delay_is_rounded_up_to_the_next_step() {
 }
 
 #[test]
-fn jitter_and_reorder_let_later_packets_overtake_and_lose_none() {
+fn jitter_and_reorder_change_the_order_and_lose_no_packet() {
     let jitter = RadioParams { jitter_ms: 1000.0, ..RadioParams::default() };
     let reorder = RadioParams { reorder: 0.2, reorder_ms: 1000.0, ..RadioParams::default() };
     for params in [jitter, reorder] {
@@ -141,7 +140,7 @@ fn duplicates_have_their_probability() {
 }
 
 #[test]
-fn bits_flip_at_their_rate_and_the_end_of_a_packet_never() {
+fn bits_flip_at_their_rate_but_never_in_the_delimiter() {
     let params = RadioParams { bit_error_rate: 0.01, ..RadioParams::default() };
     let (radio, inboxes) = one_way(params, 20_000);
     let flipped: u32 = (0..)
@@ -152,7 +151,6 @@ fn bits_flip_at_their_rate_and_the_end_of_a_packet_never() {
             inbox.iter().zip(sent).map(|(a, b): (&u8, u8)| (a ^ b).count_ones()).sum::<u32>()
         })
         .sum();
-    // 20,000 packets of 24 bits that can be hit.
     let rate = share(u64::from(flipped), 480_000);
     assert!((0.0095..0.0105).contains(&rate), "{rate}");
     let hit = share(radio.total().corrupted, 20_000);
@@ -164,7 +162,7 @@ fn bits_flip_at_their_rate_and_the_end_of_a_packet_never() {
 #[test]
 fn bandwidth_caps_the_mean_and_counts_what_it_drops() {
     let params = RadioParams { bandwidth_bytes_per_s: Some(20), ..RadioParams::default() };
-    // 8 bytes ten times a second; 20 B/s allow a quarter of it, and 256 bytes are saved at the start.
+    // 80 B/s, of which 20 B/s are allowed, after 256 bytes saved at the start.
     let mut radio = radio(params, 2);
     for tick in 0..1000 {
         radio.carry(tick, &line(2), |i| if i == 0 { &FRAME } else { &[] });
@@ -232,7 +230,7 @@ proptest! {
     }
 
     #[test]
-    fn everybody_in_range_and_nobody_else_is_heard(
+    fn exactly_the_robots_in_range_are_received(
         range_m in 0.0..30.0_f64,
         places in prop::collection::vec((-50.0..50.0, -5.0..5.0), 1..60),
     ) {
@@ -254,9 +252,9 @@ proptest! {
         }
     }
 
-    /// Over the seams too, and once each, however small the torus.
+    /// Across the borders too, and once each, however small the torus.
     #[test]
-    fn on_a_torus_everybody_in_range_of_the_nearest_image_is_heard_once(
+    fn on_a_torus_robots_in_range_of_the_nearest_image_are_received_once(
         range_m in 0.0..30.0_f64,
         sides in (1.0..60.0_f64, 1.0..60.0_f64),
         places in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 1..60),
@@ -276,7 +274,7 @@ proptest! {
                 };
                 libm::hypot(along(0), along(1))
             };
-            // What lies on the border but for rounding is nobody's.
+            // Skips cases in which rounding decides whether a robot is in range.
             prop_assume!(positions.iter().all(|b| (distance_m(b) - range_m).abs() > 1e-9));
             let near = (0..positions.len()).filter(|&j| j != i && distance_m(&positions[j]) <= range_m);
             let expected: Vec<u8> = near.flat_map(|j| frames[j]).collect();

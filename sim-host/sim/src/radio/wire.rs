@@ -1,4 +1,4 @@
-//! What robots speak: a wire format, with a key or without one.
+//! Wire formats of simulated robots, with or without a key.
 
 use staya_controller::auth::{Key, Master, Seed};
 use staya_controller::robot::RobotId;
@@ -7,21 +7,21 @@ use staya_mavlink::any::{self, AnyWire};
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::MINUTE;
 
-/// Senders that a robot with a key knows: the robots of a scenario with a key, and two operators.
+/// Most senders that a robot with a key knows: the robots of a scenario, and two operators.
 pub const PEERS: usize = 1024;
 
 /// Any wire format, with room for a key.
 pub type HostWire = AnyWire<Box<Sealed<PEERS>>, Box<Signed<PEERS>>>;
 
-/// What a robot speaks at its start number `starts`, without a past. By the rule of [`Sealed`], and that of
-/// [`Signing`](staya_mavlink::signing::Signing) for robots without a clock: what was stored before each start is less
-/// than a minute of timestamps behind.
+/// Wire of a robot with restart number `starts`, without history. Sequence numbers follow the rule
+/// of [`Sealed`], or that of [`Signing`](staya_mavlink::signing::Signing) for robots without a
+/// clock: the timestamp stored before each start is less than a minute old.
 #[must_use]
 pub fn wire(format: Format, key: Option<&Key>, starts: u8) -> HostWire {
     on_link(format, key, starts, 0)
 }
 
-/// What robot `id` speaks that has a key of its own, with the swarm's key of a generation that it had stored, or with the first one.
+/// Wire of robot `id` with its own key, and the swarm's stored or first key.
 #[must_use]
 pub fn own_wire(master: &Key, id: RobotId, stored: Option<(u16, Seed)>, starts: u8) -> HostWire {
     let master = Master::new(master);
@@ -29,14 +29,14 @@ pub fn own_wire(master: &Key, id: RobotId, stored: Option<(u16, Seed)>, starts: 
     ring_wire(Ring::of_generation(generation, &seed).with_own(&master.own_key(id)), id, starts)
 }
 
-/// What who has these keys speaks.
+/// Wire of the owner of these keys.
 #[must_use]
 pub fn ring_wire(ring: Ring, id: RobotId, starts: u8) -> HostWire {
     let sealed = Sealed::with_ring(ring, id, starts.into()).expect("a byte is less than 2^20");
     HostWire::Sealed(Box::new(sealed))
 }
 
-/// What an operator beside the robots speaks, and his number: see [`any::operator`] for the `link`.
+/// Wire and id of an operator: see [`any::operator`] for the `link`.
 #[must_use]
 pub fn operator(format: Format, key: Option<&Key>, link: u8) -> (HostWire, RobotId) {
     (on_link(format, key, u8::MAX, link), any::operator(format, key.is_some(), link))

@@ -1,4 +1,4 @@
-//! The lines of `trace.csv` and `series.csv` and the sidecars that explain them.
+//! Rows of `trace.csv` and `series.csv`, and the schema files that describe them.
 
 use super::{Error, RobotRow, TickRow, write_atomically};
 use staya_controller::agent::Wait;
@@ -6,10 +6,9 @@ use staya_controller::robot::Mode;
 use std::io::Write;
 use std::path::Path;
 
-/// Name, type, unit and meaning of one column.
 type Column = (&'static str, &'static str, &'static str, &'static str);
 
-/// `trace.csv`: one line per robot and sampled tick.
+/// `trace.csv`: one row per robot and sampled tick.
 pub const TRACE: [Column; 21] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
@@ -44,7 +43,7 @@ pub const TRACE: [Column; 21] = [
     ("radius_m", "number", "m", "radius of its body; empty: bodies have no size"),
 ];
 
-/// `series.csv`: one line per tick.
+/// `series.csv`: one row per tick.
 pub const SERIES: [Column; 9] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
@@ -57,7 +56,6 @@ pub const SERIES: [Column; 9] = [
     ("rejected", "integer", "packets", "refused by a receiver in this tick"),
 ];
 
-/// The first line of a file.
 pub fn header(columns: &[Column]) -> String {
     let names: Vec<_> = columns.iter().map(|column| column.0).collect();
     names.join(",") + "\n"
@@ -79,7 +77,6 @@ pub fn write_schema(dir: &Path, name: &str, columns: &[Column]) -> Result<(), Er
     write_atomically(&dir.join(format!("{name}.schema.json")), format!("{schema:#}\n").as_bytes())
 }
 
-/// Appends the line of one robot.
 pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
     let mode = match robot.mode {
         Mode::Idle => "idle",
@@ -121,7 +118,6 @@ pub fn trace_line(out: &mut Vec<u8>, tick: &TickRow, robot: &RobotRow) {
     );
 }
 
-/// Appends the line of one tick.
 pub fn series_line(out: &mut Vec<u8>, tick: &TickRow) {
     let packets = &tick.packets;
     append(
@@ -145,7 +141,7 @@ fn append(out: &mut Vec<u8>, line: std::fmt::Arguments) {
     out.write_fmt(line).expect("memory takes every line");
 }
 
-/// Six decimals without trailing zeros (micrometres and microseconds); nothing for NaN and infinity.
+/// Six decimals without trailing zeros (micrometres and microseconds); empty for NaN and infinity.
 struct Number(f64);
 
 impl std::fmt::Display for Number {

@@ -1,13 +1,15 @@
-//! A results folder that is whole or old.
+//! Atomic replacement of a results folder.
 //!
-//! A run's files are made in a folder of their own beside the target, `.NAME.partial-PID`, and moved into place
-//! together when they are complete: the old folder is renamed to `.NAME.old-PID`, the new one to `NAME`, then what the
-//! old run made is removed. Whenever that is cut off, either `NAME` or `.NAME.old-PID` is whole; the next run into the
-//! same place puts back or clears away what a dead one left, which it tells by a file lock.
+//! A run writes its files to a folder of its own next to the target, `.NAME.partial-PID`. When they
+//! are complete, the old folder is renamed to `.NAME.old-PID` and the new one to `NAME`; then the
+//! files of the old run are removed. If this is interrupted, either `NAME` or `.NAME.old-PID` is
+//! complete. The next run into the same target restores or removes the remains of a dead run, which
+//! it recognises by a file lock.
 //!
-//! Each results folder has a file [`MARKER`] that lists what the run made. Only that is ever replaced: all other files
-//! move along into the new folder. A folder that no run made is never renamed: files are moved into it one by one, the
-//! summary last, and one that has a file by the name of a result is refused before the run begins.
+//! The file [`MARKER`] in a results folder lists the files of the run. Only these are replaced; all
+//! other files are moved to the new folder. A folder that was not created by a run is never
+//! renamed: files are moved into it one by one, the summary last. A run is refused at the start if
+//! such a folder has a file with the name of a result.
 
 use super::Error;
 use std::collections::BTreeSet;
@@ -17,11 +19,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-/// Lists what the run in a results folder made; locked while the run goes on.
+/// List of a run's files in its results folder; locked while the run is active.
 pub const MARKER: &str = ".staya-results";
-/// Gone while a folder is changed file by file, and there again when it is whole.
+/// Missing while a folder is changed file by file, and present when it is complete.
 const SUMMARY: &str = "summary.json";
-/// What runs make, to know the folders of those that left no list.
+/// Names of result files, to recognise folders without a list.
 const KNOWN: [&str; 13] = [
     SUMMARY,
     "formation.png",
@@ -37,31 +39,29 @@ const KNOWN: [&str; 13] = [
     "trajectories.png",
     "trajectories.svg",
 ];
-/// A folder without a locked list is taken to be a dead run's when it is older: one that begins locks its list at once.
+/// Age after which a folder without a locked list counts as dead: active runs lock at once.
 const YOUNG: Duration = Duration::from_secs(60);
-/// How often others may get in the way of one move.
+/// Attempts to move a folder while other processes interfere.
 const TRIES: usize = 32;
 
-/// Runs that this process has begun.
 static BEGUN: AtomicU32 = AtomicU32::new(0);
 
-/// The results of a run that is under way. Dropped unfinished, they are removed, and the old ones stay.
+/// Results of an active run; removed if dropped unfinished; the old results stay.
 #[derive(Debug)]
 pub struct Results {
     target: PathBuf,
     partial: PathBuf,
-    /// The list in `partial`; `None`: nothing is left to be removed.
+    /// The list in `partial`; `None`: nothing needs to be removed.
     marker: Option<File>,
     one_by_one: bool,
 }
 
 impl Results {
-    /// Makes the folder for a run's files, and clears away what dead runs into the same `target` left. `target` need
-    /// not
-    /// exist and is not touched.
+    /// Creates the folder for a run's files, and removes what dead runs into the same `target`
+    /// left. `target` is not touched and does not have to exist.
     ///
     /// # Errors
-    /// The folder cannot be made, `target` is a file, or it has files by the names of results that no run made.
+    /// The folder cannot be created, or `target` is a file or has foreign files named as results.
     pub fn begin(target: impl AsRef<Path>) -> Result<Self, Error> {
         let target = resolved(target.as_ref())?;
         let (parent, name) = split(&target);
@@ -77,7 +77,7 @@ impl Results {
         let mut one_by_one = is_there && (is_in_use(&target) || check(&target)?);
         let (partial, marker) = match make(&parent, &name) {
             Ok(made) => made,
-            // As where a container has a volume: one may write into it, not beside it.
+            // For example a container volume: files can be written into it, but not next to it.
             Err(_) if is_there => {
                 one_by_one = true;
                 make(&target, &name).map_err(Error::new("write to", &target))?
@@ -87,29 +87,30 @@ impl Results {
         Ok(Self { target, partial, marker: Some(marker), one_by_one })
     }
 
-    /// Where to write.
+    /// Folder to write to.
     #[must_use]
     pub fn dir(&self) -> &Path {
         &self.partial
     }
 
-    /// Where it will be.
+    /// Final folder.
     #[must_use]
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// Moves everything into place. O(files).
+    /// Moves all files to the final folder. O(files).
     ///
     /// # Errors
-    /// A file cannot be moved. The new results stay where they are, and the old ones too, as far as can be.
+    /// A file cannot be moved. New and old results stay where they are, if possible.
     pub fn finish(mut self) -> Result<(), Error> {
         let done = self.settle();
         self.marker = None;
         done.map_err(|source| Error::new("move the new results into", &self.target)(source))
     }
 
-    /// Leaves what there is for the user, and says where. The next run into the same place removes it.
+    /// Keeps the partial results for the user and returns their folder. The next run into the same
+    /// target removes them.
     #[must_use]
     pub fn keep(mut self) -> PathBuf {
         self.marker = None;
@@ -122,7 +123,7 @@ impl Results {
             write_list(marker, &names)?;
         }
         if cfg!(windows) {
-            // An open file would hold its folder in place.
+            // On some systems an open file prevents the rename of its folder.
             self.marker = None;
         }
         if !self.one_by_one && self.swap()? {
@@ -131,10 +132,10 @@ impl Results {
         self.move_in(&names)
     }
 
-    /// Replaces the whole folder; false when the system does not let it, and nothing is changed.
+    /// Replaces the whole folder; false if the system does not allow it, and nothing is changed.
     fn swap(&self) -> io::Result<bool> {
         let (parent, name) = split(&self.target);
-        // Process and number, as in the name of the new folder: nobody else's.
+        // Process and number, as in the name of the new folder, are unique.
         let own = self.partial.file_name().unwrap_or_default().to_string_lossy();
         let own = own.strip_prefix(&prefix(&name, "partial")).unwrap_or_default();
         let mut aside = Vec::new();
@@ -154,25 +155,24 @@ impl Results {
             let old = parent.join(format!("{}{own}-{attempt}", prefix(&name, "old")));
             match fs::rename(&self.target, &old) {
                 Ok(()) => aside.push(old),
-                // Another run is as far as this one.
+                // Another run is at the same point.
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
-                // A mount point, for one.
+                // For example a mount point.
                 Err(_) => {
                     outcome = Ok(false);
                     break;
                 }
             }
         }
-        // Best effort: what is left is the next run's to clear away. Without new results it goes back where it was.
+        // Best effort: the next run removes or restores the remains.
         aside.iter().for_each(|old| drop(retire(old, &self.target)));
         outcome
     }
 
-    /// Moves files into a folder that stays.
     fn move_in(&self, names: &BTreeSet<String>) -> io::Result<()> {
         let own = own(&self.target).unwrap_or_default();
         fs::create_dir_all(&self.target)?;
-        // From here on the list knows all names, old and new, wherever this is cut off.
+        // From here on the list contains all names, old and new, even after an interruption.
         let list = names.union(&own).cloned().collect();
         write_list(&mut File::create(self.target.join(MARKER))?, &list)?;
         gone(fs::remove_file(self.target.join(SUMMARY)))?;
@@ -196,13 +196,13 @@ impl Results {
 impl Drop for Results {
     fn drop(&mut self) {
         if self.marker.take().is_some() {
-            // Nobody is left to hear of an error; the next run tries again.
+            // Errors cannot be reported here; the next run tries again.
             let _ = fs::remove_dir_all(&self.partial);
         }
     }
 }
 
-/// The folder itself, not a link to it.
+/// Resolves a symbolic link to the folder.
 fn resolved(target: &Path) -> Result<PathBuf, Error> {
     let is_plain = target.file_name().is_some() && !target.is_symlink();
     if is_plain {
@@ -211,7 +211,6 @@ fn resolved(target: &Path) -> Result<PathBuf, Error> {
     target.canonicalize().map_err(Error::new("find directory", target))
 }
 
-/// Parent and name.
 fn split(target: &Path) -> (PathBuf, String) {
     let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty());
     let name = target.file_name().unwrap_or_default().to_string_lossy();
@@ -222,15 +221,15 @@ fn prefix(name: &str, what: &str) -> String {
     format!(".{name}.{what}-")
 }
 
-/// Makes `.NAME.partial-PID` with a locked list in it. It gets that name when the list is locked, so that nobody takes it to
-/// be a dead run's.
+/// Creates `.NAME.partial-PID` with a locked list. The folder gets this name after the list is
+/// locked, so that no other run takes it for the folder of a dead run.
 fn make(parent: &Path, name: &str) -> io::Result<(PathBuf, File)> {
     for _ in 0..TRIES {
-        // Never the same name twice: who looks whether a run is dead may be late.
+        // Names are never reused, because another run may still be checking an old one.
         let number = BEGUN.fetch_add(1, Ordering::Relaxed);
         let of_kind = |what: &str| parent.join(format!("{}{}-{number}", prefix(name, what), std::process::id()));
         let partial = of_kind("partial");
-        // Windows renames no folder in which a file is open.
+        // Windows cannot rename a folder that contains an open file.
         let making = if cfg!(windows) { partial.clone() } else { of_kind("making") };
         match fs::create_dir(&making) {
             Ok(()) => {}
@@ -238,7 +237,7 @@ fn make(parent: &Path, name: &str) -> io::Result<(PathBuf, File)> {
             Err(error) => return Err(error),
         }
         let marker = File::create_new(making.join(MARKER)).inspect(|file| {
-            // Where files cannot be locked, dead runs cannot be told, and what they left stays.
+            // Without file locks, dead runs are not recognised and their files stay.
             let _ = file.try_lock();
         });
         let named =
@@ -257,20 +256,20 @@ fn make(parent: &Path, name: &str) -> io::Result<(PathBuf, File)> {
     Err(ErrorKind::AlreadyExists.into())
 }
 
-/// Whether the process works in the folder or below it, so that it must not be renamed.
+/// Whether the current directory is the folder or inside it, so that it must not be renamed.
 fn is_in_use(target: &Path) -> bool {
     let here = std::env::current_dir().and_then(|here| here.canonicalize());
     here.is_ok_and(|here| target.canonicalize().is_ok_and(|target| here.starts_with(target)))
 }
 
-/// Whether files must be moved into an existing folder one by one, because no run made it.
+/// Whether files must be moved into an existing folder one by one, because no run created it.
 fn check(target: &Path) -> Result<bool, Error> {
     let mut found = BTreeSet::new();
     for _ in 0..TRIES {
         let before = std::mem::replace(
             &mut found,
             match entries(target) {
-                // Another run is about to replace it.
+                // Another run is replacing it.
                 Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
                 found => found.map_err(Error::new("read directory", target))?,
             },
@@ -278,7 +277,7 @@ fn check(target: &Path) -> Result<bool, Error> {
         if found.is_empty() || own(target).is_some() {
             return Ok(false);
         }
-        // A folder that is just being replaced looks otherwise the next time.
+        // A folder that is being replaced looks different at the next attempt.
         if found == before {
             break;
         }
@@ -293,7 +292,7 @@ fn check(target: &Path) -> Result<bool, Error> {
     }
 }
 
-/// What is in a folder, but for the list and folders of runs under way.
+/// Names in a folder, without the list and the folders of active runs.
 fn entries(dir: &Path) -> io::Result<BTreeSet<String>> {
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(dir)? {
@@ -306,13 +305,13 @@ fn entries(dir: &Path) -> io::Result<BTreeSet<String>> {
     Ok(names)
 }
 
-/// What a run made in a folder; `None`: no run made it.
+/// Names of the files that a run created in a folder; `None` if no run created it.
 fn own(dir: &Path) -> Option<BTreeSet<String>> {
     if let Ok(list) = fs::read_to_string(dir.join(MARKER)) {
         let names = list.lines().skip(1).filter(|name| !name.contains(['/', '\\']) && !["", ".", ".."].contains(name));
         return Some(names.map(str::to_owned).collect());
     }
-    // Of a version that left no list.
+    // Results of a version that wrote no list.
     let summary = fs::read_to_string(dir.join(SUMMARY)).ok()?;
     summary.contains("\"trace_hash\"").then(|| KNOWN.map(str::to_owned).into())
 }
@@ -326,13 +325,12 @@ fn write_list(marker: &mut File, names: &BTreeSet<String>) -> io::Result<()> {
     marker.write_all(text.as_bytes())
 }
 
-/// Whether a folder cannot get its new name because there is one by that name.
+/// Whether a rename failed because the target exists.
 fn is_in_the_way(error: &io::Error) -> bool {
     let refused = cfg!(windows) && error.kind() == ErrorKind::PermissionDenied;
     refused || matches!(error.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists)
 }
 
-/// Something that is not there need not be removed.
 fn gone(result: io::Result<()>) -> io::Result<()> {
     result.or_else(|error| if error.kind() == ErrorKind::NotFound { Ok(()) } else { Err(error) })
 }
@@ -342,12 +340,11 @@ fn remove(path: &Path) -> io::Result<()> {
     if is_folder { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
-/// Gives what has this name another one.
+/// Renames an existing file to a free name.
 fn step_aside(path: &Path) -> io::Result<()> {
     if fs::symlink_metadata(path).is_ok() { fs::rename(path, free(path)?) } else { Ok(()) }
 }
 
-/// The same name with `.mine` behind it, or a number more.
 fn free(path: &Path) -> io::Result<PathBuf> {
     for number in 0..10_000 {
         let mut name = path.as_os_str().to_owned();
@@ -359,8 +356,8 @@ fn free(path: &Path) -> io::Result<PathBuf> {
     Err(ErrorKind::AlreadyExists.into())
 }
 
-/// An old folder when there is a new one: what no run made moves there, the rest is removed. Without a new one it is
-/// put back.
+/// Handles the old folder: if a new one exists, moves files that no run created there and removes
+/// the rest; otherwise restores the old folder.
 fn retire(old: &Path, target: &Path) -> io::Result<()> {
     if !target.is_dir() && fs::rename(old, target).is_ok() {
         return Ok(());
@@ -378,7 +375,7 @@ fn retire(old: &Path, target: &Path) -> io::Result<()> {
     fs::remove_dir(old)
 }
 
-/// Puts back or removes what dead runs into `target` left in `place`; best effort.
+/// Restores or removes what dead runs into `target` left in `place`; best effort.
 fn clear(place: &Path, name: &str, target: &Path) {
     let Ok(found) = fs::read_dir(place) else {
         return;
@@ -397,7 +394,6 @@ fn clear(place: &Path, name: &str, target: &Path) {
     }
 }
 
-/// Whether the run that made this folder is over.
 fn is_dead(partial: &Path) -> bool {
     match File::options().read(true).write(true).open(partial.join(MARKER)) {
         Ok(marker) => match marker.try_lock() {

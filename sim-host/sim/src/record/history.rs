@@ -1,11 +1,11 @@
-//! What pictures need of a run, in bounded memory.
+//! Data of a run for plots, in bounded memory.
 
 use super::{PacketCounts, RobotRow, TickRow};
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use staya_controller::robot::Mode;
 
-/// Points that the series may hold; when they run out, neighbours are merged.
+/// Largest number of series points; beyond it, neighbouring points are merged.
 const SERIES_POINTS: usize = 1 << 14;
 
 /// One robot in one frame.
@@ -13,11 +13,11 @@ const SERIES_POINTS: usize = 1 << 14;
 pub struct Sample {
     /// World position, metres.
     pub position_m: [f64; 2],
-    /// Its number.
+    /// Id of the robot.
     pub id: u32,
-    /// Where it headed.
+    /// Target cell.
     pub target: Cell,
-    /// What it was doing.
+    /// Mode of the robot.
     pub mode: Mode,
 }
 
@@ -35,22 +35,22 @@ pub struct Frame {
     pub tick: u32,
     /// Simulated time, seconds.
     pub time_s: f64,
-    /// The robots, in the order in which the engine named them.
+    /// Robots in the engine's order.
     pub samples: Vec<Sample>,
 }
 
-/// The swarm as a whole over one or more ticks.
+/// State of the swarm over one or more ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeriesPoint {
     /// First tick.
     pub tick: u32,
     /// Simulated time of the first tick, seconds.
     pub time_s: f64,
-    /// How many ticks this point stands for.
+    /// Number of ticks in this point.
     pub ticks: u32,
-    /// Mean over the ticks, cells; NaN when no tick had a value.
+    /// Mean over the ticks, cells; NaN if no tick had a value.
     pub formation_error_per_agent: f64,
-    /// Mean over the ticks; NaN when no tick had a value.
+    /// Mean over the ticks; NaN if no tick had a value.
     pub graph_distance: f64,
     /// Sum over the ticks.
     pub packets: PacketCounts,
@@ -84,19 +84,19 @@ impl From<&TickRow> for SeriesPoint {
     }
 }
 
-/// A run as pictures need it: every k-th tick of every robot, and the swarm's series.
+/// Data of a run for plots: every k-th tick of every robot, and the swarm's series.
 ///
-/// Memory is bounded whatever the run's length: see [`super::Options::history_samples`]; the
-/// series holds at most 16,384 points.
+/// Memory is bounded for any length of the run: see [`super::Options::history_samples`]; the series
+/// holds at most 16,384 points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct History {
     frames: Vec<Frame>,
     series: Vec<SeriesPoint>,
     totals: PacketCounts,
     ticks: u32,
-    /// Samples of all frames together: counting them anew would make long runs quadratic.
+    /// Samples of all frames; counting them for each frame would take quadratic time.
     samples: usize,
-    /// The newest frame: it stays even when its tick is not due.
+    /// Latest frame; stored even if its tick is not due.
     latest: Frame,
     max_samples: usize,
     frame_every: u32,
@@ -110,7 +110,7 @@ impl Default for History {
 }
 
 impl History {
-    /// The frames kept, oldest first; first and last tick are among them.
+    /// Stored frames, oldest first, including the first and the last tick.
     #[must_use]
     pub fn frames(&self) -> &[Frame] {
         &self.frames
@@ -128,7 +128,7 @@ impl History {
         self.totals
     }
 
-    /// Ticks recorded.
+    /// Number of recorded ticks.
     #[must_use]
     pub const fn ticks(&self) -> u32 {
         self.ticks
@@ -152,7 +152,7 @@ impl History {
         self.series.first().map(|point| point.tick)
     }
 
-    /// Notes the tick's series values and hands out the emptied newest frame to fill.
+    /// Adds a tick to the series and returns the cleared latest frame to fill.
     pub(super) fn begin_frame(&mut self, row: &TickRow) -> &mut Frame {
         self.ticks += 1;
         self.totals += row.packets;
@@ -179,7 +179,7 @@ impl History {
         &mut self.latest
     }
 
-    /// Keeps the newest frame when its tick is due, and thins out when memory runs out.
+    /// Stores the latest frame if its tick is due, and thins out frames if memory is full.
     pub(super) fn end_frame(&mut self) {
         if !self.is_due(self.latest.tick) {
             return;
@@ -196,7 +196,6 @@ impl History {
         }
     }
 
-    /// Adds the last frame if it was not due.
     pub(super) fn close(&mut self) {
         let last = self.frames.last().map(|frame| frame.tick);
         if self.ticks > 0 && last != Some(self.latest.tick) {

@@ -1,9 +1,9 @@
-//! What happened in a run: two CSV files that grow with it and a bounded [`History`] for pictures.
+//! Records of a run: two CSV files that grow with it, and a bounded [`History`] for plots.
 //!
-//! The engine calls [`Recorder::tick`] once per tick, after everybody moved. `series.csv` gets a
-//! line each time; `trace.csv` gets a line per robot every [`Options::trace_every`] ticks. Both hold
-//! whole ticks only: lines reach the file in blocks that end with a tick, and a block that the disk
-//! refuses is cut off again. So a run that is stopped leaves files that can be read.
+//! The engine calls [`Recorder::tick`] once per tick, after all bodies have moved. `series.csv`
+//! gets one row each time, `trace.csv` one row per robot every [`Options::trace_every`] ticks. Both
+//! files contain only complete ticks: rows are written in blocks that end with a tick, and a block
+//! that cannot be written completely is truncated. A stopped run therefore leaves readable files.
 
 mod csv;
 mod file;
@@ -24,10 +24,10 @@ use std::io::ErrorKind;
 use std::ops::{Add, AddAssign};
 use std::path::{Path, PathBuf};
 
-/// Where a body is and how it moves.
+/// Position and velocity of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// The cell it stands in.
+    /// Cell of the body.
     pub cell: Cell,
     /// World position, metres (x east, y north, z up).
     pub position_m: [f64; 3],
@@ -35,35 +35,35 @@ pub struct Motion {
     pub velocity_mps: [f64; 3],
 }
 
-/// One robot after one tick.
+/// State of one robot after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotRow {
-    /// Its number.
+    /// Id of the robot.
     pub id: u32,
-    /// Where its body is and how it moves.
+    /// Position and velocity of its body.
     pub motion: Motion,
-    /// What it is doing.
+    /// Mode of the robot.
     pub mode: Mode,
-    /// Its leader, 0 = none.
+    /// Id of its leader, 0 = none.
     pub leader: u32,
-    /// The cell it heads for.
+    /// Target cell.
     pub target: Cell,
-    /// Where in the world it heads for, metres; `None`: nowhere, or that is for its law to choose.
+    /// World position of its target, metres; `None` if it has none or its law chooses it.
     pub target_m: Option<[f64; 3]>,
-    /// What it waits for.
+    /// Cause of waiting.
     pub wait: Option<Wait>,
-    /// Distance from its place in the formation, cells; NaN when it has no place.
+    /// Distance from its place in the formation, cells; NaN if it has no place.
     pub formation_error_cells: f32,
-    /// Radius of its body, metres; `None` where bodies have no size.
+    /// Radius of its body, metres; `None` if bodies have no size.
     pub radius_m: Option<f64>,
-    /// Whether there are cells: there are none in the plane without land.
+    /// Whether the world has cells; false in the plane without terrain.
     pub has_cells: bool,
 }
 
-/// The whole swarm after one tick.
+/// State of the swarm after a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickRow {
-    /// Number of the tick; grows from call to call.
+    /// Number of the tick; increases from call to call.
     pub tick: u32,
     /// Simulated time, seconds.
     pub time_s: f64,
@@ -71,7 +71,7 @@ pub struct TickRow {
     pub formation_error_per_agent: f64,
     /// Graph distance (KUZ section 6); NaN without a formation.
     pub graph_distance: f64,
-    /// What the radio did during this tick.
+    /// Packets of this tick.
     pub packets: PacketCounts,
 }
 
@@ -79,42 +79,42 @@ pub struct TickRow {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PacketCounts {
-    /// Handed to the radio.
+    /// Packets passed to the radio.
     pub sent: u64,
-    /// Handed to a receiver.
+    /// Packets delivered to a receiver.
     pub delivered: u64,
-    /// Lost on the way.
+    /// Packets lost in transmission.
     pub lost: u64,
-    /// Delivered with flipped bits.
+    /// Packets delivered with flipped bits.
     pub corrupted: u64,
-    /// Refused by a receiver: damaged, foreign or replayed; with a key also those that follow.
+    /// Frames refused as damaged, foreign or replayed; with a key, also the three counts below.
     pub rejected: u64,
-    /// Refused because the tag or signature was missing.
+    /// Frames refused because the tag or signature was missing.
     pub unsigned: u64,
-    /// Refused because the tag or signature was of another key or content.
+    /// Frames refused because the tag or signature was made with another key or for other content.
     pub forged: u64,
-    /// Refused because it was heard before, or was older than what was; the radio's own repetitions included.
+    /// Frames refused as received before or older than the latest; includes radio duplicates.
     pub replayed: u64,
-    /// Beacons that said what no robot can be.
+    /// Beacons with implausible content.
     pub overclaims: ClaimCounts,
 }
 
-/// Beacons that were not believed, or not all of what they said.
+/// Beacons that were refused or corrected as implausible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ClaimCounts {
-    /// Refused for a number that no robot has.
+    /// Refused: no robot has this id.
     pub numbers: u64,
-    /// With a radius that was cut.
+    /// Accepted with a reduced radius.
     pub radii: u64,
-    /// With a velocity that was cut.
+    /// Accepted with a reduced velocity.
     pub speeds: u64,
-    /// Refused for a place where the robot cannot be yet.
+    /// Refused: the robot cannot have reached this position.
     pub jumps: u64,
 }
 
 impl ClaimCounts {
-    /// How many in all.
+    /// Sum of all counts.
     #[must_use]
     pub const fn sum(&self) -> u64 {
         self.numbers + self.radii + self.speeds + self.jumps
@@ -131,7 +131,7 @@ impl AddAssign for ClaimCounts {
 }
 
 impl PacketCounts {
-    /// What a robot refused or did not believe in a step, and why, and nothing else.
+    /// Counts only the frames and beacons that a robot refused or corrected in a step.
     #[must_use]
     pub fn refused(rejected: u16, why: Refused, lies: Overclaims) -> Self {
         Self {
@@ -172,31 +172,31 @@ impl AddAssign for PacketCounts {
     }
 }
 
-/// How much to keep.
+/// Amount of recorded data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Ticks between two samples in `trace.csv`; 0: one per started thousand robots, so that a
-    /// tick adds at most about 1000 lines on average.
+    /// Ticks between two samples in `trace.csv`; 0: the number of robots divided by 1000, rounded
+    /// up, so that a tick adds at most about 1000 rows on average.
     pub trace_every: u32,
-    /// Robot samples that [`History`] may hold, 32 bytes each. When they run out, every second frame
-    /// goes and the interval doubles; the first and the last frame always stay.
+    /// Largest number of robot samples in the [`History`], 32 bytes each. When it is reached, every
+    /// second frame is dropped and the interval doubles; the first and the last frame always stay.
     pub history_samples: usize,
-    /// Whether robots are looked at one by one: without, there is neither `trace.csv` nor a frame in the history, and
-    /// recording a tick of a million robots costs no more than one of ten.
+    /// Whether single robots are recorded. Without them, there are no `trace.csv` and no frames in
+    /// the history, and recording a tick takes the same time for any number of robots.
     pub keeps_robots: bool,
 }
 
 impl Default for Options {
-    /// The interval by the number of robots, 32 MB of history.
+    /// Interval by the number of robots, 32 MB of history.
     fn default() -> Self {
         Self { trace_every: 0, history_samples: 1 << 20, keeps_robots: true }
     }
 }
 
-/// What of a [`Recorder`] is in no file.
+/// State of a [`Recorder`] that is not in its files.
 pub type Saved = (u32, History);
 
-/// Collects a run, tick by tick.
+/// Records a run, tick by tick.
 #[derive(Debug)]
 pub struct Recorder {
     files: Option<Files>,
@@ -206,13 +206,12 @@ pub struct Recorder {
 
 #[derive(Debug)]
 struct Files {
-    /// `None`: robots are not kept.
+    /// `None`: robots are not recorded.
     trace: Option<LineFile>,
     series: LineFile,
     trace_every: u32,
 }
 
-/// Writes the schemas of what a recorder leaves.
 fn write_schemas(dir: &Path, keeps_robots: bool) -> Result<(), Error> {
     if keeps_robots {
         csv::write_schema(dir, "trace", &csv::TRACE)?;
@@ -221,11 +220,11 @@ fn write_schemas(dir: &Path, keeps_robots: bool) -> Result<(), Error> {
 }
 
 impl Recorder {
-    /// A recorder that writes `trace.csv` (if it keeps robots), `series.csv` and their schemas into `out_dir`, which is
-    /// made if needed; files of an earlier run are replaced.
+    /// Creates a recorder that writes `trace.csv` (if it records robots), `series.csv` and their
+    /// schemas to `out_dir`. Creates the directory; replaces earlier files.
     ///
     /// # Errors
-    /// The directory or a file in it cannot be made.
+    /// The directory or a file in it cannot be created.
     pub fn new(out_dir: impl AsRef<Path>, options: Options) -> Result<Self, Error> {
         let dir = out_dir.as_ref();
         file::make_dir(dir)?;
@@ -242,11 +241,11 @@ impl Recorder {
         })
     }
 
-    /// What a recorder was that is gone: `trace.csv` (if it is to keep robots) and `series.csv` are in `out_dir` as
-    /// [`Recorder::written`] had them, all else is what [`Recorder::saved`] gave.
+    /// Restores a recorder. `out_dir` contains `trace.csv` (if `keeps_robots` is set) and
+    /// `series.csv` as left by [`Recorder::written`]; the rest comes from [`Recorder::saved`].
     ///
     /// # Errors
-    /// A file cannot be opened or made.
+    /// A file cannot be opened or created.
     pub fn resumed(out_dir: &Path, keeps_robots: bool, (trace_every, history): Saved) -> Result<Self, Error> {
         write_schemas(out_dir, keeps_robots)?;
         let trace = keeps_robots.then(|| LineFile::resume(&out_dir.join("trace.csv"))).transpose()?;
@@ -254,15 +253,16 @@ impl Recorder {
         Ok(Self { files: Some(Files { trace, series, trace_every }), keeps_robots, history })
     }
 
-    /// What is in no file.
+    /// State that is not in a file.
     pub fn saved(&self) -> impl Serialize {
         (self.files.as_ref().map_or(0, |files| files.trace_every), &self.history)
     }
 
-    /// `trace.csv` (if it keeps robots) and `series.csv` with their lengths, once all that is in memory is in them.
+    /// Writes all buffered rows, and returns `trace.csv` (if it records robots) and `series.csv`
+    /// with their lengths.
     ///
     /// # Errors
-    /// They cannot be written, or there are none.
+    /// The files cannot be written, or there are none.
     pub fn written(&mut self) -> Result<[Option<(PathBuf, u64)>; 2], Error> {
         let Some(files) = &mut self.files else {
             return Err(Error::new("read", Path::new("series.csv"))(ErrorKind::NotFound.into()));
@@ -271,17 +271,17 @@ impl Recorder {
         Ok([trace, Some(files.series.written()?)])
     }
 
-    /// A recorder that keeps only the history.
+    /// Creates a recorder without files, only with a history.
     #[must_use]
     pub fn in_memory(options: Options) -> Self {
         let history = History::with_capacity(options.history_samples);
         Self { files: None, keeps_robots: options.keeps_robots, history }
     }
 
-    /// Takes one tick. Order of `robots` is kept; it should be the same in each tick. O(robots).
+    /// Records one tick. `robots` should have the same order each time. O(robots).
     ///
     /// # Errors
-    /// A file cannot be written. What was complete before stays readable.
+    /// A file cannot be written. All earlier complete ticks stay readable.
     pub fn tick(&mut self, tick: &TickRow, robots: impl Iterator<Item = RobotRow>) -> Result<(), Error> {
         let first_tick = self.history.first_tick().unwrap_or(tick.tick);
         let frame = self.history.begin_frame(tick);
@@ -291,7 +291,7 @@ impl Recorder {
             None => frame.samples.extend(robots.map(Sample::from)),
             Some((trace, trace_every)) => {
                 let since = tick.tick.wrapping_sub(first_tick);
-                // With a chosen interval the first tick is always due, and tells the number of robots.
+                // The first tick is always due; its robots give the default interval.
                 let due = since.checked_rem(*trace_every).is_none_or(|r| r == 0);
                 for robot in robots {
                     if due {
@@ -316,7 +316,7 @@ impl Recorder {
         Ok(())
     }
 
-    /// Writes what is still in memory and hands out the history.
+    /// Writes all buffered rows and returns the history.
     ///
     /// # Errors
     /// A file cannot be written.

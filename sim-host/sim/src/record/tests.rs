@@ -37,7 +37,7 @@ fn run(recorder: &mut Recorder, ticks: u32, robots: u32) {
     }
 }
 
-/// Reads a file back: the header, then the lines, each as wide as the header; ends with a newline.
+/// Reads a file: the header, then rows with as many columns; asserts a newline at the end.
 fn read(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let text = fs::read_to_string(path).unwrap();
     assert!(text.ends_with('\n'));
@@ -50,7 +50,7 @@ fn read(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
 }
 
 #[test]
-fn csv_reads_back_with_the_columns_of_its_schema() {
+fn csv_files_have_the_columns_of_their_schema() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("made/by/the/recorder");
     let mut recorder = Recorder::new(&out, Options::default()).unwrap();
@@ -74,7 +74,7 @@ fn csv_reads_back_with_the_columns_of_its_schema() {
 }
 
 #[test]
-fn run_without_ticks_leaves_headers_and_an_empty_history() {
+fn a_run_without_ticks_leaves_headers_and_an_empty_history() {
     let dir = tempfile::tempdir().unwrap();
     let recorder = Recorder::new(dir.path(), Options::default()).unwrap();
     let history = recorder.finish().unwrap();
@@ -83,7 +83,7 @@ fn run_without_ticks_leaves_headers_and_an_empty_history() {
 }
 
 #[test]
-fn trace_interval_is_kept_and_chosen_by_the_number_of_robots() {
+fn the_trace_interval_is_given_or_follows_the_number_of_robots() {
     for (every, robots, expected) in [(4, 1, 3), (0, 1, 10), (0, 1000, 10_000), (0, 1001, 5005)] {
         let dir = tempfile::tempdir().unwrap();
         let options = Options { trace_every: every, ..Options::default() };
@@ -96,11 +96,11 @@ fn trace_interval_is_kept_and_chosen_by_the_number_of_robots() {
 }
 
 #[test]
-fn recorder_that_is_dropped_keeps_whole_ticks() {
+fn a_dropped_recorder_leaves_complete_ticks() {
     let dir = tempfile::tempdir().unwrap();
     let mut recorder = Recorder::new(dir.path(), Options::default()).unwrap();
     run(&mut recorder, 500, 7);
-    // While the run goes on, what has reached the disk ends with a whole tick.
+    // During the run, the file on disk ends with a complete tick.
     let (_, lines) = read(&dir.path().join("trace.csv"));
     assert!(!lines.is_empty() && lines.len() % 7 == 0);
     drop(recorder);
@@ -108,7 +108,7 @@ fn recorder_that_is_dropped_keeps_whole_ticks() {
 }
 
 #[test]
-fn history_thins_out_but_keeps_first_and_last_frame() {
+fn the_history_is_thinned_but_keeps_the_first_and_last_frame() {
     for max in [0, 1, 39, 40, 41] {
         let mut recorder = Recorder::in_memory(Options { history_samples: max, ..Options::default() });
         run(&mut recorder, 1000, 4);
@@ -116,7 +116,7 @@ fn history_thins_out_but_keeps_first_and_last_frame() {
         let ticks: Vec<_> = history.frames().iter().map(|frame| frame.tick).collect();
         assert_eq!((ticks[0], *ticks.last().unwrap()), (0, 999));
         assert!(ticks.len() <= (max / 4).max(1) + 1, "{max}: {ticks:?}");
-        // Thinned no more than needed: at least half of what fits is there.
+        // Thinned no more than needed: at least half of the capacity is used.
         assert!(ticks.len() >= max / 8, "{max}: {ticks:?}");
         let steps: Vec<_> = ticks[..ticks.len() - 1].windows(2).map(|t| t[1] - t[0]).collect();
         assert!(steps.windows(2).all(|pair| pair[0] == pair[1]), "{max}: {ticks:?}");
@@ -124,7 +124,7 @@ fn history_thins_out_but_keeps_first_and_last_frame() {
 }
 
 #[test]
-fn series_merges_neighbours_without_losing_a_packet() {
+fn the_series_merges_neighbours_without_losing_packets() {
     let mut recorder = Recorder::in_memory(Options::default());
     run(&mut recorder, 50_000, 0);
     let history = recorder.finish().unwrap();
@@ -138,7 +138,7 @@ fn series_merges_neighbours_without_losing_a_packet() {
 }
 
 #[test]
-fn unknown_error_does_not_spoil_its_neighbour() {
+fn a_missing_error_does_not_affect_merged_neighbours() {
     let mut point = SeriesPoint::from(&tick(0));
     point.merge(&SeriesPoint {
         graph_distance: 4.0,
@@ -149,7 +149,7 @@ fn unknown_error_does_not_spoil_its_neighbour() {
 }
 
 #[test]
-fn directory_in_the_way_is_an_error_that_names_it() {
+fn a_directory_in_place_of_a_file_is_named_in_the_error() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("file");
     fs::write(&file, "not a directory").unwrap();
@@ -164,7 +164,7 @@ fn directory_in_the_way_is_an_error_that_names_it() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn full_disk_is_an_error_that_names_the_file() {
+fn a_full_disk_error_names_the_file() {
     let dir = tempfile::tempdir().unwrap();
     std::os::unix::fs::symlink("/dev/full", dir.path().join("trace.csv")).unwrap();
     let text = Recorder::new(dir.path(), Options::default()).unwrap_err().to_string();
@@ -172,7 +172,7 @@ fn full_disk_is_an_error_that_names_the_file() {
 }
 
 #[test]
-fn failed_atomic_write_leaves_the_old_file_and_no_other() {
+fn a_failed_atomic_write_leaves_only_the_old_file() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("picture");
     fs::create_dir(&path).unwrap();
@@ -188,7 +188,7 @@ fn failed_atomic_write_leaves_the_old_file_and_no_other() {
 }
 
 #[test]
-fn summary_is_json_with_the_fields_in_order() {
+fn the_summary_is_json_with_fields_in_order() {
     let dir = tempfile::tempdir().unwrap();
     write_summary(dir.path(), &tick(0).packets).unwrap();
     let text = fs::read_to_string(dir.path().join("summary.json")).unwrap();

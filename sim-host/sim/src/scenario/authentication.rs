@@ -1,4 +1,4 @@
-//! `[authentication]` and `[[attack]]`: the key, and attackers without it.
+//! `[authentication]` and `[[attack]]`: the swarm's key, and attackers.
 
 use super::ranges::within;
 use super::source::Source;
@@ -13,10 +13,9 @@ use staya_controller::wire::Format;
 use staya_mavlink::any::max_robot;
 use std::path::Path;
 
-/// Metres from the corner that a place may have: what a packet can say.
+/// Largest coordinate in metres, measured from the south-west corner: the range of a packet field.
 const FARTHEST_M: f64 = 2_000_000.0;
 
-/// The robots' keys, if they have any.
 pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) -> Result<Option<Keys>, ScenarioError> {
     let Some(table) = &file.authentication else {
         return Ok(None);
@@ -50,7 +49,7 @@ pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) ->
         let remedy = "give master_file or master, or leave roll, overlap_s and place_m out";
         return Err(source.error("authentication", "who has one key cannot be sent another one", remedy));
     }
-    // And two operators.
+    // The operators take two more entries of the peer table.
     if robots.len() + 2 > PEERS {
         let problem = format!("{} robots are too many: nobody forgets whom he has heard", robots.len());
         let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
@@ -67,16 +66,14 @@ pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) ->
     Ok(Some(Keys { key, remark, keeping }))
 }
 
-/// What the file says of keys.
 pub(super) struct Keys {
-    /// The swarm's first one.
+    /// Initial key of the swarm.
     pub key: Key,
-    /// What is to be said of its file.
+    /// Warning about the key file, if there is one.
     pub remark: Option<String>,
     pub keeping: Option<Keeping>,
 }
 
-/// What the operator does who has the master.
 fn keeping(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -116,7 +113,6 @@ fn keeping(
     Ok(Keeping { master: master.clone(), place_m, overlap_ticks, rolls })
 }
 
-/// The attackers.
 pub(super) fn attacks(
     source: &Source<'_>,
     file: &ScenarioFile,

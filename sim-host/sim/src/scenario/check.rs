@@ -1,4 +1,4 @@
-//! The checks that need more than the type of a field.
+//! Checks that involve more than one field.
 
 use super::ranges::within;
 use super::source::Source;
@@ -27,7 +27,7 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
 }
 
-/// Whether the radio's format has room for the numbers of the robots, and of the intruders that are heard behind them.
+/// Checks that the radio's format can encode the ids of robots and beaconing intruders.
 pub(super) fn numbers(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -103,12 +103,12 @@ fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), Scena
     Err(source.error(field, what, "give a number from 0 to 1"))
 }
 
-/// Bytes that a robot takes at least, by measurement: its agent, what it knows, its packets.
+/// Measured lower bound of the memory per robot in bytes: agent, neighbours and packets.
 const ROBOT_BYTES: u64 = 4 << 10;
-/// Bytes that a cell of land takes while a run goes on.
+/// Bytes per terrain cell during a run.
 const CELL_BYTES: u64 = 4;
 
-/// What would not fit into memory is refused before it is asked for: who runs out of it is ended without a word.
+/// Refuses scenarios that do not fit into memory, before the system kills the process.
 pub(super) fn memory(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -173,7 +173,7 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
     Ok(terrain)
 }
 
-/// Another map of the same land, read as the land's own.
+/// Loads another map of the same land, with the load options and the crop of `[terrain]`.
 pub(super) fn map(source: &Source<'_>, file: &ScenarioFile, name: &Path) -> Result<Terrain, ScenarioError> {
     let usual = TerrainTable::default();
     let table = file.terrain.as_ref().unwrap_or(&usual);
@@ -200,7 +200,7 @@ fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> Scen
     source.error(field, error.to_string(), remedy)
 }
 
-/// What would be ignored is refused: a table for robots in formation without one, a choice that they do not have.
+/// Refuses tables and options that robots without a formation would ignore.
 pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let in_formation = file.in_formation();
     if !in_formation && source.has("formation") {
@@ -221,7 +221,7 @@ pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result
     Ok(())
 }
 
-/// Refuses what the chosen law of a formation has no use for.
+/// Refuses fields that the chosen formation law does not use.
 fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let law = file.formation.law.unwrap_or_default();
     let is_paper = law == FormationLaw::Paper;

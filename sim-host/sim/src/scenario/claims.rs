@@ -1,4 +1,4 @@
-//! `[claims]`: what robots may say of themselves and be believed by the others.
+//! `[claims]`: limits within which received beacons count as plausible.
 
 use super::ranges::within;
 use super::source::Source;
@@ -8,32 +8,32 @@ use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
 
-/// How many times the largest body and the highest speed there are, by default.
+/// Default limits on radius and speed, as a multiple of the largest values in the scenario.
 const TIMES: f64 = 2.0;
-/// How many radii of the largest body, or half cells, a place may be off besides.
+/// Default position tolerance, in radii of the largest body (on the grid: half cells).
 const SLACK_RADII: f64 = 4.0;
-/// Ticks for which a robot that has jumped must be consistent: as long as news may be old before it is stale.
+/// Ticks for which a robot must be consistent after a jump: the age at which a beacon is stale.
 const SETTLE_TICKS: u32 = 4;
 
-/// `[claims]`: bounds on what robots say of themselves. Without this table no honest robot meets them.
+/// `[claims]`: plausibility limits on beacons. The defaults accept every honest robot.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ClaimsTable {
-    /// Whether there are any. Default: true.
+    /// Whether beacons are checked. Default: true.
     pub bounded: Option<bool>,
-    /// The largest radius, metres. Default: twice that of the largest body.
+    /// Largest radius, metres. Default: twice the radius of the largest body.
     pub max_radius_m: Option<f64>,
-    /// The highest speed, m/s. Default: twice the highest there is.
+    /// Highest speed, m/s. Default: twice the highest speed in the scenario.
     pub max_speed_mps: Option<f64>,
-    /// How far a place may be off besides, metres. Default: four radii of the largest body; on the grid two cells.
+    /// Position tolerance, metres. Default: four radii of the largest body; two cells on the grid.
     pub slack_m: Option<f64>,
-    /// How long a robot that jumped must be consistent, seconds. Default: four ticks.
+    /// How long a robot must be consistent after a jump, seconds. Default: four ticks.
     pub settle_s: Option<f64>,
-    /// The greatest number. Default: the greatest there is.
+    /// Largest robot id. Default: the largest id in the scenario.
     pub last_robot: Option<u32>,
 }
 
-/// What is believed by default: `radius_m` and `speed_mps` are the largest body's and the highest.
+/// Default limits; `radius_m` and `speed_mps` are the largest in the scenario.
 fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> Claims<f32> {
     Claims {
         max_radius_m: (TIMES * radius_m) as f32,
@@ -44,7 +44,6 @@ fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> Claims<f32> 
     }
 }
 
-/// Bodies in the plane; numbers up to `last`.
 pub(super) fn in_plane(setup: &PlaneSetup, tick_us: u32, last: u32) -> Claims<f32> {
     let norm = |v: [f64; 3]| libm::sqrt(v.iter().map(|v| v * v).sum());
     let kinds = setup.kinds().map(|group| (group.radius_m, group.abilities.max_speed_mps));
@@ -55,26 +54,25 @@ pub(super) fn in_plane(setup: &PlaneSetup, tick_us: u32, last: u32) -> Claims<f3
     usual(radius_m, speed_mps, tick_us, last)
 }
 
-/// Bodies that hold a cell each.
 pub(super) fn on_grid(cell_m: f64, tick_us: u32, last: u32) -> Claims<f32> {
     usual(cell_m / 2.0, cell_m * 1e6 / f64::from(tick_us), tick_us, last)
 }
 
 impl Scenario {
-    /// What is believed where nobody says otherwise.
+    /// Plausibility limits of a scenario without `[claims]`. O(robots).
     #[must_use]
     pub fn usual_claims(&self) -> Claims<f32> {
         let numbers = self.robots.iter().map(|robot| robot.id).chain(self.misnumbered.iter().map(|(_, said)| *said));
         let last = numbers.max().unwrap_or_default().0;
         match &self.plane {
-            // Intruders that are heard have the numbers behind the robots'.
+            // Beaconing intruders have the ids after those of the robots.
             Some(plane) => in_plane(plane, self.tick_us, last + plane.heard() as u32),
             None => on_grid(self.terrain.cell_m, self.tick_us, last),
         }
     }
 }
 
-/// What the file says instead.
+/// Applies the fields of `[claims]` to the default limits.
 pub(super) fn said(
     source: &Source<'_>,
     file: &ScenarioFile,

@@ -1,5 +1,6 @@
-//! Reads the tables of a parsed file with serde. The deserializer of the crate `toml` does the same for any source of events, and its
-//! generic layers take three times as much machine code for the tables of scenarios.
+//! Serde deserializer for the tables of a parsed file. The deserializer of the `toml` crate accepts
+//! any source of events; its generic layers produce three times as much machine code for the
+//! scenario tables.
 
 use serde::de::value::StrDeserializer;
 use serde::de::{
@@ -16,9 +17,9 @@ use toml::de::{DeTable, DeValue};
 /// A value that does not fit its field.
 #[derive(Debug)]
 pub struct Error {
-    /// The cause.
+    /// Cause of the error.
     pub message: String,
-    /// Where the value or its key stands in the text, bytes.
+    /// Position of the value or its key in the text, bytes.
     pub span: Option<Range<usize>>,
 }
 
@@ -44,7 +45,7 @@ impl serde::de::Error for Error {
     }
 }
 
-/// Reads a whole file.
+/// Deserializes a whole file.
 ///
 /// # Errors
 /// A field is unknown, is missing, or has a value of another type.
@@ -52,7 +53,6 @@ pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeTable<'de>>) ->
     T::deserialize(Table(root.get_ref())).map_err(|error| error.at(root.span()))
 }
 
-/// A table.
 struct Table<'a, 'de>(&'a DeTable<'de>);
 
 impl<'a> Deserializer<'a> for Table<'a, '_> {
@@ -71,7 +71,6 @@ impl<'a> Deserializer<'a> for Table<'a, '_> {
 
 type Entry<'a, 'de> = (&'a Spanned<Cow<'de, str>>, &'a Spanned<DeValue<'de>>);
 
-/// The entries of a table that have not been read yet.
 struct Entries<'a, 'de> {
     entries: Box<dyn Iterator<Item = Entry<'a, 'de>> + 'a>,
     value: Option<&'a Spanned<DeValue<'de>>>,
@@ -95,7 +94,6 @@ impl<'a> MapAccess<'a> for Entries<'a, '_> {
     }
 }
 
-/// The elements of a list that have not been read yet.
 struct Elements<'a, 'de>(std::slice::Iter<'a, Spanned<DeValue<'de>>>);
 
 impl<'a> SeqAccess<'a> for Elements<'a, '_> {
@@ -110,7 +108,6 @@ impl<'a> SeqAccess<'a> for Elements<'a, '_> {
     }
 }
 
-/// A value.
 struct Node<'a, 'de>(&'a Spanned<DeValue<'de>>);
 
 impl<'a> Deserializer<'a> for Node<'a, '_> {
@@ -171,7 +168,6 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
     }
 }
 
-/// A variant of an enum: its name, and its content if it has one.
 struct Variant<'a, 'de> {
     name: &'a str,
     value: Option<&'a Spanned<DeValue<'de>>>,

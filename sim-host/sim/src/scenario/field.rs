@@ -1,18 +1,18 @@
-//! The name of a field of a scenario, and what stands there.
+//! Paths of scenario fields, with functions that read and set them.
 
 use std::fmt::{self, Display, Formatter};
 use toml::Value;
 
-/// A field, as in `radio.loss` or `plane.group[0].count`.
+/// Path of a field, such as `radio.loss` or `plane.group[0].count`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
     name: String,
-    /// Names of tables down to the field, each with the places in lists behind it.
+    /// Table names down to the field, each with the list indices that follow it.
     steps: Vec<(String, Vec<usize>)>,
 }
 
 impl Field {
-    /// Reads a name; `None` if it cannot be one.
+    /// Parses a path; `None` if it is malformed.
     pub fn read(name: &str) -> Option<Self> {
         let steps = name.split('.').map(|step| {
             let (name, places) = step.split_at(step.find('[').unwrap_or(step.len()));
@@ -27,12 +27,12 @@ impl Field {
         Some(Self { name: name.to_owned(), steps: steps.collect::<Option<_>>()? })
     }
 
-    /// The name.
+    /// The path as text.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What stands there in a scenario.
+    /// Value of the field in `scenario`; `None` if it is absent.
     pub fn get<'a>(&self, scenario: &'a toml::Table) -> Option<&'a Value> {
         let mut table = Some(scenario);
         let mut value = None;
@@ -46,7 +46,7 @@ impl Field {
         value
     }
 
-    /// Makes a field say something else; tables that are not there yet are made. The error says what is in the way.
+    /// Sets the field and creates missing tables. The error says what is in the way.
     pub fn set(&self, scenario: &mut toml::Table, to: Value) -> Result<(), String> {
         let Some(((last, places), tables)) = self.steps.split_last() else {
             return Err("it has no name".to_owned());
@@ -68,7 +68,6 @@ impl Field {
     }
 }
 
-/// The element at these places of a list of lists.
 fn element<'a>(mut value: &'a mut Value, name: &str, places: &[usize]) -> Result<&'a mut Value, String> {
     for &place in places {
         let list = value.as_array_mut().ok_or_else(|| format!("{name} is no list in the scenario"))?;
@@ -101,7 +100,6 @@ mod tests {
         {
             let changed = set(name).unwrap_or_else(|what| panic!("{name}: {what}"));
             assert_eq!(Field::read(name).and_then(|field| field.get(&changed).cloned()), Some(Value::Integer(7)));
-            // And nothing else.
             let mut before: toml::Table = SCENARIO.parse().expect("TOML");
             Field::read(name).expect("a name").set(&mut before, Value::Integer(7)).expect("a place");
             assert_eq!(before, changed);
@@ -111,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_in_the_way_is_said() {
+    fn an_obstruction_on_the_path_is_named() {
         for (name, what) in [
             ("plane.group[2].count", "group has 2 elements, counted from 0"),
             ("plane.radius_m.x", "radius_m is no table in the scenario"),
@@ -124,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_names() {
+    fn malformed_paths_are_refused() {
         for bad in ["", ".", "a.", "a[", "a[]", "a[-1]", "a[+1]", "a]0[", "a b", "[0]", "a[0]b", "a..b"] {
             assert_eq!(Field::read(bad), None, "{bad:?}");
         }

@@ -1,10 +1,10 @@
-//! What a run depends on, as one number.
+//! A hash of everything that determines a run.
 
 use super::{Keeping, Scenario, Scouting};
 use staya_controller::auth::Key;
 use std::fmt::{self, Debug, Write as _};
 
-/// FNV-1a of 64 bits over text.
+/// 64-bit FNV-1a hash of text.
 struct Fingerprint(u64);
 
 impl Fingerprint {
@@ -15,7 +15,7 @@ impl Fingerprint {
     }
 
     fn add(&mut self, value: &impl Debug) {
-        // It takes every text.
+        // Writing to a hash cannot fail.
         let _ = writeln!(self, "{value:?}");
     }
 
@@ -33,8 +33,9 @@ impl fmt::Write for Fingerprint {
 }
 
 impl Scenario {
-    /// The same for scenarios whose runs go the same way as far as both last: everything counts but its name, its number of
-    /// ticks and what is only for people. O(cells + robots).
+    /// Hash of all fields that influence a run. Scenarios with equal fingerprints run identically
+    /// for as long as both last. The name, the number of ticks and output for people are excluded.
+    /// O(cells + robots).
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         let Self {
@@ -82,7 +83,7 @@ impl Scenario {
             all.mix(map.cells());
             all.add(sight);
         }
-        // Runs of before had none of these.
+        // Hashed only if set, so that fingerprints of scenarios without these features are stable.
         if *looks_ahead {
             all.add(looks_ahead);
         }
@@ -92,7 +93,7 @@ impl Scenario {
         if let Some(eyes) = eyes {
             all.add(eyes);
         }
-        // Debug texts keep secrets.
+        // `Debug` output hides secrets.
         all.key(key.as_ref());
         all.key(keeping.as_ref().map(|keeping| &keeping.master));
         if let Some(Keeping { master: _, place_m, overlap_ticks, rolls }) = keeping {

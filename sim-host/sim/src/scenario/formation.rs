@@ -1,4 +1,4 @@
-//! What a file says of a formation, wherever it says it.
+//! Fields of a formation, shared by `[robots]` and `[plane]`.
 
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
@@ -8,27 +8,27 @@ use serde::{Deserialize, Deserializer};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FormationEntry {
-    /// Rows of a grid formation: robots are numbered row by row, neighbours in a row or column are
-    /// joined by an edge.
+    /// Rows of a grid formation. Robots are numbered row by row; neighbours in a row or a column
+    /// are joined by an edge.
     pub rows: Option<u16>,
     /// Robots in a row.
     pub columns: Option<u16>,
-    /// Cells from one column to the next (x) and from one row to the next (y), either may be
-    /// negative. Default: `[3, -3]`, which looks as on paper.
+    /// Cells from one column to the next (x) and from one row to the next (y); both may be
+    /// negative. Default: `[3, -3]`, which puts the first row at the top.
     pub spacing: Option<[i16; 2]>,
-    /// Instead of rows and columns: where each robot should be, in cells relative to the first.
+    /// Instead of rows and columns: the place of each robot, in cells relative to the first.
     pub places: Option<Vec<[i16; 2]>>,
     /// With `places`: pairs of robot numbers that are neighbours in the formation's graph.
     pub edges: Option<Vec<[u32; 2]>>,
-    /// The cell where robot 1, the top leader, starts, and the others in their places around it.
+    /// Cell where robot 1, the top leader, starts; the others start at their places around it.
     pub start: Option<[i16; 2]>,
-    /// Instead of `start`: the cell where each robot starts, by its number; they form on the way.
+    /// Instead of `start`: the start cell of each robot, by number. The formation forms on the way.
     pub starts: Option<Vec<[i16; 2]>>,
-    /// The cell where robot 1 should go; the others go to their places around it.
+    /// Goal cell of robot 1; the others go to their places around it.
     pub goal: [i16; 2],
 }
 
-/// A table, or an array of such tables: mistakes are named as if only that were allowed which stands there.
+/// Reads a table or an array of tables; unlike an untagged enum, errors name the form used.
 pub(super) fn one_or_more<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<FormationEntry>, D::Error> {
     struct OneOrMore;
     impl<'de> Visitor<'de> for OneOrMore {

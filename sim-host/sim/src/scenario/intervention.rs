@@ -1,4 +1,5 @@
-//! What somebody does to a run while it goes on: by hand in a view, or as `[[intervention]]` in a scenario.
+//! Interventions: changes to a running simulation, made by hand in the viewer or listed as
+//! `[[intervention]]` in a scenario.
 
 use super::ranges::micros;
 use super::source::{ScenarioError, Source};
@@ -9,70 +10,71 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::Parameter;
 use staya_controller::robot::RobotId;
 
-/// One thing that somebody does. Robots are named by their numbers, places are world coordinates in metres.
+/// One change to a running simulation. Robots are named by id, places are world coordinates in
+/// metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Intervention {
-    /// A robot gets another goal, as if it had started with it; without a number all do, and a formation keeps its shape
-    /// around the goal of its first robot.
+    /// Gives a robot another goal, as if it had started with it. Without an id, all robots get it,
+    /// and a formation keeps its shape around the goal of its first robot.
     Goal {
-        /// The robot.
+        /// Id of the robot.
         robot: Option<u32>,
-        /// Where it should go; on the grid the cell there.
+        /// Goal in metres; on the grid, the cell that contains it.
         place_m: [f64; 3],
     },
-    /// The operator moves a goal of all robots, by packet.
+    /// The operator moves a goal of all robots by radio.
     Waypoint {
-        /// Which of the goals, 0 to 3.
+        /// Index of the goal, 0 to 3.
         goal: u8,
-        /// Where it is now, at rest.
+        /// New position of the goal, which does not move.
         place_m: [f64; 3],
     },
-    /// A parameter changes, in one robot or in all that have it, for good.
+    /// Changes a parameter permanently, in one robot or in all robots that have it.
     Parameter {
-        /// The robot.
+        /// Id of the robot; `None`: all.
         robot: Option<u32>,
-        /// Which one.
+        /// The parameter.
         name: Parameter,
-        /// Its value.
+        /// New value.
         value: f32,
     },
-    /// A robot's computer goes down.
+    /// A robot's computer fails.
     Down {
-        /// The robot.
+        /// Id of the robot.
         robot: u32,
-        /// For how long, seconds; without it for good.
+        /// Duration, seconds; `None`: until the end of the run.
         for_s: Option<f64>,
     },
-    /// The radio changes for everybody.
+    /// Changes the radio of all robots.
     Radio {
-        /// Probability that a packet is lost at a receiver, 0 to 1.
+        /// Probability that a receiver loses a packet, 0 to 1.
         loss: Option<f64>,
         /// Farthest distance at which a packet can be received, metres.
         range_m: Option<f64>,
     },
-    /// Something stands in the plane from now on.
+    /// Adds an obstacle to the plane.
     Solid {
-        /// What.
+        /// Shape of the obstacle.
         solid: Shape,
     },
-    /// An obstacle moves at once.
+    /// Moves an obstacle instantly.
     Move {
-        /// Its place in the list of walls, then balls, then half-spaces, then those that came later.
+        /// Index of the obstacle: walls first, then balls, then half-spaces, then later additions.
         index: usize,
-        /// How far, metres.
+        /// Displacement, metres.
         by_m: [f64; 2],
     },
-    /// An obstacle goes; those behind it in the list move up.
+    /// Removes an obstacle; the indices of later obstacles decrease by one.
     Remove {
-        /// Its place in the list.
+        /// Index of the obstacle.
         index: usize,
     },
-    /// A cell of the land changes.
+    /// Changes a terrain cell.
     Cell {
-        /// Which one.
+        /// The cell.
         cell: [i16; 2],
-        /// Ticks that it takes to cross it; 0: a wall.
+        /// Ticks to cross the cell; 0: a wall.
         class: u8,
     },
 }
@@ -81,15 +83,15 @@ pub enum Intervention {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InterventionTable {
-    /// When, seconds after the start.
+    /// Time after the start, seconds.
     pub at_s: f64,
-    /// What, as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
+    /// The intervention, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
     #[serde(rename = "do")]
     pub what: Intervention,
 }
 
 impl Intervention {
-    /// The robot that it is for, if it is for one.
+    /// Id of the robot that it concerns, if it concerns a single one.
     #[must_use]
     pub const fn robot(&self) -> Option<u32> {
         match self {
@@ -99,10 +101,12 @@ impl Intervention {
         }
     }
 
-    /// Whether it makes sense for these robots, by rising number; what the ground has no use for shows when it is done.
+    /// Checks the intervention against the robots, which are sorted by id. Errors that depend on
+    /// the terrain or the obstacles appear when the intervention is applied. O(log robots).
+    ///
     ///
     /// # Errors
-    /// The field, what is wrong with it, and what to give instead.
+    /// Names the field, the error and the remedy.
     pub fn check(&self, robots: &[Robot]) -> Result<(), Refusal> {
         if let Some(number) = self.robot()
             && robots.binary_search_by_key(&RobotId(number), |robot| robot.id).is_err()
@@ -146,7 +150,7 @@ impl Intervention {
     }
 }
 
-/// Checks the tables; by rising tick, those of one tick as in the file.
+/// Checks the tables and sorts them by tick; the sort is stable.
 pub(super) fn interventions(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -166,13 +170,14 @@ pub(super) fn interventions(
     Ok(interventions)
 }
 
-/// The first tick that does not begin before a time; exact for times that are whole ticks, whatever their decimals.
+/// First tick that does not begin before `at_s`. Exact for times that are multiples of a tick.
 pub(super) fn tick(at_s: f64, tick_s: f64) -> u32 {
     let tick_us = f64::from(micros(tick_s).max(1));
     libm::ceil(libm::round(at_s * 1e6) / tick_us) as u32
 }
 
-/// A scenario's text with what was done to its run: what [`Scenario::parse`](super::Scenario::parse) reads as the same run.
+/// Appends the applied interventions to a scenario's text, so that
+/// [`Scenario::parse`](super::Scenario::parse) reproduces the run.
 #[must_use]
 pub fn with_interventions(text: &str, tick_us: u32, done: &[(u32, Intervention)]) -> String {
     let mut text = text.trim_end().to_owned();
@@ -191,7 +196,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_that_are_whole_ticks_are_those_ticks() {
+    fn multiples_of_a_tick_convert_exactly() {
         for tick_s in [0.1, 0.05, 0.3, 1.0, 0.007, 60.0] {
             for number in [0_u32, 1, 3, 7, 1001, 70_000] {
                 let micros = u64::from(number) * u64::from(super::micros(tick_s));
@@ -202,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused_with_a_remedy() {
+    fn invalid_interventions_are_refused_with_a_remedy() {
         let robots = [Robot { id: RobotId(3), start: Default::default(), goal: Default::default() }];
         let polygon = |points_m| Intervention::Solid { solid: Shape::Polygon { points_m } };
         let wrong = [

@@ -1,4 +1,4 @@
-//! `[[terrain.change]]`: land that changes.
+//! `[[terrain.change]]`: terrain that changes during a run.
 
 use super::intervention::tick;
 use super::ranges::within;
@@ -10,10 +10,8 @@ use crate::terrain::change::{ChangeKind, LandChange};
 use staya_controller::grid::Cell;
 use std::num::NonZeroU32;
 
-/// The longest time, seconds.
 const LONGEST_S: f64 = 4000.0 * 3600.0;
 
-/// A table, and its fields by name.
 struct Entry<'a> {
     source: &'a Source<'a>,
     index: usize,
@@ -29,7 +27,7 @@ impl Entry<'_> {
         self.source.error(&self.field(name), what, remedy)
     }
 
-    /// A time in ticks, one at least.
+    /// Converts a time to ticks, at least one.
     fn ticks(&self, name: &str, seconds: Option<f64>, tick_s: f64) -> Result<Option<NonZeroU32>, ScenarioError> {
         let Some(seconds) = seconds else {
             return Ok(None);
@@ -38,7 +36,7 @@ impl Entry<'_> {
         Ok(NonZeroU32::new(tick(seconds, tick_s)))
     }
 
-    /// The cells that are meant; `None`: all.
+    /// Cells that the change affects; `None`: all.
     fn cells(&self, land: &Terrain) -> Result<Option<Vec<Cell>>, ScenarioError> {
         let all = || (0..land.height()).flat_map(|y| (0..land.width()).map(move |x| Cell::new(x as i16, y as i16)));
         match (&self.table.cells, self.table.rectangle, &self.table.polygon_m) {
@@ -124,7 +122,6 @@ impl Entry<'_> {
     }
 }
 
-/// Checks the tables.
 pub(super) fn changes(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -134,7 +131,7 @@ pub(super) fn changes(
     tables.enumerate().map(|(index, table)| Entry { source, index, table }.change(file, land)).collect()
 }
 
-/// Whether a place is in a polygon: a ray to the east crosses an odd number of its sides.
+/// Even-odd test: a ray to the east crosses an odd number of the polygon's sides.
 fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let before = corners.iter().cycle().skip(corners.len() - 1);
     let sides = before.zip(corners).filter(|([_, from], [_, to])| (*from > y) != (*to > y));
@@ -164,17 +161,17 @@ mod tests {
     }
 
     #[test]
-    fn cells_are_meant_one_by_one_by_rectangle_and_by_polygon() {
+    fn cells_are_given_by_list_rectangle_or_polygon() {
         assert_eq!(cells("class = 0\ncells = [[3, 4], [7, 5]]"), [(3, 4), (7, 5)]);
         let rectangle = "class = 0\nrectangle = { x = 6, y = 1, width = 2, height = 2 }";
         assert_eq!(cells(rectangle), [(6, 1), (7, 1), (6, 2), (7, 2)]);
-        // Middles are at odd metres.
+        // Cell centres are at odd metres.
         assert_eq!(cells("class = 0\npolygon_m = [[0, 0], [6, 0], [0, 6]]"), [(0, 0), (1, 0), (0, 1)]);
         assert_eq!(cells("class = 0\npolygon_m = [[0, 0], [0, 6.1], [6.1, 0]]").len(), 6);
     }
 
     #[test]
-    fn times_become_ticks() {
+    fn times_are_converted_to_ticks() {
         let gate = parse("at_s = 2\nevery_s = 3\nfor_s = 1.2\nclass = 0\ncells = [[3, 4]]").expect("good");
         let LandChange { first, every, kind: ChangeKind::Become { lasts, .. } } = &gate.changes[0] else {
             panic!("it is a gate");
@@ -183,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_draws_a_share_of_its_cells_and_one_at_least() {
+    fn a_drift_draws_its_share_of_cells_and_at_least_one() {
         for (share, expected) in [(0.5, 24), (0.0, 1), (1.0, 48)] {
             let scenario = parse(&format!("every_s = 1\ndrift = {{ share = {share} }}")).expect("good");
             let ChangeKind::Drift { cells: None, draws, step: 1, classes } = scenario.changes[0].kind else {
@@ -194,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused_with_place_and_remedy() {
+    fn invalid_changes_are_refused_with_place_and_remedy() {
         for (change, field, remedy) in [
             ("class = 0", "class", "give cells"),
             ("cells = [[1, 1]]", "class", "one of class, drift"),

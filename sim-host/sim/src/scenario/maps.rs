@@ -1,4 +1,4 @@
-//! `[maps]`: what robots tell each other of the land.
+//! `[maps]`: exchange of terrain maps between robots.
 
 use super::ranges::within;
 use super::source::Source;
@@ -10,20 +10,19 @@ use staya_controller::land::MapParams;
 use staya_controller::route::{ExitRule, Replan};
 use staya_controller::time::Duration;
 
-/// The longest time for which a map can hold what it was told, seconds: half the range of the robots' clocks.
+/// Longest time for which a map entry is kept, seconds: half the range of the robots' clocks.
 const LONGEST_S: f64 = 2100.0;
 
-/// `[maps]`: robots that go by land tell each other what they see of it.
+/// `[maps]`: robots that plan on terrain exchange what they see of it.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct MapsTable {
-    /// Whether they do. Default: false.
+    /// Whether maps are exchanged. Default: false.
     pub share: bool,
-    /// How long they hold what they were told, seconds, 1 to 2100. Default: 600.
+    /// How long received map entries are kept, seconds, 1 to 2100. Default: 600.
     pub forget_after_s: Option<f64>,
 }
 
-/// How the robots share their maps; `None`: not at all.
 pub(super) fn sharing(
     source: &Source<'_>,
     file: &ScenarioFile,

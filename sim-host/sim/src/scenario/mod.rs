@@ -1,7 +1,6 @@
-//! Scenarios: what to simulate, read from TOML and checked before anything runs.
+//! Scenarios: simulation inputs, read from TOML and checked before a run starts.
 //!
-//! [`ScenarioFile`] documents every field. A wrong one gives an error that names the file, the line,
-//! the field and the remedy.
+//! [`ScenarioFile`] documents every field. Errors name file, line, field and remedy.
 
 mod authentication;
 mod check;
@@ -63,141 +62,142 @@ use staya_controller::robot::RobotId;
 use std::ops::Range;
 use std::path::Path;
 
-/// Where the fields are listed.
 const LIST: &str = "scenarios/README.md";
 
-/// What the command line may say instead of the file.
+/// Command-line values that replace fields of the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Overrides {
-    /// Instead of `seed`.
+    /// Replaces `seed`.
     pub seed: Option<u64>,
-    /// Instead of `ticks`; at least 1.
+    /// Replaces `ticks`; at least 1.
     pub ticks: Option<u32>,
 }
 
-/// Robots that stand in one place of the file.
+/// Robots that one table of the file describes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
-    /// The table that describes them: `plane`, `plane.group[0]`, `robots.formation[1]`.
+    /// The table: `plane`, `plane.group[0]` or `robots.formation[1]`.
     pub table: String,
-    /// The robots, counted from 0.
+    /// Robot indices, counted from 0.
     pub members: Range<usize>,
 }
 
-/// A robot that goes down for a while.
+/// A temporary failure of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault {
-    /// Which one.
+    /// Id of the robot.
     pub robot: RobotId,
-    /// The first tick in which it stands and is silent.
+    /// First tick in which the robot is stationary and silent.
     pub from_tick: u32,
-    /// The tick in which it starts anew; not before `from_tick`.
+    /// Tick in which the robot restarts; at least `from_tick`.
     pub to_tick: u32,
 }
 
-/// Somebody who wants the robots to go elsewhere.
+/// An attacker that tries to divert the robots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attack {
-    /// What it does.
+    /// Method of the attack.
     pub kind: AttackKind,
-    /// Where it stands, metres.
+    /// Position of its radio, metres.
     pub place_m: [f64; 2],
-    /// The first tick in which it sends.
+    /// First tick in which it sends.
     pub from_tick: u32,
-    /// The first tick in which it does not any more.
+    /// First tick after the attack.
     pub to_tick: u32,
-    /// Where it orders the robots to, metres.
+    /// Place to which it orders the robots, metres.
     pub lure_m: [f64; 2],
-    /// In whose name.
+    /// Robot id that it impersonates.
     pub claims: RobotId,
-    /// Ticks from what it hears to its repetition.
+    /// Replay delay, ticks.
     pub delay_ticks: u32,
-    /// What an insider says.
+    /// False statements of an insider.
     pub lies: Vec<Lie>,
-    /// How many robots of an insider's do not exist.
+    /// Number of robots that an insider invents.
     pub ghosts: u8,
 }
 
-/// Who has what all keys are made of, and what he does with it.
+/// The operator that holds the master secret, and its key rotations.
 #[derive(Clone, Debug)]
 pub struct Keeping {
-    /// His secret.
+    /// Secret from which all keys are derived.
     pub master: Key,
-    /// Where his radio stands, metres.
+    /// Position of the operator's radio, metres.
     pub place_m: [f64; 2],
-    /// Ticks for which he waits at most, in each phase of a roll.
+    /// Longest wait in each phase of a key rotation, ticks.
     pub overlap_ticks: u32,
-    /// By rising tick.
+    /// Key rotations, sorted by tick.
     pub rolls: Vec<Roll>,
 }
 
-/// The swarm gets another key.
+/// A key rotation of the swarm.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Roll {
-    /// When it begins.
+    /// Tick in which the rotation begins.
     pub tick: u32,
-    /// Who does not get it, nor any later one.
+    /// Robots that do not receive this key or any later one.
     pub revoke: Vec<RobotId>,
 }
 
 /// A checked scenario, ready to run.
 #[derive(Clone, Debug)]
 pub struct Scenario {
-    /// Its name.
+    /// Name of the scenario.
     pub name: String,
-    /// Seed of everything random.
+    /// Seed of all random draws.
     pub seed: u64,
     /// Ticks after which the run ends.
     pub ticks: u32,
     /// Length of a tick, microseconds.
     pub tick_us: u32,
-    /// The land; one flat cell when bodies in the plane have none.
+    /// The terrain; one flat cell for a plane without terrain.
     pub terrain: Terrain,
-    /// How it changes while the run goes on.
+    /// Changes of the terrain during the run.
     pub changes: Vec<LandChange>,
-    /// What robots know of it before they see it; `None`: nothing, and they remember no more than their laws do.
+    /// Terrain that robots know before they see it; `None`: nothing, and they remember only what
+    /// their laws store.
     pub scouting: Option<Scouting>,
-    /// How bodies move.
+    /// Rules of movement on the grid.
     pub rules: MoveRules,
-    /// The radio.
+    /// Parameters of the radio.
     pub radio: RadioParams,
-    /// Who takes part, by rising number; starts are free and no two are the same, nor are goals.
+    /// Robots, sorted by id. Starts are free and distinct; goals are distinct.
     pub robots: Vec<Robot>,
-    /// The formations that robots keep; nobody is in two.
+    /// Formations; each robot is in at most one.
     pub formations: Vec<Formation>,
-    /// Groups of robots that differ, as the file has them; empty: all are alike.
+    /// Groups of different robots, in the file's order; empty if all robots are alike.
     pub parts: Vec<Part>,
-    /// Bodies in the plane or in space, if they do not move from cell to cell.
+    /// Bodies in the plane or in space; `None`: robots move from cell to cell.
     pub plane: Option<PlaneSetup>,
-    /// How robots in the plane see each other, if they do.
+    /// Sensing of other robots in the plane; `None`: disabled.
     pub eyes: Option<Eyes>,
-    /// How robots find their ways.
+    /// Route planning of the robots.
     pub route: RouteSetup,
-    /// How robots share what they see of the land, if they do.
+    /// Exchange of terrain maps; `None`: disabled.
     pub maps: Option<MapParams>,
-    /// How robots keep a formation, if they do.
+    /// Parameters of formation keeping.
     pub formation_params: FormationParams,
-    /// How they do instead, if they do as the paper has it: cell by cell only.
+    /// Parameters of the published formation law, if it replaces Staya's; grid only.
     pub published: Option<PublishedParams>,
-    /// Whether those who follow look ahead ([`Course`](staya_controller::formation::Course)): cell by cell only.
+    /// Whether followers predict the formation's course
+    /// ([`Course`](staya_controller::formation::Course)); grid only.
     pub looks_ahead: bool,
-    /// Robots that go down.
+    /// Temporary failures of robots.
     pub faults: Vec<Fault>,
-    /// What somebody does to the run, by rising tick.
+    /// Interventions with their ticks, sorted by tick.
     pub interventions: Vec<(u32, Intervention)>,
-    /// Robots by their numbers here, each with the number that it says.
+    /// Robots with a wrong id: the id in this scenario, then the id that the robot claims.
     pub misnumbered: Vec<(RobotId, RobotId)>,
-    /// What all robots share; `None`: they believe everybody.
+    /// Shared key of the swarm; `None`: beacons are not authenticated.
     pub key: Option<Key>,
-    /// The operator, if each robot has a key of its own.
+    /// The operator's keys, if each robot has its own key.
     pub keeping: Option<Keeping>,
-    /// What the owner of the key's file should know, as a line for people.
+    /// Warning for the owner of the key file.
     pub key_remark: Option<String>,
-    /// What robots may say of themselves and be believed.
+    /// Plausibility limits on received beacons.
     pub claims: Claims<f32>,
-    /// Those who want something else.
+    /// Attackers.
     pub attacks: Vec<Attack>,
-    /// What its file says, with what the command line says instead, for results; secrets are left out.
+    /// Fields of the file with overrides applied, for result files; without secrets.
     pub parameters: serde_json::Value,
 }
 
@@ -205,13 +205,14 @@ impl Scenario {
     /// Reads and checks a scenario file and the files that it names.
     ///
     /// # Errors
-    /// [`ScenarioError`], naming file, line, field and remedy.
+    /// A [`ScenarioError`] that names file, line, field and remedy.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
         let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::parse(&text, path, overrides)
     }
 
-    /// As [`Scenario::load`], of a text that stands (or might stand) in the file `path`.
+    /// Parses and checks the text of a scenario. `path` appears in errors and resolves relative
+    /// file names; the file does not have to exist.
     ///
     /// # Errors
     /// See [`Scenario::load`].
@@ -310,7 +311,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// What who runs it should know: lines for people, about the key's file, gains that are dangerous, and what is hardly meant in `[plane]`.
+    /// Warnings, one line each: key file, unstable gains, probable mistakes in `[plane]`.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let groups = self.plane.iter().flat_map(PlaneSetup::kinds);
@@ -322,7 +323,7 @@ impl Scenario {
         self.key_remark.clone().into_iter().chain(gains).chain(plane).collect()
     }
 
-    /// The robots, each with the number that it says.
+    /// The robots with the ids that they claim ([`misnumbered`](Self::misnumbered)).
     #[must_use]
     pub fn numbered(&self) -> Vec<Robot> {
         let number =
@@ -338,7 +339,7 @@ impl Scenario {
     }
 }
 
-/// The fields of a scenario's text, which is sound, with the seed and the ticks that are in force.
+/// Fields of a valid scenario, with the effective seed and ticks and without secrets.
 fn parameters(source: &Source<'_>, file: &ScenarioFile) -> serde_json::Value {
     let mut fields: serde_json::Value = source.read(LIST).unwrap_or_default();
     if let Some(fields) = fields.as_object_mut() {

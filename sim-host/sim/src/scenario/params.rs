@@ -1,5 +1,6 @@
-//! `[route]` and `[formation]`: how the robots choose their ways. All fields are optional; their
-//! defaults are the controller's, as listed in scenarios/README.md (which a test compares).
+//! `[route]` and `[formation]`: route planning and formation keeping. All fields are optional.
+//! Their defaults are the controller's; scenarios/README.md lists them, and a test compares the
+//! two.
 
 use super::ranges::within;
 use super::source::Source;
@@ -23,30 +24,29 @@ pub struct GridTable {
     pub corner_cutting: bool,
 }
 
-/// The largest window radius that the simulator has memory for.
+/// Largest window radius for which the simulator reserves memory.
 const MAX_RADIUS: u8 = 16;
 
 /// `[route]`: windowed routing (KUZ sections 3 and 5). Coefficients are rounded to sixteenths.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RouteTable {
-    /// How far a robot sees, cells in each direction, 1 to 16.
+    /// Sight, cells in each direction, 1 to 16.
     pub radius: Option<u8>,
     /// Which border cells of the window end a route: `"best"` (eq. 10) or `"ray"` (alg. 3).
     pub exit: Option<ExitRule>,
-    /// When to search: `"each_cell"` or `"until_changed"` (follow the chain; robots without
-    /// formation only).
+    /// When to plan: `"each_cell"` or `"until_changed"` (keeps its plan; not in formations).
     pub replan: Option<Replan>,
     /// Weight of travel time, 0 to 4095.
     pub a0: Option<f64>,
-    /// Ticks that a cell with another robot costs extra, 0 to 4095.
+    /// Extra ticks for a cell that another robot occupies, 0 to 4095.
     pub a1: Option<f64>,
     /// Ticks per earlier visit of a cell, 0 to 4095.
     pub a2: Option<f64>,
-    /// Ticks per cell of distance from the exit to the target, 0 to 4095.
+    /// Ticks per cell of distance from the exit to the goal, 0 to 4095.
     pub a3: Option<f64>,
-    /// Weighted shuffle: a move that costs so many ticks more than another is half as likely to be
-    /// tried first, 0 to 4095; 0: cheapest first, without chance.
+    /// Weighted shuffle: a move that costs this many more ticks than another is half as likely to
+    /// be tried first, 0 to 4095. 0: cheapest first, without randomness.
     pub halved_per_ticks: Option<f64>,
 }
 
@@ -54,40 +54,38 @@ pub struct RouteTable {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct FormationTable {
-    /// Which law: `"staya"`; `"lookahead"`, the same with followers who plan their way to where their places will be; `"paper"` as
-    /// A. V. Kuznetsov has it. The last two go cell by cell only.
+    /// The law: `"staya"`; `"lookahead"` (`"staya"` with followers that plan to where their places
+    /// will be); `"paper"` (as published by A. V. Kuznetsov). The last two are for the grid only.
     pub law: Option<FormationLaw>,
-    /// Steps along edges of the formation's graph within which robots are each other's neighbours, 1 or
-    /// more; nobody may have more than 8. Default: the largest of 3, 2, 1 that fits.
+    /// Largest number of graph edges between robots that count as neighbours, 1 or more; no robot
+    /// may have more than 8 neighbours. Default: the largest of 3, 2, 1 that fits.
     pub rho: Option<u8>,
-    /// How far from its place a neighbour may be and still counts as found, cells.
+    /// Distance from its place within which a neighbour counts as found, cells.
     pub eps: Option<u8>,
-    /// Price of being off one's place, ticks per cell, 0 to 4095; rounded to sixteenths.
+    /// Cost of distance from the own place, ticks per cell, 0 to 4095; rounded to sixteenths.
     pub gain: Option<f64>,
-    /// How far somebody may fall behind before the top leader waits (r0), 0 to 900 cells.
+    /// Lag of a follower at which the top leader waits (r0), 0 to 900 cells.
     pub halt_cells: Option<f64>,
-    /// How near he must have come again before it goes on, cells; at most `halt_cells`.
+    /// Lag at which the waiting leader continues, cells; at most `halt_cells`.
     pub resume_cells: Option<f64>,
-    /// Whether the top leader waits for those behind; not with `law = "paper"`, nor in the plane.
+    /// Whether the top leader waits for followers; not with `law = "paper"`, nor in the plane.
     pub waits: Option<bool>,
-    /// How many may be missing or too many before others are asked to choose another direction; with `law = "paper"`.
+    /// Number of missing or surplus robots above which others are asked to choose another
+    /// direction; with `law = "paper"`.
     pub crowd: Option<u8>,
-    /// How far ahead of the top leader's cell the others aim, cells.
+    /// How far ahead of the top leader's cell the followers aim, cells.
     pub lead: Option<u8>,
-    /// Share of the land under the others' places in what a cell costs the top leader, 0 to 1; rounded
-    /// to sixteenths.
+    /// Weight of the land under followers in the leader's costs, 0 to 1; rounded to sixteenths.
     pub footprint: Option<f64>,
-    /// Whether those behind a dead robot move up, each by a place; otherwise its place stays empty.
+    /// Whether robots behind a dead robot move up a place each; otherwise its place stays empty.
     pub closes_ranks: Option<bool>,
-    /// How others are foreseen: `"constant"` (they go on as announced) or `"reflexive"`
-    /// ("what would I do in its place").
+    /// Prediction of the other robots: `"constant"` (they continue as announced) or `"reflexive"`
+    /// (they decide as this robot would in their place).
     pub prediction: Option<Prediction>,
-    /// What the top leader does meanwhile: `"wait"` or `"def"` (heads for where the others
-    /// are off to).
+    /// Reaction of the top leader to lag: `"wait"` or `"def"` (go where the others are heading).
     pub recovery: Option<Recovery>,
 }
 
-/// How far robots see, cells in each direction.
 pub(super) fn sight(file: &ScenarioFile) -> u8 {
     file.route.radius.unwrap_or(RouteParams::default().radius)
 }
@@ -160,12 +158,10 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
     Ok(params)
 }
 
-/// Whether the robots keep a formation with followers who look ahead.
 pub(super) fn looks_ahead(table: &FormationTable) -> bool {
     table.law == Some(FormationLaw::Lookahead)
 }
 
-/// The paper's law, if the robots keep a formation by it.
 pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<Option<PublishedParams>, ScenarioError> {
     if table.law != Some(FormationLaw::Paper) {
         return Ok(None);

@@ -1,16 +1,15 @@
-//! What the checks of several tables share.
+//! Range checks and conversions shared by several tables.
 
 use super::source::{ScenarioError, Source};
 
-/// Seconds as whole microseconds, rounded.
 pub(super) fn micros(seconds: f64) -> u32 {
     libm::round(seconds * 1e6) as u32
 }
 
-/// A number that must lie between two others, both allowed.
+/// Checks that `low <= value <= high`.
 ///
 /// # Errors
-/// The place and the range, when it does not.
+/// Names the field and the range.
 pub fn within(
     source: &Source<'_>,
     field: &str,

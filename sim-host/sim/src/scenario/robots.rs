@@ -1,4 +1,4 @@
-//! The robots of a scenario: from the `[robots]` table to robots with starts and goals.
+//! Builds robots with starts and goals from the `[robots]` table.
 
 mod table;
 
@@ -17,49 +17,49 @@ use staya_controller::template::{Template, TemplateError};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// Keep the draws of this module apart from all others.
 const PLACES: u32 = 0x0053_0001;
 const GOALS: u32 = 0x0053_0002;
 
-/// How often a goal is drawn before the scenario is refused as too crowded.
+/// Draws of a goal before the scenario is refused as too crowded.
 const TRIES: u32 = 10_000;
 
-/// Places of the largest formation: a place is a byte on the wire.
+/// Largest number of places in a formation: a beacon encodes a place in one byte.
 const MAX_PLACES: u16 = 255;
 
 /// A robot of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Robot {
-    /// Its number.
+    /// Id of the robot.
     pub id: RobotId,
-    /// Where it starts.
+    /// Start cell.
     pub start: Cell,
-    /// Where it should go.
+    /// Goal cell.
     pub goal: Cell,
 }
 
-/// The graph that a formation keeps (KUZ section 2: Phi).
+/// A formation's graph (KUZ section 2: Phi).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Formation {
-    /// Where each robot should be, in cells relative to the first.
+    /// Place of each robot, in cells relative to the first.
     pub places: Vec<Cell>,
-    /// Pairs of places that are neighbours, each pair once, the smaller first.
+    /// Pairs of neighbouring places, each pair once, the smaller index first.
     pub edges: Vec<(u16, u16)>,
-    /// What the robot of each place knows of it.
+    /// Knowledge of the formation in the robot of each place.
     pub templates: Vec<Template<TEMPLATE>>,
-    /// The robot that has the first place, the top leader, counted from 0; the others follow it in the order of places.
+    /// Index of the robot at the first place, the top leader, counted from 0; the others follow it
+    /// in the order of places.
     pub first: usize,
 }
 
 impl Formation {
-    /// Its robots, counted from 0, in the order of their places.
+    /// Robot indices of the members, counted from 0, in the order of their places.
     #[must_use]
     pub fn members(&self) -> Range<usize> {
         self.first..self.first + self.places.len()
     }
 
-    /// The same formation of robots from robot `first` on, counted from 0, whose number is `id`: templates name members by
-    /// numbers, which is what tells formations apart.
+    /// Assigns the formation to the robots from index `first` on, whose ids start at `id`.
+    /// Templates contain member ids, which distinguish formations.
     pub(super) fn of(mut self, first: usize, id: u32) -> Self {
         self.first = first;
         for entry in self.templates.iter_mut().flat_map(|template| &mut template.entries) {
@@ -69,7 +69,6 @@ impl Formation {
     }
 }
 
-/// A robot and the field that put it there.
 struct Entry {
     robot: Robot,
     field: String,
@@ -117,7 +116,7 @@ pub(super) fn build(
     Ok((robots, formations))
 }
 
-/// A formation of a group in the plane, as if there were no other robots; [`Formation::of`] says which they are.
+/// Builds a formation of a group in the plane; [`Formation::of`] assigns it to robots.
 pub(super) fn of_group(
     source: &Source<'_>,
     field: &str,
@@ -130,7 +129,7 @@ pub(super) fn of_group(
     Ok((entries.into_iter().map(|entry| entry.robot).collect(), formation))
 }
 
-/// A formation of the robots behind `before` others.
+/// Builds a formation that follows `before` other robots.
 fn formation(
     source: &Source<'_>,
     field: &str,
@@ -188,7 +187,7 @@ fn graph(
     }
     let templates =
         |rho| (0..places.len()).map(|own| Template::from_graph(&places, &edges, own, rho)).collect::<Result<_, _>>();
-    // Who knows more of the formation keeps it better: the largest usual radius that fits.
+    // More knowledge keeps the formation better: use the largest rho that fits.
     let templates = match rho {
         Some(rho) => templates(rho),
         None => templates(3).or_else(|_| templates(2)).or_else(|_| templates(1)),
@@ -284,11 +283,11 @@ fn given_graph(
     Ok((places, pairs.into_iter().collect()))
 }
 
-/// The first place that no edges join to the first one. O(places * edges).
+/// First place that is not connected to place 0. O(places * edges).
 fn unreached(count: usize, edges: &BTreeSet<(u16, u16)>) -> Option<usize> {
     let mut reached = vec![false; count];
     *reached.first_mut()? = true;
-    // A way along edges has fewer steps than there are places.
+    // A path has fewer edges than there are places.
     for _ in 1..count {
         for &(a, b) in edges {
             let (a, b) = (usize::from(a), usize::from(b));
@@ -380,8 +379,8 @@ fn from_scen(source: &Source<'_>, entry: &ScenEntry, terrain: &Terrain) -> Resul
         .collect()
 }
 
-/// Robots are numbered from south to north and, within a row, from west to east, so that neighbours
-/// on the land are neighbours in memory.
+/// Draws starts and goals. Robots are numbered from south to north and, within a row, from west to
+/// east, so that neighbours on the land are neighbours in memory.
 fn scattered(
     source: &Source<'_>,
     entry: &ScatteredEntry,
@@ -444,7 +443,7 @@ fn scattered(
         .collect()
 }
 
-/// Numbers are unique, starts and goals on passable land, and nobody has another's start or goal.
+/// Checks that ids are unique, and that starts and goals are distinct and on passable cells.
 fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<(), ScenarioError> {
     if entries.is_empty() {
         return Err(source.error("robots", "nobody takes part", "give at least one robot"));

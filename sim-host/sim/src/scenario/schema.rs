@@ -1,7 +1,7 @@
-//! What a scenario file may say: the one place where every field is documented.
+//! The top-level fields of a scenario file, with their documentation.
 //!
-//! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times are
-//! simulated. File names are relative to the scenario file.
+//! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times
+//! are simulated. File names are relative to the scenario file.
 
 use super::claims::ClaimsTable;
 use super::formation::FormationEntry;
@@ -20,9 +20,9 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
-    /// Name of the scenario; the run's results go to `out/<name>`. Letters, digits, `-` and `_`.
+    /// Name of the scenario; results go to `out/<name>`. Letters, digits, `-` and `_`.
     pub name: String,
-    /// Seed of everything random. Default: 0. `--seed` replaces it.
+    /// Seed of all random draws. Default: 0. `--seed` replaces it.
     #[serde(default)]
     pub seed: u64,
     /// Ticks after which the run ends, 1 or more; it ends earlier when all robots have arrived.
@@ -32,44 +32,44 @@ pub struct ScenarioFile {
     /// impassability 1. Default: 1.
     #[serde(default = "one")]
     pub tick_s: f64,
-    /// The land; may be left out with `[plane]`.
+    /// The terrain; optional with `[plane]`.
     pub terrain: Option<TerrainTable>,
-    /// What robots know of the land before they see it. Default: nothing.
+    /// Terrain that robots know before they see it. Default: none.
     pub scouting: Option<ScoutingTable>,
     /// Rules of the grid.
     #[serde(default)]
     pub grid: GridTable,
-    /// The radio. Without this table: perfect within 100 m.
+    /// The radio. Default: lossless within 100 m.
     #[serde(default)]
     pub radio: RadioParams,
-    /// Who takes part, in cells; with `[plane]`, `plane.robots` may say it in metres instead.
+    /// Robots in cells; with `[plane]`, `plane.robots` may give them in metres instead.
     pub robots: Option<RobotsTable>,
     /// Bodies that move in the plane or in space instead of from cell to cell.
     pub plane: Option<PlaneTable>,
-    /// How robots find their ways.
+    /// Route planning.
     #[serde(default)]
     pub route: RouteTable,
-    /// What robots tell each other of the land.
+    /// Exchange of terrain maps.
     #[serde(default)]
     pub maps: MapsTable,
-    /// How robots keep a formation.
+    /// Formation keeping.
     #[serde(default)]
     pub formation: FormationTable,
-    /// Robots that fail during the run.
+    /// Temporary failures of robots.
     #[serde(default)]
     pub fault: Vec<FaultTable>,
-    /// What somebody does to the run: goals, obstacles, radio, parameters.
+    /// Changes during the run: goals, obstacles, radio, parameters.
     #[serde(default)]
     pub intervention: Vec<InterventionTable>,
-    /// Robots that have the number of another one, by mistake.
+    /// Robots that use the id of another robot by mistake.
     #[serde(default)]
     pub misnumbered: Vec<MisnumberedTable>,
-    /// The robots' common key. Without this table everybody is believed.
+    /// Shared key of the robots. Default: beacons are not authenticated.
     pub authentication: Option<AuthenticationTable>,
-    /// What robots may say of themselves and be believed.
+    /// Plausibility limits on received beacons.
     #[serde(default)]
     pub claims: ClaimsTable,
-    /// Radios at the roadside whose owners want the robots to go elsewhere.
+    /// Attackers with radios.
     #[serde(default)]
     pub attack: Vec<AttackTable>,
 }
@@ -81,13 +81,12 @@ impl ScenarioFile {
         self.robots.as_ref().is_some_and(|robots| !robots.formation.is_empty())
     }
 
-    /// Whether any robots keep one.
+    /// Whether any robots keep a formation.
     #[must_use]
     pub fn in_formation(&self) -> bool {
         self.cells_in_formation() || !self.group_formations().is_empty()
     }
 
-    /// The formations of groups in the plane.
     pub(super) fn group_formations(&self) -> Vec<&FormationEntry> {
         let groups = self.plane.iter().flat_map(|plane| &plane.group);
         groups.filter_map(|group| group.robots.formation.as_ref()).collect()
@@ -102,46 +101,49 @@ const fn one() -> f64 {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TerrainTable {
-    /// A map: `.map` (Moving AI), `.asc` (ESRI heights), `.yaml` (ROS map_server).
+    /// A map file: `.map` (Moving AI), `.asc` (ESRI heights), `.yaml` (ROS map_server).
     pub file: Option<PathBuf>,
-    /// Each cell's impassability drawn on its own. With `classes = 1`: flat land.
+    /// Impassability drawn independently for each cell. With `classes = 1`: flat terrain.
     pub uniform: Option<UniformTable>,
     /// Hills of mud (KUZ section 5).
     pub natural: Option<NaturalTable>,
-    /// Land with a wanted configuration entropy and total edge (KUZ section 4).
+    /// Terrain with a given configuration entropy and total edge (KUZ section 4).
     pub entropy: Option<EntropyTable>,
-    /// How the file becomes impassability: `{ swamp, downsample, unknown, classes, slope = { classes, max_slope } }`.
+    /// Conversion of the file to impassability: `{ swamp, downsample, unknown, classes, slope = {
+    /// classes, max_slope } }`.
     #[serde(default)]
     pub load: LoadOptions,
-    /// The part of the map to use. Default: all of it.
+    /// Part of the map to use. Default: all of it.
     pub crop: Option<Crop>,
-    /// Side of a cell in metres, more than 0. Default: what the map says, else 1.
+    /// Side of a cell in metres, more than 0. Default: the map's value, else 1.
     pub cell_m: Option<f64>,
-    /// How the land changes while the run goes on.
+    /// Changes of the terrain during the run.
     #[serde(default)]
     pub change: Vec<ChangeTable>,
 }
 
-/// `[[terrain.change]]`: exactly one of `class`, `drift`; at most one of `cells`, `rectangle`, `polygon_m` (one with `class`).
+/// `[[terrain.change]]`: exactly one of `class`, `drift`; at most one of `cells`, `rectangle`,
+/// `polygon_m` (one with `class`).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChangeTable {
-    /// When, seconds after the start; before the tick that begins then, or the next one. Default: 0.
+    /// Time, seconds after the start. Applied before the first tick from then on. Default: 0.
     #[serde(default)]
     pub at_s: f64,
-    /// It happens again after so many seconds. Default: once.
+    /// Period of repetition, seconds. Default: once.
     pub every_s: Option<f64>,
-    /// With `class`: after so many seconds the cells are again as the map has them; less than `every_s`. Default: never.
+    /// With `class`: time after which the cells revert to the map's values, seconds; less than
+    /// `every_s`. Default: never.
     pub for_s: Option<f64>,
-    /// Cells, each by itself.
+    /// Individual cells.
     pub cells: Option<Vec<[i16; 2]>>,
     /// All cells of a rectangle.
     pub rectangle: Option<Crop>,
-    /// All cells whose middle is in a polygon with these corners, metres.
+    /// All cells whose centre is in a polygon with these corners, metres.
     pub polygon_m: Option<Vec<[f64; 2]>>,
-    /// What the cells become: ticks to cross one, 1 to 255; 0: closed.
+    /// New value of the cells: ticks to cross one, 1 to 255; 0: closed.
     pub class: Option<u8>,
-    /// Some of the cells become slower or faster instead.
+    /// Makes some of the cells slower or faster instead.
     pub drift: Option<DriftTable>,
 }
 
@@ -149,12 +151,12 @@ pub struct ChangeTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DriftTable {
-    /// How many of the cells are drawn each time, as a share of them, 0 to 1; one at least.
+    /// Share of the cells that are drawn each time, 0 to 1; at least one cell.
     pub share: f64,
-    /// By how many ticks they become slower or faster to cross, 1 to 254. Default: 1.
+    /// Change of the crossing time, ticks, 1 to 254. Default: 1.
     #[serde(default = "one_class")]
     pub step: u8,
-    /// The slowest that a cell becomes, ticks. Default: the slowest of the map.
+    /// Longest crossing time of a cell, ticks. Default: the longest of the map.
     pub classes: Option<u8>,
 }
 
@@ -173,7 +175,7 @@ pub struct UniformTable {
     /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
     #[serde(default = "nine")]
     pub classes: u8,
-    /// Seed of the land. Default: the scenario's seed.
+    /// Seed of the terrain. Default: the scenario's seed.
     pub seed: Option<u64>,
 }
 
@@ -188,7 +190,7 @@ pub struct NaturalTable {
     /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
     #[serde(default = "nine")]
     pub classes: u8,
-    /// Seed of the land. Default: the scenario's seed.
+    /// Seed of the terrain. Default: the scenario's seed.
     pub seed: Option<u64>,
     /// Number of hilltops.
     pub obstacles: u32,
@@ -208,16 +210,16 @@ pub struct EntropyTable {
     /// Number of classes: a cell takes 1 to this many ticks. Default: 9.
     #[serde(default = "nine")]
     pub classes: u8,
-    /// Seed of the land. Default: the scenario's seed.
+    /// Seed of the terrain. Default: the scenario's seed.
     pub seed: Option<u64>,
-    /// Wanted configuration entropy S, 0 to ln(classes).
+    /// Target configuration entropy S, 0 to ln(classes).
     pub entropy: f64,
-    /// How far S may be off. Default: 0.01.
+    /// Tolerance of S. Default: 0.01.
     #[serde(default = "hundredth")]
     pub entropy_tolerance: f64,
-    /// Wanted total edge TE.
+    /// Target total edge TE.
     pub total_edge: u64,
-    /// How far TE may be off. Default: 0.
+    /// Tolerance of TE. Default: 0.
     #[serde(default)]
     pub edge_tolerance: u64,
 }
@@ -234,23 +236,23 @@ const fn hundredth() -> f64 {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ScoutingTable {
-    /// An old map: a file like that of `[terrain]`, read and cropped in the same way. Default: the land as it is at the start.
+    /// An outdated map, read and cropped as in `[terrain]`. Default: the terrain at the start.
     pub map: Option<PathBuf>,
     /// Share of the map's patches that are unknown, 0 to 1. Default: 0.
     pub unknown: f64,
-    /// Share of the map's patches that show what is elsewhere on it, 0 to 1. Default: 0.
+    /// Share of the map's patches that show another part of it, 0 to 1. Default: 0.
     pub wrong: f64,
-    /// Cells along each side of a patch, 1 to 1000. Default: 1.
+    /// Side of a patch, cells, 1 to 1000. Default: 1.
     pub patch_cells: Option<u16>,
-    /// What robots take unknown cells for: ticks to cross one, 1 to 255. Default: the median of the map.
+    /// Assumed crossing time of unknown cells, ticks, 1 to 255. Default: the median of the map.
     pub assumed: Option<u8>,
-    /// Seed of what is unknown and wrong. Default: the scenario's.
+    /// Seed of the unknown and wrong patches. Default: the scenario's seed.
     pub seed: Option<u64>,
-    /// How far robots plan on what they know, cells in each direction, 1 to 16, not less than `route.radius`. Default: 16.
+    /// Planning radius, cells in each direction, 1 to 16, at least `route.radius`. Default: 16.
     pub radius: Option<u8>,
 }
 
-/// A rectangle of cells: `{ x, y, width, height }`, x and y being its south-west corner.
+/// A rectangle of cells: `{ x, y, width, height }`, where x and y are its south-west corner.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[expect(missing_docs, reason = "said above")]
@@ -261,47 +263,49 @@ pub struct Crop {
     pub height: u16,
 }
 
-/// `[[fault]]`: a robot whose computer goes down and comes up again, having forgotten everything
-/// but its number, its parameters and its task.
+/// `[[fault]]`: a robot's computer fails and restarts. It keeps only id, parameters and task; its
+/// clock restarts at 0.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FaultTable {
-    /// The robot.
+    /// Id of the robot.
     pub robot: u32,
-    /// When it goes down, seconds after the start.
+    /// Time of the failure, seconds after the start.
     pub at_s: f64,
-    /// How long it stands and is silent, seconds. Its clock starts from 0 again. Default: 0.
+    /// Time until the restart, seconds; the robot is stationary and silent. Default: 0.
     #[serde(default)]
     pub down_s: f64,
 }
 
-/// `[[misnumbered]]`: a robot whose owner gave it the number of another one. In this file and in the results it keeps its own.
+/// `[[misnumbered]]`: a robot with the id of another one; file and results use its own.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MisnumberedTable {
-    /// The robot.
+    /// Correct id of the robot.
     pub robot: u32,
-    /// The number that it takes for its own.
+    /// Id that the robot uses.
     pub number: u32,
 }
 
-/// `[authentication]`: exactly one of these. Robots then tag (postcard) or sign (MAVLink) what they send, and hear only who has the key.
+/// `[authentication]`: exactly one of the four key fields. Robots then tag (postcard) or sign
+/// (MAVLink) their frames, and reject frames without a valid key.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AuthenticationTable {
     /// A file with 64 hexadecimal digits, or with `passphrase: ` and words.
     pub key_file: Option<PathBuf>,
-    /// The same text, for demonstrations: a scenario is no place for a secret.
+    /// The same text inline, for demonstrations only: a scenario file is not a place for secrets.
     pub key: Option<String>,
-    /// Instead of a key, such a file with the operator's secret: each robot then has a key of its own too, under which alone it takes orders and keys.
+    /// Instead of a key, such a file with the operator's master secret: each robot then also has
+    /// its own key, and accepts orders and new keys only under that key.
     pub master_file: Option<PathBuf>,
-    /// The same text, for demonstrations.
+    /// The same text inline, for demonstrations only.
     pub master: Option<String>,
-    /// With a master: where the operator's radio stands, metres. Default: the south-west corner.
+    /// With a master: position of the operator's radio, metres. Default: the south-west corner.
     pub place_m: Option<[f64; 2]>,
-    /// With a master: how long the operator waits at most for all robots to answer, in each phase of a roll, seconds. Default: 5.
+    /// With a master: longest wait for answers per phase of a rotation, seconds. Default: 5.
     pub overlap_s: Option<f64>,
-    /// With a master: when the swarm gets another key.
+    /// With a master: key rotations.
     #[serde(default)]
     pub roll: Vec<RollTable>,
 }
@@ -310,65 +314,67 @@ pub struct AuthenticationTable {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RollTable {
-    /// When the operator begins, seconds after the start.
+    /// Time at which the operator begins, seconds after the start.
     pub at_s: f64,
-    /// Robots that do not get this key, nor any later one.
+    /// Robots that do not receive this key or any later one.
     #[serde(default)]
     pub revoke: Vec<u32>,
 }
 
-/// What an attacker does.
+/// Method of an attack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AttackKind {
-    /// Records all that it hears, and sends it again later.
+    /// Records all frames that it receives and repeats them later.
     Replay,
-    /// Sends orders in a robot's name, with a tag or signature of a key that it guesses.
+    /// Sends orders under a robot's id, with a tag or signature of a guessed key.
     Forge,
     /// Sends the same orders without tag or signature.
     Unsigned,
-    /// Has a robot, with all that the robot knows, and lies with its keys.
+    /// Controls a robot with its keys, and sends false messages.
     Insider,
 }
 
-/// What an insider says.
+/// A false statement of an insider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Lie {
-    /// Orders everybody to the lure.
+    /// Orders all robots to the lure.
     Orders,
-    /// That its robot is as large as a beacon can say, at the lure.
+    /// Claims the largest radius that a beacon can encode, at the lure.
     Radius,
-    /// That it goes as fast as a beacon can say, from where it stands to the lure.
+    /// Claims the highest speed that a beacon can encode, from its place towards the lure.
     Speed,
-    /// That it is at the lure in one tick and where it stands in the next one.
+    /// Claims to be at the lure in one tick and at its place in the next.
     Jump,
-    /// That there are further robots, around the lure.
+    /// Claims that further robots exist around the lure.
     Ghosts,
 }
 
-/// `[[attack]]`: a radio like those of the robots, and nobody's friend.
+/// `[[attack]]`: a hostile radio with the properties of the robots' radios.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AttackTable {
     /// `"replay"`, `"forge"`, `"unsigned"` or `"insider"`.
     pub kind: AttackKind,
-    /// Where it stands, metres from the south-west corner.
+    /// Position, metres from the south-west corner.
     pub place_m: [f64; 2],
-    /// When it begins to send, seconds after the start. Default: 0.
+    /// Start of the attack, seconds after the start of the run. Default: 0.
     #[serde(default)]
     pub from_s: f64,
-    /// When it ends. Default: never.
+    /// End of the attack, seconds. Default: never.
     pub to_s: Option<f64>,
-    /// Where it orders the robots to, or what an insider lies about, metres; not for `"replay"`.
+    /// Place to which it orders the robots, or about which an insider lies, metres; not for
+    /// `"replay"`.
     pub lure_m: Option<[f64; 2]>,
-    /// The robot in whose name it speaks. Default: the last one.
+    /// Id of the robot that it impersonates. Default: the last one.
     pub claims: Option<u32>,
-    /// Seconds from what it hears to its repetition. Default: 10; only for `"replay"`.
+    /// Replay delay, seconds. Default: 10; only for `"replay"`.
     pub delay_s: Option<f64>,
-    /// What an `"insider"` says: one or more of `"orders"`, `"radius"`, `"speed"`, `"jump"`, `"ghosts"`.
+    /// Lies of an `"insider"`: one or more of `"orders"`, `"radius"`, `"speed"`, `"jump"`,
+    /// `"ghosts"`.
     #[serde(default)]
     pub lies: Vec<Lie>,
-    /// How many robots there are that do not exist, 1 to 100. Default: 16; only for `"ghosts"`.
+    /// Number of invented robots, 1 to 100. Default: 16; only for `"ghosts"`.
     pub ghosts: Option<u8>,
 }

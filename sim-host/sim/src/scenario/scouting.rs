@@ -1,4 +1,4 @@
-//! `[scouting]`: what robots know of the land before they see it.
+//! `[scouting]`: the terrain that robots know before they see it.
 
 use super::ranges::within;
 use super::source::Source;
@@ -8,7 +8,7 @@ use crate::terrain::scouted::{Scouted, usual_class};
 use crate::world::scouts::Scouting;
 use std::sync::Arc;
 
-/// Checks the table; `land` is none where robots move without any, `sight` how far they see.
+/// Checks the table. `land` is `None` for robots that move without terrain; `sight` is in cells.
 pub(super) fn scouting(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn robots_see_as_far_as_before_and_plan_farther() {
+    fn scouting_extends_planning_but_not_sight() {
         let scenario = parse(&format!("{LAND}[route]\nradius = 4\n[scouting]\nradius = 9\n")).expect("good");
         let scouting = scenario.scouting.as_ref().expect("scouted");
         assert_eq!((scouting.sight, scenario.route.params.radius), (4, 9));
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_of_the_land_is_part_of_the_run() {
+    fn known_terrain_is_part_of_the_fingerprint() {
         let print = |rest: &str| parse(&format!("{LAND}{rest}")).expect("good").fingerprint();
         let prints = [
             print(""),
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused_with_place_and_remedy() {
+    fn invalid_scouting_is_refused_with_place_and_remedy() {
         for (rest, field, remedy) in [
             ("[scouting]\nunknown = 1.5\n", "scouting.unknown", "0 to 1"),
             ("[scouting]\nwrong = -0.5\n", "scouting.wrong", "0 to 1"),
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn an_old_map_has_the_size_of_the_land() {
+    fn an_old_map_must_have_the_size_of_the_land() {
         let dir = tempfile::tempdir().expect("a folder");
         for (name, row) in [("now.map", "...."), ("old.map", "..@.."), ("good.map", ".@..")] {
             let text = format!("type octile\nheight 1\nwidth {}\nmap\n{row}\n", row.len());

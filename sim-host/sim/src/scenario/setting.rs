@@ -1,4 +1,4 @@
-//! Fields that somebody says otherwise than the file does: `radio.loss=0.3`.
+//! Settings that replace fields of a scenario file: `radio.loss=0.3`.
 
 use super::{Field, Overrides, Scenario, ScenarioError, Source};
 use crate::file::{TEXT, read_text};
@@ -6,7 +6,7 @@ use std::path::Path;
 use std::str::FromStr;
 use toml::Value;
 
-/// A field, and what it says instead.
+/// A field path with its new value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     field: Field,
@@ -16,7 +16,7 @@ pub struct Setting {
 impl FromStr for Setting {
     type Err = String;
 
-    /// `FIELD=VALUE` with a value as in TOML; what is none is a word, so that shells need no quotes in quotes.
+    /// Parses `FIELD=VALUE` with a TOML value; other text is a string, for use in shells.
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = text.split_once('=').ok_or("give FIELD=VALUE, as in radio.loss=0.3")?;
         let name = name.trim();
@@ -32,15 +32,15 @@ impl FromStr for Setting {
 }
 
 impl Scenario {
-    /// As [`Scenario::load`], with fields that say something else; a later setting of a field is the one that counts.
+    /// Like [`Scenario::load`], with settings applied; the last setting of a field wins.
     ///
     /// # Errors
-    /// See [`Scenario::load`]; the line is that of the file, if the field stands there.
+    /// See [`Scenario::load`]. The line is that of the field in the file, if it is there.
     pub fn load_with(path: &Path, overrides: &Overrides, settings: &[Setting]) -> Result<Self, ScenarioError> {
         Self::parse_with(&read(path)?, path, overrides, settings)
     }
 
-    /// The same of a text that stands (or might stand) in the file `path`.
+    /// Parses text like [`Scenario::parse`], with settings applied.
     ///
     /// # Errors
     /// See [`Scenario::load_with`].
@@ -65,16 +65,16 @@ impl Scenario {
     }
 }
 
-/// The text of a scenario file with fields that say something else; as it stands there if there are none.
+/// Reads a scenario file and applies settings. Without settings, the text is unchanged.
 ///
 /// # Errors
-/// The file cannot be read, is no TOML, or has something else where a field's table should be.
+/// The file cannot be read, is not TOML, or has another value where a table of the field should be.
 pub fn text_with(path: &Path, settings: &[Setting]) -> Result<String, ScenarioError> {
     let text = read(path)?;
     if settings.is_empty() { Ok(text) } else { with_settings(&text, path, settings) }
 }
 
-/// The same of a text that stands (or might stand) in the file `path`; without its comments.
+/// Applies settings to a scenario's text; comments are lost. `path` appears in errors.
 ///
 /// # Errors
 /// See [`text_with`].
@@ -97,7 +97,7 @@ fn set(source: &Source<'_>, settings: &[Setting]) -> Result<String, ScenarioErro
     Ok(toml::to_string(&table).unwrap_or_default())
 }
 
-/// Whether an error's field is the one that was set, or in it, or around it.
+/// Whether an error's field is the field that was set, or one inside or around it.
 fn is_about(field: &str, set: &str) -> bool {
     let is_below =
         |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_says_something_else_and_the_last_setting_counts() {
+    fn the_last_setting_of_a_field_wins() {
         assert_eq!(load(&[]).expect("sound").ticks, 5);
         let set = load(&["ticks=7", "radio.range_m = 3.5", "ticks=8", "name=other", "robots.list[0].goal=[6, 5]"]);
         let set = set.expect("sound");
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_names_the_files_line_and_who_said_it() {
+    fn errors_name_the_line_and_the_setting() {
         let error = |settings: &[&str]| load(settings).expect_err("wrong");
         let loss = error(&["radio.loss=1.5"]);
         assert!(loss.starts_with("t.toml:8: radio.loss: ") && loss.contains("(by --set)"), "{loss}");
@@ -140,13 +140,13 @@ mod tests {
         assert!(none.contains("list has 1 elements, counted from 0 (by --set)"), "{none}");
         let word = error(&["ticks=many"]);
         assert!(word.contains("ticks") && word.contains("expected a whole number"), "{word}");
-        // What is wrong by itself is not blamed on the command line.
+        // Errors in the file itself are not attributed to the command line.
         let other = error(&["radio.range_m=5", "robots.list[0].start=[99, 0]"]);
         assert!(other.contains("robots.list[0].start"), "{other}");
     }
 
     #[test]
-    fn a_text_with_settings_is_the_scenario_with_them() {
+    fn text_with_settings_parses_to_the_same_scenario() {
         let settings = ["ticks=7", "radio.loss=0.25"].map(|text| text.parse().expect("a setting"));
         let (path, none) = (Path::new("t.toml"), Overrides::default());
         let set = Scenario::parse_with(SCENARIO, path, &none, &settings).expect("sound");
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_are_read_as_toml_or_as_words() {
+    fn settings_are_parsed_as_toml_or_as_strings() {
         let value = |text: &str| text.parse::<Setting>().map(|setting| setting.value);
         assert_eq!(value("a.b=3"), Ok(Value::Integer(3)));
         assert_eq!(value("a=0.5"), Ok(Value::Float(0.5)));

@@ -1,4 +1,4 @@
-//! The controller's setup of each robot of a scenario.
+//! Controller setup of each robot of a scenario.
 
 use super::{Formation, Intervention, Scenario};
 use crate::terrain::change::ChangeKind;
@@ -7,7 +7,7 @@ use staya_controller::agent::{GuidanceSetup, SafetySetup};
 use staya_controller::grid::Cell;
 
 impl Scenario {
-    /// How robot number `index` goes.
+    /// Guidance law of robot `index`, with its formation template.
     #[must_use]
     pub fn guidance(&self, index: usize) -> GuidanceSetup {
         let mut guidance = match (&self.plane, self.formation_of(index), self.published) {
@@ -39,13 +39,13 @@ impl Scenario {
         guidance
     }
 
-    /// The formation that robot number `index` is in. O(formations).
+    /// Formation of robot `index`, if it is in one. O(formations).
     #[must_use]
     pub fn formation_of(&self, index: usize) -> Option<&Formation> {
         self.formations.iter().find(|formation| formation.members().contains(&index))
     }
 
-    /// Pairs of robots, counted from 0, that are neighbours in a formation.
+    /// Pairs of robot indices, counted from 0, that are neighbours in a formation.
     pub fn edges(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         let edges = |formation: &'_ Formation| {
             let first = formation.first;
@@ -54,14 +54,14 @@ impl Scenario {
         self.formations.iter().flat_map(edges)
     }
 
-    /// The same by the robots' numbers.
+    /// Pairs of robot ids that are neighbours in a formation.
     #[must_use]
     pub fn numbered_edges(&self) -> Vec<(u32, u32)> {
         let id = |index: usize| self.robots.get(index).map_or(0, |robot| robot.id.0);
         self.edges().map(|[a, b]| (id(a), id(b))).collect()
     }
 
-    /// The cells that rules of the scenario, or somebody, make something else, by rising cell; not those that drift. O(cells).
+    /// Sorted cells that a rule or an intervention sets, without drifting cells. O(cells).
     #[must_use]
     pub fn changing_cells(&self) -> Vec<Cell> {
         let by_rule = self.changes.iter().flat_map(|rule| match &rule.kind {
@@ -78,17 +78,16 @@ impl Scenario {
         cells
     }
 
-    /// What all robots know of the land before they see it, if they know any.
     pub(crate) fn scouts(&self) -> Option<Scouts> {
         self.scouting.as_ref().map(|known| Scouts::new(known, self.route.params.radius, self.robots.len()))
     }
 
-    /// How far from its place a member of the formation counts as found, cells.
+    /// Distance from its place within which a member of the formation counts as found, cells.
     pub(crate) fn eps(&self) -> u8 {
         self.published.map_or(self.formation_params.eps, |published| published.eps)
     }
 
-    /// What keeps robot number `index` clear.
+    /// Safety layer of robot `index`.
     #[must_use]
     pub fn safety(&self, index: usize) -> SafetySetup {
         self.plane.as_ref().map_or(SafetySetup::None, |plane| plane.group(index).safety)

@@ -1,4 +1,4 @@
-//! A text in TOML (a scenario, or another file that goes with one), and errors that point into it.
+//! TOML text of a scenario or another settings file, and errors that point into it.
 
 use super::de;
 use crate::file::read_remedy;
@@ -9,29 +9,29 @@ use thiserror::Error;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Why there is no scenario, or other file of settings.
+/// Why a scenario or another settings file was refused.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
     #[error("{}: {source}; {}", .path.display(), read_remedy(.source))]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// Cause, as reported by the system.
         source: std::io::Error,
     },
-    /// Something in it is wrong.
+    /// The content is invalid.
     #[error("{}:{line}: {}{what}; {remedy}", .path.display(), prefix(.field))]
     Field {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The line, counted from 1.
+        /// Line, counted from 1.
         line: usize,
-        /// The field, as in `radio.loss` or `robots.list[2].start`; empty when none is known.
+        /// Path of the field, such as `radio.loss` or `robots.list[2].start`; empty if unknown.
         field: String,
-        /// What is wrong.
+        /// Cause of the error.
         what: String,
-        /// What to do about it.
+        /// How to correct it.
         remedy: String,
     },
 }
@@ -40,7 +40,7 @@ fn prefix(field: &str) -> String {
     if field.is_empty() { String::new() } else { format!("{field}: ") }
 }
 
-/// The text of a scenario and where each field stands in it.
+/// Text of a settings file and the position of each field in it.
 #[derive(Debug)]
 pub struct Source<'a> {
     path: &'a Path,
@@ -49,7 +49,7 @@ pub struct Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Takes a text apart without asking what its fields mean.
+    /// Parses the TOML syntax; the meaning of fields is not checked.
     pub fn new(path: &'a Path, text: &'a str) -> Result<Self, ScenarioError> {
         match DeTable::parse(text) {
             Ok(root) => Ok(Self { path, text, root }),
@@ -63,19 +63,19 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The file's folder: what file names in a scenario are relative to.
+    /// Folder of the file: file names in a scenario are relative to it.
     #[must_use]
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    /// All of it.
+    /// The whole text.
     #[must_use]
     pub fn text(&self) -> &'a str {
         self.text
     }
 
-    /// An error about a field, which may be one that is not there (then its table is named).
+    /// Creates an error about a field. If the field is absent, the line is that of its table.
     pub fn error(&self, field: &str, what: impl Into<String>, remedy: impl Into<String>) -> ScenarioError {
         ScenarioError::Field {
             path: self.path.to_owned(),
@@ -86,7 +86,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// An error about what stands at a place of the text.
+    /// Creates an error about a range of bytes in the text.
     pub fn error_at(
         &self,
         span: Range<usize>,
@@ -103,21 +103,21 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The fields and where they stand.
+    /// The parsed fields with their positions.
     #[must_use]
     pub fn root(&self) -> &DeTable<'a> {
         self.root.get_ref()
     }
 
-    /// Reads the whole file; `list` is the page that lists all fields.
+    /// Deserializes the whole file; `list` is the page that documents all fields.
     ///
     /// # Errors
-    /// A field is unknown, is missing, or has a value of another type; with file, line and field.
+    /// A field is unknown, missing, or has a value of another type; the error names file, line and
+    /// field.
     pub fn read<'s, T: Deserialize<'s>>(&'s self, list: &str) -> Result<T, ScenarioError> {
         de::read(&self.root).map_err(|error| self.serde_error(&error.message, error.span, list))
     }
 
-    /// An error of serde with file, line and field.
     fn serde_error(&self, message: &str, span: Option<Range<usize>>, list: &str) -> ScenarioError {
         let mut field = String::new();
         // The span of the whole file is empty.
@@ -138,7 +138,7 @@ impl<'a> Source<'a> {
         self.root.get_ref().get(name).is_some()
     }
 
-    /// Whether a field stands in the file.
+    /// Whether the file has this field.
     pub fn stands(&self, field: &str) -> bool {
         let mut at = Some(self.root.get_ref());
         let mut segments = field.split('.').peekable();
@@ -160,7 +160,6 @@ impl<'a> Source<'a> {
         false
     }
 
-    /// Where a field stands, or as much of the way to it as there is.
     fn span(&self, field: &str) -> Option<Range<usize>> {
         let mut span = None;
         let mut table = self.root.get_ref();
@@ -189,7 +188,6 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Appends the path to the innermost field around `span`.
 fn deepest(table: &DeTable<'_>, span: &Range<usize>, field: &mut String) {
     for (key, value) in table {
         if holds(&key.span(), span) || holds(&value.span(), span) {
@@ -200,7 +198,7 @@ fn deepest(table: &DeTable<'_>, span: &Range<usize>, field: &mut String) {
             deepest_value(value.get_ref(), span, field);
             return;
         }
-        // The span of a [table] header does not cover what follows it.
+        // The span of a `[table]` header does not cover the lines below it.
         let tables = match value.get_ref() {
             DeValue::Table(inner) => vec![(String::new(), inner)],
             DeValue::Array(array) => array
@@ -254,7 +252,7 @@ fn first_line(message: &str) -> String {
     message.lines().next().unwrap_or_default().to_owned()
 }
 
-/// Rust's names of types at the end of a message, as a person would say them.
+/// Replaces a Rust type name at the end of a message by plain words.
 fn in_words(message: &str) -> String {
     let Some((start, name)) = message.rsplit_once(", expected ") else {
         return message.to_owned();

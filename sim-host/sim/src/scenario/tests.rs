@@ -14,7 +14,6 @@ const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@..\n....\n";
 
 const HEAD: &str = "name = \"t\"\nticks = 5\n[terrain]\nfile = \"m.map\"\n";
 
-/// Parses a scenario whose folder holds the map `m.map`.
 fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     let dir = tempfile::tempdir().expect("temporary folder");
     fs::write(dir.path().join("m.map"), MAP).expect("write");
@@ -23,7 +22,6 @@ fn parse(text: &str) -> Result<Scenario, ScenarioError> {
     Scenario::load(&path, &Overrides::default())
 }
 
-/// The error's text after the folder's name.
 fn refusal(text: &str) -> String {
     let error = parse(text).expect_err("a refusal").to_string();
     let at = error.find("s.toml").unwrap_or_else(|| panic!("names no file: {error}"));
@@ -58,7 +56,7 @@ fn the_command_line_overrides_the_file() {
 fn every_mistake_is_named_with_line_field_and_remedy() {
     let robots = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
     let cases = [
-        // Not TOML at all.
+        // Invalid TOML.
         ("name = ", "s.toml:1: "),
         // Unknown fields, wrong types, missing fields.
         (&format!("colour = 1\n{HEAD}{robots}"), "s.toml:1: colour: unknown field `colour`"),
@@ -105,7 +103,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (&format!("tick_s = inf\n{HEAD}{robots}"), "s.toml:1: tick_s: inf is out of range; give 0.001 to 60 seconds"),
         (&format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"), "s.toml:2: ticks: 0 ticks"),
         (&format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""), "s.toml:1: name: \"../x\" cannot name a folder"),
-        // The land.
+        // Terrain.
         (&format!("{HEAD}{robots}").replace("m.map", "no.map"), "s.toml:4: terrain.file: "),
         (&format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"), "s.toml:5: terrain.crop: "),
         (&format!("{HEAD}cell_m = nan\n{robots}"), "s.toml:5: terrain.cell_m: NaN is out of range"),
@@ -176,7 +174,7 @@ fn a_missing_file_is_named() {
 }
 
 #[test]
-fn the_order_of_a_list_does_not_matter_beyond_numbers() {
+fn the_order_of_a_list_matters_only_for_ids() {
     let one = parse(&with_robots(
         "list = [{ id = 7, start = [0, 0], goal = [3, 2] }, { id = 3, start = [1, 0], goal = [2, 2] }]",
     ));
@@ -240,7 +238,7 @@ fn a_multi_agent_scenario_gives_starts_and_goals() {
 }
 
 #[test]
-fn misnumbered_robots_say_the_number_and_keep_their_own_and_mistakes_are_named() {
+fn misnumbered_robots_claim_another_id_and_mistakes_are_named() {
     let with = |tables: &str| {
         let list = "list = [{ start = [0, 0], goal = [1, 2] }, { start = [1, 0], goal = [2, 2] }]";
         format!("{}{tables}", with_robots(list))
@@ -262,7 +260,7 @@ fn misnumbered_robots_say_the_number_and_keep_their_own_and_mistakes_are_named()
 }
 
 #[test]
-fn faults_become_ticks() {
+fn fault_times_are_converted_to_ticks() {
     let text = format!(
         "tick_s = 0.5\n{}[[fault]]\nrobot = 1\nat_s = 1.2\ndown_s = 1\n",
         with_robots("list = [{ start = [0, 0], goal = [1, 2] }]")
@@ -313,7 +311,7 @@ fn parameters_of_routes_and_formations_are_checked() {
 }
 
 #[test]
-fn a_formation_has_the_law_that_its_file_says() {
+fn a_formation_has_the_law_of_its_file() {
     let with = |rest: &str| {
         let robots = "formation = { rows = 1, columns = 2, spacing = [1, 1], start = [0, 0], goal = [2, 0] }";
         format!("{}[formation]\n{rest}", with_robots(robots))
@@ -346,7 +344,7 @@ fn a_formation_has_the_law_that_its_file_says() {
 }
 
 #[test]
-fn what_only_formations_use_is_refused_without_one() {
+fn formation_options_are_refused_without_a_formation() {
     let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
     let until_changed = format!("{list}[route]\nreplan = \"until_changed\"\n");
     let scenario = parse(&until_changed).expect("good");
@@ -357,7 +355,7 @@ fn what_only_formations_use_is_refused_without_one() {
 }
 
 #[test]
-fn maps_are_shared_where_somebody_goes_by_land() {
+fn maps_are_shared_if_robots_plan_on_terrain() {
     let list = with_robots("list = [{ start = [0, 0], goal = [2, 0] }]");
     let with = |rest: &str| format!("{list}{rest}");
     assert_eq!(parse(&list).expect("good").maps, None);
@@ -385,7 +383,7 @@ fn maps_are_shared_where_somebody_goes_by_land() {
 }
 
 #[test]
-fn a_formation_that_no_controller_holds_is_refused() {
+fn a_formation_too_large_for_the_controller_is_refused() {
     let star = |leaves: usize| {
         let places: Vec<_> = (0..=leaves).map(|i| format!("[{}, {}]", i % 3, i / 3)).collect();
         let edges: Vec<_> = (2..=leaves + 1).map(|i| format!("[1, {i}]")).collect();
@@ -398,7 +396,7 @@ fn a_formation_that_no_controller_holds_is_refused() {
     };
     let too_many = "formation.rho: a robot would have more than 8 neighbours in the formation; give a smaller rho";
     refused(&star(9), too_many);
-    // With 8 it is the map that is too small.
+    // With 8, only the map is too small.
     refused(&star(8), "is in a wall");
     refused(&star(255), "256 robots are more than a formation holds; give at most 255");
     let wide = "formation = { rows = 16, columns = 16, start = [0, 0], goal = [0, 0] }";

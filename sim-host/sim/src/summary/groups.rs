@@ -1,4 +1,4 @@
-//! The figures of groups of robots that differ.
+//! Results by group of robots.
 
 use crate::engine::Outcome;
 use crate::scenario::{Part, Scenario};
@@ -7,24 +7,23 @@ use staya_controller::agent::GuidanceKind;
 use staya_controller::grid::UNIT;
 use std::fmt::{Display, Formatter};
 
-/// The figures of one group.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct GroupFigures {
-    /// The table of the scenario's file that describes it.
+    /// Table of the scenario file that describes the group.
     table: String,
-    /// Numbers of its first and its last robot; they are numbered on.
+    /// Ids of the first and the last robot; all ids between them belong to the group.
     first_robot: u32,
     last_robot: u32,
     robots: usize,
-    /// Where they go and what keeps them apart: of those whose bodies do not differ within the group.
+    /// Law and safety layer; robots of a list may differ in their bodies.
     guidance: &'static str,
     safety: &'static str,
-    /// Robots that stand at their targets and know it.
+    /// Number of robots that are at their goal and report it.
     arrived: usize,
-    /// Mean and last of their travel times, simulated seconds; null: nobody arrived.
+    /// Mean and longest travel time, simulated seconds; null if no robot arrived.
     arrival_mean_seconds: Option<f64>,
     arrival_last_seconds: Option<f64>,
-    /// As of all formations together; null: no formation.
+    /// As for all formations together; null without a formation.
     formation_error_per_agent: Option<f64>,
     formation_error_per_agent_best_fit: Option<f64>,
     graph_distance_mean: Option<f64>,
@@ -63,7 +62,7 @@ impl GroupFigures {
         }
     }
 
-    /// Whether its robots go somewhere to stay there.
+    /// Whether its robots have goals at which they stay.
     fn has_goals(&self) -> bool {
         [GuidanceKind::Route, GuidanceKind::Formation, GuidanceKind::Waypoint]
             .map(GuidanceKind::name)

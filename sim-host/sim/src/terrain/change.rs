@@ -1,55 +1,54 @@
-//! Land that changes while a run goes on: u(t, (i, j)) of A. V. Kuznetsov 2017 (KUZ), section 2.
+//! Changes of the terrain during a run: u(t, (i, j)) of A. V. Kuznetsov 2017 (KUZ), section 2.
 //!
-//! What changes when is a function of the rules, the seed, the tick and the land before it, so that every rank and every
-//! repetition of a run has the same land at the same tick.
+//! A change is a function of the rules, the seed, the tick and the terrain before it, so that every
+//! MPI rank and every repetition of a run has the same terrain at the same tick.
 
 use super::Terrain;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::rand::Rng;
 use std::num::NonZeroU32;
 
-/// Keeps the draws of this module apart from all others.
 const DRIFT: u32 = 0x004C_0001;
 
-/// One rule by which land changes.
+/// A rule that changes the terrain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LandChange {
-    /// The tick before which it first does.
+    /// First tick before which the rule applies.
     pub first: u32,
-    /// It happens again after so many ticks; `None`: once.
+    /// Period in ticks; `None`: once.
     pub every: Option<NonZeroU32>,
-    /// What happens.
+    /// Effect of the rule.
     pub kind: ChangeKind,
 }
 
-/// What a rule does.
+/// Effect of a rule.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChangeKind {
-    /// Cells take so many ticks to cross from now on, or close.
+    /// Cells get another crossing time, or close.
     Become {
-        /// Each with what it is again when the change is over.
+        /// Cells, each with the class that it reverts to.
         cells: Vec<(Cell, u8)>,
-        /// Ticks to cross them; [`BLOCKED`]: closed.
+        /// Ticks to cross the cells; [`BLOCKED`]: closed.
         class: u8,
-        /// Ticks after which it is over; `None`: never.
+        /// Duration of the change, ticks; `None`: until the end of the run.
         lasts: Option<NonZeroU32>,
     },
-    /// Some of the cells become a little slower or faster to cross, each with equal probability. Closed cells stay closed.
+    /// Random cells become slower or faster with equal probability; closed cells stay closed.
     Drift {
-        /// The cells; `None`: all of the land.
+        /// The cells; `None`: the whole terrain.
         cells: Option<Vec<Cell>>,
-        /// How many are drawn each time; a cell may be drawn more than once.
+        /// Number of draws each time; a cell may be drawn more than once.
         draws: u32,
-        /// By how many ticks.
+        /// Change in ticks.
         step: u8,
-        /// The slowest that a cell becomes, ticks; the fastest is 1.
+        /// Largest crossing time of a cell, ticks; the smallest is 1.
         classes: u8,
     },
 }
 
 impl LandChange {
-    /// The cells that are another way from `tick` on, each with its new class, of `land` as it is before. `number` is the rule's place among
-    /// those of the run. O(cells of the rule that change).
+    /// Cells that change before `tick`, with their new class; `land` is the terrain before the
+    /// change, and `number` the index of the rule in the run. O(cells of the rule that change).
     #[must_use]
     pub fn due(&self, number: usize, seed: u64, tick: u32, land: &Terrain) -> Vec<(Cell, u8)> {
         match &self.kind {
@@ -88,14 +87,13 @@ impl LandChange {
         self.phase(tick).is_some_and(|phase| phase == 0 || Some(phase) == lasts)
     }
 
-    /// Ticks since it happened last; `None`: it has not yet.
     fn phase(&self, tick: u32) -> Option<u32> {
         let since = tick.checked_sub(self.first)?;
         Some(self.every.map_or(since, |every| since % every))
     }
 }
 
-/// Applies to `land` all that `changes` have for `tick`, one rule after the other, and shows each cell that is another one then.
+/// Applies all `changes` of `tick` to `land`, in order, and passes each changed cell to `each`.
 pub fn change(land: &mut Terrain, changes: &[LandChange], seed: u64, tick: u32, mut each: impl FnMut(Cell, u8)) {
     for (number, rule) in changes.iter().enumerate() {
         for (cell, class) in rule.due(number, seed, tick, land) {
@@ -123,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gate_closes_opens_as_it_was_and_closes_again() {
+    fn a_gate_closes_reopens_and_closes_again() {
         let mut land = road();
         let rules = [gate(Some(10), Some(4))];
         let mut closed = Vec::new();
@@ -140,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn once_is_once_and_for_good_is_for_good() {
+    fn a_change_without_period_happens_once_and_one_without_end_stays() {
         for (lasts, last) in [(None, 40), (Some(7), 12)] {
             let mut land = road();
             let rules = [gate(None, lasts)];
@@ -154,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn later_rules_see_what_earlier_ones_did() {
+    fn later_rules_apply_to_the_result_of_earlier_ones() {
         let mut land = road();
         let drift = ChangeKind::Drift { cells: Some(vec![Cell::new(1, 0)]), draws: 50, step: 1, classes: 9 };
         let rules = [gate(None, None), LandChange { first: 5, every: None, kind: drift }];
@@ -164,7 +162,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn drifting_land_stays_land_and_its_walls_walls(seed: u64, draws in 0_u32..30, step in 1_u8..9) {
+        fn drift_keeps_classes_in_range_and_walls_closed(seed: u64, draws in 0_u32..30, step in 1_u8..9) {
             let mut land = Terrain::from_cells(3, 2, vec![1, 9, 0, 5, 0, 2]).expect("fits");
             let rule = LandChange { first: 0, every: NonZeroU32::new(2), kind: ChangeKind::Drift { cells: None, draws, step, classes: 9 } };
             for tick in 0..20 {
@@ -180,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn drift_is_drawn_anew_each_time_and_for_each_rule() {
+    fn drift_has_new_draws_for_each_time_and_rule() {
         let rule = LandChange {
             first: 0,
             every: NonZeroU32::new(1),

@@ -1,17 +1,17 @@
-//! What can be wrong with terrain, reported so that a person can fix it.
+//! Terrain errors, with place, cause and remedy.
 
 use crate::file::{self, read_remedy, write_remedy};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Where in a file something is wrong.
+/// Position of an error in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// In a line, counted from 1.
+    /// Line, counted from 1.
     Line(usize),
-    /// At a byte, counted from 0 (binary data has no lines).
+    /// Byte, counted from 0 (binary data has no lines).
     Byte(usize),
-    /// In the file as a whole.
+    /// The file as a whole.
     File,
 }
 
@@ -25,41 +25,41 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why there is no terrain.
+/// Why a terrain could not be loaded, created or saved.
 #[derive(Debug, thiserror::Error)]
 pub enum TerrainError {
     /// The file cannot be read.
     #[error("{}: {source}; {}", .path.display(), read_remedy(.source))]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// Cause, as reported by the system.
         source: std::io::Error,
     },
     /// The file cannot be written.
     #[error("cannot write {}: {source}; {}", .path.display(), write_remedy(.source))]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system says.
+        /// Cause, as reported by the system.
         source: std::io::Error,
     },
-    /// The file does not say what its format asks for.
+    /// The content violates the file format.
     #[error("{}{place}: {what}; {remedy}", .path.display())]
     Format {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Where in the file.
+        /// Position in the file.
         place: Place,
-        /// What is wrong.
+        /// Cause of the error.
         what: String,
-        /// What to do about it.
+        /// How to correct it.
         remedy: String,
     },
-    /// No reader knows the extension.
+    /// The file extension is unknown.
     #[error("{}: unknown kind of terrain file; use .map (Moving AI), .asc (ESRI heights) or .yaml with a .pgm (ROS map_server)", .0.display())]
     UnknownKind(PathBuf),
-    /// A size that is zero, too large, or does not fit the number of cells.
+    /// A size is zero, too large, or does not match the number of cells.
     #[error(
         "a terrain of {width} x {height} cells with {cells} values; each side must be 1..={MAX_SIDE} and the values width * height"
     )]
@@ -68,33 +68,33 @@ pub enum TerrainError {
         width: usize,
         /// Cells from south to north.
         height: usize,
-        /// Values given.
+        /// Number of given values.
         cells: usize,
     },
-    /// A piece that does not lie inside the map.
+    /// A part that is not inside the map.
     #[error(
         "the piece of {width} x {height} cells from ({x}, {y}) leaves the map of {map_width} x {map_height}; choose a smaller piece or another corner"
     )]
     Crop {
-        /// Westernmost column of the piece.
+        /// Westernmost column of the part.
         x: u16,
-        /// Southernmost row of the piece.
+        /// Southernmost row of the part.
         y: u16,
-        /// Columns of the piece.
+        /// Columns of the part.
         width: u16,
-        /// Rows of the piece.
+        /// Rows of the part.
         height: u16,
         /// Columns of the map.
         map_width: u16,
         /// Rows of the map.
         map_height: u16,
     },
-    /// A parameter of a rule or of a generator that makes no sense.
+    /// A parameter of a rule or of a generator is invalid.
     #[error("{what}; {remedy}")]
     Parameter {
-        /// What is wrong.
+        /// Cause of the error.
         what: String,
-        /// What to do about it.
+        /// How to correct it.
         remedy: String,
     },
 }
@@ -102,7 +102,6 @@ pub enum TerrainError {
 /// Largest width and height: cells are addressed by `i16`.
 pub const MAX_SIDE: u16 = i16::MAX as u16;
 
-/// A [`TerrainError::Format`].
 pub(super) fn format_error(
     path: &Path,
     place: Place,
@@ -112,12 +111,12 @@ pub(super) fn format_error(
     TerrainError::Format { path: path.to_owned(), place, what: what.into(), remedy: remedy.into() }
 }
 
-/// A [`TerrainError::Parameter`].
+/// Creates a [`TerrainError::Parameter`].
 pub fn parameter_error(what: impl Into<String>, remedy: impl Into<String>) -> TerrainError {
     TerrainError::Parameter { what: what.into(), remedy: remedy.into() }
 }
 
-/// Refuses a map whose cells, of so many bytes each while it is read, would not fit into memory.
+/// Refuses a map that does not fit into memory; `cell_bytes` is needed per cell while it is read.
 pub fn fits(path: &Path, width: u16, height: u16, cell_bytes: u64) -> Result<(), TerrainError> {
     let bytes = u64::from(width) * u64::from(height) * cell_bytes;
     if file::has_memory(bytes) {
@@ -127,7 +126,7 @@ pub fn fits(path: &Path, width: u16, height: u16, cell_bytes: u64) -> Result<(),
     Err(format_error(path, Place::File, what, "cut a piece out of the map, or close other programs"))
 }
 
-/// The bytes of a file.
+/// Reads a whole file.
 pub fn read(path: &Path) -> Result<Vec<u8>, TerrainError> {
     file::read(path, file::MAP).map_err(|source| TerrainError::Read { path: path.to_owned(), source })
 }

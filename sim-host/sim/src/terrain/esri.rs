@@ -1,7 +1,7 @@
-//! ESRI ASCII grids (`.asc`): heights of land, the plainest format that every GIS writes.
+//! ESRI ASCII grids (`.asc`): terrain heights in a text format that every GIS can write.
 //!
 //! Source: ESRI, "ASCII raster format" (ArcGIS documentation). Files list rows from the north;
-//! [`super::rows`] turns them round.
+//! [`super::rows`] reverses them.
 
 use super::error::{Place, TerrainError, fits, format_error, parameter_error};
 use super::rows::flip_rows;
@@ -15,7 +15,7 @@ pub struct Heights {
     pub width: u16,
     /// Cells from south to north.
     pub height: u16,
-    /// Metres above any datum, row by row from the south-west corner; NaN where unknown.
+    /// Metres above any datum, row by row from the south-west corner; NaN if unknown.
     pub metres: Vec<f32>,
     /// Side of a cell, metres; more than 0.
     pub cell_m: f64,
@@ -34,7 +34,7 @@ struct Header {
 }
 
 impl Header {
-    /// Takes a header line's key and value; false: no header line, the data begins.
+    /// Stores the value of a header line; false if the line is not a header, so the data begins.
     fn take(&mut self, key: &str, word: &str, line: usize, path: &Path) -> Result<bool, TerrainError> {
         let key = key.to_ascii_lowercase();
         match key.as_str() {
@@ -58,7 +58,7 @@ impl Header {
                 }
                 self.cell_m = Some(cell_m);
             }
-            // Some programs write "nan" here, which is as good as any number.
+            // Some programs write "nan" here, which is valid.
             "nodata_value" => {
                 self.no_data = Some(word.parse().map_err(|_| {
                     format_error(path, Place::Line(line), format!("NODATA_value is {}", quoted(word)), "give a number")
@@ -75,13 +75,13 @@ impl Header {
     }
 }
 
-/// Reads an ESRI ASCII grid of heights in metres on a grid in metres.
+/// Reads an ESRI ASCII grid with heights and cell sizes in metres.
 ///
-/// Header lines may come in any order and case. Values may be broken into lines anywhere. `NODATA_value` (-9999 when
-/// the header has none) and numbers that are not finite become NaN. O(size).
+/// Header lines may have any order and case. Line breaks between values are ignored. `NODATA_value`
+/// (-9999 if the header has none) and numbers that are not finite become NaN. O(size).
 ///
 /// # Errors
-/// [`TerrainError::Format`] with the line, for everything that the format does not allow.
+/// A [`TerrainError::Format`] with the line, if the file violates the format.
 pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError> {
     let text = text(bytes, path)?;
     let mut header = Header::default();
@@ -153,13 +153,13 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
 }
 
 impl Heights {
-    /// The grid with `factor` x `factor` cells made one: the mean of their known heights, unknown
-    /// unless at least half of them are known.
+    /// Combines `factor` x `factor` cells into one: the mean of their known heights, or unknown if
+    /// fewer than half are known.
     ///
-    /// Columns in the east and rows in the north that fill no whole cell are dropped. O(size).
+    /// Incomplete cells in the east and north are dropped. O(size).
     ///
     /// # Errors
-    /// [`TerrainError::Parameter`] when `factor` is 0 or nothing would be left.
+    /// A [`TerrainError::Parameter`] if `factor` is 0 or no cell would remain.
     pub fn downsample(&self, factor: u16) -> Result<Self, TerrainError> {
         if factor == 0 || factor > self.width.min(self.height) {
             return Err(parameter_error(
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn last_file_row_is_the_southernmost() {
+    fn the_last_file_row_is_the_southernmost() {
         let grid = heights(GRID).unwrap();
         assert_eq!((grid.width, grid.height, grid.cell_m), (3, 2, 10.0));
         assert_eq!(grid.origin_m, [100.0, 200.5]);
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn center_origins_other_cases_and_broken_lines_mean_the_same() {
+    fn centre_origins_letter_case_and_line_breaks_do_not_matter() {
         let other = "NROWS 2\r\nNCOLS 3\r\ncellsize 10\r\nXLLCENTER 105\r\nyllCenter 205.5\r\nnodata_VALUE -1\r\n1 2\r\n3 4 -1\r\n\r\n6";
         let (a, b) = (heights(GRID).unwrap(), heights(other).unwrap());
         assert_eq!((a.width, a.height, a.cell_m, a.origin_m), (b.width, b.height, b.cell_m, b.origin_m));
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn no_data_is_minus_9999_by_default_and_nan_is_none() {
+    fn no_data_is_minus_9999_by_default_and_may_be_nan() {
         let text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n-9999 nan\n";
         assert!(heights(text).unwrap().metres.iter().all(|m| m.is_nan()));
         let text = "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value nan\n-9999";

@@ -1,18 +1,18 @@
-//! What describes a landscape: configuration entropy, total edge and its density.
+//! Terrain metrics: configuration entropy, total edge and its density.
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), section 4, definitions 2 and 3. Blocked cells are a class of their own.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 4, definitions 2 and 3. Blocked cells are a class.
 
 use super::Terrain;
 use serde::Serialize;
 
-/// The metrics of a landscape.
+/// Metrics of a terrain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Metrics {
     /// Number of cells M.
     pub cells: usize,
     /// Number of classes that occur.
     pub classes: usize,
-    /// Cells that no robot can enter.
+    /// Number of blocked cells.
     pub blocked: usize,
     /// Configuration entropy S = -sum p ln p over the classes, 0..=ln(classes).
     pub entropy: f64,
@@ -23,7 +23,7 @@ pub struct Metrics {
 }
 
 impl Metrics {
-    /// The metrics of a terrain. O(size).
+    /// Computes the metrics of a terrain. O(size).
     #[must_use]
     pub fn of(terrain: &Terrain) -> Self {
         let counts = class_counts(terrain.cells());
@@ -40,7 +40,7 @@ impl Metrics {
     }
 }
 
-/// How many cells each class has, by impassability.
+/// Number of cells of each class, indexed by impassability.
 #[must_use]
 pub fn class_counts(cells: &[u8]) -> [usize; 256] {
     let mut counts = [0; 256];
@@ -58,7 +58,7 @@ pub fn entropy(counts: &[usize]) -> f64 {
         let share = *count as f64 / cells as f64;
         -share * libm::log(share)
     });
-    // A single class gives -1 * 0: no negative zero in reports.
+    // A single class gives -1 * 0; avoid negative zero in reports.
     terms.sum::<f64>().max(0.0)
 }
 
@@ -75,11 +75,12 @@ pub fn total_edge(cells: &[u8], width: u16) -> u64 {
     edges as u64
 }
 
-/// The number of obstacles N(S) of a `natural` landscape (100 x 100, 9 classes) with entropy `s`.
+/// Number of obstacles N(S) of `natural` terrain (100 x 100, 9 classes) with entropy `s`.
 ///
-/// KUZ section 5 gives N = 0.00160518 e^(4.22769 S), which contradicts its own figure 7 (S = 1.6 with N = 14, S = 1.8 with
-/// N = 33) and allows at most 17 obstacles at the greatest entropy, ln 9. A zero too many was printed:
-/// 0.0160518 gives 13.9 and 32.4, and S = 1.98 at the N = 70 of the text.
+/// KUZ section 5 gives N = 0.00160518 e^(4.22769 S). This contradicts figure 7 of the paper (S =
+/// 1.6 with N = 14, S = 1.8 with N = 33) and allows at most 17 obstacles at the greatest entropy,
+/// ln 9. The printed factor has one zero too many: 0.0160518 gives 13.9 and 32.4, and S = 1.98 at N
+/// = 70 as in the text.
 #[must_use]
 pub fn obstacles_of_entropy(s: f64) -> f64 {
     0.016_051_8 * libm::exp(4.227_69 * s)
@@ -104,10 +105,10 @@ mod tests {
     }
 
     #[test]
-    fn equal_shares_have_the_logarithm_of_their_number() {
+    fn the_entropy_of_equal_shares_is_the_logarithm_of_their_number() {
         let board = metrics(4, &[1, 2, 1, 2, 2, 1, 2, 1]);
         assert!((board.entropy - libm::log(2.0)).abs() < 1e-15);
-        // 2 rows of 3 sides and 4 between the rows.
+        // Two rows of 3 sides and 4 between the rows.
         assert_eq!(board.total_edge, 10);
         assert_eq!(board.total_edge_density, 1.25);
         let nine: Vec<u8> = (1..=9).collect();
@@ -132,7 +133,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn metrics_stay_in_their_bounds_and_ignore_the_names_of_classes(
+        fn metrics_are_bounded_and_independent_of_class_labels(
             width in 1..8_u16,
             classes in prop::collection::vec(0..4_u8, 40),
             rows in 1..6_usize,

@@ -1,9 +1,9 @@
-//! The land: a grid of impassability, where it comes from, what describes it.
+//! Terrain: a grid of impassability, with readers, generators and metrics.
 //!
-//! Files: [`movingai`] (`.map`, `.scen`), [`esri`] heights (`.asc`) through [`slope`], [`ros`] (`.yaml` with `.pgm`; also
-//! the format that Staya writes). [`Terrain::load`] chooses by extension. [`generate`] makes random land,
-//! [`metrics`] describes it, [`change`] has what becomes of it in a run, and [`scouted`] what
-//! maps of it show.
+//! File formats: [`movingai`] (`.map`, `.scen`), [`esri`] heights (`.asc`) through [`slope`], and
+//! [`ros`] (`.yaml` with `.pgm`; also the format that Staya writes). [`Terrain::load`] chooses by
+//! extension. [`generate`] creates random terrain, [`metrics`] measures it, [`change`] changes it
+//! during a run, and [`scouted`] creates incomplete maps of it.
 
 pub mod change;
 pub mod esri;
@@ -27,19 +27,19 @@ use serde::{Deserialize, Serialize};
 use staya_controller::grid::{BLOCKED, Cell};
 use std::path::Path;
 
-/// How files become impassability where their format leaves it open.
+/// Options for the conversion of files to impassability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LoadOptions {
     /// `.map`: impassability of swamp, 1..=255 (0: blocked).
     pub swamp: u8,
-    /// `.asc`: cells along each side that become one before slopes are taken, 1 or more.
+    /// `.asc`: cells along each side that are combined before slopes are computed, 1 or more.
     pub downsample: u16,
-    /// `.asc`: how slopes become impassability.
+    /// `.asc`: conversion of slopes to impassability.
     pub slope: SlopeRule,
     /// `.yaml`: impassability of unknown cells in mode `trinary`; 0: blocked.
     pub unknown: u8,
-    /// `.yaml`: classes in mode `scale` where the file names no number, 1..=255.
+    /// `.yaml`: number of classes in mode `scale` if the file gives none, 1..=255.
     pub classes: u8,
 }
 
@@ -49,8 +49,8 @@ impl Default for LoadOptions {
     }
 }
 
-/// A grid of impassability. Row 0 is the southernmost row; picture and file rows exist only at the
-/// file edge.
+/// A grid of impassability. Row 0 is the southernmost row; north-first rows exist only in file
+/// readers and writers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
     width: u16,
@@ -64,17 +64,18 @@ pub struct Terrain {
 }
 
 impl Terrain {
-    /// Flat passable land of `width` x `height` cells of 1 m with impassability 1.
+    /// Creates flat terrain of `width` x `height` cells of 1 m with impassability 1.
     #[must_use]
     pub fn flat(width: u16, height: u16) -> Self {
         let cells = vec![1; usize::from(width) * usize::from(height)];
         Self { width, height, cells, cell_m: 1.0, origin_m: [0.0; 2] }
     }
 
-    /// Land of given impassabilities, row by row from the south-west corner, with cells of 1 m.
+    /// Creates terrain from impassabilities, row by row from the south-west; cells of 1 m.
     ///
     /// # Errors
-    /// [`TerrainError::Size`] unless both sides are 1..=[`MAX_SIDE`] and `cells` has `width * height` entries.
+    /// A [`TerrainError::Size`] unless both sides are 1..=[`MAX_SIDE`] and `cells` has `width *
+    /// height` entries.
     pub fn from_cells(width: u16, height: u16, cells: Vec<u8>) -> Result<Self, TerrainError> {
         let sides = 1..=MAX_SIDE;
         let fits = cells.len() == usize::from(width) * usize::from(height);
@@ -95,7 +96,7 @@ impl Terrain {
     /// Reads a terrain file: `.map`, `.asc`, or `.yaml` / `.yml` with the `.pgm` that it names.
     ///
     /// # Errors
-    /// [`TerrainError`], naming file, line and remedy.
+    /// A [`TerrainError`] that names file, line and remedy.
     pub fn load_with(path: &Path, options: &LoadOptions) -> Result<Self, TerrainError> {
         let extension = path.extension().and_then(|extension| extension.to_str());
         match extension.unwrap_or("").to_ascii_lowercase().as_str() {
@@ -122,10 +123,11 @@ impl Terrain {
         }
     }
 
-    /// The piece of `width` x `height` cells whose south-west cell is column `x`, row `y`; it stays where it lies in the world.
+    /// The part of `width` x `height` cells whose south-west cell is column `x`, row `y`; its world
+    /// position is unchanged.
     ///
     /// # Errors
-    /// [`TerrainError::Crop`] unless the piece has cells and all of them are on the map.
+    /// A [`TerrainError::Crop`] if the part is empty or not inside the map.
     pub fn crop(&self, x: u16, y: u16, width: u16, height: u16) -> Result<Self, TerrainError> {
         let (right, top) = (u32::from(x) + u32::from(width), u32::from(y) + u32::from(height));
         let inside = right <= u32::from(self.width) && top <= u32::from(self.height);
@@ -168,14 +170,14 @@ impl Terrain {
         &self.cells
     }
 
-    /// Position of a cell in [`Terrain::cells`]; `None` outside the map.
+    /// Index of a cell in [`Terrain::cells`]; `None` outside the map.
     #[must_use]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let (x, y) = (u16::try_from(cell.x).ok()?, u16::try_from(cell.y).ok()?);
         (x < self.width && y < self.height).then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
     }
 
-    /// The cell under a place, metres; `None` outside the map.
+    /// Cell at a position, metres; `None` outside the map.
     #[must_use]
     pub fn cell_at(&self, place_m: [f64; 2]) -> Option<Cell> {
         let at = |axis: usize| {
@@ -186,7 +188,7 @@ impl Terrain {
         self.index(cell).map(|_| cell)
     }
 
-    /// The cell under a place, metres, or that of the map which is nearest to it.
+    /// Cell at a position, metres, or the nearest cell of the map.
     #[must_use]
     pub fn nearest_cell(&self, place_m: [f64; 2]) -> Cell {
         let at = |axis: usize, side: u16| {
@@ -196,14 +198,14 @@ impl Terrain {
         Cell::new(at(0, self.width), at(1, self.height))
     }
 
-    /// The middle of a cell, metres.
+    /// Centre of a cell, metres.
     #[must_use]
     pub fn center_m(&self, cell: Cell) -> [f64; 2] {
         let at = |cells: i16, axis: usize| self.origin_m[axis] + (f64::from(cells) + 0.5) * self.cell_m;
         [at(cell.x, 0), at(cell.y, 1)]
     }
 
-    /// Ticks to cross a cell; [`BLOCKED`] for walls and everything outside the map.
+    /// Ticks to cross a cell; [`BLOCKED`] for walls and outside the map.
     #[must_use]
     pub fn get(&self, cell: Cell) -> u8 {
         self.index(cell).map_or(BLOCKED, |at| self.cells[at])
@@ -216,7 +218,7 @@ impl Terrain {
         }
     }
 
-    /// Whether a robot can stand there.
+    /// Whether a robot can be in the cell.
     #[must_use]
     pub fn is_passable(&self, cell: Cell) -> bool {
         self.get(cell) != BLOCKED
@@ -228,7 +230,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_that_do_not_fit_are_refused() {
+    fn inconsistent_sizes_are_refused() {
         assert!(Terrain::from_cells(2, 3, vec![1; 6]).is_ok());
         assert!(Terrain::from_cells(2, 3, vec![1; 5]).is_err());
         assert!(Terrain::from_cells(0, 3, vec![]).is_err());
@@ -237,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_keeps_its_cells_and_its_place_in_the_world() {
+    fn a_cropped_part_keeps_its_cells_and_world_position() {
         let mut map = Terrain::from_cells(4, 3, (1..=12).collect()).unwrap();
         map.cell_m = 2.0;
         map.origin_m = [10.0, 20.0];
@@ -252,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn the_maps_that_come_with_staya_load() {
+    fn the_maps_of_the_repository_load() {
         let maps = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../maps");
         let sizes = [
             ("jacksboro.asc", (324, 344)),
@@ -267,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_kinds_of_files_are_named_with_the_known_ones() {
+    fn an_unknown_extension_is_refused_with_the_known_ones() {
         let message = |name: &str| Terrain::load(Path::new(name)).unwrap_err().to_string();
         assert!(message("a.tif").contains("a.tif: unknown kind of terrain file; use .map"));
         assert!(message("a").contains("unknown kind"));
@@ -276,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn heights_in_a_grid_of_degrees_are_refused_with_the_remedy() {
+    fn heights_on_a_grid_in_degrees_are_refused() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("degrees.asc");
         let text = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 0.00083\n100 130\n";

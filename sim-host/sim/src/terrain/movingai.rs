@@ -1,7 +1,7 @@
 //! Moving AI benchmark files: octile `.map` grids and `.scen` lists of queries.
 //!
-//! Source: N. Sturtevant, "Benchmarks for Grid-Based Pathfinding", IEEE TCIAIG 2012. Files count
-//! rows from the north; [`super::rows`] turns them round.
+//! Source: N. Sturtevant, "Benchmarks for Grid-Based Pathfinding", IEEE TCIAIG 2012. Files list
+//! rows from the north; [`super::rows`] reverses them.
 
 use super::Terrain;
 use super::error::{Place, TerrainError, fits, format_error, read};
@@ -10,17 +10,19 @@ use super::text::{finite, integer, lines, quoted, side, text};
 use staya_controller::grid::{BLOCKED, Cell};
 use std::path::Path;
 
-/// Impassability of swamp (`S`) unless the caller wants another: three times as slow as ground.
+/// Default impassability of swamp (`S`): three times as slow as ground.
 ///
-/// The benchmark itself lets a swamp be crossed at the price of ground: for its optimal lengths use 1.
+/// In the benchmark, swamp costs as much as ground: use 1 to reproduce its optimal lengths.
 pub const SWAMP: u8 = 3;
 
-/// Reads a `.map`: `.` and `G` are ground (impassability 1), `S` is `swamp`, and `@`, `O`, `T`, `W` are blocked.
+/// Reads a `.map`: `.` and `G` are ground (impassability 1), `S` is `swamp`, and `@`, `O`, `T`, `W`
+/// are blocked.
 ///
-/// Cells are 1 m wide and the south-west corner is the origin, for the format says neither. O(size).
+/// The format has no scale and origin, so cells are 1 m wide and the south-west corner is the
+/// origin. O(size).
 ///
 /// # Errors
-/// [`TerrainError::Format`] with the line, for everything that the format does not allow.
+/// A [`TerrainError::Format`] with the line, if the file violates the format.
 pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, TerrainError> {
     let text = text(bytes, path)?;
     let mut rows = lines(text);
@@ -111,20 +113,20 @@ fn header<'a>(rows: &mut impl Iterator<Item = (usize, &'a str)>, path: &Path) ->
     ))
 }
 
-/// One query of a `.scen`.
+/// A query of a `.scen` file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Query {
-    /// Queries of like difficulty share a bucket.
+    /// Bucket; queries of similar length share one.
     pub bucket: u32,
-    /// The map as the file names it.
+    /// Name of the map in the file.
     pub map: String,
-    /// Columns of the map that the query is made for.
+    /// Columns of the map.
     pub width: u16,
-    /// Rows of the map that the query is made for.
+    /// Rows of the map.
     pub height: u16,
-    /// Where to start, already with row 0 in the south.
+    /// Start cell, with row 0 in the south.
     pub start: Cell,
-    /// Where to go, already with row 0 in the south.
+    /// Goal cell, with row 0 in the south.
     pub goal: Cell,
     /// Length of the shortest route in cells; a diagonal move is sqrt 2 long and cuts no corner.
     pub optimal_length: f64,
@@ -133,7 +135,7 @@ pub struct Query {
 /// Reads a `.scen`, versions 1 and 1.0. O(size).
 ///
 /// # Errors
-/// [`TerrainError::Format`] with the line, for everything that the format does not allow.
+/// A [`TerrainError::Format`] with the line, if the file violates the format.
 pub fn parse_scen(bytes: &[u8], path: &Path) -> Result<Vec<Query>, TerrainError> {
     let text = text(bytes, path)?;
     let mut rows = lines(text);
@@ -152,13 +154,13 @@ pub fn parse_scen(bytes: &[u8], path: &Path) -> Result<Vec<Query>, TerrainError>
 /// Reads a `.scen` file; see [`parse_scen`].
 ///
 /// # Errors
-/// [`TerrainError::Read`], or those of [`parse_scen`].
+/// A [`TerrainError::Read`], or the errors of [`parse_scen`].
 pub fn load_scen(path: &Path) -> Result<Vec<Query>, TerrainError> {
     parse_scen(&read(path)?, path)
 }
 
 fn query(row: &str, line: usize, path: &Path) -> Result<Query, TerrainError> {
-    // Map names may hold spaces when the fields are separated by tabs.
+    // Map names may contain spaces if the fields are separated by tabs.
     let fields: Vec<&str> =
         if row.contains('\t') { row.split('\t').map(str::trim).collect() } else { row.split_whitespace().collect() };
     let [bucket, map, width, height, start_x, start_y, goal_x, goal_y, length] = fields[..] else {
@@ -221,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn last_file_row_is_the_southernmost_terrain_row() {
+    fn the_last_file_row_is_the_southernmost() {
         let terrain = map(MAP).unwrap();
         assert_eq!((terrain.width(), terrain.height()), (4, 3));
         assert_eq!(terrain.cells(), [1, 1, 1, 1, 3, 3, BLOCKED, BLOCKED, 1, 1, BLOCKED, BLOCKED]);
@@ -229,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn windows_line_ends_and_no_last_line_end_are_fine() {
+    fn windows_line_ends_and_a_missing_last_one_are_accepted() {
         let expected = map(MAP).unwrap();
         assert_eq!(map(&MAP.replace('\n', "\r\n")).unwrap(), expected);
         assert_eq!(map(MAP.trim_end()).unwrap(), expected);
@@ -259,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn queries_are_turned_to_south_first_rows() {
+    fn queries_are_converted_to_south_first_rows() {
         let text = "version 1\n3\tdir/my map.map\t4\t3\t0\t0\t3\t2\t3.41421\n\n0 a.map 4 3 1 1 1 1 0\n";
         let queries = parse_scen(text.as_bytes(), Path::new("a.scen")).unwrap();
         assert_eq!(queries.len(), 2);
@@ -271,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_queries_are_named() {
+    fn invalid_queries_are_named() {
         let cases = [
             ("version 2\n", "a.scen:1: the first line is \"version 2\"; a Moving AI scenario begins with"),
             ("version 1\n0 m 4 3 4 0 0 0 1", "a.scen:2: the start (4, 0) lies outside the map of 4 x 3"),

@@ -1,15 +1,15 @@
-//! The one place that converts between the rows of files and pictures (first row in the north) and
-//! the rows of [`super::Terrain`] (row 0 in the south).
+//! Conversion between the rows of files and images (first row in the north) and the rows of
+//! [`super::Terrain`] (row 0 in the south). No other module converts rows.
 
-/// The terrain row of a file row, and the file row of a terrain row, on a map of `height` rows.
+/// Terrain row of a file row, and file row of a terrain row, on a map of `height` rows.
 ///
-/// The rule is its own inverse. `row` must be less than `height`.
+/// The function is its own inverse. `row` must be less than `height`.
 #[must_use]
 pub const fn flip_row(row: u16, height: u16) -> u16 {
     height - 1 - row
 }
 
-/// Reorders a grid from file rows to terrain rows, or back: rows of `width` values each.
+/// Reverses the rows of a grid, `width` values each, from file order to terrain order or back.
 pub fn flip_rows<T>(grid: &mut [T], width: u16) {
     let width = usize::from(width);
     let height = (grid.len() / width.max(1)) as u16;
@@ -25,7 +25,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn first_file_row_is_the_northernmost() {
+    fn the_first_file_row_is_the_northernmost() {
         assert_eq!(flip_row(0, 1), 0);
         assert_eq!(flip_row(0, 5), 4);
         assert_eq!(flip_row(4, 5), 0);
@@ -34,7 +34,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_exchanged_whole_and_back_again() {
+    fn rows_are_reversed_and_restored() {
         for (height, expected) in
             [(1, vec![0, 1, 2]), (2, vec![3, 4, 5, 0, 1, 2]), (3, vec![6, 7, 8, 3, 4, 5, 0, 1, 2])]
         {
@@ -49,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn grid_and_row_follow_the_same_rule() {
+    fn grids_and_rows_are_converted_alike() {
         let (width, height) = (4, 7);
         let mut grid: Vec<u16> = (0..width * height).map(|at| at / width).collect();
         flip_rows(&mut grid, width);

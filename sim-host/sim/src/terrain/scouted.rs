@@ -1,30 +1,28 @@
-//! Maps of land that was scouted once: what they leave out, and where they are wrong. KUZ section 3: land that is not fully
-//! scouted.
+//! Incomplete and partly wrong maps of a terrain (KUZ section 3).
 
 use super::Terrain;
 use staya_controller::grid::{BLOCKED, Cell};
 use staya_controller::rand::Rng;
 
-/// Keeps the draws of this module apart from all others.
 const PATCH: u32 = 0x004C_0002;
 
-/// How a map differs from the land.
+/// Differences between a map and the terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scouted {
     /// Share of patches that the map does not show, 0 to 1.
     pub unknown: f64,
-    /// Share of patches where it shows what is elsewhere on the land, 0 to 1; both together are 1 at most.
+    /// Share of patches that show other terrain, 0 to 1; both shares add up to at most 1.
     pub wrong: f64,
-    /// Cells along each side of a patch, 1 or more.
+    /// Side of a patch, cells, 1 or more.
     pub patch_cells: u16,
-    /// What robots take unknown cells for: ticks to cross one, 1 to 255.
+    /// Assumed crossing time of unknown cells, ticks, 1 to 255.
     pub assumed: u8,
     /// Equal seeds give equal maps.
     pub seed: u64,
 }
 
 impl Scouted {
-    /// The map of `land`. O(cells).
+    /// Creates the map of `land`. O(cells).
     #[must_use]
     pub fn map(&self, land: &Terrain) -> Terrain {
         let mut map = land.clone();
@@ -33,7 +31,7 @@ impl Scouted {
         for row in 0..height.div_ceil(side) {
             for column in 0..width.div_ceil(side) {
                 let mut rng = Rng::keyed(self.seed, PATCH, column.into(), row.into());
-                // 32 bits are a double.
+                // A 32-bit integer is exact in `f64`.
                 let lot = f64::from(rng.next_u64() as u32) / f64::from(u32::MAX) - f64::EPSILON;
                 let is_unknown = lot < self.unknown;
                 if !is_unknown && lot >= self.unknown + self.wrong {
@@ -55,7 +53,7 @@ impl Scouted {
     }
 }
 
-/// The median class of the cells that are not closed, 1 without any: what land is like of which nothing is known. O(cells).
+/// Median class of the open cells, 1 if there are none; the default for unknown cells. O(cells).
 #[must_use]
 pub fn usual_class(land: &Terrain) -> u8 {
     let mut counts = [0_usize; 256];
@@ -93,13 +91,13 @@ mod tests {
             let unknown = map.cells().iter().filter(|&&class| class == 77).count() as f64 / all;
             let differ = map.cells().iter().zip(land.cells()).filter(|(map, land)| map != land).count() as f64 / all;
             assert!((unknown - 0.3).abs() < 0.1, "{patch}: {unknown}");
-            // A tenth of what is wrong happens to be right.
+            // A tenth of the wrong cells happens to be right.
             assert!((differ - 0.48).abs() < 0.1, "{patch}: {differ}");
         }
     }
 
     #[test]
-    fn what_is_wrong_comes_in_patches_and_by_the_seed() {
+    fn wrong_cells_come_in_patches_and_depend_on_the_seed() {
         let flat = Terrain::from_cells(12, 12, vec![1; 144]).expect("fits");
         let map = scouted(0.5, 0.0, 4).map(&flat);
         for cell in (0..12).flat_map(|y| (0..12).map(move |x| Cell::new(x, y))) {
@@ -109,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn the_usual_class_is_the_median_of_what_is_open() {
+    fn the_usual_class_is_the_median_of_open_cells() {
         let usual = |cells: Vec<u8>| usual_class(&Terrain::from_cells(cells.len() as u16, 1, cells).expect("fits"));
         assert_eq!(usual(vec![0, 0, 0, 2, 3, 9]), 3);
         assert_eq!(usual(vec![4]), 4);

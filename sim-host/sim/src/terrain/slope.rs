@@ -1,4 +1,4 @@
-//! From heights to impassability: the steeper, the slower; too steep: blocked.
+//! Conversion of heights to impassability: steeper cells are slower, too steep cells are blocked.
 
 use super::Terrain;
 use super::error::{TerrainError, parameter_error};
@@ -6,18 +6,20 @@ use super::esri::Heights;
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::BLOCKED;
 
-/// How slopes become impassability.
+/// Rule that converts slopes to impassability.
 ///
-/// The slope g of a cell is the length of the gradient of the heights, rise over run (1 is 45 degrees), by central differences over
-/// the four neighbours, one-sided beside the border and beside unknown heights. With l classes and the maximum slope m
-/// a cell has impassability 1 + floor(l g / m) for g < m, l for g = m, and is blocked for g > m. Unknown heights are blocked.
+/// The slope g of a cell is the length of the gradient of the heights, rise over run (1 is 45
+/// degrees). It uses central differences over the four neighbours, one-sided at the border and next
+/// to unknown heights. With l classes and the maximum slope m, a cell has impassability 1 + floor(l
+/// g / m) for g < m, l for g = m, and is blocked for g > m. Unknown heights are blocked.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SlopeRule {
     /// Number of classes l, 1..=255: the steepest passable land takes l times as long as flat land.
     pub classes: u8,
-    /// Steepest slope m that a robot can climb, rise over run, more than 0. Too high: robots are sent up
-    /// cliffs. Too low: the land falls into pieces. Wheels manage 0.3 to 0.6, tracks up to 1.
+    /// Steepest slope m that a robot can climb, rise over run, more than 0. If it is too high,
+    /// robots are sent up cliffs; if it is too low, the terrain is split into separate parts.
+    /// Wheels manage 0.3 to 0.6, tracks up to 1.
     pub max_slope: f64,
 }
 
@@ -29,7 +31,7 @@ impl Default for SlopeRule {
 }
 
 impl SlopeRule {
-    /// The impassability of a slope, rise over run; NaN is blocked.
+    /// Impassability of a slope, rise over run; NaN is blocked.
     #[must_use]
     pub fn impassability(&self, slope: f64) -> u8 {
         // NaN fails the comparison and is blocked.
@@ -41,10 +43,10 @@ impl SlopeRule {
         }
     }
 
-    /// The terrain of the heights. O(size).
+    /// Converts heights to terrain. O(size).
     ///
     /// # Errors
-    /// [`TerrainError::Parameter`] when the rule makes no sense.
+    /// A [`TerrainError::Parameter`] if the rule is invalid.
     pub fn apply(&self, heights: &Heights) -> Result<Terrain, TerrainError> {
         if self.classes == 0 {
             return Err(parameter_error("slope.classes is 0", "give the number of classes, 1..=255"));
@@ -77,7 +79,7 @@ impl SlopeRule {
     }
 }
 
-/// Rise per cell between the neighbours that are known; NaN when `here` is unknown.
+/// Rise per cell between the known neighbours; NaN if `here` is unknown.
 fn gradient(before: Option<f64>, here: f64, after: Option<f64>) -> f64 {
     if here.is_nan() {
         return f64::NAN;
@@ -136,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_heights_are_blocked_and_hide_no_slope() {
+    fn unknown_heights_are_blocked_and_neighbours_keep_their_slope() {
         let terrain = RULE.apply(&heights(3, &[0.0, 3.0, f32::NAN])).unwrap();
         assert_eq!(terrain.cells(), [2, 2, BLOCKED]);
         let alone = RULE.apply(&heights(1, &[5.0])).unwrap();
@@ -144,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_senseless_rule_is_an_error() {
+    fn an_invalid_rule_is_refused() {
         let land = heights(1, &[0.0]);
         for max_slope in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(SlopeRule { max_slope, ..RULE }.apply(&land).is_err());

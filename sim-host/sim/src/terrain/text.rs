@@ -1,9 +1,9 @@
-//! What the text formats share: lines with numbers, and numbers with errors.
+//! Helpers of the text formats: numbered lines, and number parsers with errors.
 
 use super::error::{MAX_SIDE, Place, TerrainError, format_error};
 use std::path::Path;
 
-/// The text of a file, without a byte order mark; an error names the line of the first byte that is not UTF-8.
+/// Decodes UTF-8 without a byte order mark; an error names the line.
 pub(super) fn text<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str, TerrainError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {
@@ -18,12 +18,11 @@ pub(super) fn text<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str, TerrainE
     })
 }
 
-/// The lines of a text with their numbers, without line ends of either kind.
+/// Numbered lines of a text, without line ends of either kind.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.lines().enumerate().map(|(at, line)| (at + 1, line.trim_end_matches('\r')))
 }
 
-/// A whole number, or an error that names `field`.
 pub(super) fn integer<T: std::str::FromStr>(
     path: &Path,
     line: usize,
@@ -48,7 +47,6 @@ pub(super) fn side(path: &Path, line: usize, field: &str, word: &str) -> Result<
     }
 }
 
-/// A finite number, or an error that names `field`.
 pub(super) fn finite(path: &Path, line: usize, field: &str, word: &str) -> Result<f64, TerrainError> {
     match word.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -56,7 +54,7 @@ pub(super) fn finite(path: &Path, line: usize, field: &str, word: &str) -> Resul
     }
 }
 
-/// `word` in quotes for a message, shortened when it is long.
+/// `word` in quotes for a message, shortened if it is long.
 pub(super) fn quoted(word: &str) -> String {
     let mut short: String = word.chars().take(24).collect();
     if short.len() < word.len() {

@@ -1,10 +1,12 @@
-//! Moves on the grid when other ranks have the bodies beyond a border.
+//! Moves on the grid near the borders between MPI ranks.
 //!
-//! Who enters a cell depends on who left it before, in the order of the tick's priorities: a chain that may cross a border
-//! more than once. A rank therefore knows the bodies of others within [`DEPTH`] cells and what they want, goes through all in the
-//! order of priorities, and leaves open what depends on somebody farther off. While anybody in the world is open, ranks tell each
-//! other what they have settled and go through it again. The first one that is open, by priority, is settled in each round, since
-//! all before it are; nearly always the first round settles all. The result is that of [`World::advance`], whatever the cut.
+//! Whether a robot may enter a cell depends on the moves before it in the order of the tick's
+//! priorities. This dependency chain may cross a border several times. A rank therefore gets the
+//! bodies of other ranks within [`DEPTH`] cells with their preferred moves, processes all of them
+//! by priority, and leaves moves undecided that depend on bodies farther away. While any move in
+//! the world is undecided, ranks exchange their decisions and start another round. Each round
+//! decides at least the first undecided move, since all moves before it are decided; usually one
+//! round decides all. The result is that of [`World::advance`] for any partition.
 
 use super::{Body, PRIORITY, World};
 use serde::{Deserialize, Serialize};
@@ -14,16 +16,17 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 
-/// How far beyond its own bodies a rank looks, cells; at least 2, for who wants to go where a body wants to go. More takes more bytes
-/// and leaves less open.
+/// Distance in cells up to which a rank knows the bodies of others. At least 2, because bodies up
+/// to two cells apart compete for a cell. A larger value takes more bytes and leaves fewer moves
+/// undecided.
 pub const DEPTH: i16 = 8;
 
-/// Nobody knows yet whether somebody is in the cell.
+/// Occupancy mark: not decided yet.
 const OPEN: u32 = u32::MAX;
 /// Marks a body of another rank.
 const BESIDE: u32 = 1 << 31;
 
-/// On no map.
+/// A cell outside every map.
 const NOWHERE: Cell = Cell::new(-1, -1);
 
 /// A rectangle of cells, both corners included.
@@ -34,7 +37,7 @@ pub struct CellBounds {
 }
 
 impl CellBounds {
-    /// The least one around cells; `None` around none.
+    /// Smallest rectangle around `cells`; `None` if there are none.
     pub fn around(cells: impl Iterator<Item = Cell>) -> Option<Self> {
         cells.fold(None, |bounds: Option<Self>, cell| {
             let Self { low, high } = bounds.unwrap_or(Self { low: cell, high: cell });
@@ -45,12 +48,12 @@ impl CellBounds {
         })
     }
 
-    /// How far off a cell is, as a king goes; 0: in it.
+    /// Chebyshev distance of a cell; 0 inside.
     pub(crate) fn distance(&self, cell: Cell) -> i32 {
         self.distance_to(&Self { low: cell, high: cell })
     }
 
-    /// How far off another one is; 0: they have a cell in common.
+    /// Chebyshev distance to another rectangle; 0 if they overlap.
     pub fn distance_to(&self, other: &Self) -> i32 {
         let off = |low: i16, high: i16, other_low: i16, other_high: i16| {
             (i32::from(low) - i32::from(other_high)).max(i32::from(other_low) - i32::from(high))
@@ -61,50 +64,48 @@ impl CellBounds {
     }
 }
 
-/// A body of another rank, and what it wants.
+/// A body of another rank with its preferred moves.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Beside {
     pub(crate) id: RobotId,
     pub(crate) cell: Cell,
-    /// Its preferred moves, if it may leave its cell in this tick.
+    /// Preferred moves, if it may leave its cell in this tick.
     pub(crate) wish: Option<heapless::Vec<Dir, 8>>,
 }
 
-/// What a body does in this tick.
+/// Decided move of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Settled {
     pub(crate) id: RobotId,
     pub(crate) by: Dir,
 }
 
-/// Somebody who wants to move.
 struct Mover {
     priority: u64,
     id: RobotId,
-    /// A body here, or one of those beside with [`BESIDE`].
+    /// Index of the body: here, or in another rank if [`BESIDE`] is set.
     body: u32,
     cell: Cell,
     wish: heapless::Vec<Dir, 8>,
-    /// Whether everybody who matters to it is known.
+    /// Whether all bodies that can affect its move are known.
     is_seen: bool,
     by: Option<Dir>,
     is_told: bool,
 }
 
-/// The moves of one tick, until all are settled.
+/// Moves of one tick, until all are decided.
 pub struct Contest {
     now: u64,
     movers: Vec<Mover>,
-    /// Where those beside are in `movers`.
+    /// Index in `movers` of each body of another rank.
     beside: HashMap<RobotId, usize>,
-    /// The cells of all that are beside.
     cells: Vec<Cell>,
-    /// What cells held before this round.
     before: Vec<(usize, u32)>,
 }
 
 impl World {
-    /// The bodies within `depth` cells of `bounds`, with what they are told; without `commands`, with nothing.
+    /// Bodies within `depth` cells of `bounds`, with their preferred moves from `commands`; without
+    /// `commands`, without moves.
     pub fn near(&self, tick: u32, bounds: &CellBounds, depth: i16, commands: Option<&[Command<f32>]>) -> Vec<Beside> {
         let now = u64::from(tick) * u64::from(UNIT);
         let near = self.bodies.iter().enumerate().filter(|(_, body)| bounds.distance(body.cell) <= i32::from(depth));
@@ -118,8 +119,8 @@ impl World {
         .collect()
     }
 
-    /// Begins the moves of a tick among bodies of others: all of them that are within [`DEPTH`] cells of `own`, which holds all bodies
-    /// that are here.
+    /// Begins the moves of a tick. `beside` contains all bodies of other ranks within [`DEPTH`]
+    /// cells of `own`, the bounds of the bodies of this rank.
     pub fn contest(
         &mut self,
         tick: u32,
@@ -167,10 +168,10 @@ impl World {
         Contest { now, movers, beside, cells, before: Vec::new() }
     }
 
-    /// Keeps these bodies alone, by their places, in this order.
+    /// Keeps only the bodies with the indices `here`, in this order.
     pub fn keep(&mut self, here: &[u32]) {
         self.bodies = here.iter().map(|&index| self.bodies[index as usize]).collect();
-        // New memory: pages of the map that nobody here comes to are never touched.
+        // Fresh memory: pages of the map without bodies stay untouched.
         self.occupancy = vec![0; self.terrain.cells().len()];
         for (mark, body) in (1..).zip(&self.bodies) {
             if let Some(at) = self.terrain.index(body.cell) {
@@ -179,12 +180,12 @@ impl World {
         }
     }
 
-    /// A body comes from another rank, behind those that are here; where it is, [`World::put`] has to say.
+    /// Appends a body that comes from another rank; [`World::put`] sets its position.
     pub fn admit(&mut self, id: RobotId) {
         self.bodies.push(Body::at_rest(id, NOWHERE));
     }
 
-    /// A body goes to another rank; the last one takes its place.
+    /// Removes a body that goes to another rank; the last body takes its index.
     pub fn dismiss(&mut self, index: usize) {
         let body = self.bodies.swap_remove(index);
         if let Some(at) = self.terrain.index(body.cell) {
@@ -197,7 +198,8 @@ impl World {
         }
     }
 
-    /// What [`World::count_collisions`] does not see: cells that a body of another rank has, too, before all that are here.
+    /// Collisions that [`World::count_collisions`] cannot see: cells shared with a body of another
+    /// rank. Counted by this rank if the other body has a lower id than all bodies here.
     pub fn count_collisions_beside(&self, beside: &[Beside]) -> u64 {
         let mut least = HashMap::<Cell, RobotId>::new();
         for other in beside.iter().filter(|other| self.terrain.is_passable(other.cell)) {
@@ -215,7 +217,7 @@ impl World {
         own.iter().filter(|(cell, id)| least[cell] < **id).count() as u64
     }
 
-    /// Whether a body in `from` may move by `dir`, if nobody is there; who is.
+    /// Index and occupancy of the next cell; `None` if the terrain does not allow the move.
     fn at_end_of(&self, from: Cell, dir: Dir) -> Option<(usize, u32)> {
         let to = from + dir.offset();
         let passable = |x, y| self.terrain.is_passable(Cell::new(x, y));
@@ -227,7 +229,7 @@ impl World {
 }
 
 impl Contest {
-    /// Goes through all in order. Returns how many that are here are still open.
+    /// Processes all moves by priority. Returns the number of undecided moves of this rank.
     pub fn round(&mut self, world: &mut World) -> u64 {
         let mut open = 0;
         for mover in &mut self.movers {
@@ -258,7 +260,7 @@ impl Contest {
                         if let Some((at, 0)) = world.at_end_of(mover.cell, dir) {
                             self.before.push((at, 0));
                             world.occupancy[at] = OPEN;
-                            // At worst it goes here.
+                            // All competitors are known, so it stops here at the latest.
                             if mover.is_seen {
                                 break;
                             }
@@ -273,21 +275,22 @@ impl Contest {
         open
     }
 
-    /// What has been settled here since this was last asked of anybody within [`DEPTH`] cells of others' bounds.
+    /// Decisions of this rank since the last [`Contest::tell`] for bodies within [`DEPTH`] cells of
+    /// `bounds`.
     pub fn settled(&self, bounds: &CellBounds) -> Vec<Settled> {
         let own = self.movers.iter().filter(|mover| mover.body & BESIDE == 0 && !mover.is_told);
         let near = own.filter(|mover| bounds.distance(mover.cell) <= i32::from(DEPTH));
         near.filter_map(|mover| Some(Settled { id: mover.id, by: mover.by? })).collect()
     }
 
-    /// All that is settled has been told.
+    /// Marks all decisions as sent.
     pub fn tell(&mut self) {
         for mover in &mut self.movers {
             mover.is_told = mover.by.is_some();
         }
     }
 
-    /// What was settled elsewhere.
+    /// Applies decisions of other ranks.
     pub fn hear(&mut self, settled: &[Settled]) {
         for Settled { id, by } in settled {
             if let Some(&at) = self.beside.get(id) {
@@ -296,7 +299,7 @@ impl Contest {
         }
     }
 
-    /// Moves the bodies that are here, and forgets the others.
+    /// Moves the bodies of this rank and removes those of other ranks.
     pub fn finish(self, world: &mut World) {
         for at in self.cells.into_iter().filter_map(|cell| world.terrain.index(cell)) {
             world.occupancy[at] = 0;
@@ -320,7 +323,7 @@ impl Contest {
     }
 }
 
-/// The first preferred move whose cell is free; `None`: that depends on who is not settled.
+/// First preferred move whose cell is free; `None` if it depends on an undecided move.
 fn choose(world: &World, from: Cell, wish: &[Dir]) -> Option<Dir> {
     for &dir in wish {
         if dir == Dir::Stay {

@@ -1,8 +1,9 @@
-//! Bodies on the grid: who stands where, who may move when, and who gives way.
+//! Bodies on the grid: occupancy, timing and priority of moves.
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves). The paper leaves open
-//! who moves first; here the order of a tick is drawn anew each tick from (seed, tick, robot), so that no robot has
-//! precedence for good and the order of robots in memory plays no part.
+//! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves).
+//! The paper does not define who moves first. Here each tick has a random order, a function of
+//! (seed, tick, robot), so that no robot has permanent priority and the order of robots in memory
+//! does not matter.
 
 #[doc(hidden)]
 pub mod border;
@@ -22,38 +23,36 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use thiserror::Error;
 
-/// Keeps the draws of this module apart from all others.
 const PRIORITY: u32 = 0x0057_0001;
 
-/// How bodies may move.
+/// Rules of movement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MoveRules {
     /// Norm of a diagonal move.
     pub norm: Norm,
-    /// Whether a diagonal move may pass between two cells of which one (or both) is a wall.
-    /// Robots in those cells do not hinder it.
+    /// Whether a diagonal move may pass between two cells of which one (or both) is a wall. Robots
+    /// in those cells do not block it.
     pub corner_cutting: bool,
 }
 
 /// A robot's body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Body {
-    /// The robot.
+    /// Id of the robot.
     pub id: RobotId,
-    /// The cell it occupies, alone.
+    /// Cell that it occupies exclusively.
     pub cell: Cell,
-    /// The move by which it came into the cell; `Stay` at the start.
+    /// Move by which it entered the cell; `Stay` at the start.
     pub entered_by: Dir,
-    /// When it may leave, in [`UNIT`]ths of a tick after the start.
+    /// Time when it may leave, in [`UNIT`]ths of a tick after the start.
     pub free_at: u64,
-    /// Length of its last crossing, [`UNIT`]ths of a tick: the land may have changed since. 0 for a body that never moved.
+    /// Duration of its last crossing by the land of that time, [`UNIT`]ths of a tick; 0: none.
     pub crossing: u64,
-    /// The cell was closed while it was there: it may leave, and nobody enters.
+    /// The cell was closed while the body was inside: it may leave, and no body may enter.
     pub is_shut_in: bool,
 }
 
 impl Body {
-    /// One that has not moved yet.
     pub(crate) const fn at_rest(id: RobotId, cell: Cell) -> Self {
         Self { id, cell, entered_by: Dir::Stay, free_at: 0, crossing: 0, is_shut_in: false }
     }
@@ -62,20 +61,20 @@ impl Body {
 /// A start that the world refuses.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum Misplaced {
-    /// A wall, or no part of the map.
+    /// The start is in a wall or outside the map.
     #[error("robot {} starts in the impassable cell ({}, {})", .robot.0, .cell.x, .cell.y)]
     Blocked {
-        /// The robot.
+        /// Id of the robot.
         robot: RobotId,
         /// Its start.
         cell: Cell,
     },
-    /// Two robots in one cell.
+    /// Two robots start in one cell.
     #[error("robots {} and {} both start in cell ({}, {})", .first.0, .second.0, .cell.x, .cell.y)]
     Overlap {
-        /// The robot that came first in the list.
+        /// Id of the first robot in the list.
         first: RobotId,
-        /// The other one.
+        /// Id of the second robot.
         second: RobotId,
         /// Their start.
         cell: Cell,
@@ -91,17 +90,17 @@ pub struct World {
     bodies: Vec<Body>,
     /// Per cell of the terrain: index of its body plus 1, or 0.
     occupancy: Vec<u32>,
-    /// Scratch: who wants to move this tick, by priority.
+    /// Scratch: bodies that want to move in this tick, with their priority.
     movers: Vec<(u64, RobotId, u32)>,
-    /// Scratch of the check, a bit a cell: whether it saw a body there. Empty between checks.
+    /// Scratch of the collision check: a bit per cell with a body. Empty between checks.
     seen: Vec<u64>,
 }
 
 impl World {
-    /// A world with bodies at their starts, free to move at tick 0.
+    /// Creates a world with bodies at their starts, free to move at tick 0.
     ///
     /// # Errors
-    /// When a start is impassable, outside the map or taken.
+    /// A start is impassable, outside the map or taken.
     pub fn new(
         terrain: Terrain,
         rules: MoveRules,
@@ -139,13 +138,13 @@ impl World {
         Ok(())
     }
 
-    /// The land.
+    /// The terrain.
     #[must_use]
     pub fn terrain(&self) -> &Terrain {
         &self.terrain
     }
 
-    /// Puts body `index` where and as it was at another time; whoever is in its cell is to be put elsewhere, too. Checks nothing but the map.
+    /// Restores body `index` if its cell is valid. A body in that cell must be moved too.
     pub(crate) fn put(&mut self, index: usize, body: Body) -> bool {
         let may_be_there = body.is_shut_in || self.terrain.is_passable(body.cell);
         let Some(to) = self.terrain.index(body.cell).filter(|_| may_be_there) else {
@@ -163,17 +162,16 @@ impl World {
         true
     }
 
-    /// Whether each body has its cell for itself.
     pub(crate) fn is_sound(&self) -> bool {
         self.bodies.iter().enumerate().all(|(index, body)| self.body_at(body.cell) == Some(index))
     }
 
-    /// Changes a cell of the land, whoever is there.
+    /// Restores a terrain cell, even if a body is inside.
     pub(crate) fn put_cell(&mut self, cell: Cell, class: u8) {
         self.terrain.set(cell, class);
     }
 
-    /// Changes cells of the land, whoever is there: in a cell that closes a body is shut in, which it may leave.
+    /// Changes terrain cells. A body in a cell that closes may leave it.
     pub fn change(&mut self, cells: &[(Cell, u8)]) {
         for &(cell, class) in cells {
             self.terrain.set(cell, class);
@@ -183,10 +181,10 @@ impl World {
         }
     }
 
-    /// Changes a cell of the land by hand; 0 is a wall.
+    /// Changes a terrain cell by hand; 0 is a wall.
     ///
     /// # Errors
-    /// There is no such cell, or somebody is in it.
+    /// The cell does not exist or is occupied.
     pub fn set_cell(&mut self, cell: Cell, class: u8) -> Result<(), Refusal> {
         let is_taken = self.body_at(cell).is_some();
         set_cell(&mut self.terrain, cell, class, is_taken)
@@ -205,16 +203,16 @@ impl World {
         (self.occupancy[at] as usize).checked_sub(1)
     }
 
-    /// Moves the bodies as their robots command; `commands[i]` belongs to body `i`.
+    /// Moves the bodies; `commands[i]` belongs to body `i`.
     ///
-    /// A body that is free takes the first of its preferred moves whose cell is free and passable.
-    /// Bodies do so one after the other in the order of this tick's priorities, so a cell that was
+    /// A body that may leave takes the first of its preferred moves whose cell is free and
+    /// passable. Bodies move one by one in the order of this tick's priorities, so a cell that was
     /// left earlier in the tick is free. Entering cell c by move d keeps the body busy for
-    /// length(d) * u(c) ticks (eq. 6); a body that goes on at the first tick after it became free
-    /// carries the fraction of a tick over, so that a journey takes exactly the sum of eq. 7.
+    /// length(d) * u(c) ticks (eq. 6). A body that moves again in the first tick after it became
+    /// free keeps the remaining fraction of a tick, so a journey takes exactly the sum of eq. 7.
     ///
     /// # Panics
-    /// When there are fewer commands than bodies.
+    /// If there are fewer commands than bodies.
     pub fn advance(&mut self, tick: u32, commands: &[Command<f32>]) {
         let now = u64::from(tick) * u64::from(UNIT);
         let mut movers = std::mem::take(&mut self.movers);
@@ -250,7 +248,7 @@ impl World {
         self.bodies[index] = self.entered(&body, dir, now);
     }
 
-    /// A body that is free, after it has left its cell by `dir`.
+    /// State of a free body after it has left its cell by `dir`.
     fn entered(&self, body: &Body, dir: Dir, now: u64) -> Body {
         let idle = now - body.free_at;
         let start = if idle < u64::from(UNIT) { body.free_at } else { now };
@@ -259,7 +257,6 @@ impl World {
         Body { id: body.id, cell, entered_by: dir, free_at: start + crossing, crossing, is_shut_in: false }
     }
 
-    /// Whether a body in `from` may move by `dir` right now.
     fn is_open(&self, from: Cell, dir: Dir) -> bool {
         let step = dir.offset();
         let to = from + step;
@@ -269,10 +266,10 @@ impl World {
             && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)))
     }
 
-    /// How many bodies stand in a blocked cell in which they were not shut, or in a cell that another body already has.
+    /// Number of bodies in a shared cell, or in a blocked cell that did not close around them.
     ///
-    /// Looks at the bodies and the terrain alone, not at the bookkeeping that [`World::advance`]
-    /// uses: a check that trusts what it checks finds nothing. O(robots).
+    /// Uses only the bodies and the terrain, not the occupancy table of [`World::advance`], so that
+    /// it can find errors in that table. O(robots).
     pub fn count_collisions(&mut self) -> u64 {
         let mut collisions = 0;
         for body in &self.bodies {
@@ -291,7 +288,7 @@ impl World {
     }
 }
 
-/// Changes a cell that nobody is in: who crosses one does so at the pace that it had when he entered.
+/// Changes an unoccupied cell. A body inside a cell keeps the crossing time that it entered with.
 fn set_cell(terrain: &mut Terrain, cell: Cell, class: u8, is_taken: bool) -> Result<(), Refusal> {
     if terrain.index(cell).is_none() {
         let what = format!("({}, {}) is no cell of the map", cell.x, cell.y);

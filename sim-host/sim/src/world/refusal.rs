@@ -1,14 +1,14 @@
-//! Why something cannot be done to a world.
+//! Errors of interventions.
 
-/// Why an intervention makes no sense, or nobody has a use for it.
+/// Why an intervention was refused: it is invalid or has no effect.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what}; {remedy}")]
 pub struct Refusal {
-    /// The field of the intervention.
+    /// Field of the intervention.
     pub field: &'static str,
-    /// What is wrong.
+    /// Cause of the refusal.
     pub what: String,
-    /// What to do about it.
+    /// How to correct it.
     pub remedy: String,
 }
 

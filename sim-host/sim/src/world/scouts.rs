@@ -1,4 +1,4 @@
-//! What robots know of land that they do not see: their common map, and what each has seen otherwise.
+//! Robots' knowledge of unseen terrain: a common map, and each robot's own observations.
 
 use super::window::known_window;
 use crate::terrain::Terrain;
@@ -7,25 +7,24 @@ use staya_controller::grid::{Cell, Window};
 use staya_controller::route::LandMemory;
 use std::sync::Arc;
 
-/// Cells that a robot remembers otherwise than its map has them.
+/// Number of cells in which a robot's memory may differ from its map.
 pub const REMEMBERED: usize = 1024;
 
-/// What one robot remembers of the land.
+/// Terrain memory of one robot.
 pub type Memory = LandMemory<REMEMBERED>;
 
-/// Robots that a thread takes at least at a time.
 const BATCH: usize = 64;
 
-/// What robots know of the land before they see it.
+/// Terrain that robots know before they see it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scouting {
-    /// Their map; of the land's size.
+    /// Common map; of the terrain's size.
     pub map: Arc<Terrain>,
-    /// How far they see, cells in each direction.
+    /// Range of sight, cells in each direction.
     pub sight: u8,
 }
 
-/// What robots know of the land, by their bodies here.
+/// Terrain knowledge of all robots, by body index.
 #[derive(Clone, Debug)]
 pub struct Scouts {
     known: Scouting,
@@ -34,25 +33,26 @@ pub struct Scouts {
 }
 
 impl Scouts {
-    /// Of so many bodies that plan on windows of `radius`.
+    /// Creates empty memories for `bodies` robots that plan on windows of `radius`.
     #[must_use]
     pub fn new(known: &Scouting, radius: u8, bodies: usize) -> Self {
         Self { known: known.clone(), radius, memories: vec![Memory::new(); bodies] }
     }
 
-    /// How far robots see, cells.
+    /// Range of sight, cells.
     #[must_use]
     pub const fn sight(&self) -> u8 {
         self.known.sight
     }
 
-    /// What the robot of body `index` takes the land around `cell` to be: what it sees of it, else what it has seen, else its map.
+    /// Terrain around `cell` as known by a robot: from sight, else memory, else the map.
     pub fn window<'a>(&self, land: &Terrain, index: usize, cell: Cell, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
         let Scouting { map, sight } = &self.known;
         known_window(land, (map, &self.memories[index]), cell, [*sight, self.radius], buffer)
     }
 
-    /// Takes note of what robots see where they are; `cells` by body, none off the map. O(bodies x cells in sight).
+    /// Adds the terrain in sight to the memories; `cell` maps a body to its cell, `None` off the
+    /// map. O(bodies x cells in sight).
     pub fn observe(&mut self, land: &Terrain, cell: impl Fn(usize) -> Option<Cell> + Sync) {
         let Scouting { map, sight } = &self.known;
         let memories = self.memories.par_iter_mut().enumerate().with_min_len(BATCH);
@@ -64,28 +64,27 @@ impl Scouts {
         });
     }
 
-    /// What a robot remembers.
+    /// Memory of a robot.
     #[must_use]
     pub fn memory(&self, index: usize) -> &Memory {
         &self.memories[index]
     }
 
-    /// Replaces it.
     pub(crate) fn put(&mut self, index: usize, memory: Memory) {
         self.memories[index] = memory;
     }
 
-    /// Keeps so many bodies, before the first tick.
+    /// Reduces the number of bodies to `bodies`, before the first tick.
     pub fn keep(&mut self, bodies: usize) {
         self.memories.truncate(bodies);
     }
 
-    /// A body comes, behind those that are here.
+    /// Appends a body.
     pub fn admit(&mut self) {
         self.memories.push(Memory::new());
     }
 
-    /// A body goes; the last one takes its place.
+    /// Removes a body; the last body takes its index.
     pub fn dismiss(&mut self, index: usize) {
         self.memories.swap_remove(index);
     }

@@ -131,7 +131,7 @@ fn a_contested_cell_goes_to_each_robot_equally_often() {
 }
 
 #[test]
-fn a_queue_moves_on_together_when_the_first_goes_first() {
+fn a_queue_moves_together_when_the_first_has_priority() {
     let starts = [(0, 0), (1, 0)];
     let together = (0..200)
         .filter(|&tick| {
@@ -145,7 +145,7 @@ fn a_queue_moves_on_together_when_the_first_goes_first() {
 }
 
 #[test]
-fn the_check_finds_what_the_bookkeeping_hides() {
+fn the_collision_check_does_not_trust_the_occupancy_table() {
     let mut world = world(Terrain::flat(3, 1), MoveRules::default(), &[(0, 0), (1, 0), (2, 0)]);
     assert_eq!(world.count_collisions(), 0);
     world.bodies[0].cell = Cell::new(1, 0);
@@ -205,7 +205,7 @@ fn any_command() -> impl Strategy<Value = Command<f32>> {
 
 proptest! {
     #[test]
-    fn no_command_ever_brings_two_robots_into_one_cell(
+    fn no_commands_bring_two_robots_into_one_cell(
         cells in prop::collection::vec(0_u8..4, 36),
         corner_cutting: bool,
         seed: u64,

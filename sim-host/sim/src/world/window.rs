@@ -1,4 +1,4 @@
-//! What a robot sees of the terrain, and what it knows of it.
+//! Terrain windows around a robot.
 
 use super::World;
 use crate::terrain::Terrain;
@@ -6,22 +6,22 @@ use staya_controller::grid::{BLOCKED, Cell, Window};
 use staya_controller::route::{LandMemory, supposed};
 
 impl World {
-    /// The square of `2 * radius + 1` cells a side around `cell`, written into `buffer`. Cells
-    /// outside the map are walls, so that every window has the same size. `None` when `cell` itself
-    /// is not on the map. O(radius^2).
+    /// The square of `2 * radius + 1` cells a side around `cell`, written to `buffer`. Cells
+    /// outside the map are walls, so that every window has the same size. `None` if `cell` is not
+    /// on the map. O(radius^2).
     #[must_use]
     pub fn window<'a>(&self, cell: Cell, radius: u8, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
         window(&self.terrain, cell, radius, buffer)
     }
 }
 
-/// As [`World::window`], of any land.
+/// The window of [`World::window`] for any terrain.
 #[must_use]
 pub fn window<'a>(terrain: &Terrain, cell: Cell, radius: u8, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
     window_but(terrain, cell, radius, &[], buffer)
 }
 
-/// The same with some cells another way: later ones count.
+/// The window of [`World::window`] with some cells replaced; later replacements win.
 #[must_use]
 pub fn window_but<'a>(
     terrain: &Terrain,
@@ -36,8 +36,9 @@ pub fn window_but<'a>(
     Window::new(buffer, origin, side, side)
 }
 
-/// What a robot takes the land around `cell` to be that sees so far and plans on windows so wide (`[sight, radius]`): `land` as far as it
-/// sees, what it remembers beyond that, and else its map, both of them the size of the land. `None` off the map. O(radius^2 + N).
+/// Terrain window of a robot that sees `sight` cells far and plans on `radius` cells. It combines
+/// `land` within sight, the memory beyond it, and the map elsewhere; both terrains have the same
+/// size. `None` off the map. O(radius^2 + N).
 #[must_use]
 pub fn known_window<'a, const N: usize>(
     land: &Terrain,
@@ -50,7 +51,7 @@ pub fn known_window<'a, const N: usize>(
     let side = 2 * u16::from(radius) + 1;
     let closed = |at: usize| origin + Cell::new((at % usize::from(side)) as i16, (at / usize::from(side)) as i16);
     for (at, class) in buffer.iter_mut().enumerate().filter(|(_, class)| **class == BLOCKED) {
-        // Where the map ends is certain.
+        // The border of the map is certain.
         if map.index(closed(at)).is_some() {
             *class = supposed(*class);
         }
@@ -62,7 +63,7 @@ pub fn known_window<'a, const N: usize>(
     Window::new(buffer, origin, side, side)
 }
 
-/// Writes the land into `buffer`, row by row, and answers with the window's south-west cell.
+/// Writes the terrain to `buffer`, row by row, and returns the window's south-west cell.
 fn copy(terrain: &Terrain, cell: Cell, radius: u8, buffer: &mut Vec<u8>) -> Option<Cell> {
     terrain.index(cell)?;
     let reach = i16::from(radius);
@@ -85,7 +86,6 @@ fn copy(terrain: &Terrain, cell: Cell, radius: u8, buffer: &mut Vec<u8>) -> Opti
     Some(origin)
 }
 
-/// Writes cells into a window that was copied; those outside are ignored.
 fn put(buffer: &mut [u8], origin: Cell, side: u16, cells: impl Iterator<Item = (Cell, u8)>) {
     for (cell, class) in cells {
         let at = |at: i16, from: i16| u16::try_from(i32::from(at) - i32::from(from)).ok().filter(|&at| at < side);
@@ -95,7 +95,7 @@ fn put(buffer: &mut [u8], origin: Cell, side: u16, cells: impl Iterator<Item = (
     }
 }
 
-/// The part of `at - reach ..= at + reach` inside `0..length`, and how much of it lies before and after.
+/// Part of `at - reach ..= at + reach` inside `0..length`, with the lengths before and after it.
 fn span(at: i16, reach: i16, length: u16) -> (usize, std::ops::Range<usize>, usize) {
     let (first, end) = (i32::from(at) - i32::from(reach), i32::from(at) + i32::from(reach) + 1);
     let (low, high) = (first.max(0), end.min(i32::from(length)));

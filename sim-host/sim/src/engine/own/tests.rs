@@ -11,7 +11,7 @@ use staya_controller::time::Instant;
 use staya_controller::wire::Format;
 use std::path::Path;
 
-/// Stands, and takes over the highest number that it has heard of.
+/// Stays in place and spreads the highest number that it has received.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Highest(u32);
 
@@ -32,7 +32,7 @@ impl Guidance<f32> for Highest {
     ) -> Result<Decision<f32>, BadInput> {
         let heard = input.neighbors.iter().map(|other| other.payload);
         self.0 = heard.fold(self.0.max(input.id.0), u32::max);
-        // The number is told by whom it follows, too, so that rows show it.
+        // The leader field also shows the number, so that record rows contain it.
         let status = Status { is_at_goal: self.0 == ROBOTS, ..Status::default() };
         Ok(Decision { action: Action::Stay, status, leader: RobotId(self.0), ..Decision::default() })
     }
@@ -52,7 +52,6 @@ impl Guidance<f32> for Highest {
 
 const ROBOTS: u32 = 9;
 
-/// A line of robots that hear their neighbours alone.
 fn line(rest: &str) -> Scenario {
     let robots: Vec<_> = (0..ROBOTS).map(|i| format!("{{ start_m = [{i}, 0], goal_m = [{i}, 0] }}")).collect();
     let text = format!(
@@ -68,7 +67,7 @@ fn run(scenario: &Scenario) -> Outcome {
 }
 
 #[test]
-fn what_laws_tell_each_other_goes_from_robot_to_robot_in_both_formats_and_sealed() {
+fn payloads_spread_from_robot_to_robot_in_all_formats() {
     let passphrase = "[authentication]\nkey = \"passphrase: swarm\"\n";
     for (rest, format) in [
         (String::new(), Format::Postcard),
@@ -84,13 +83,13 @@ fn what_laws_tell_each_other_goes_from_robot_to_robot_in_both_formats_and_sealed
 }
 
 #[test]
-fn payloads_that_are_lost_are_told_again() {
+fn lost_payloads_are_repeated() {
     let outcome = run(&line("loss = 0.5"));
     assert_eq!(outcome.arrived, ROBOTS as usize);
 }
 
 #[test]
-fn a_law_of_ones_own_that_is_one_of_ours_gives_the_very_same_run() {
+fn a_built_in_law_given_by_the_caller_gives_the_identical_run() {
     let scenario = line("");
     let ours = simulate(&scenario, |_, _| ControlFlow::Continue(())).unwrap();
     let setup = scenario.plane.clone().unwrap();
@@ -102,7 +101,7 @@ fn a_law_of_ones_own_that_is_one_of_ours_gives_the_very_same_run() {
 }
 
 #[test]
-fn a_run_goes_on_from_a_checkpoint_and_ends_as_if_it_had_never_stopped() {
+fn a_run_resumed_from_a_checkpoint_ends_identically() {
     let scenario = line("loss = 0.3");
     let whole = run(&scenario);
     let mut bytes = Vec::new();

@@ -1,4 +1,4 @@
-//! The operator's orders, and targets, as robots are told of them.
+//! Encodes the operator's orders and the robots' goals.
 
 use crate::radio;
 use crate::scenario::{Order, Target};
@@ -9,10 +9,10 @@ use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
 use staya_controller::wire::{Format, Header, Message, WaypointAssignment, Wire};
 
-/// The operator's orders as frames; those of one tick together.
+/// Encodes the operator's orders; orders of one tick are combined.
 pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec<(u32, Vec<u8>)> {
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
-    // Each index counts by itself: what is newer may be at most half of all versions ahead.
+    // Each index has its own version counter, because versions are compared modulo 2^n.
     let mut versions = [0_u8; 256];
     let (mut wire, sender) = radio::operator(format, key, 0);
     let mut sequence = 0_u16;
@@ -39,7 +39,7 @@ pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&K
     frames
 }
 
-/// A target as it is `age_s` after it was set, at the start of a robot's clock.
+/// Converts a goal at age `age_s`, relative to the start of a robot's clock.
 pub(super) fn waypoint(target: &Target, age_s: f64) -> Waypoint<f32> {
     let mut at = target.position_m;
     for (at, v) in at.iter_mut().zip(target.velocity_mps) {

@@ -1,4 +1,4 @@
-//! What of the plane changes, to be kept and moved.
+//! Saves and restores the mutable state of the plane.
 
 use super::{PlaneGround, frames};
 use crate::engine::grid::{Changed, restore_meter};
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use std::collections::VecDeque;
 
-/// What of a body changes, and what its robot is told when it starts anew.
+/// Mutable state of a body, and the task that its robot gets at a restart.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PlaneBody {
     position_m: [f64; 3],
@@ -22,7 +22,7 @@ pub struct PlaneBody {
     seen: Option<Memory>,
 }
 
-/// What is of the whole plane.
+/// Mutable state shared by all bodies.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PlaneShared {
     clearance: Clearance,
@@ -31,9 +31,8 @@ pub struct PlaneShared {
     changed: Changed,
     solids: Vec<Solid>,
     orders: Vec<Order>,
-    /// Where intruders are, and how they go.
     intruders: Vec<[[f64; 3]; 2]>,
-    /// Where everybody was, for eyes that see late.
+    /// Past positions of all bodies, for sensors with a delay.
     past: VecDeque<Vec<[f64; 3]>>,
 }
 

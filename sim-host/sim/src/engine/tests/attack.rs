@@ -1,4 +1,4 @@
-//! Attackers without the key change nothing, in either wire format; without authentication they take the swarm away.
+//! Attackers without the key have no effect; without authentication they divert the swarm.
 
 use crate::engine::{Moment, Outcome, simulate};
 use crate::record::RobotRow;
@@ -17,7 +17,6 @@ fn run(text: &str) -> Outcome {
     simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("free places")
 }
 
-/// Without the tables that begin with `[name]`.
 fn without(text: &str, name: &str) -> String {
     let mut is_kept = true;
     let kept = text.lines().filter(|line| {
@@ -30,7 +29,7 @@ fn without(text: &str, name: &str) -> String {
 }
 
 #[test]
-fn a_swarm_with_a_key_goes_as_if_nobody_attacked_it_and_counts_what_it_refused() {
+fn an_attacked_swarm_with_a_key_is_unaffected_and_counts_refusals() {
     let mut hashes = Vec::new();
     for format in ["postcard", "mavlink"] {
         let text = HIJACK.replace("\"postcard\"", &format!("\"{format}\""));
@@ -43,7 +42,7 @@ fn a_swarm_with_a_key_goes_as_if_nobody_attacked_it_and_counts_what_it_refused()
         let packets = attacked.packets;
         assert_eq!(attacked.trace_hash, alone.trace_hash, "{format}");
         assert_eq!(attacked.ticks, alone.ticks);
-        // Each of the three attackers is refused by six robots again and again.
+        // Six robots refuse each of the three attackers repeatedly.
         let ticks = u64::from(attacked.ticks);
         assert!(packets.unsigned > 3 * ticks, "{packets:?}");
         assert!(packets.forged > 3 * ticks, "{packets:?}");
@@ -57,9 +56,9 @@ fn a_swarm_with_a_key_goes_as_if_nobody_attacked_it_and_counts_what_it_refused()
     assert_eq!(hashes[0], hashes[1], "tags and signatures are not news");
 }
 
-/// Each kind alone, without a key: orders are followed, and repeated packets are known for what they are by their numbers.
+/// Each kind of attack alone.
 #[test]
-fn without_a_key_orders_of_strangers_are_followed() {
+fn without_a_key_robots_follow_an_attackers_orders() {
     let open = without(HIJACK, "authentication");
     let alone = run(&without(&open, "attack"));
     for (kind, is_followed) in [("unsigned", true), ("forge", true), ("replay", false)] {
@@ -74,9 +73,8 @@ fn without_a_key_orders_of_strangers_are_followed() {
     }
 }
 
-/// Bounds on what robots claim: an insider's lies cost those about him nothing, and without bounds they do.
 #[test]
-fn who_lies_of_itself_holds_nobody_up() {
+fn a_lying_insider_delays_no_robot() {
     let in_time = 250;
     let text = INSIDER.replace("ticks = 1200", &format!("ticks = {in_time}"));
     let silent = run(&without(&text, "attack"));
@@ -95,7 +93,7 @@ fn who_lies_of_itself_holds_nobody_up() {
 }
 
 #[test]
-fn no_honest_robot_meets_the_bounds() {
+fn honest_robots_stay_within_the_limits() {
     let texts = [
         include_str!("../../../../../scenarios/mixed.toml"),
         include_str!("../../../../../scenarios/blackout.toml"),
@@ -107,13 +105,12 @@ fn no_honest_robot_meets_the_bounds() {
     }
 }
 
-/// What a robot that is taken can do until it is revoked, and after that.
 #[test]
-fn a_robot_that_is_taken_gives_no_orders_and_is_out_once_the_key_has_rolled() {
+fn a_compromised_robot_cannot_order_and_is_locked_out_by_a_rotation() {
     let revoked = run(REVOKED);
     assert_eq!(revoked.arrived, 5, "all but the one that was taken");
     let (before, after) = (10, 25);
-    // Two orders and a beacon a second, refused or lost, by five robots; then nothing of it is believed.
+    // Five robots refuse or lose two orders and a beacon per second.
     let refused = revoked.packets.forged;
     assert!(refused > u64::from(revoked.ticks - after) * 5 * 2, "{:?}", revoked.packets);
 
@@ -124,13 +121,12 @@ fn a_robot_that_is_taken_gives_no_orders_and_is_out_once_the_key_has_rolled() {
 
     let goal_m = [50.5, 20.5];
     assert_eq!(ends_at_m(REVOKED), goal_m);
-    // With one key for all, it leads the swarm away.
+    // With one shared key, the insider diverts the swarm.
     let one_key = without_roll.replace("master = \"", "key = \"");
     let one_key = one_key.replace("place_m = [30, 0]\n", "").replace("overlap_s = 20\n", "");
     assert_ne!(ends_at_m(&one_key), goal_m);
 }
 
-/// Where the top leader is in the end, metres.
 fn ends_at_m(text: &str) -> [f64; 2] {
     let scenario = Scenario::parse(text, Path::new("revoked.toml"), &Overrides::default());
     let mut end_m = [0.0; 2];
@@ -143,9 +139,8 @@ fn ends_at_m(text: &str) -> [f64; 2] {
     end_m
 }
 
-/// Nobody is taken: rolling costs nothing, whatever the radio loses.
 #[test]
-fn a_roll_changes_no_ones_way() {
+fn a_key_rotation_does_not_affect_the_run() {
     let quiet = without(&without(REVOKED, "attack"), "fault");
     let quiet = quiet.replace("revoke = [6]", "");
     for loss in ["loss = 0", "loss = 0.4"] {

@@ -1,4 +1,4 @@
-//! Controllers external of the engine.
+//! Controllers outside the engine.
 
 use super::*;
 use crate::engine::{Decision, ExternalController, Status, simulate_with};
@@ -9,8 +9,8 @@ use staya_controller::wire::Postcard;
 
 type Remote = AnyAgent<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, LEARNED>;
 
-/// Agents made of what the engine says, in the same process. The one of robot `restarts.0` loses its state before tick
-/// `restarts.1`, and is not there for three ticks.
+/// Agents in the same process behind the external interface. The agent of robot `restarts.0` loses
+/// its state before tick `restarts.1` and is absent for three ticks.
 struct Nearby {
     agents: Vec<(usize, Option<Remote>, Option<Decision>)>,
     restarts: Option<(usize, u32)>,
@@ -86,7 +86,6 @@ fn outcome(scenario: &Scenario, elsewhere: Option<Nearby>) -> Outcome {
     simulate_with(scenario, boxed, &mut |_, _| ControlFlow::Continue(())).expect("free starts")
 }
 
-/// A scenario that comes with the project, cut short.
 fn shipped(name: &str, ticks: u32) -> Scenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let path = path.join(name).with_extension("toml");
@@ -96,7 +95,7 @@ fn shipped(name: &str, ticks: u32) -> Scenario {
 }
 
 #[test]
-fn where_a_controller_runs_changes_nothing() {
+fn an_external_controller_does_not_change_the_run() {
     for name in ["six-robots", "figure-6", "six-discs", "swap-circle", "flock-squeeze", "goal-flock", "boids"] {
         let scenario = shipped(name, 60);
         let here = outcome(&scenario, None);
@@ -106,7 +105,7 @@ fn where_a_controller_runs_changes_nothing() {
 }
 
 #[test]
-fn one_that_lost_its_state_starts_anew_and_arrives() {
+fn a_controller_that_lost_its_state_restarts_and_arrives() {
     let scenario = shipped("swap-circle", 2000);
     let nearby = Nearby { restarts: Some((1, 20)), ..Nearby::of(&[0, 1]) };
     let boots = nearby.boots.clone();
@@ -117,7 +116,7 @@ fn one_that_lost_its_state_starts_anew_and_arrives() {
 }
 
 #[test]
-fn a_fault_of_the_scenario_restarts_a_controller_elsewhere_too() {
+fn a_fault_restarts_an_external_controller_too() {
     let mut scenario = shipped("swap-circle", 200);
     scenario.faults = vec![Fault { robot: scenario.robots[2].id, from_tick: 10, to_tick: 30 }];
     let here = outcome(&scenario, None);

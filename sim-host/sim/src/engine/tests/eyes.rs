@@ -1,10 +1,10 @@
-//! Robots that see each other: without a word, beside the radio, late, on any number of threads.
+//! Robots with sensors: without radio, with radio, with delays, and on any number of threads.
 
 use super::super::simulate::AnyEngine;
 use super::*;
 use crate::scenario::Eyes;
 
-/// Robots that swap places on a circle of 2 m, or a larger one where they are many.
+/// Robots that swap places on a circle of 2 m, or a larger one for many robots.
 fn circle(count: u32, eyes: &str, radio: &str) -> Scenario {
     seeded(count, eyes, radio, 11)
 }
@@ -24,28 +24,27 @@ fn run(scenario: &Scenario) -> Outcome {
 }
 
 #[test]
-fn without_a_word_they_swap_places_and_touch_nobody() {
+fn robots_swap_places_by_sensors_alone_without_collisions() {
     let outcome = run(&circle(12, "beacons = false", ""));
     assert_eq!((outcome.arrived, outcome.collisions, outcome.packets.sent), (12, 0, 0));
-    // Who is blind besides runs into others: it was the eyes.
+    // Nearly blind robots collide, so the sensors make the difference.
     let blind = run(&with_range(circle(12, "beacons = false", ""), 0.01));
     assert!(blind.collisions > 0);
 }
 
-/// The same with other eyes.
 fn with_range(scenario: Scenario, range_m: f64) -> Scenario {
     Scenario { eyes: scenario.eyes.map(|eyes| Eyes { range_m, ..eyes }), ..scenario }
 }
 
 #[test]
-fn who_hears_is_as_he_was_with_eyes_that_see_nobody() {
+fn sensors_without_detections_do_not_change_the_run() {
     let blind = with_range(circle(8, "", "loss = 0.2"), 0.01);
     let without = Scenario { eyes: None, ..blind.clone() };
     assert_eq!(run(&blind).trace_hash, run(&without).trace_hash);
 }
 
 #[test]
-fn threads_make_no_difference() {
+fn the_number_of_threads_makes_no_difference() {
     let scenario = circle(80, "beacons = false\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 1", "");
     let scenario = Scenario { ticks: 60, ..scenario };
     let on = |threads| {
@@ -56,7 +55,7 @@ fn threads_make_no_difference() {
 }
 
 #[test]
-fn an_order_reaches_those_who_say_nothing() {
+fn an_order_reaches_robots_without_beacons() {
     let text = "name = \"t\"\nticks = 400\ntick_s = 0.05\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n\
          [plane.eyes]\nrange_m = 3\nbeacons = false\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [5, 0]\n\
          [[plane.order]]\nat_s = 1\nplace_m = [0, 3]\n";
@@ -71,8 +70,8 @@ fn an_order_reaches_those_who_say_nothing() {
     assert!(last_m[0].abs() < 0.05 && (last_m[1] - 3.0).abs() < 0.05, "{last_m:?}");
 }
 
-/// How far from where they are robots take their neighbours to be, root mean square in metres, and how many they know at a time; over runs of
-/// some seconds on seeds that nothing was chosen on.
+/// Root mean square error of the neighbours' positions in metres, and the mean number of known
+/// neighbours, over runs of some seconds on fresh seeds.
 fn errors(eyes: &str, radio: &str, range_m: f64) -> (f64, f64) {
     let (mut squares, mut count, mut moments) = (0.0, 0.0, 0.0);
     for seed in 500..503 {
@@ -89,7 +88,7 @@ fn errors(eyes: &str, radio: &str, range_m: f64) -> (f64, f64) {
                 for known in super::super::inspect::known(agent.neighbors(), here, *own, now) {
                     let off =
                         |place: &[f64; 3]| libm::hypot(place[0] - known.position_m[0], place[1] - known.position_m[1]);
-                    // One without a number is whoever is nearest.
+                    // An anonymous neighbour is compared with the nearest robot.
                     let error_m = match places.get((known.id.0 as usize).wrapping_sub(1)) {
                         Some(place) => off(place),
                         None => places.iter().map(off).fold(f64::INFINITY, f64::min),
@@ -104,7 +103,7 @@ fn errors(eyes: &str, radio: &str, range_m: f64) -> (f64, f64) {
 }
 
 #[test]
-fn what_is_both_seen_and_heard_is_known_better_than_either() {
+fn sensors_and_radio_together_are_better_than_either() {
     const EYES: &str = "noise_m = 0.05\nocclusion = false";
     const RADIO: &str = "loss = 0.7\ndelay_ms = 200";
     let mut table = Vec::new();

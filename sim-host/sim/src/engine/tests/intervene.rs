@@ -1,4 +1,4 @@
-//! Runs that somebody interferes with, by hand or by the scenario.
+//! Runs with interventions, by hand or from the scenario.
 
 use super::*;
 use crate::scenario::{Intervention, with_interventions};
@@ -26,7 +26,7 @@ fn goal(robot: Option<u32>, x: f64, y: f64) -> Intervention {
     Intervention::Goal { robot, place_m: [x, y, 0.0] }
 }
 
-/// A run in which somebody interferes by hand until all have arrived, and one of the scenario that this makes.
+/// A complete run with interventions by hand, and a run of the resulting scenario.
 fn by_hand_and_again(text: &str, done: &[(u32, Intervention)]) -> [Outcome; 2] {
     let scenario = parse(text);
     let mut swarm = operated(&scenario).expect("they can be placed");
@@ -48,7 +48,7 @@ fn by_hand_and_again(text: &str, done: &[(u32, Intervention)]) -> [Outcome; 2] {
 }
 
 #[test]
-fn what_was_done_by_hand_is_the_run_of_the_scenario_that_says_so() {
+fn interventions_by_hand_equal_those_of_a_scenario() {
     let on_grid = [
         (3, goal(Some(1), 31.0, 35.0)),
         (5, Intervention::Cell { cell: [10, 10], class: 0 }),
@@ -79,7 +79,7 @@ fn what_was_done_by_hand_is_the_run_of_the_scenario_that_says_so() {
 }
 
 #[test]
-fn a_formation_that_is_sent_elsewhere_keeps_its_shape_there() {
+fn a_formation_with_a_new_goal_keeps_its_shape() {
     let scenario = parse(IN_FORMATION);
     let mut swarm = operated(&scenario).expect("they can be placed");
     swarm.intervene(&goal(None, 11.0, 31.0)).expect("it makes sense");
@@ -91,7 +91,7 @@ fn a_formation_that_is_sent_elsewhere_keeps_its_shape_there() {
 }
 
 #[test]
-fn a_robot_that_starts_anew_has_the_goal_and_the_parameters_that_it_was_given() {
+fn a_restarted_robot_keeps_its_changed_goal_and_parameters() {
     let mut swarm = operated(&parse(IN_PLANE)).expect("they can be placed");
     swarm.intervene(&Intervention::Parameter { robot: Some(3), name: Parameter::Speed, value: 0.25 }).expect("known");
     swarm.intervene(&Intervention::Down { robot: 3, for_s: Some(0.5) }).expect("known");
@@ -110,7 +110,7 @@ fn a_robot_that_starts_anew_has_the_goal_and_the_parameters_that_it_was_given() 
 }
 
 #[test]
-fn what_nobody_has_a_use_for_is_refused_and_changes_nothing() {
+fn interventions_without_effect_are_refused() {
     let wrong = [
         (ON_GRID, goal(Some(1), -1.0, 5.0)),
         (ON_GRID, goal(Some(7), 5.0, 5.0)),
@@ -138,7 +138,7 @@ fn what_nobody_has_a_use_for_is_refused_and_changes_nothing() {
 }
 
 #[test]
-fn who_looks_into_robots_changes_nothing() {
+fn inspection_does_not_change_the_run() {
     for text in [ON_GRID, IN_PLANE, IN_FORMATION] {
         let scenario = Scenario { ticks: 20, ..parse(text) };
         let mut swarm = operated(&scenario).expect("they can be placed");
@@ -162,7 +162,7 @@ fn who_looks_into_robots_changes_nothing() {
 }
 
 #[test]
-fn what_orca_chooses_is_what_it_permits() {
+fn the_velocity_chosen_by_orca_is_permitted() {
     let mut swarm = operated(&parse(IN_PLANE)).expect("they can be placed");
     let mut constrained = 0;
     for _ in 0..120 {

@@ -1,4 +1,4 @@
-//! Robots of several kinds, and bodies that are no robots.
+//! Different kinds of robots, and foreign bodies.
 
 use super::*;
 
@@ -8,7 +8,7 @@ fn in_plane(rest: &str) -> Scenario {
     scenario.unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// A robot on its way east, and a body of 0.5 m that comes towards it.
+/// A robot that goes east, and a body of 0.5 m that approaches it.
 fn met_by(speed_mps: f64, rest: &str) -> Scenario {
     in_plane(&format!(
         "[plane.robots]\nlist = [{{ start_m = [-4, 0], goal_m = [4, 0] }}]\n\
@@ -21,7 +21,7 @@ fn outcome(scenario: &Scenario) -> Outcome {
 }
 
 #[test]
-fn robots_make_way_for_an_intruder_that_says_where_it_is() {
+fn robots_avoid_an_intruder_with_beacons() {
     for speed_mps in [0.5, 1.0, 2.0] {
         let outcome = outcome(&met_by(speed_mps, ""));
         let clearance = outcome.clearance.expect("bodies have sizes");
@@ -31,17 +31,17 @@ fn robots_make_way_for_an_intruder_that_says_where_it_is() {
 }
 
 #[test]
-fn a_silent_intruder_is_grazed_by_who_sees_it_and_hit_by_who_does_not() {
+fn a_silent_intruder_is_grazed_when_seen_and_hit_when_unseen() {
     let silent = "heard = false\n";
     let seen = outcome(&met_by(0.5, silent));
     let clearance = seen.clearance.expect("bodies have sizes");
     assert_eq!((seen.arrived, seen.packets.delivered), (1, 0));
-    // Where it is, not how fast: it comes nearer by at most what it goes in a tick.
+    // The robot sees its position but not its speed: overlap is at most its motion in one tick.
     assert!(clearance.intruders_m > -0.5 * 0.1, "{clearance:?}");
     let mut blind = met_by(0.5, silent);
     blind.plane.as_mut().expect("a plane").general.sight_m = 0.0;
     let unseen = outcome(&blind);
-    // Who feels it only at his own surface is run into. Nobody of the swarm is to blame: it is counted by itself.
+    // A robot without sight is hit. The overlap is counted separately, since no robot is to blame.
     let clearance = unseen.clearance.expect("bodies have sizes");
     assert!(clearance.intruders_m < -1.5 * 0.5 * 0.1 && clearance.intruder_overlaps > 5, "{clearance:?}");
     assert_eq!((seen.collisions, unseen.collisions), (0, 0));
@@ -77,7 +77,7 @@ fn robots_of_many_sizes_and_speeds_swap_without_overlap() {
 }
 
 #[test]
-fn the_numbers_of_heard_intruders_fit_into_the_format_or_are_refused() {
+fn ids_of_intruders_with_beacons_must_fit_the_format() {
     let text = "name = \"t\"\nticks = 9\ntick_s = 0.1\n[radio]\nformat = \"mavlink\"\n[plane]\nradius_m = 0.2\n\
                 max_speed_mps = 1\n[plane.robots]\ncircle = { count = 254, radius_m = 99 }\n[[plane.intruder]]\n\
                 start_m = [0, 0]\nvelocity_mps = [1, 0]\nradius_m = 1\n";
@@ -87,7 +87,7 @@ fn the_numbers_of_heard_intruders_fit_into_the_format_or_are_refused() {
     parse(&format!("{text}heard = false\n")).expect("who is silent needs no number");
 }
 
-/// Balls on two rings that swap, and how often one was in a room of this height below or above another one.
+/// Balls on two rings swap places; counts those within `looked_for` above or below another.
 fn washed(own_downwash: f64, looked_for: f64) -> (Outcome, usize) {
     let mut list = String::new();
     for index in 0..12 {
@@ -116,12 +116,12 @@ fn washed(own_downwash: f64, looked_for: f64) -> (Outcome, usize) {
 }
 
 #[test]
-fn robots_that_fly_keep_out_of_each_others_downwash() {
+fn flying_robots_avoid_downwash() {
     let (guarded, count) = washed(3.0, 3.0);
     let clearance = guarded.clearance.expect("bodies have sizes");
     assert_eq!((guarded.arrived, guarded.collisions), (12, 0), "{clearance:?}");
     assert_eq!((count, clearance.washed), (0, 0));
-    // Those that take each other for balls fly through it.
+    // Robots without downwash avoidance fly through it.
     let (unguarded, count) = washed(1.0, 3.0);
     assert_eq!((unguarded.arrived, unguarded.collisions), (12, 0));
     assert!(count > 5, "{count}");

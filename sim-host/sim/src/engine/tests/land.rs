@@ -1,4 +1,4 @@
-//! Land that changes while robots are on it.
+//! Terrain that changes during a run.
 
 use super::*;
 use staya_controller::agent::Wait;
@@ -9,7 +9,7 @@ fn parse(text: &str) -> Scenario {
     Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario")
 }
 
-/// Flat land of 30 x 7 cells with a wall from south to north at x = 15 that has a door of one cell, (15, 3).
+/// Flat land of 30 x 7 cells with a wall at x = 15 that has a door of one cell, (15, 3).
 fn door(robots: &str, changes: &str, rest: &str) -> Scenario {
     let wall = "[[terrain.change]]\nclass = 0\ncells = [[15, 0], [15, 1], [15, 2], [15, 4], [15, 5], [15, 6]]\n";
     parse(&format!(
@@ -23,8 +23,8 @@ const EIGHT: &str = "list = [{ start = [1, 1], goal = [27, 1] }, { start = [2, 3
     { start = [3, 5], goal = [27, 5] }, { start = [4, 2], goal = [28, 2] }, { start = [28, 3], goal = [2, 3] }, \
     { start = [27, 4], goal = [3, 4] }, { start = [26, 1], goal = [1, 6] }, { start = [25, 5], goal = [4, 0] }]";
 
-/// Runs it, and makes sure that nobody on the grid ever enters a closed cell. The outcome, with the ticks at which robot 1 waited for a
-/// way.
+/// Runs the scenario and asserts that no robot on the grid enters a closed cell. Returns the
+/// outcome and the ticks in which robot 1 waited for a route.
 fn run(scenario: &Scenario) -> (Outcome, Vec<u32>) {
     let (mut before, mut stuck) = (Vec::new(), Vec::new());
     let outcome = simulate(scenario, |moment, rows| {
@@ -32,7 +32,7 @@ fn run(scenario: &Scenario) -> (Outcome, Vec<u32>) {
         let rows: Vec<RobotRow> = rows.collect();
         let cells: Vec<Cell> = rows.iter().map(|row| row.motion.cell).collect();
         for (now, then) in cells.iter().zip(&before).filter(|(now, then)| now != then) {
-            // The land of this moment is that of the tick in which it moved.
+            // The terrain of this moment is that of the tick in which the robot moved.
             assert!(land.is_passable(*now), "tick {}: from {then:?} to {now:?}", moment.row.tick);
         }
         before = cells;
@@ -47,22 +47,21 @@ fn run(scenario: &Scenario) -> (Outcome, Vec<u32>) {
 }
 
 #[test]
-fn a_gate_that_opens_lets_pass_whoever_was_kept_out() {
+fn robots_pass_a_gate_once_it_opens() {
     for replan in ["each_cell", "until_changed"] {
         let route = format!("[route]\nreplan = \"{replan}\"\n");
         let free = run(&door(ONE, "", &route)).0;
         let gate = "[[terrain.change]]\nclass = 0\ncells = [[15, 3]]\nfor_s = 60\n";
         let kept = run(&door(ONE, gate, &route)).0;
         assert_eq!((free.arrived, kept.arrived), (1, 1), "{replan}");
-        // The gate opens before tick 120, and half of the way is left.
         let ticks = kept.ticks;
         assert!(free.ticks < 60 && (130..300).contains(&ticks), "{replan}: {} and {ticks}", free.ticks);
     }
 }
 
 #[test]
-fn a_way_that_closes_ahead_is_left_for_another_one() {
-    // A second door in the far corner; the near one closes when the robot is three cells before it.
+fn a_robot_takes_another_route_when_one_closes_ahead() {
+    // A second door is in the far corner; the near one closes three cells ahead.
     for replan in ["each_cell", "until_changed"] {
         let changes = "[[terrain.change]]\nclass = 1\ncells = [[15, 0]]\n\
             [[terrain.change]]\nat_s = 5\nclass = 0\ncells = [[15, 3]]\n";
@@ -73,8 +72,8 @@ fn a_way_that_closes_ahead_is_left_for_another_one() {
 }
 
 #[test]
-fn who_is_in_a_cell_that_closes_may_leave_it_and_nobody_enters() {
-    // Robot 1 is on its way through the door, which takes nine ticks, when it closes in the third; another one is behind it.
+fn a_robot_may_leave_a_closing_cell_and_none_may_enter() {
+    // The door closes in the third of nine ticks in which robot 1 crosses it.
     let robots = "list = [{ start = [14, 3], goal = [20, 3] }, { start = [11, 3], goal = [20, 4] }]";
     let changes = "[[terrain.change]]\nclass = 9\ncells = [[15, 3]]\n[[terrain.change]]\nat_s = 1\nclass = 0\ncells = [[15, 3]]\n";
     let (outcome, _) = run(&door(robots, changes, ""));
@@ -83,7 +82,7 @@ fn who_is_in_a_cell_that_closes_may_leave_it_and_nobody_enters() {
 }
 
 #[test]
-fn a_goal_that_closes_is_left_for_the_nearest_cell_and_taken_again_when_it_opens() {
+fn a_closed_goal_is_replaced_by_the_nearest_cell_until_it_opens() {
     let changes = "[[terrain.change]]\nat_s = 50\nclass = 0\ncells = [[27, 3]]\nfor_s = 50\n";
     let scenario = door("list = [{ start = [2, 3], goal = [27, 3] }, { start = [2, 1], goal = [2, 5] }]", changes, "");
     let mut swarm = operated(&scenario).expect("they can be placed");
@@ -99,8 +98,8 @@ fn a_goal_that_closes_is_left_for_the_nearest_cell_and_taken_again_when_it_opens
 }
 
 #[test]
-fn where_nothing_remains_to_be_reached_a_robot_stands_and_says_so() {
-    // Closed in on all sides, in an open cell first and then in a room of nine cells.
+fn an_enclosed_robot_stops_and_reports_it() {
+    // Closed in on all sides, first in an open cell, then in a room of nine cells.
     let ring = "[[terrain.change]]\nat_s = 5\nclass = 0\n\
         cells = [[1, 2], [2, 2], [3, 2], [1, 3], [3, 3], [1, 4], [2, 4], [3, 4]]\nfor_s = 100\n";
     let room = "[[terrain.change]]\nat_s = 0\nclass = 0\ncells = [[4, 1], [4, 2], [4, 3], [4, 4], [4, 5], \
@@ -122,7 +121,7 @@ fn where_nothing_remains_to_be_reached_a_robot_stands_and_says_so() {
 }
 
 #[test]
-fn a_formation_before_a_gate_waits_and_passes_it() {
+fn a_formation_waits_at_a_gate_and_passes_it() {
     let robots = "formation = { rows = 2, columns = 2, spacing = [2, -2], start = [4, 4], goal = [24, 4] }";
     let gate = "[[terrain.change]]\nclass = 1\ncells = [[15, 2]]\n\
         [[terrain.change]]\nat_s = 4\nevery_s = 60\nfor_s = 40\nclass = 0\ncells = [[15, 2], [15, 3]]\n";
@@ -132,7 +131,7 @@ fn a_formation_before_a_gate_waits_and_passes_it() {
 }
 
 #[test]
-fn land_changes_alike_on_any_number_of_threads() {
+fn terrain_changes_do_not_depend_on_threads() {
     let changes = "[[terrain.change]]\nevery_s = 8\nfor_s = 4\nclass = 0\ncells = [[15, 3]]\n\
         [[terrain.change]]\nevery_s = 1\ndrift = { share = 0.1, classes = 4 }\n";
     let scenario = door(EIGHT, changes, "[scouting]\nradius = 9\nunknown = 0.2\nwrong = 0.2\n");
@@ -148,7 +147,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn nobody_ever_enters_a_closed_cell(
+    fn no_robot_enters_a_closed_cell(
         gates in proptest::collection::vec((8_u16..22, 0_u16..6, 1_u16..5, 1_u16..5, 0_u32..80, 1_u32..40, 1_u32..40), 1..6),
         share in 0.0..0.5_f64,
         until_changed: bool,
@@ -166,12 +165,10 @@ proptest! {
         let replan = if until_changed { "[route]\nreplan = \"until_changed\"\n" } else { "" };
         let scouting = if is_scouted { "[scouting]\nradius = 8\nunknown = 0.3\nwrong = 0.3\n" } else { "" };
         let scenario = door(EIGHT, &(gates + &drift), &format!("{replan}{scouting}"));
-        // It looks itself.
         run(&Scenario { ticks: 250, ..scenario });
     }
 }
 
-/// Two discs on a road of 12 x 3 m that a gate of two metres closes at x = 5 to 7.
 fn discs(first: [f64; 2], second: [f64; 2], change: &str) -> Scenario {
     parse(&format!(
         "name = \"t\"\nticks = 900\ntick_s = 0.1\n[terrain]\nuniform = {{ width = 12, height = 3, classes = 1 }}\n\
@@ -187,8 +184,8 @@ fn class_under(land: &crate::terrain::Terrain, place_m: [f64; 3]) -> u8 {
 }
 
 #[test]
-fn in_the_plane_who_is_in_a_cell_that_closes_may_leave_it_and_nobody_enters() {
-    // The first one is in the gate when it closes; the second one comes when it is closed, and waits until it opens.
+fn in_the_plane_a_robot_may_leave_a_closing_cell_and_none_may_enter() {
+    // The first disc is in the gate when it closes; the second waits until it opens.
     let scenario = discs([2.0, 1.0], [0.0, 1.0], "at_s = 4\nfor_s = 30");
     let (mut was_in, mut inside) = (Vec::new(), Vec::new());
     let outcome = simulate(&scenario, |moment, rows| {
@@ -210,7 +207,7 @@ fn in_the_plane_who_is_in_a_cell_that_closes_may_leave_it_and_nobody_enters() {
     assert!(first < 140 && second > 340, "{first} and {second}");
 }
 
-/// Land of cells that are seen from three cells, and an old map of it.
+/// Terrain with a sight of three cells, and an outdated map of it.
 fn with_maps(now: &[&str], old: &[&str], rest: &str) -> Scenario {
     let dir = tempfile::tempdir().expect("a folder");
     for (name, rows) in [("now.map", now), ("old.map", old)] {
@@ -246,22 +243,22 @@ const NO_DOOR_IN_THE_NORTH: [&str; 8] = [
 ];
 
 #[test]
-fn who_has_a_map_goes_straight_to_a_door_that_nobody_sees_yet() {
+fn a_robot_with_a_map_goes_straight_to_an_unseen_door() {
     let ticks = |rest: &str| {
         let (outcome, _) = run(&with_maps(&WALL, &WALL, rest));
         assert_eq!(outcome.arrived, 1, "{rest}");
         outcome.ticks
     };
     let (alone, with_map) = (ticks(""), ticks("[scouting]\nmap = \"old.map\"\n"));
-    // The shortest way: up and down by seven moves each among seventeen.
+    // The shortest path: seven moves up and seven down among seventeen.
     assert!(with_map < 27 && alone > with_map, "{with_map} with a map, {alone} without");
-    // What is remembered alone is no map.
+    // Memory without a map is slower.
     let memory = ticks("[scouting]\nunknown = 1\n");
     assert!((with_map..=2 * alone).contains(&memory), "{memory}");
 }
 
 #[test]
-fn a_map_that_is_wrong_costs_time_and_nothing_else() {
+fn a_wrong_map_only_costs_time() {
     for replan in [Replan::EachCell, Replan::UntilChanged] {
         let [right, wrong] = [&WALL, &NO_DOOR_IN_THE_NORTH].map(|old| {
             let mut scenario = with_maps(&WALL, old, "[scouting]\nmap = \"old.map\"\n");
@@ -274,7 +271,7 @@ fn a_map_that_is_wrong_costs_time_and_nothing_else() {
 }
 
 #[test]
-fn a_map_that_closes_every_way_keeps_nobody_from_looking() {
+fn a_map_without_a_route_does_not_prevent_exploration() {
     let closed: Vec<String> =
         (0..8).map(|row| if row == 7 { ".@@@@@@@@@@@@@@@@@@." } else { "@@@@@@@@@@@@@@@@@@@@" }.to_owned()).collect();
     let closed: Vec<&str> = closed.iter().map(String::as_str).collect();
@@ -283,7 +280,7 @@ fn a_map_that_closes_every_way_keeps_nobody_from_looking() {
 }
 
 #[test]
-fn in_the_plane_a_map_leads_to_the_door_too() {
+fn in_the_plane_a_map_leads_to_an_unseen_door_too() {
     let ticks = |rest: &str| {
         let rest = format!("{rest}[plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"route\"\n");
         let scenario = with_maps(&WALL, &WALL, &rest);
@@ -296,7 +293,7 @@ fn in_the_plane_a_map_leads_to_the_door_too() {
 }
 
 #[test]
-fn who_starts_anew_has_its_map_and_nothing_that_it_has_seen() {
+fn a_restarted_robot_keeps_its_map_but_not_its_observations() {
     let scenario = scenario(TWO, "[scouting]\nunknown = 1\nassumed = 7\n");
     let mut engine = match super::super::simulate::AnyEngine::new(&scenario).expect("they can be placed") {
         super::super::simulate::AnyEngine::Cells(engine) => engine,

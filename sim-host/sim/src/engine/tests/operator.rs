@@ -1,11 +1,10 @@
-//! Runs that somebody commands.
+//! Runs with an operator.
 
 use super::*;
 use staya_controller::agent::{Parameter, Waypoint, Wish};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::wire::{GoalAssignment, Header, Message};
 
-/// Two discs that meet on their ways, and a third one that goes down for a while.
 const DISCS: &str = "name = \"t\"\nticks = 120\ntick_s = 0.05\n[radio]\nrange_m = 5\nloss = 0.1\n\
      [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [4, 0]\n\
      [[plane.robots.list]]\nstart_m = [4, 0]\ngoal_m = [0, 0]\n[[plane.robots.list]]\nstart_m = [2, 3]\n\
@@ -42,7 +41,7 @@ fn a_run_without_commands_is_the_run_without_an_operator() {
 }
 
 #[test]
-fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
+fn commanded_robots_go_to_the_new_goal_without_collisions() {
     let scenario = discs();
     let mut swarm = operated(&scenario).expect("they can be placed");
     let meeting = Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_mm([2000, 1000, 0])), valid: None };
@@ -56,7 +55,7 @@ fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
         let [x, y, _] = observation.motion.position_m;
         libm::hypot(x - 2.0, y - 1.0)
     });
-    // One is there, the other one beside it.
+    // One is at the goal, the other next to it.
     let [near_m, far_m] = [off_m[0].min(off_m[1]), off_m[0].max(off_m[1])];
     assert!(near_m < 0.1 && far_m < 0.7, "{off_m:?}");
     let outcome = swarm.outcome();
@@ -65,7 +64,7 @@ fn who_is_commanded_goes_elsewhere_and_nobody_is_hit() {
 }
 
 #[test]
-fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
+fn a_down_robot_ignores_commands_and_restarts_with_the_scenarios_task() {
     let mut swarm = operated(&discs()).expect("they can be placed");
     let east = Wish::Velocity { velocity_mps: Vec3::new(1.0, 0.0, 0.0), valid: Duration::from_millis(60_000) };
     assert!(swarm.command(2, east));
@@ -84,7 +83,7 @@ fn who_is_down_hears_nothing_and_starts_anew_as_the_scenario_has_it() {
 }
 
 #[test]
-fn a_goal_that_it_is_told_reaches_the_controller_and_events_come_back() {
+fn a_goal_message_reaches_the_controller_and_events_return() {
     let key = "[authentication]\nkey = \"passphrase: ours\"\n";
     let mavlink = "[radio]\nformat = \"mavlink\"\n";
     for rest in ["", mavlink, key, &format!("{mavlink}{key}")] {
@@ -107,9 +106,9 @@ fn tell_a_goal(swarm: &mut dyn Operated) {
     assert_eq!((there.motion.cell, there.status.mode), (Cell::new(3, 9), Mode::Arrived));
 }
 
-/// Eight discs in a crowd, each with another whim of the operator every half second.
+/// Eight discs in a crowd; each gets another random command every half second.
 #[test]
-fn no_whim_of_the_operator_makes_robots_collide() {
+fn random_commands_cause_no_collisions() {
     let crowd = "name = \"t\"\nticks = 120\ntick_s = 0.05\n[radio]\nrange_m = 20\n\
          [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[plane.robots.circle]\ncount = 8\nradius_m = 1.5\n";
     let parsed = Scenario::parse(crowd, Path::new("t.toml"), &Overrides::default());
@@ -127,12 +126,10 @@ fn no_whim_of_the_operator_makes_robots_collide() {
                     0 => Wish::Own,
                     1 => Wish::Hold,
                     6 if speed < 0.05 => Wish::Off,
-                    // Faster than they can go.
                     2 | 3 => Wish::Velocity {
                         velocity_mps: Vec3::new(x as f32 / 1000.0, y as f32 / 1000.0, 0.0),
                         valid: Duration::from_millis(700),
                     },
-                    // All to one place.
                     4 => Wish::Waypoint { waypoint: Waypoint::fixed(Position::ORIGIN), valid: None },
                     _ => Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_mm([x, y, 0])), valid: None },
                 };

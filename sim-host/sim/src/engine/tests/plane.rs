@@ -4,7 +4,6 @@ use super::*;
 use crate::scenario::{Order, Target};
 use staya_controller::wire::{Format, Message, decode, frames};
 
-/// Robots of 0.2 m that go 1 m/s and decide ten times a second.
 fn in_plane(plane: &str, rest: &str) -> Scenario {
     let text = format!(
         "name = \"t\"\nticks = 300\ntick_s = 0.1\n{rest}\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n{plane}\n"
@@ -13,7 +12,6 @@ fn in_plane(plane: &str, rest: &str) -> Scenario {
     scenario.unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// What came of it, and where each robot was after each tick.
 fn tracks(scenario: &Scenario) -> (Outcome, Vec<Vec<RobotRow>>) {
     let mut rows = Vec::new();
     let outcome = simulate(scenario, |_, robots| {
@@ -40,8 +38,8 @@ fn neither_a_run_in_the_plane_nor_its_hash_depends_on_the_number_of_threads() {
     assert_ne!(trace(&scenario, 1).0.trace_hash, one.trace_hash);
 }
 
-/// How many arrive past a robot that goes down in the way of the first one, and where the first one ends; `company`: one
-/// more that it hears.
+/// Number of robots that pass one that goes down in the way of the first, and the final x of the
+/// first. `company` adds a robot within radio range.
 fn past_one_that_is_down(company: &str, silence: &str) -> (usize, f64) {
     let robots = format!(
         "[plane.robots]\nlist = [{{ start_m = [-2, 0], goal_m = [3, 0] }}, {{ start_m = [0, 0.05], goal_m = [0, 0.05] }}{company}]\n\
@@ -60,13 +58,13 @@ fn past_one_that_is_down(company: &str, silence: &str) -> (usize, f64) {
 }
 
 #[test]
-fn a_robot_that_is_down_stands_and_others_go_around_it() {
+fn robots_go_around_a_down_robot() {
     let (arrived, x) = past_one_that_is_down(", { start_m = [-1, 3], goal_m = [-1, 3] }", "");
     assert!(arrived == 2 && (x - 3.0).abs() < 0.03, "{arrived}, {x} m");
 }
 
 #[test]
-fn who_hears_nobody_but_one_that_is_down_stands_unless_it_may_be_alone() {
+fn an_isolated_robot_stops_unless_it_may_go_alone() {
     let (arrived, x) = past_one_that_is_down("", "");
     assert!(arrived == 0 && x < -0.4, "{arrived}, {x} m");
     let (arrived, x) = past_one_that_is_down("", "[plane.orca]\nalone_mps = 0.3\n");
@@ -74,12 +72,12 @@ fn who_hears_nobody_but_one_that_is_down_stands_unless_it_may_be_alone() {
 }
 
 #[test]
-fn a_restarted_robot_finds_its_moving_place_where_it_is_by_now() {
+fn a_restarted_robot_knows_the_current_place_of_its_moving_goal() {
     let robots = "[plane.robots.cloud]\ncount = 1\nfrom_m = [0, 0]\nto_m = [0, 0]\ngoals_m = [[1, 0]]\n\
                   goal_velocity_mps = [0.2, 0]\n[[fault]]\nrobot = 1\nat_s = 1\ndown_s = 6\n";
     let mut scenario = in_plane(robots, "");
     scenario.ticks = 200;
-    // It arrives, and the run ends: then it is where the place is then.
+    // The run ends when it arrives, so it must be where the goal is then.
     let (outcome, rows) = tracks(&scenario);
     let last = rows.last().expect("rows")[0].motion.position_m;
     let wanted = 1.0 + 0.2 * f64::from(outcome.ticks) * 0.1;
@@ -88,7 +86,7 @@ fn a_restarted_robot_finds_its_moving_place_where_it_is_by_now() {
 }
 
 #[test]
-fn orders_arrive_and_who_was_down_is_told_of_them() {
+fn orders_arrive_and_a_restarted_robot_gets_missed_ones() {
     for fault in ["", "[[fault]]\nrobot = 1\nat_s = 1\ndown_s = 3\n"] {
         let robots = format!(
             "[plane.robots]\nlist = [{{ start_m = [0, 0], goal_m = [9, 0] }}]\n\
@@ -106,7 +104,7 @@ fn orders_arrive_and_who_was_down_is_told_of_them() {
 }
 
 #[test]
-fn versions_of_orders_count_up_for_each_goal_by_itself() {
+fn each_goal_has_its_own_order_version() {
     let order = |number: u32| Order {
         tick: number / 2,
         index: u8::from(number.is_multiple_of(150)),
@@ -130,9 +128,9 @@ fn versions_of_orders_count_up_for_each_goal_by_itself() {
 }
 
 #[test]
-fn robots_know_how_old_news_is() {
+fn the_configured_latency_matches_the_radio_delay() {
     let robots = "[plane.robots]\nlist = [{ start_m = [0, 0] }]\n";
-    // Sent in a tick, heard in the first one that does not begin before the delay is over.
+    // A frame arrives in the first tick that begins after the delay.
     for (delay_ms, ticks) in [(0.0, 1), (99.9, 1), (100.0, 1), (100.1, 2), (200.0, 2), (250.0, 3)] {
         let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
         let setup = scenario.plane.as_ref().expect("robots in the plane");
@@ -143,7 +141,7 @@ fn robots_know_how_old_news_is() {
 }
 
 #[test]
-fn rough_land_takes_longer() {
+fn rough_terrain_takes_longer() {
     let ticks = |classes: u8| {
         let robots = "sight_m = 0\nsafety = \"none\"\n[plane.robots]\nlist = [{ start_m = [1, 1], goal_m = [9, 9] }]\n";
         let land = format!("[terrain]\ncell_m = 2\nuniform = {{ width = 6, height = 6, classes = {classes} }}\n");
@@ -156,8 +154,8 @@ fn rough_land_takes_longer() {
     assert!(ticks(3) > 150, "{}", ticks(3));
 }
 
-/// Seconds (on the grid: ticks of 2 s, 1 m at 0.5 m/s) until one robot has got around a U-shaped wall that is open
-/// towards it; `None`: it has not.
+/// Seconds (on the grid: ticks of 2 s, 1 m at 0.5 m/s) until a robot has rounded a U-shaped wall
+/// that is open towards it; `None` if it fails.
 fn out_of_dead_end(depth: usize, width: usize, row: usize, in_plane: bool) -> Option<f64> {
     let (west, south, north) = (16, 20 - width / 2 - 1, 20 + width / 2 + 1);
     let rows = (0..41).rev().map(|y| {
@@ -193,7 +191,7 @@ fn a_disc_leaves_a_dead_end_as_a_robot_on_the_grid_does() {
 }
 
 #[test]
-fn groups_with_guidance_and_safety_of_their_own_all_arrive_and_touch_nobody() {
+fn groups_with_different_laws_and_safety_layers_arrive_without_collisions() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/groups.toml");
     let scenario = Scenario::load(&path, &Overrides::default()).expect("a scenario");
     let outcome = simulate(&scenario, watch_nothing).expect("room");

@@ -1,11 +1,10 @@
-//! What goes on from a saved state is what would have been.
+//! Runs continued from a saved state are identical to uninterrupted runs.
 
 use super::super::simulate::AnyEngine;
 use super::super::state::State;
 use super::*;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-/// Does the same with whatever engine a scenario has.
 macro_rules! with_engines {
     ($scenario:expr, $check:ident($($rest:expr),*)) => {{
         let make = || AnyEngine::new($scenario).expect("robots can be placed");
@@ -18,7 +17,6 @@ macro_rules! with_engines {
     }};
 }
 
-/// Everything that records could hold of a tick.
 fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, row: &TickRow) -> u64 {
     let mut hasher = DefaultHasher::new();
     format!("{:?}", engine.moment(row)).hash(&mut hasher);
@@ -28,7 +26,7 @@ fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, 
     hasher.finish()
 }
 
-/// Runs `ticks` ticks, and from each of the ticks `at` on once more from what was saved there.
+/// Runs `ticks` ticks, then resumes from the states saved at each tick of `at` and compares.
 fn goes_on<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, ticks: u32, at: &[u32])
 where
     W: Ground,
@@ -62,7 +60,7 @@ where
     }
 }
 
-/// Moves each robot of a run at `tick` out as bytes and in again, into an engine that is at the same tick but whose robots stand at their starts.
+/// Moves each robot at `tick` to an engine of that tick whose robots are at their starts.
 fn moves<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, tick: u32, ticks: u32)
 where
     W: Ground,
@@ -74,7 +72,8 @@ where
         one.step();
         other.step();
     }
-    // The other's robots become those of the start, one by one, then those of now: no order, and nobody's cell, matters.
+    // The robots are first set to their starts, then to their current state, one by one: neither
+    // the order nor occupied cells matter.
     let fresh = make();
     let mut bytes = Vec::new();
     for index in 0..one.robots.len() {
@@ -96,7 +95,6 @@ where
     assert_eq!(format!("{:?}", other.outcome()), format!("{:?}", one.outcome()), "{name}");
 }
 
-/// Continues `scenario` from saved states for about `work` robots times ticks.
 fn everything(scenario: &Scenario, name: &str, work: usize) {
     let ticks = (work / scenario.robots.len()).clamp(20, 500) as u32;
     let ticks = ticks.min(scenario.ticks);
@@ -105,7 +103,6 @@ fn everything(scenario: &Scenario, name: &str, work: usize) {
     with_engines!(scenario, moves(name, ticks / 2, ticks));
 }
 
-/// Continues every scenario of at most `most` robots from saved states.
 fn every_scenario(work: usize, most: usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let mut count = 0;
@@ -123,21 +120,21 @@ fn every_scenario(work: usize, most: usize) {
 }
 
 #[test]
-fn every_scenario_goes_on_from_what_was_saved() {
+fn every_scenario_resumes_from_a_saved_state() {
     every_scenario(1_500, 200);
 }
 
-/// More than 2000 robots are too many for a test; `scenarios/scale-small.toml` has all that `scale.toml` has.
+/// At most 2000 robots: `scenarios/scale-small.toml` has all features of `scale.toml`.
 #[test]
 #[ignore = "30,000 robots times ticks of each scenario: half a minute"]
-fn every_scenario_goes_on_for_long_from_what_was_saved() {
+fn every_scenario_resumes_for_a_long_time_from_a_saved_state() {
     every_scenario(30_000, 2_000);
 }
 
 const KEY: &str = "[authentication]\nkey = \"passphrase: of the tests\"\n";
 
 #[test]
-fn every_fault_of_the_radio_in_every_format_goes_on() {
+fn runs_with_radio_faults_resume_in_every_format() {
     let faults = [
         "delay_ms = 700\njitter_ms = 2500\n",
         "duplicate = 0.4\nreorder = 0.5\nreorder_ms = 1800\n",
@@ -157,7 +154,7 @@ fn every_fault_of_the_radio_in_every_format_goes_on() {
 }
 
 #[test]
-fn what_somebody_did_to_a_run_goes_on() {
+fn runs_with_interventions_resume() {
     let on_grid = scenario(
         TWO,
         "[[intervention]]\nat_s = 1\ndo = { kind = \"cell\", cell = [9, 9], class = 0 }\n\
@@ -181,7 +178,7 @@ fn what_somebody_did_to_a_run_goes_on() {
 }
 
 #[test]
-fn whom_robots_have_seen_goes_on() {
+fn runs_with_sensors_resume() {
     let text = "tick_s = 0.05\nname = \"t\"\nticks = 200\n[radio]\nloss = 0.5\n[plane]\nradius_m = 0.15\nmax_speed_mps = 0.5\n\
         [plane.eyes]\nrange_m = 3\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 3\n\
         [plane.robots.circle]\ncount = 8\nradius_m = 1\n[[fault]]\nrobot = 2\nat_s = 1\ndown_s = 1\n";
@@ -190,7 +187,7 @@ fn whom_robots_have_seen_goes_on() {
 }
 
 #[test]
-fn land_that_changes_and_what_robots_have_seen_of_it_goes_on() {
+fn runs_with_changing_terrain_and_memory_resume() {
     let changes = "[[terrain.change]]\nat_s = 2\nevery_s = 4\nfor_s = 2\nclass = 0\nrectangle = { x = 4, y = 3, width = 6, height = 1 }\n\
         [[terrain.change]]\nevery_s = 1\ndrift = { share = 0.2, classes = 4 }\n\
         [scouting]\nradius = 8\nunknown = 0.5\nassumed = 3\n[[fault]]\nrobot = 2\nat_s = 3\ndown_s = 2\n";
@@ -207,7 +204,7 @@ fn land_that_changes_and_what_robots_have_seen_of_it_goes_on() {
 }
 
 #[test]
-fn a_damaged_state_is_refused_or_at_least_does_no_harm() {
+fn a_damaged_state_is_refused_or_harmless() {
     fn check<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, whole: &str)
     where
         W: Ground,
@@ -230,7 +227,7 @@ fn a_damaged_state_is_refused_or_at_least_does_no_harm() {
             refused += usize::from(make().restore(&bytes).is_err());
             bytes[at] ^= 1 << (at % 8);
         }
-        // Checkpoints have a checksum; this is what is found without it.
+        // Checkpoints have a checksum; this tests the decoder without it.
         assert!(refused * 2 > bytes.len(), "{refused} of {}", bytes.len());
         assert!(make().restore(&bytes).is_ok());
         assert!(engine.restore(&bytes).expect_err(whole).to_string().contains("under way"));
@@ -240,7 +237,7 @@ fn a_damaged_state_is_refused_or_at_least_does_no_harm() {
 }
 
 #[test]
-fn a_state_of_others_is_refused() {
+fn a_state_of_another_scenario_is_refused() {
     fn check<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, seed: u64)
     where
         W: Ground,
@@ -265,7 +262,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
     #[test]
-    fn any_small_run_goes_on(
+    fn any_small_run_resumes(
         robots in 2_u32..12,
         seed in 0_u64..1000,
         loss in 0.0_f64..0.6,

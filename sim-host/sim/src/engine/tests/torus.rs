@@ -1,4 +1,5 @@
-//! Boids on a torus by radio: where its seams are makes no difference, and far from them it is the plane.
+//! Boids on a torus by radio: the position of the seams does not matter, and far from them the
+//! torus behaves like the plane.
 
 use super::*;
 use crate::scenario::Overrides;
@@ -13,7 +14,7 @@ type Places = Vec<[f64; 2]>;
 fn starts(count: u32, box_m: [u64; 2]) -> Vec<([f64; 2], [f64; 2])> {
     let drawn = |index: u32, what: u32, below: u64| (Rng::keyed(7, what, index, 0).next_u64() % below) as f64;
     let start = |index: u32| {
-        // Rows of their own, so that nobody starts in somebody else.
+        // Each robot has its own row, so that starts do not overlap.
         let y = f64::from(index) * (box_m[1] as f64) / f64::from(count);
         let place = [drawn(index, 0, box_m[0] * 1000) / 1000.0, (y * 1000.0).floor() / 1000.0];
         (place, [drawn(index, 1, 200) / 100.0 - 1.0, drawn(index, 2, 200) / 100.0 - 1.0])
@@ -21,7 +22,7 @@ fn starts(count: u32, box_m: [u64; 2]) -> Vec<([f64; 2], [f64; 2])> {
     (0..count).map(start).collect()
 }
 
-/// Where everybody is after each tick, when all start so much farther east and north.
+/// Positions after each tick, with all starts shifted by `shift_m`.
 fn run(starts: &[([f64; 2], [f64; 2])], torus: bool, shift_m: [f64; 2], ticks: u32) -> Vec<Places> {
     let list = starts.iter().map(|(place, velocity)| {
         let [x, y] = [0, 1].map(|axis| {
@@ -46,7 +47,6 @@ fn run(starts: &[([f64; 2], [f64; 2])], torus: bool, shift_m: [f64; 2], ticks: u
     moments
 }
 
-/// The shortest way from one to the other on the torus.
 fn between(from: [f64; 2], to: [f64; 2]) -> f64 {
     let [x, y] = [0, 1].map(|axis| {
         let way = (to[axis] - from[axis]).rem_euclid(SIDES_M[axis]);
@@ -56,7 +56,7 @@ fn between(from: [f64; 2], to: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn where_the_seams_are_makes_no_difference() {
+fn the_position_of_the_seams_makes_no_difference() {
     let starts = starts(24, [60, 45]);
     let here = run(&starts, true, [0.0; 2], 300);
     for shift_m in [[37.0, 21.5], [0.0, 44.999]] {
@@ -81,9 +81,9 @@ fn where_the_seams_are_makes_no_difference() {
 }
 
 #[test]
-fn far_from_the_seams_it_is_the_plane() {
+fn far_from_the_seams_the_torus_is_the_plane() {
     let starts = starts(24, [6, 6]);
-    // At 2 m/s for 4 s nobody comes within reach of an image.
+    // At 2 m/s for 4 s no robot comes within range of an image.
     let shift_m = [27.0, 19.5];
     let plane = run(&starts, false, shift_m, 40);
     for (tick, (plane, torus)) in plane.iter().zip(run(&starts, true, shift_m, 40)).enumerate() {

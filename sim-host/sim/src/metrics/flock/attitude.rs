@@ -1,14 +1,15 @@
-//! How a robot that flies is turned: along its velocity (OLF section VIII.C).
+//! Attitude of a flying robot that points along its velocity (OLF section VIII.C).
 
 use super::{length, squared};
 
-/// The columns r1, r2, r3 of a rotation: where a body's own axes forward, left and up point in the world.
+/// Columns r1, r2, r3 of the rotation from body axes (forward, left, up) to world axes.
 ///
-/// r1 is the direction of the velocity, r2 level and to its left, r3 = r1 x r2: the paper's r2 = (0, 0, 1) x r1, of length 1.
-/// Straight up or down left is north. `None` for a robot that stands or whose velocity is not finite.
+/// r1 is the direction of the velocity, r2 is level and to its left, r3 = r1 x r2. r2 is the
+/// paper's (0, 0, 1) x r1, normalised; for vertical flight r2 is north. `None` if the robot is
+/// stationary or its velocity is not finite.
 #[must_use]
 pub fn attitude(velocity_mps: [f64; 3]) -> Option<[[f64; 3]; 3]> {
-    // Speeds whose squares are too small or too large for a number, too.
+    // Scaling avoids overflow and underflow of squares.
     let largest = velocity_mps.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     if !(largest > 0.0 && velocity_mps.iter().all(|c| c.is_finite())) {
         return None;

@@ -1,4 +1,4 @@
-//! The energy of an alpha flock (OLF section V): what algorithms 1 and 2 can only lose.
+//! Energy of an alpha flock (OLF section V), which algorithms 1 and 2 can only decrease.
 
 use super::{mean, minus, squared};
 use crate::nearby::{Cells, Found, Query, Search as _, Space};
@@ -6,34 +6,33 @@ use serde::Serialize;
 use staya_controller::flock::action::{PhiAlpha, SPACING, sigma_norm, sigmoid_shift};
 use staya_controller::flock::lattice::{Algorithm, LatticeParams};
 
-/// Intervals of the pair potential's table.
 const INTERVALS: usize = 4096;
 
-/// The energy of a flock at one moment, in the paper's units (a spacing is 7, a second 1, a mass 1).
+/// Energy of a flock at one moment, in the paper's units (a spacing is 7, a second 1, a mass 1).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Energy {
     /// K: half the squared velocities relative to their mean.
     pub kinetic: f64,
-    /// c1 V: the pair potential over all pairs times the robots' gain; those beyond the range count as at the range.
+    /// c1 V: pair potential times gain, summed; pairs out of range count as at the range.
     pub lattice: f64,
-    /// c1 J: half the squared distances from the centroid times the reference's gain; 0 but in algorithm 2.
+    /// c1 J: half the squared distances from the centroid, times gain; 0 but in algorithm 2.
     pub reference: f64,
 }
 
 impl Energy {
-    /// The structural Hamiltonian (eq. 36): H = V + K in algorithm 1, with the reference's part in algorithm 2.
+    /// Structural Hamiltonian (eq. 36): H = V + K, plus the reference in algorithm 2.
     #[must_use]
     pub fn hamiltonian(&self) -> f64 {
         self.kinetic + self.lattice + self.reference
     }
 }
 
-/// Computes the energy of flocks with certain parameters; keeps its buffers between moments.
+/// Computes the energy of flocks with fixed parameters; keeps its buffers between moments.
 ///
-/// H falls along every solution of algorithms 1 and 2 in free space (eq. 41 and the proof of theorem 2):
-/// dH/dt = -c2 v' L v - c2 v' v with the gains on velocities of robots and reference. Gains on positions stand before
-/// V and J, which the paper has without (V) or calls lambda (J). Obstacles, and a pull that is bounded as in algorithm
-/// 3, have no part in it: there it may rise.
+/// H falls along every solution of algorithms 1 and 2 in free space (eq. 41 and the proof of
+/// theorem 2): dH/dt = -c2 v' L v - c2 v' v, with the velocity gains of robots and reference. V and
+/// J are multiplied by position gains; the paper omits that of V and calls that of J lambda. H may
+/// rise near obstacles and with a bounded pull as in algorithm 3.
 #[derive(Clone, Debug)]
 pub struct EnergyMeter<const D: usize> {
     units: f64,
@@ -41,14 +40,14 @@ pub struct EnergyMeter<const D: usize> {
     alpha: f64,
     gamma: f64,
     r_alpha: f64,
-    /// psi_alpha at even distances from 0 to r_alpha, in the sigma norm.
+    /// psi_alpha at equidistant arguments from 0 to r_alpha, in the sigma norm.
     psi: Vec<f64>,
     cells: Cells<f64, D>,
     found: Vec<Found<f64, D>>,
 }
 
 impl<const D: usize> EnergyMeter<D> {
-    /// A meter for such flocks; `None` for parameters that are not sound.
+    /// Creates a meter; `None` if the parameters are invalid.
     #[must_use]
     pub fn new(params: &LatticeParams<f64>) -> Option<Self> {
         let c = sigmoid_shift(params.attraction, params.repulsion).filter(|_| params.is_sound())?;
@@ -73,8 +72,8 @@ impl<const D: usize> EnergyMeter<D> {
         })
     }
 
-    /// psi_alpha (eq. 16) of two robots whose distance is `z` in the sigma norm: 0 at the spacing, even beyond the
-    /// range. Within 1e-6 of the integral.
+    /// psi_alpha (eq. 16) of two robots at distance `z` in the sigma norm: 0 at the spacing,
+    /// constant beyond the range. Within 1e-6 of the integral.
     #[must_use]
     pub fn pair(&self, z: f64) -> f64 {
         let place = (z / self.r_alpha).clamp(0.0, 1.0) * INTERVALS as f64;
@@ -83,11 +82,11 @@ impl<const D: usize> EnergyMeter<D> {
         self.psi[below] * (1.0 - share) + self.psi[below + 1] * share
     }
 
-    /// The energy of robots at these places, metres, with these velocities, m/s. `None` when there are none or something is not
-    /// finite. O(n + edges).
+    /// Energy of robots with these positions, metres, and velocities, m/s. `None` if there are none
+    /// or a value is not finite. O(n + edges).
     ///
     /// # Panics
-    /// When there are not as many velocities as places.
+    /// If there are not as many velocities as positions.
     pub fn look(&mut self, places_m: &[[f64; D]], velocities_mps: &[[f64; D]]) -> Option<Energy> {
         assert_eq!(places_m.len(), velocities_mps.len(), "one velocity a robot");
         let is_sound = |vectors: &[[f64; D]]| vectors.iter().flatten().all(|c| c.is_finite());
@@ -96,7 +95,7 @@ impl<const D: usize> EnergyMeter<D> {
         }
         let n = places_m.len() as f64;
         let beyond = self.pair(self.r_alpha);
-        // All pairs as if beyond the range, then what those within it have less.
+        // Starts with all pairs out of range, then corrects those in range.
         let mut potential = beyond * n * (n - 1.0) / 2.0;
         self.cells.rebuild(places_m);
         for (robot, &at) in (0..).zip(places_m) {
@@ -120,7 +119,7 @@ impl<const D: usize> EnergyMeter<D> {
     }
 }
 
-/// The integral of phi_alpha from d_alpha on, at even places from 0 to r_alpha, by Simpson's rule.
+/// Integral of phi_alpha from d_alpha, tabulated from 0 to r_alpha (Simpson's rule).
 fn pair_potential(phi: &PhiAlpha<f64>) -> Vec<f64> {
     let step = phi.r_alpha / INTERVALS as f64;
     let force = |z: f64| phi.at(z, phi.adjacency(z));
@@ -132,7 +131,7 @@ fn pair_potential(phi: &PhiAlpha<f64>) -> Vec<f64> {
         sum += over(from, from + step);
         psi.push(sum);
     }
-    // So far from 0 on; at d_alpha, its least, it is 0.
+    // The integral so far begins at 0; shift it to be 0 at d_alpha, its minimum.
     let interval = (phi.d_alpha / step) as usize;
     let from = interval as f64 * step;
     let least = psi[interval] + over(from, phi.d_alpha);

@@ -1,25 +1,25 @@
-//! Overlaps: which bodies touch each other or an obstacle.
+//! Gaps and overlaps between bodies and obstacles.
 
 use super::{dot, length, minus, squared};
 use crate::nearby::{Cells, Query, Search as _, Space};
 use serde::Serialize;
 
-/// What stands in the way, in the world.
+/// An obstacle in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Obstacle<const D: usize> {
-    /// A wall of no thickness between two points, metres.
+    /// A wall without thickness between two points, metres.
     Segment([[f64; D]; 2]),
-    /// A disc, in space a ball.
+    /// A disc; in space a ball.
     Disc {
-        /// Its centre, metres.
+        /// Centre, metres.
         centre_m: [f64; D],
-        /// Its radius, metres.
+        /// Radius, metres.
         radius_m: f64,
     },
 }
 
 impl<const D: usize> Obstacle<D> {
-    /// Distance of a point from its surface, metres; negative inside of a disc.
+    /// Distance of a point from the surface, metres; negative inside a disc.
     #[must_use]
     pub fn distance_m(&self, at: [f64; D]) -> f64 {
         match *self {
@@ -34,24 +34,24 @@ impl<const D: usize> Obstacle<D> {
     }
 }
 
-/// How near robots came to each other and to obstacles at one moment: from border to border, negative when they overlap.
+/// Smallest gaps at one moment, from surface to surface; negative for overlaps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Gaps {
-    /// The least gap between two robots, metres; `None` when all are farther apart than the horizon.
+    /// Smallest gap between two robots, metres; `None` if all gaps exceed the horizon.
     pub between_robots_m: Option<f64>,
     /// Pairs of robots that overlap.
     pub overlapping_pairs: usize,
-    /// The least gap between a robot and an obstacle, metres; `None` without either.
+    /// Smallest gap between a robot and an obstacle, metres; `None` without robots or obstacles.
     pub to_obstacles_m: Option<f64>,
     /// Robots that overlap an obstacle.
     pub robots_in_obstacles: usize,
 }
 
-/// Looks at discs (in space, balls) of these radii. Gaps between robots above `horizon_m` are not looked for.
-/// O(n + pairs within the horizon + n x obstacles).
+/// Computes the gaps between discs (in space, balls). Gaps between robots above `horizon_m` are
+/// ignored. O(n + pairs within the horizon + n x obstacles).
 ///
 /// # Panics
-/// When there are not as many radii as places.
+/// If there are not as many radii as positions.
 #[must_use]
 pub fn gaps<const D: usize>(
     places_m: &[[f64; D]],

@@ -4,7 +4,6 @@ mod energy;
 use super::*;
 use proptest::prelude::*;
 
-/// Rows of a triangle lattice of side d, three by three.
 fn lattice(d: f64) -> Vec<[f64; 2]> {
     let height = d * 3.0_f64.sqrt() / 2.0;
     (0..9)
@@ -48,14 +47,13 @@ fn two_clusters_are_less_than_connected() {
 
 #[test]
 fn energy_mismatch_radius_and_order_of_three_robots_by_hand() {
-    // Edges of 6 and 8; 14 apart is no edge.
+    // Edges of 6 and 8; a distance of 14 is out of range.
     let places = [[0.0, 0.0], [6.0, 0.0], [14.0, 0.0]];
     let velocities = [[1.0, 0.0], [0.0, 2.0], [-1.0, 1.0]];
     let mut meter = FlockMeter::new(7.0, 8.4, Space::OPEN);
     let measure = meter.look(&places, &velocities).expect("robots");
     assert_eq!(meter.edges(), [(0, 1), (1, 2)]);
     let centre = 20.0 / 3.0;
-    // Four ordered pairs, each off by 1.
     let expected = [4.0 / 5.0 / 49.0, 14.0 - centre];
     for (got, expected) in [measure.deviation_energy, measure.radius_m].iter().zip(expected) {
         assert!((got - expected).abs() < 1e-12, "{got} {expected}");
@@ -68,7 +66,7 @@ fn energy_mismatch_radius_and_order_of_three_robots_by_hand() {
 }
 
 #[test]
-fn order_is_one_of_equals_none_of_opposites_and_ignores_who_stands() {
+fn order_is_one_if_aligned_zero_if_opposed_and_ignores_stationary_robots() {
     let same = [[3.0, 4.0, 0.0], [0.3, 0.4, 0.0], [0.0; 3]];
     assert!((polarisation(&same) - 1.0).abs() < 1e-15);
     assert_eq!(polarisation(&[[1.0, 0.0], [-5.0, 0.0]]), 0.0);
@@ -76,7 +74,7 @@ fn order_is_one_of_equals_none_of_opposites_and_ignores_who_stands() {
 }
 
 #[test]
-fn one_robot_is_a_flock_and_none_or_nonsense_is_nothing() {
+fn one_robot_is_a_flock_and_invalid_input_is_none() {
     let one = look(&[[5.0, 5.0, 5.0]], &[[1.0, 0.0, 0.0]]);
     assert_eq!((one.connectivity, one.components, one.edges), (1.0, 1, 0));
     assert_eq!((one.radius_m, one.deviation_energy, one.polarisation), (0.0, 0.0, 1.0));
@@ -89,12 +87,12 @@ fn one_robot_is_a_flock_and_none_or_nonsense_is_nothing() {
 }
 
 #[test]
-fn graph_closes_around_a_torus() {
+fn the_graph_crosses_the_borders_of_a_torus() {
     let space = Space::torus([21.0, 50.0]).expect("sound");
     let mut meter = FlockMeter::new(7.0, 7.5, space);
     let places = [[0.0, 1.0], [14.0, 1.0], [7.0, 49.0]];
     let measure = meter.look(&places, &still(&places)).expect("robots");
-    // Across the border 7; the third is 7 east and 2 south of the first.
+    // Distance 7 across the border; the third robot is 7 east and 2 south of the first.
     assert_eq!(measure.components, 1);
     assert_eq!(meter.edges(), [(0, 1), (0, 2), (1, 2)]);
 }
@@ -114,7 +112,7 @@ fn moment(components: usize, energy: f64, mismatch: f64, radius_m: f64) -> Optio
 }
 
 #[test]
-fn verdict_tells_from_when_on_each_condition_holds() {
+fn the_verdict_has_the_start_of_each_condition() {
     let trace = [
         moment(3, 0.1, 0.1, 99.0),
         moment(2, 0.1, 0.1, 9.0),
@@ -132,7 +130,6 @@ fn verdict_tells_from_when_on_each_condition_holds() {
         strict: Some(4),
     };
     assert_eq!(alpha_flocking(&trace, &limits), expected);
-    // Whoever breaks up at the end has not flocked, however well it went before.
     let broken: Vec<_> = trace.into_iter().chain([moment(5, 0.0, 0.0, 9.0)]).collect();
     let verdict = alpha_flocking(&broken, &limits);
     assert_eq!((verdict.alpha_flocking, verdict.quasi_flock), (None, None));
@@ -143,7 +140,7 @@ fn verdict_tells_from_when_on_each_condition_holds() {
 }
 
 #[test]
-fn gaps_are_from_border_to_border() {
+fn gaps_are_from_surface_to_surface() {
     let places = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.5], [20.0, 0.0]];
     let radii = [1.0, 1.0, 1.0, 0.5];
     let wall = Obstacle::Segment([[-5.0, -2.0], [5.0, -2.0]]);
@@ -156,7 +153,7 @@ fn gaps_are_from_border_to_border() {
         robots_in_obstacles: 1,
     };
     assert_eq!(all, expected);
-    // Touching is not overlapping; nobody else is within the horizon.
+    // Touching is not overlapping; the horizon contains no other pair.
     let touching = gaps(&places[..2], &[1.0, 2.0], &[], 0.0, Space::OPEN);
     assert_eq!((touching.between_robots_m, touching.overlapping_pairs), (Some(0.0), 0));
     let alone = gaps(&places[2..], &radii[2..], &[wall], 1.0, Space::OPEN);
@@ -164,7 +161,7 @@ fn gaps_are_from_border_to_border() {
 }
 
 #[test]
-fn walls_end_and_may_be_points() {
+fn walls_are_finite_and_may_be_points() {
     let wall = Obstacle::Segment([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]]);
     assert_eq!(wall.distance_m([2.0, 0.0, 3.0]), 3.0);
     assert_eq!(wall.distance_m([7.0, 4.0, 0.0]), 5.0);
@@ -178,7 +175,7 @@ fn crowd() -> impl Strategy<Value = Vec<([f64; 2], [f64; 2])>> {
 }
 
 proptest! {
-    /// C by the definition, without the index: components by flooding over all pairs.
+    /// Reference implementation: flood fill over all pairs, without the index.
     #[test]
     fn connectivity_and_energy_are_those_of_all_pairs(crowd in crowd()) {
         let (places, velocities): (Vec<_>, Vec<_>) = crowd.into_iter().unzip();
@@ -207,13 +204,13 @@ proptest! {
     }
 
     #[test]
-    fn measures_do_not_depend_on_where_a_flock_is_and_where_it_looks(
+    fn measures_do_not_depend_on_position_and_orientation(
         crowd in crowd(), angle in -3.0_f64..3.0, by in (-50.0_f64..50.0, -50.0_f64..50.0),
     ) {
         let (sin, cos) = libm::sincos(angle);
         let turn = |[x, y]: [f64; 2]| [x * cos - y * sin, x * sin + y * cos];
         let (places, velocities): (Vec<_>, Vec<_>) = crowd.into_iter().unzip();
-        // A pair at the very range may be an edge or not, by rounding.
+        // A pair exactly at the range may be an edge or not, depending on rounding.
         let is_clear = |i: usize, j: usize| (length(minus(places[i], places[j])) - 8.4).abs() > 1e-9;
         prop_assume!((0..places.len()).all(|i| (0..i).all(|j| is_clear(i, j))));
         let plain = look(&places, &velocities);

@@ -11,7 +11,6 @@ fn read(path: PathBuf) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// A run that writes `files` with `text`.
 fn begun(target: &Path, files: &[&str], text: &str) -> Results {
     let results = Results::begin(target).unwrap();
     for file in files {
@@ -25,7 +24,7 @@ fn run(target: &Path, files: &[&str], text: &str) {
 }
 
 #[test]
-fn old_results_stay_until_the_new_ones_are_whole_and_notes_stay_for_ever() {
+fn old_results_stay_until_the_new_ones_are_complete_and_notes_are_kept() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("deep/run");
     run(&target, &["summary.json", "formation.png"], "one");
@@ -42,7 +41,7 @@ fn old_results_stay_until_the_new_ones_are_whole_and_notes_stay_for_ever() {
 }
 
 #[test]
-fn who_fails_leaves_the_old_ones_and_nothing_else_unless_told_to() {
+fn a_failed_run_leaves_only_the_old_results_unless_kept() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("run");
     run(&target, &["summary.json"], "one");
@@ -56,10 +55,10 @@ fn who_fails_leaves_the_old_ones_and_nothing_else_unless_told_to() {
 }
 
 #[test]
-fn wherever_a_run_died_the_next_one_finds_whole_results() {
+fn results_are_complete_wherever_a_run_died() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("run");
-    // It died before it moved anything.
+    // It died before it moved any file.
     run(&target, &["summary.json"], "one");
     std::mem::forget(begun(&target, &["trace.csv"], "dead").marker.take());
     // Between the two renames.
@@ -68,7 +67,6 @@ fn wherever_a_run_died_the_next_one_finds_whole_results() {
     let next = Results::begin(&target).unwrap();
     assert_eq!(read(target.join("summary.json")), "one", "it is back");
     drop(next);
-    // After both.
     fs::create_dir(dir.path().join(".run.old-8-0")).unwrap();
     let old = dir.path().join(".run.old-8-0");
     fs::write(old.join(MARKER), "made by\nsummary.json\ntrace.csv\n").unwrap();
@@ -83,7 +81,7 @@ fn wherever_a_run_died_the_next_one_finds_whole_results() {
 }
 
 #[test]
-fn two_runs_at_once_each_leave_whole_results() {
+fn concurrent_runs_leave_complete_results() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("run");
     let (one, two) = (begun(&target, &["summary.json", "a"], "one"), begun(&target, &["summary.json", "b"], "two"));
@@ -103,7 +101,7 @@ fn two_runs_at_once_each_leave_whole_results() {
 }
 
 #[test]
-fn a_folder_of_somebody_elses_is_added_to_or_refused() {
+fn a_foreign_folder_is_extended_or_refused() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("mine");
     fs::create_dir(&target).unwrap();
@@ -121,14 +119,14 @@ fn a_folder_of_somebody_elses_is_added_to_or_refused() {
     let text = Results::begin(&strange).unwrap_err().to_string();
     assert!(text.contains("trace.csv") && text.contains("no run") && text.contains("choose another"), "{text}");
     assert_eq!(read(strange.join("trace.csv")), "mine");
-    // What an older version left is known by its summary.
+    // An older version's results are recognised by the summary.
     fs::write(strange.join("summary.json"), "{\"trace_hash\": 1}").unwrap();
     run(&strange, &["summary.json"], "new");
     assert_eq!(names(&strange), [MARKER, "summary.json"]);
 }
 
 #[test]
-fn files_go_one_by_one_where_the_folder_has_to_stay() {
+fn files_are_moved_one_by_one_if_the_folder_cannot_be_renamed() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("mount");
     run(&target, &["summary.json", "old.csv"], "one");

@@ -1,4 +1,4 @@
-//! Checks of `[plane]`: positions, speeds, and which tables go together.
+//! Checks of `[plane]`: positions, speeds, and combinations of tables.
 
 use super::super::ScenarioError;
 use super::super::source::Source;
@@ -10,10 +10,10 @@ use crate::terrain::Terrain;
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GOALS, GuidanceKind, WAYPOINTS};
 
-/// Farthest from the origin along each axis, metres: places go over the air as millimetres in 32 bits.
+/// Largest coordinate along each axis, metres: beacons encode positions as 32-bit millimetres.
 pub(super) const FAR_M: f64 = 2_000_000.0;
 
-/// Fastest along each axis, m/s: velocities go over the air as millimetres a second in 16 bits.
+/// Highest speed along each axis, m/s: beacons encode velocities as 16-bit millimetres per second.
 const FAST_MPS: f64 = 32.0;
 
 pub(super) fn place(source: &Source<'_>, field: &str, place: Place) -> Result<(), ScenarioError> {
@@ -32,7 +32,7 @@ pub(super) fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Res
     Err(source.error(field, "this is too fast", remedy))
 }
 
-/// How many goals robots have room for.
+/// Number of goals that an operator can set, by law.
 pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
     match guidance {
         GuidanceKind::Waypoint | GuidanceKind::Lattice => 1,
@@ -41,7 +41,7 @@ pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
     }
 }
 
-/// Robots that go from cell to cell start with a goal, which no order moves.
+/// A robot on the grid starts with one goal, which an operator's order cannot move.
 fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: usize) -> Result<(), ScenarioError> {
     let most = if guidance == GuidanceKind::Route { 1 } else { goals(guidance) };
     if count <= usize::from(most) {
@@ -51,7 +51,7 @@ fn goal_count(source: &Source<'_>, field: &str, guidance: GuidanceKind, count: u
     Err(source.error(field, what, format!("give at most {most}, or another guidance")))
 }
 
-/// The land that a group's guidance goes over from cell to cell, if it is of that kind.
+/// The terrain for a law that moves from cell to cell; an error if one is given without the other.
 pub(super) fn land<'a>(
     source: &Source<'_>,
     spec: &Spec,
@@ -67,7 +67,7 @@ pub(super) fn land<'a>(
     }
 }
 
-/// Robots of a group in metres that go from cell to cell: each starts on the land and has one goal there.
+/// Checks robots on the grid that are given in metres: start and goal are on the terrain.
 pub(super) fn in_cells(
     source: &Source<'_>,
     spec: &Spec,
@@ -116,7 +116,6 @@ pub(super) fn list(source: &Source<'_>, spec: &Spec, list: &[PlaneRobotEntry]) -
     Ok(())
 }
 
-/// Places on the way.
 fn via(source: &Source<'_>, field: &str, guidance: GuidanceKind, robot: &PlaneRobotEntry) -> Result<(), ScenarioError> {
     let (count, most) = (robot.via_m.len(), WAYPOINTS - 1);
     if count == 0 {
@@ -151,7 +150,7 @@ pub(super) fn cloud(source: &Source<'_>, spec: &Spec, cloud: &CloudEntry) -> Res
     velocity(source, &field("goal_velocity_mps"), cloud.goal_velocity_mps)
 }
 
-/// No two robots overlap, however they were placed.
+/// Refuses overlapping starts. O(robots) expected.
 pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
     let centers: Vec<_> = setup.starts.iter().map(|start| start.position_m).collect();
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
@@ -160,12 +159,12 @@ pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Scen
     let mut found = Vec::new();
     for (number, at) in (0..).zip(centers) {
         let own_m = setup.group(number as usize).radius_m;
-        // As many as can overlap one who overlaps nobody before him are few.
+        // No limit needed: few robots can overlap this one if the earlier robots do not overlap
+        // each other.
         let query = Query { at, radius: own_m + largest_m, most: usize::MAX, except: Some(number) };
         index.within(&query, &mut found);
         for near in &found {
             let apart_m = own_m + setup.group(near.index as usize).radius_m;
-            // Less than that is rounding.
             if near.distance_squared.sqrt() < apart_m - 1e-6 {
                 let (one, two) = (number + 1, near.index + 1);
                 let what = format!("robots {one} and {two} overlap at the start");
@@ -177,7 +176,7 @@ pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Scen
     Ok(())
 }
 
-/// No robot starts in an obstacle or in an intruder.
+/// Refuses starts inside an obstacle or an intruder. O(robots x intruders).
 pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
     let solids = Solids::new(setup.solids.clone(), largest_m);

@@ -1,4 +1,4 @@
-//! `[plane.eyes]`: robots that see each other.
+//! `[plane.eyes]`: detection of other robots by sensors.
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
@@ -8,14 +8,13 @@ use crate::world::plane::Eyes;
 use staya_controller::neighbor::TrackParams;
 use staya_controller::time::Duration;
 
-/// The longest delay, and the longest time between two looks, ticks.
+/// Longest delay, and longest interval between detections, ticks.
 const MOST_TICKS: u32 = 1000;
-/// Standard deviation of places in beacons, metres: they are whole millimetres, and simulated robots know where they are.
+/// Standard deviation of positions in beacons, metres: they are rounded to millimetres, and
+/// simulated robots know their exact position.
 const HEARD_M: f64 = 0.002;
-/// Standard deviation of velocities in beacons, m/s.
 const HEARD_MPS: f64 = 0.01;
 
-/// Checks the table, if there is one.
 pub(in super::super) fn eyes(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -42,7 +41,7 @@ pub(in super::super) fn eyes(
     number("delay_ticks", eyes.delay_ticks.into(), 0.0, MOST_TICKS.into(), "ticks")?;
     number("gate", eyes.gate, 0.1, 100.0, "standard deviations")?;
     number("margin", eyes.margin, 0.0, 100.0, "standard deviations")?;
-    // As long as the controller has news for fresh, and as long as three looks take.
+    // At least the age at which a beacon is stale, and at least three detections.
     let usual_s = f64::from((3 * eyes.every_ticks + eyes.delay_ticks).max(4)) * file.tick_s;
     let forget_s = eyes.forget_s.unwrap_or(usual_s);
     number("forget_s", forget_s, file.tick_s, 1000.0, "seconds")?;
@@ -51,7 +50,7 @@ pub(in super::super) fn eyes(
         (speed.max(can.max_speed_mps), most.max(can.max_acceleration_mps2))
     });
     let acceleration_mps2 = match eyes.acceleration_mps2 {
-        // From its speed to the opposite one within a second, twice over for those who can do it at once.
+        // Unlimited acceleration: a reversal from full speed within a second, with a factor of two.
         None => most_mps2.min(4.0 * speed_mps),
         Some(said) => {
             number("acceleration_mps2", said, 0.001, 1000.0, "m/s^2")?;

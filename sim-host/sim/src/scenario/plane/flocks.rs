@@ -1,4 +1,4 @@
-//! The tables of the flocks.
+//! `[plane.lattice]`, `[plane.goal_flock]` and `[plane.boids]`.
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
@@ -8,11 +8,11 @@ use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 
-/// Robots among each other over the goal in algorithm 2: see `LatticeParams::gamma`.
+/// Ratio of the alpha gain to the goal gain in algorithm 2: see `LatticeParams::gamma`.
 const GAMMA_OF_TWO: f32 = 50.0;
 
-/// Places of the largest formation: on the air the number of a place stands where that of a flock does, so that flocks
-/// beside formations are numbered from here on.
+/// Number of places of the largest formation. A beacon stores a formation place and a flock number
+/// in the same field, so flock numbers start here.
 pub(super) fn places(file: &ScenarioFile) -> u8 {
     let in_cells = file.robots.iter().flat_map(|robots| &robots.formation);
     let formations = in_cells.chain(file.group_formations());
@@ -23,7 +23,7 @@ pub(super) fn places(file: &ScenarioFile) -> u8 {
     places.max().map_or(0, |most| u8::try_from(most).unwrap_or(u8::MAX))
 }
 
-/// An error for a flock whose number is a place's, or a formation's.
+/// Refuses flock numbers that are places of a formation, and flock numbers for robots in formation.
 pub(super) fn number(source: &Source<'_>, spec: &Spec, given: Option<u8>, places: u8) -> Result<(), ScenarioError> {
     let (what, remedy) = match given {
         Some(_) if spec.guidance == GuidanceKind::Formation => {
@@ -38,7 +38,7 @@ pub(super) fn number(source: &Source<'_>, spec: &Spec, given: Option<u8>, places
     Err(source.error(&spec.field(source, "flock"), what, remedy))
 }
 
-/// An error when a flock's guidance is chosen without its table, or the table is there without it.
+/// Refuses a flocking law without its table, and the table without its law.
 fn goes_with<T: Copy>(
     source: &Source<'_>,
     spec: &Spec,
@@ -61,7 +61,7 @@ fn goes_with<T: Copy>(
     }
 }
 
-/// Gains that are not given are those that bear what the radio does.
+/// Checks `[plane.lattice]`. Gains default to values that are stable with this radio's delay.
 pub(super) fn lattice(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -90,7 +90,7 @@ pub(super) fn lattice(
         params.algorithm = Algorithm::ThreeInTurn;
     }
     if params.algorithm == Algorithm::Two {
-        // Its pull grows with the flock's size.
+        // The pull grows with the size of the flock.
         params.gamma = Gain::critical(params.alpha.position / GAMMA_OF_TWO);
     }
     if given.c_alpha.is_none() {
@@ -126,7 +126,7 @@ pub(super) fn lattice(
     Ok(Some(GuidanceSetup::Lattice { params, motion }))
 }
 
-/// What is dangerous about gains that are asked for, for people; nothing if they bear what this radio does.
+/// Warning about explicit gains that are unstable with this radio; `None` if they are stable.
 pub(in super::super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams, tick_s: f64) -> Option<String> {
     let (delay_s, rate_hz) = radio.news(tick_s);
     let news_s = delay_s + 1.0 / rate_hz;

@@ -1,4 +1,4 @@
-//! Robots that are alike: their bodies, how they go and what keeps them apart.
+//! Groups of identical robots: body, law and safety layer.
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile, params};
@@ -12,32 +12,32 @@ use staya_controller::push_out::{Evasion, Model, PushOutParams};
 use staya_controller::template::Template;
 use staya_controller::time::Duration;
 
-/// What robots of a group have in common.
+/// Properties that the robots of a group have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotGroup {
-    /// What bodies can do.
+    /// Speed and acceleration limits.
     pub abilities: Abilities,
-    /// Radius of each body, metres.
+    /// Radius of the body, metres.
     pub radius_m: f64,
-    /// Speed that robots like to go, m/s.
+    /// Preferred speed, m/s.
     pub cruise_mps: f64,
-    /// How near to a goal counts as being there, metres.
+    /// Distance at which a goal counts as reached, metres.
     pub tolerance_m: f64,
-    /// How far robots see obstacles, metres.
+    /// Range of obstacle detection, metres.
     pub sight_m: f64,
-    /// Where they want to go.
+    /// The guidance law.
     pub guidance: GuidanceSetup,
-    /// What keeps them apart.
+    /// The safety layer.
     pub safety: SafetySetup,
-    /// What they make of silence.
+    /// Reaction to loss of contact.
     pub silence: Silence<f32>,
-    /// Their flock, if they flock: to others they are strangers.
+    /// Flock number; robots of different flocks avoid each other but do not flock together.
     pub flock: u8,
 }
 
 impl RobotGroup {
-    /// Robots of `radius_m` that go straight to their places behind ORCA: what a `[plane]` with nothing but the
-    /// required fields says.
+    /// Creates robots that go straight to their goals, with ORCA as the safety layer: the defaults
+    /// of a `[plane]` with only the required fields.
     #[must_use]
     pub fn new(abilities: Abilities, radius_m: f64) -> Self {
         let (cruise_mps, tolerance_m) = (abilities.max_speed_mps, radius_m / 10.0);
@@ -55,7 +55,7 @@ impl RobotGroup {
         }
     }
 
-    /// The same robots, which go straight to places and count as being there at this distance, metres.
+    /// Returns this group with the waypoint law and the given arrival tolerance, metres.
     #[must_use]
     pub fn to_places(mut self, tolerance_m: f64) -> Self {
         self.tolerance_m = tolerance_m;
@@ -63,7 +63,7 @@ impl RobotGroup {
         self
     }
 
-    /// How many times higher than wide the room is that robots leave each other; 1 unless they fly.
+    /// Ratio of the vertical to the horizontal separation; 1 for groups that do not fly.
     #[must_use]
     pub fn downwash(&self) -> f64 {
         match self.safety {
@@ -72,8 +72,8 @@ impl RobotGroup {
         }
     }
 
-    /// The same robots behind a safety layer with those of the parameters that it has a use for; silent robots grow as
-    /// usual.
+    /// Returns this group with another safety layer. It takes those of the parameters that the
+    /// layer uses, and the default inflation of silent robots.
     #[must_use]
     pub fn behind(mut self, safety: SafetyKind, orca: AvoidParams<f32>, push_out: PushOutParams<f32>) -> Self {
         self.safety = safety.setup(orca, inflation(self.abilities.max_speed_mps, self.radius_m), push_out);
@@ -81,7 +81,8 @@ impl RobotGroup {
     }
 }
 
-/// Lets the balls of silent robots grow by the speed of the fastest robot of all, where no file says how fast.
+/// Raises the default growth rate of silent robots to the speed of the fastest robot in the
+/// scenario; explicit rates are kept.
 pub(super) fn grow_as_the_fastest(general: &mut RobotGroup, groups: &mut [RobotGroup]) {
     let speed = |group: &RobotGroup| group.abilities.max_speed_mps;
     let fastest_mps = groups.iter().map(speed).fold(speed(general), f64::max) as f32;
@@ -95,18 +96,17 @@ pub(super) fn grow_as_the_fastest(general: &mut RobotGroup, groups: &mut [RobotG
     }
 }
 
-/// Straight to places.
 const fn waypoint(cruise_mps: f64, tolerance_m: f64) -> GuidanceSetup {
     GuidanceSetup::Waypoint { speed_mps: cruise_mps as f32, tolerance_m: tolerance_m as f32 }
 }
 
-/// How silent robots grow unless a file says otherwise: by the highest speed, up to the radius.
+/// Default inflation of silent robots: grows at the highest speed, up to the radius.
 const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32> {
     StalenessInflation { growth_mps: max_speed_mps as f32, max_m: radius_m as f32 }
 }
 
 impl Spec {
-    /// Checks it.
+    /// Checks the fields and builds the group.
     pub fn build(&self, source: &Source<'_>, file: &ScenarioFile) -> Result<RobotGroup, ScenarioError> {
         let far = checks::FAR_M;
         self.within(source, "radius_m", self.radius_m, [0.001, 65.0], "metres")?;
@@ -153,7 +153,7 @@ impl Spec {
             flocks::goal_flock(source, self, cruise_mps, file.seed)?,
             flocks::boids(source, self, cruise_mps)?,
         ];
-        // A table of another guidance is refused, and so is a flock without its own.
+        // Each function refuses a table without its law, and a flocking law without its table.
         if let Some(flock) = flocks.into_iter().flatten().next() {
             return Ok(flock);
         }
@@ -165,7 +165,7 @@ impl Spec {
             return Ok(GuidanceSetup::Route { route, speed_mps });
         }
         let formation = params::formation(source, &file.formation)?;
-        // Each robot has its own template: see `Scenario::guidance`.
+        // Templates differ by robot: see `Scenario::guidance`.
         Ok(GuidanceSetup::Formation { route, formation, template: Template::default(), speed_mps })
     }
 
@@ -245,7 +245,7 @@ impl Spec {
         })
     }
 
-    /// What would be ignored is refused.
+    /// Refuses tables that the chosen safety layer would ignore.
     fn unused(&self, source: &Source<'_>) -> Result<(), ScenarioError> {
         let is_used = !matches!(self.safety, SafetyKind::None | SafetyKind::PushOut);
         if is_used || self.orca.is_empty() {

@@ -1,4 +1,4 @@
-//! `[plane]`: robots that move in the plane or in space, and how they choose their velocities.
+//! `[plane]`: robots that move in the plane or in space, and their choice of velocity.
 
 mod checks;
 mod eyes;
@@ -41,56 +41,55 @@ use staya_controller::grid::Cell;
 use staya_controller::neighbor::Claims;
 use staya_controller::robot::RobotId;
 
-/// Robots that a plane can hold.
 const MAX_ROBOTS: u32 = 1_000_000;
 
 /// An operator's order to all robots.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Order {
-    /// The tick in which it arrives.
+    /// Tick in which the order arrives.
     pub tick: u32,
-    /// Which of the goals.
+    /// Index of the goal, from 0.
     pub index: u8,
-    /// The goal.
+    /// The new goal.
     pub target: Target,
 }
 
-/// A body that is no robot of the swarm: it goes on as it goes.
+/// A foreign body that moves at constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intruder {
-    /// Where it starts, metres.
+    /// Start position, metres.
     pub position_m: [f64; 3],
-    /// How it goes, m/s.
+    /// Velocity, m/s.
     pub velocity_mps: [f64; 3],
-    /// Radius of its body, metres.
+    /// Radius of the body, metres.
     pub radius_m: f64,
-    /// Whether it sends beacons; otherwise robots see it as they see obstacles.
+    /// Whether it sends beacons; otherwise robots detect it like an obstacle.
     pub is_heard: bool,
 }
 
 /// A checked `[plane]`.
 #[derive(Clone, Debug)]
 pub struct PlaneSetup {
-    /// What robots are like, unless they are in one of the groups.
+    /// Properties of robots outside the groups.
     pub general: RobotGroup,
-    /// Robots that differ.
+    /// Properties of the robots in each group.
     pub groups: Vec<RobotGroup>,
-    /// Whether there is land under the bodies.
+    /// Whether there is terrain under the bodies.
     pub has_terrain: bool,
-    /// Sides of the torus that all is on, metres; `None`: the open plane.
+    /// Side lengths of the torus, metres; `None`: an open plane.
     pub torus_m: Option<[f64; 2]>,
-    /// What does not move.
+    /// Static obstacles.
     pub solids: Vec<Solid>,
-    /// Bodies that are no robots.
+    /// Foreign bodies.
     pub intruders: Vec<Intruder>,
-    /// By robot.
+    /// Starts, by robot.
     pub starts: Vec<Start>,
-    /// By rising tick.
+    /// Operator's orders, sorted by tick.
     pub orders: Vec<Order>,
 }
 
 impl PlaneSetup {
-    /// Robots at their starts, without land and obstacles, that are all alike.
+    /// Creates a plane with identical robots and without terrain or obstacles.
     #[must_use]
     pub const fn new(general: RobotGroup, starts: Vec<Start>) -> Self {
         Self {
@@ -105,33 +104,33 @@ impl PlaneSetup {
         }
     }
 
-    /// The space that bodies are in.
+    /// Geometry of the plane: open or a torus.
     #[must_use]
     pub fn space(&self) -> Space<f64, 3> {
         torus::space(self.torus_m)
     }
 
-    /// What robot number `index` is like.
+    /// Properties of robot `index`.
     #[must_use]
     pub fn group(&self, index: usize) -> &RobotGroup {
         let group = self.starts.get(index).and_then(|start| self.groups.get(start.group?));
         group.unwrap_or(&self.general)
     }
 
-    /// Intruders that send beacons.
+    /// Number of intruders that send beacons.
     #[must_use]
     pub fn heard(&self) -> usize {
         self.intruders.iter().filter(|intruder| intruder.is_heard).count()
     }
 
-    /// What robots are like, each kind once: those that there are robots of.
+    /// Distinct robot properties, without groups that have no robots.
     pub fn kinds(&self) -> impl Iterator<Item = &RobotGroup> {
         let general = Some(&self.general).filter(|_| self.starts.iter().any(|start| start.group.is_none()));
         general.into_iter().chain(&self.groups)
     }
 
-    /// The robots: those that have been given in cells, and behind them, numbered on, those that are given in metres. Cells of the latter
-    /// mean something only where their guidance goes from cell to cell.
+    /// All robots: those given in cells, then those given in metres with consecutive ids. The cells
+    /// of the latter are valid only if their law moves from cell to cell.
     fn robots(&self, in_cells: &[Robot], terrain: Option<&Terrain>) -> Vec<Robot> {
         let cell = |index: usize, place_m: Option<[f64; 3]>| {
             let land = terrain.filter(|_| self.group(index).guidance.kind().is_on_grid());
@@ -149,14 +148,14 @@ impl PlaneSetup {
 }
 
 impl Scenario {
-    /// Sides of the torus that all is on, metres; `None`: an open plane.
+    /// Side lengths of the torus, metres; `None`: an open plane.
     #[must_use]
     pub fn torus_m(&self) -> Option<[f64; 2]> {
         self.plane.as_ref()?.torus_m
     }
 
-    /// A scenario in the plane that no file says: `ticks` of `setup.abilities.step_s`, with a radio. Robots are numbered
-    /// from 1 in the order of their starts.
+    /// Builds a scenario in the plane without a file. It lasts `ticks` of `setup.abilities.step_s`;
+    /// robots have ids from 1 in the order of their starts.
     #[must_use]
     pub fn in_plane(name: &str, seed: u64, ticks: u32, radio: RadioParams, setup: PlaneSetup) -> Self {
         let mut scenario = Self {
@@ -194,7 +193,6 @@ impl Scenario {
     }
 }
 
-/// What [`build`] makes.
 pub(super) struct Placed {
     pub setup: PlaneSetup,
     pub robots: Vec<Robot>,
@@ -202,7 +200,7 @@ pub(super) struct Placed {
     pub parts: Vec<Part>,
 }
 
-/// Checks the table and places the robots; `cells` are those that the top-level `robots` gives.
+/// Checks the table and places the robots; `cells` are the robots of the top-level `[robots]`.
 pub(super) fn build(
     source: &Source<'_>,
     file: &ScenarioFile,

@@ -1,25 +1,25 @@
-//! Where robots are at first, and where they are to go.
+//! Starts and goals of robots in the plane.
 
 use serde::{Deserialize, Serialize};
 
-/// Where a robot starts and what it is told.
+/// Start state and goals of a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
     /// World position, metres.
     pub position_m: [f64; 3],
     /// World velocity, m/s.
     pub velocity_mps: [f64; 3],
-    /// The places it is told to go to.
+    /// Places to visit, in order; for flocking laws, the goals.
     pub places: Vec<Target>,
-    /// Its group in [`PlaneSetup::groups`](super::PlaneSetup::groups); `None`: the general one.
+    /// Index in [`PlaneSetup::groups`](super::PlaneSetup::groups); `None`: the general group.
     pub group: Option<usize>,
 }
 
-/// A place to go to.
+/// A goal, which may move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Target {
-    /// Where it is at the start of the run, or of an order, metres.
+    /// Position at the start of the run or of an order, metres.
     pub position_m: [f64; 3],
-    /// How it moves, m/s.
+    /// Velocity, m/s.
     pub velocity_mps: [f64; 3],
 }

@@ -1,17 +1,16 @@
-//! What is allowed in `[plane]` and hardly meant, told to people.
+//! Warnings about valid but probably unintended settings in `[plane]`.
 
 use super::{PlaneSetup, RobotGroup, Start};
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GuidanceKind, SafetySetup};
 
-/// So many robots with the same trouble are named, and the others counted.
+/// Number of affected robots that a warning names; it counts the rest.
 const NAMED: usize = 3;
 
-/// A wall that comes back to its first point: its corners, metres.
 type Loop = Vec<[f64; 2]>;
 
-/// Ticks too long for bodies, closed walls that cross themselves, goals that nobody can be at. O(robots x walls +
-/// sides of a closed wall squared).
+/// Warns about ticks that are too long for the bodies, closed walls that cross themselves, and
+/// unreachable goals. O(robots x walls + sides of a closed wall squared).
 pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> {
     let loops = loops(&setup.solids);
     let mut remarks: Vec<_> = setup.kinds().filter_map(|group| long_tick(group, tick_s)).collect();
@@ -48,7 +47,7 @@ pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> 
     remarks
 }
 
-/// Where a robot shall come to rest, if it goes straight to a place.
+/// Final position of a robot that goes straight to a stationary goal.
 fn goal(group: &RobotGroup, start: &Start) -> Option<[f64; 3]> {
     let last = start.places.last()?;
     (group.guidance.kind() == GuidanceKind::Waypoint && last.velocity_mps == [0.0; 3]).then_some(last.position_m)
@@ -66,7 +65,7 @@ fn named(robots: impl Iterator<Item = usize>) -> Option<String> {
     Some(if text.is_empty() { format!("{robots} {last}") } else { format!("{robots} {} and {last}", text.join(", ")) })
 }
 
-/// Who goes farther in a tick than the body is wide is never seen in between.
+/// Warns of undetected collisions if a robot moves more than its width in a tick.
 fn long_tick(group: &RobotGroup, tick_s: f64) -> Option<String> {
     let (speed_mps, wide_m) = (group.abilities.max_speed_mps, 2.0 * group.radius_m);
     let way_m = speed_mps * tick_s;
@@ -101,12 +100,11 @@ fn loops(solids: &[Solid]) -> Vec<Loop> {
     loops
 }
 
-/// Which side of the line from `a` to `b` a point is on: positive on the left.
+/// Side of the line from `a` to `b` on which a point lies: positive on the left.
 fn side(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
 }
 
-/// Two sides that are no neighbours and cross.
 fn crossing(corners: &[[f64; 2]]) -> Option<String> {
     let count = corners.len();
     let ends = |index: usize| (corners[index], corners[(index + 1) % count]);
@@ -124,7 +122,7 @@ fn crossing(corners: &[[f64; 2]]) -> Option<String> {
     ))
 }
 
-/// By how often a way to the east leaves the loop.
+/// Even-odd test with a ray to the east.
 fn is_inside(corners: &[[f64; 2]], place: [f64; 3]) -> bool {
     let [x, y, _] = place;
     let next = corners.iter().cycle().skip(1);

@@ -1,4 +1,4 @@
-//! What is at random places: robots, each with a goal of its own, and balls.
+//! Random placement of robots with goals, and of balls.
 
 use super::super::ScenarioError;
 use super::super::source::Source;
@@ -11,19 +11,16 @@ use staya_controller::agent::GuidanceKind;
 use staya_controller::rand::Rng;
 use std::collections::HashMap;
 
-/// Keep the draws of this module apart from all others.
 const SCATTERED: u32 = 0x0053_0004;
 const BALLS: u32 = 0x0053_0005;
 
 /// Draws of a place before the scenario is refused as too crowded.
 pub(super) const TRIES: u32 = 1000;
 
-/// Evenly on [0, 1).
 pub(super) fn unit(rng: &mut Rng) -> f64 {
     (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Evenly between two corners.
 pub(super) fn between(rng: &mut Rng, from: Place, to: Place) -> [f64; 3] {
     let mut place = [0.0; 3];
     for (axis, place) in place.iter_mut().enumerate() {
@@ -32,7 +29,7 @@ pub(super) fn between(rng: &mut Rng, from: Place, to: Place) -> [f64; 3] {
     place
 }
 
-/// Places that are taken, none of which may be nearer to another one than so many metres. O(1) a place.
+/// Accepted places, at least `spacing_m` metres apart. O(1) per place.
 pub(super) struct Taken {
     spacing_m: f64,
     buckets: HashMap<[i64; 3], Vec<[f64; 3]>>,
@@ -63,8 +60,8 @@ impl Taken {
     }
 }
 
-/// Robots with goals, none nearer than two radii to a solid; the starts also clear of `others` (places
-/// and radii, metres).
+/// Draws robots with goals at least two radii from every solid. Starts are also clear of `others`
+/// (positions and radii, metres).
 pub(super) fn starts(
     source: &Source<'_>,
     spec: &Spec,
@@ -113,7 +110,6 @@ pub(super) fn starts(
     Ok(starts)
 }
 
-/// Balls of `[[plane.balls]]`.
 pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> Result<Vec<Solid>, ScenarioError> {
     let mut balls = Vec::new();
     for (number, entry) in (0..).zip(entries) {
@@ -138,7 +134,6 @@ pub(super) fn balls(source: &Source<'_>, entries: &[BallsEntry], seed: u64) -> R
     Ok(balls)
 }
 
-/// The lower and the upper corner of a box.
 fn corners(source: &Source<'_>, table: &str, from: Place, to: Place) -> Result<[[f64; 3]; 2], ScenarioError> {
     checks::place(source, &format!("{table}.from_m"), from)?;
     checks::place(source, &format!("{table}.to_m"), to)?;

@@ -1,4 +1,4 @@
-//! What a file says of robots that are alike, wherever it says it.
+//! Fields of a group of robots before they are checked.
 
 use super::super::ScenarioError;
 use super::super::source::Source;
@@ -8,10 +8,10 @@ use super::table::{
 use super::within;
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 
-/// What a file says of a group, with what it leaves to `[plane]` filled in.
+/// Fields of a group, with defaults from `[plane]`.
 #[derive(Clone, Debug)]
 pub(super) struct Spec {
-    /// The tables that say it, what counts most first: `plane.group[1]`, `plane`.
+    /// Tables that define the group, highest precedence first: `plane.group[1]`, `plane`.
     tables: Vec<String>,
     pub radius_m: f64,
     pub max_speed_mps: f64,
@@ -30,7 +30,7 @@ pub(super) struct Spec {
 }
 
 impl Spec {
-    /// What `[plane]` says, beside formations that have up to `places` places.
+    /// The fields of `[plane]`. `places` is the size of the largest formation.
     pub fn general(table: &PlaneTable, places: u8) -> Self {
         Self {
             tables: vec!["plane".to_owned()],
@@ -51,8 +51,8 @@ impl Spec {
         }
     }
 
-    /// What `plane.group[index]` says instead. Tables of a guidance law or a safety layer that it does not share are not
-    /// its own.
+    /// The fields of `plane.group[index]`. It inherits the tables of a law or a safety layer from
+    /// `[plane]` only if it uses the same one.
     pub fn group(&self, index: usize, group: &GroupTable, places: u8) -> Self {
         let guidance = group.guidance.unwrap_or(self.guidance);
         let safety = group.safety.unwrap_or(self.safety);
@@ -76,15 +76,15 @@ impl Spec {
             goal_flock: group.goal_flock.or(self.goal_flock.filter(|_| goes_alike)),
             boids: group.boids.or(self.boids.filter(|_| goes_alike)),
             flock: match guidance {
-                // On the air the number of a place stands where that of a flock does.
+                // A beacon stores a formation place and a flock number in the same field.
                 GuidanceKind::Formation => 0,
-                // Each its own; the last ones share the last.
+                // Each group has its own flock; when numbers run out, the last groups share one.
                 _ => group.flock.unwrap_or(places.saturating_add(u8::try_from(index + 1).unwrap_or(u8::MAX))),
             },
         }
     }
 
-    /// What one robot of a list, at `field`, says of its body instead; `None`: nothing.
+    /// The fields with the overrides of the list entry at `field`; `None` if it has none.
     pub fn entry(&self, field: &str, entry: &PlaneRobotEntry) -> Option<Self> {
         (entry.radius_m.is_some() || entry.max_speed_mps.is_some()).then(|| Self {
             tables: self.below(field.to_owned()),
@@ -94,26 +94,24 @@ impl Spec {
         })
     }
 
-    /// The tables of one that stands in `table` and leaves the rest to this one.
     fn below(&self, table: String) -> Vec<String> {
         let mut tables = vec![table];
         tables.extend_from_slice(&self.tables);
         tables
     }
 
-    /// The table that says most, for errors about who takes part.
+    /// The table with the highest precedence, for errors about the set of robots.
     pub fn table(&self) -> &str {
         &self.tables[0]
     }
 
-    /// Where a field that counts for these robots stands, or would.
+    /// Path of a field: where the file sets it for these robots, else in the first table.
     pub fn field(&self, source: &Source<'_>, name: &str) -> String {
         let mut fields = self.tables.iter().map(|table| format!("{table}.{name}"));
         let found = fields.find(|field| source.stands(field));
         found.unwrap_or_else(|| format!("{}.{name}", self.tables[0]))
     }
 
-    /// An error unless a value is in its range.
     pub fn within(
         &self,
         source: &Source<'_>,

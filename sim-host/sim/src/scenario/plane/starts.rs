@@ -1,4 +1,4 @@
-//! Where robots in the plane start, and their tasks.
+//! Starts and goals of robots in the plane.
 
 use super::super::source::Source;
 use super::super::{Robot, ScenarioError, ScenarioFile};
@@ -14,10 +14,8 @@ use crate::world::plane::Solid;
 use staya_controller::grid::Cell;
 use staya_controller::rand::Rng;
 
-/// Keep the draws of this module apart from all others.
 const STARTS: u32 = 0x0053_0003;
 
-/// Robots of the grid, in the middles of their cells.
 pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
     let center = |cell: Cell| {
         let [x, y] = terrain.center_m(cell);
@@ -32,22 +30,20 @@ pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
     robots.iter().map(start).collect()
 }
 
-/// Puts groups of robots into the plane, one after the other.
 pub(super) struct Placing<'a> {
     pub source: &'a Source<'a>,
     pub file: &'a ScenarioFile,
     /// Radius of robots of the general group, metres.
     pub general_m: f64,
-    /// What stands in the plane.
     pub solids: &'a [Solid],
-    /// All groups but the general one.
+    /// All groups except the general one.
     pub groups: &'a mut Vec<RobotGroup>,
-    /// All robots so far.
+    /// Starts of all robots placed so far.
     pub starts: &'a mut Vec<Start>,
 }
 
 impl Placing<'_> {
-    /// A further group; its number.
+    /// Adds a group and returns its index.
     pub fn add(&mut self, spec: &Spec) -> Result<usize, ScenarioError> {
         self.groups.push(spec.build(self.source, self.file)?);
         Ok(self.groups.len() - 1)
@@ -94,7 +90,7 @@ impl Placing<'_> {
         Ok(())
     }
 
-    /// Robots of a list that was checked; one whose body differs is a group of its own.
+    /// Adds the robots of a checked list. A robot whose body differs gets its own group.
     fn list(&mut self, spec: &Spec, group: Option<usize>, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
         let fixed = |place: Place| Target { position_m: place.0, velocity_mps: [0.0; 3] };
         for (index, entry) in list.iter().enumerate() {
@@ -110,7 +106,6 @@ impl Placing<'_> {
         Ok(())
     }
 
-    /// Places and radii, metres, of all robots so far.
     fn others(&self) -> Vec<([f64; 3], f64)> {
         let others = self.starts.iter().map(|start| {
             let radius_m = start.group.map_or(self.general_m, |group| self.groups[group].radius_m);
@@ -119,14 +114,14 @@ impl Placing<'_> {
         others.collect()
     }
 
-    /// Evenly between the corners without overlaps; `None` when there is no room.
     fn cloud(&self, spec: &Spec, cloud: &CloudEntry) -> Option<Vec<Start>> {
         cloud_starts(cloud, spec.radius_m, self.file.seed, &self.others())
     }
 }
 
-/// Evenly on the circle from the east on, each with its goal on the opposite side of its own start; `noise_m` moves the starts, and
-/// the goals stay exact.
+/// Robots evenly spaced on a circle around the origin, counter-clockwise from the east, in metres.
+/// The goal is opposite to the exact start; `noise_m` is the largest random offset of the start
+/// along each axis.
 #[must_use]
 pub fn circle_starts(count: u32, radius_m: f64, noise_m: f64, seed: u64) -> Vec<Start> {
     (0..count)
@@ -145,8 +140,8 @@ pub fn circle_starts(count: u32, radius_m: f64, noise_m: f64, seed: u64) -> Vec<
         .collect()
 }
 
-/// Evenly between the corners without overlaps, beside `others` (places and radii, metres), which are few; `None` when
-/// there is no room.
+/// Uniform random starts between the corners without overlaps, clear of the few `others` (positions
+/// and radii, metres). `None` if there is no room.
 fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3], f64)]) -> Option<Vec<Start>> {
     let places: Vec<_> = cloud
         .goals_m

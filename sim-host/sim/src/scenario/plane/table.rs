@@ -1,4 +1,4 @@
-//! `[plane]` as it stands in the file: every field is documented here.
+//! `[plane]` as written in a scenario file, with the documentation of its fields.
 
 use super::super::formation::FormationEntry;
 use serde::Deserialize;
@@ -16,30 +16,31 @@ pub struct PlaneTable {
     /// Highest acceleration, m/s^2. Default: no limit.
     #[serde(default = "infinite")]
     pub max_acceleration_mps2: f64,
-    /// Speed that robots like to go, m/s. Default: the highest.
+    /// Preferred speed, m/s. Default: the highest.
     pub cruise_mps: Option<f64>,
-    /// How near to a goal counts as being there, metres. Default: a tenth of the radius.
+    /// Distance at which a goal counts as reached, metres. Default: a tenth of the radius.
     pub tolerance_m: Option<f64>,
-    /// How far robots see obstacles, metres. Default: 10.
+    /// Range of obstacle detection, metres. Default: 10.
     #[serde(default = "ten")]
     pub sight_m: f64,
-    /// Sides of a torus that robots live on instead of the open plane, metres: who leaves on one side comes in on the other.
+    /// Side lengths of a torus with periodic borders, metres. Default: the open plane.
     pub torus_m: Option<[f64; 2]>,
-    /// Where they want to go; `"route"` and `"formation"` need `[terrain]`, the latter `robots.formation`.
+    /// Guidance law; `"route"` and `"formation"` need `[terrain]`, the latter also
+    /// `robots.formation`.
     #[serde(default)]
     pub guidance: GuidanceKind,
-    /// What keeps them apart.
+    /// Safety layer.
     #[serde(default)]
     pub safety: SafetyKind,
-    /// Who takes part, unless the top-level `robots` says it in cells.
+    /// The robots, unless the top-level `robots` gives them in cells.
     pub robots: Option<PlaneRobots>,
-    /// Further robots, which differ from what is said here.
+    /// Further robots with other properties.
     #[serde(default)]
     pub group: Vec<GroupTable>,
-    /// Bodies that are no robots and go through.
+    /// Foreign bodies that move through everything.
     #[serde(default)]
     pub intruder: Vec<IntruderEntry>,
-    /// Walls: chains of points.
+    /// Walls: polylines.
     #[serde(default)]
     pub wall: Vec<WallEntry>,
     /// Balls (in the plane: discs).
@@ -62,9 +63,9 @@ pub struct PlaneTable {
     pub goal_flock: Option<GoalFlockTable>,
     /// Parameters of boids; required for them.
     pub boids: Option<BoidsTable>,
-    /// Robots see each other.
+    /// Detection of other robots by sensors.
     pub eyes: Option<EyesTable>,
-    /// What moves during the run: goals that an operator sends.
+    /// Goals that an operator sends during the run.
     #[serde(default)]
     pub order: Vec<OrderEntry>,
 }
@@ -73,46 +74,45 @@ const fn infinite() -> f64 {
     f64::INFINITY
 }
 
-/// How far robots see, metres.
 pub(super) const fn ten() -> f64 {
     10.0
 }
 
-/// `[plane.eyes]`: robots see each other, beside the radio or without it.
+/// `[plane.eyes]`: robots detect each other with sensors, in addition to the radio or without it.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EyesTable {
-    /// How far, from centre to centre, metres.
+    /// Range from centre to centre, metres.
     pub range_m: f64,
-    /// Standard deviation of places seen along each axis, metres. Default: 0.
+    /// Standard deviation of measured positions along each axis, metres. Default: 0.
     #[serde(default)]
     pub noise_m: f64,
-    /// Whether bodies, obstacles and closed cells hide whose centre is behind them. Default: true.
+    /// Whether bodies, obstacles and closed cells occlude robots behind them. Default: true.
     #[serde(default = "yes")]
     pub occlusion: bool,
-    /// Whether they see who it is. Default: false.
+    /// Whether a detection contains the robot's id. Default: false.
     #[serde(default)]
     pub names: bool,
-    /// Each robot looks once in so many ticks. Default: 1.
+    /// Ticks between two detections of a robot. Default: 1.
     #[serde(default = "one")]
     pub every_ticks: u32,
-    /// How many ticks later what was seen is there. Default: 0.
+    /// Delay of a detection, ticks. Default: 0.
     #[serde(default)]
     pub delay_ticks: u32,
-    /// Whether robots say anything on the radio; orders reach them all the same. Default: true.
+    /// Whether robots send beacons; an operator's orders reach them in either case. Default: true.
     #[serde(default = "yes")]
     pub beacons: bool,
-    /// Standard deviation of the others' accelerations, m/s^2, as the filter has it. Default: what they can do, at most four times the highest
-    /// speed in a second.
+    /// Standard deviation of the other robots' accelerations in the tracking filter, m/s^2.
+    /// Default: their limit, at most four times the highest speed per second.
     pub acceleration_mps2: Option<f64>,
-    /// Standard deviations within which a sighting is of a robot that is known. Default: 4.
+    /// Gate of the assignment to a track, standard deviations. Default: 4.
     #[serde(default = "four")]
     pub gate: f64,
-    /// Standard deviations of a place that are added to the radius of who is seen. Default: 2.
+    /// Standard deviations of the position that are added to a detected robot's radius. Default: 2.
     #[serde(default = "two")]
     pub margin: f64,
-    /// After how long somebody who says nothing and is not seen any more is forgotten, seconds. Default: three looks and
-    /// the delay, at least four ticks.
+    /// Time after which a robot without beacons and detections is dropped, seconds. Default: three
+    /// detection intervals plus the delay, at least four ticks.
     pub forget_s: Option<f64>,
 }
 
@@ -132,15 +132,15 @@ const fn four() -> f64 {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneRobots {
-    /// Each robot by itself.
+    /// Individual robots.
     pub list: Option<Vec<PlaneRobotEntry>>,
-    /// Robots evenly on a circle, each with its goal on the opposite side.
+    /// Robots evenly spaced on a circle, with goals on the opposite side.
     pub circle: Option<CircleEntry>,
-    /// Robots at random places, all with the same goals.
+    /// Robots at random places with the same goals.
     pub cloud: Option<CloudEntry>,
-    /// Robots at random places, each with a goal of its own.
+    /// Robots at random places with individual goals.
     pub scattered: Option<ScatteredDiscs>,
-    /// A formation, in cells of the land; of a group, with guidance `"formation"`.
+    /// A formation, in cells of the terrain; only in a group with guidance `"formation"`.
     pub formation: Option<FormationEntry>,
 }
 
@@ -148,28 +148,28 @@ pub struct PlaneRobots {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneRobotEntry {
-    /// Where it starts: x, y, z in metres.
+    /// Start: x, y, z in metres.
     pub start_m: Place,
-    /// Where it should go. Without it, it stays where guidance leaves it.
+    /// Goal. Default: none; the robot stays where its law leaves it.
     pub goal_m: Option<Place>,
-    /// Places to go by on the way to the goal, at most three.
+    /// Waypoints on the way to the goal, at most three.
     #[serde(default)]
     pub via_m: Vec<Place>,
-    /// How fast it is at the start. Default: at rest.
+    /// Initial velocity, m/s. Default: at rest.
     #[serde(default)]
     pub velocity_mps: Place,
-    /// Radius of its body, metres. Default: that of its group.
+    /// Radius of the body, metres. Default: that of its group.
     pub radius_m: Option<f64>,
-    /// Its highest speed on easy land, m/s. Default: that of its group.
+    /// Highest speed on easy land, m/s. Default: that of its group.
     pub max_speed_mps: Option<f64>,
 }
 
-/// `[[plane.group]]`: robots that differ from what `[plane]` says; what is not given here is what it says. Their tables
-/// stand here when their guidance or their safety layer is another one.
+/// `[[plane.group]]`: robots that differ from `[plane]`, which gives the defaults. A group with
+/// another law or safety layer has its own tables for them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupTable {
-    /// Who is in it.
+    /// The robots of the group.
     pub robots: PlaneRobots,
     /// Radius of each body, metres.
     pub radius_m: Option<f64>,
@@ -177,17 +177,18 @@ pub struct GroupTable {
     pub max_speed_mps: Option<f64>,
     /// Highest acceleration, m/s^2.
     pub max_acceleration_mps2: Option<f64>,
-    /// Speed that they like to go, m/s.
+    /// Preferred speed, m/s.
     pub cruise_mps: Option<f64>,
-    /// How near to a goal counts as being there, metres.
+    /// Distance at which a goal counts as reached, metres.
     pub tolerance_m: Option<f64>,
-    /// How far they see obstacles, metres.
+    /// Range of obstacle detection, metres.
     pub sight_m: Option<f64>,
-    /// Where they want to go; from cell to cell, and in formation, on land alone.
+    /// Guidance law; laws that move from cell to cell or in formation need terrain.
     pub guidance: Option<GuidanceKind>,
-    /// The flock that they are of; 0 is that of the robots of `[plane]`; beside formations not less than these have places. Default: one of their own.
+    /// Flock number; 0 is the flock of the robots of `[plane]`. If there are formations, at least
+    /// the number of places of the largest. Default: a flock of its own.
     pub flock: Option<u8>,
-    /// What keeps them apart.
+    /// Safety layer.
     pub safety: Option<SafetyKind>,
     /// Parameters of ORCA.
     pub orca: Option<OrcaTable>,
@@ -201,18 +202,18 @@ pub struct GroupTable {
     pub boids: Option<BoidsTable>,
 }
 
-/// `[[plane.intruder]]`: a body that is no robot of the swarm and gives way to nobody.
+/// `[[plane.intruder]]`: a foreign body that does not give way.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IntruderEntry {
-    /// Where it starts.
+    /// Start, metres.
     pub start_m: Place,
-    /// How it goes, all the time, m/s.
+    /// Constant velocity, m/s.
     pub velocity_mps: Place,
-    /// Radius of its body, metres.
+    /// Radius of the body, metres.
     pub radius_m: f64,
-    /// Whether it says where it is, in beacons of a robot that gives no way; otherwise robots see it as they see
-    /// obstacles: where it is, not how fast. Default: true.
+    /// Whether it sends beacons, as a robot that does not give way. Otherwise robots detect it like
+    /// an obstacle: its position, but not its speed. Default: true.
     #[serde(default = "yes")]
     pub heard: bool,
 }
@@ -246,11 +247,11 @@ impl From<PlaceEntry> for Place {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CircleEntry {
-    /// How many.
+    /// Number of robots.
     pub count: u32,
     /// Radius of the circle around the origin, metres.
     pub radius_m: f64,
-    /// Each start is off by up to this along both axes, metres. Default: 0, the exact circle.
+    /// Largest random offset of a start along each axis, metres. Default: 0, the exact circle.
     #[serde(default)]
     pub noise_m: f64,
 }
@@ -259,22 +260,22 @@ pub struct CircleEntry {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CloudEntry {
-    /// How many.
+    /// Number of robots.
     pub count: u32,
-    /// Starts are drawn evenly between these corners, metres, and again while they overlap others.
+    /// Corner of the box of uniform random starts, metres; overlapping starts are redrawn.
     pub from_m: Place,
-    /// See `from_m`.
+    /// Opposite corner.
     pub to_m: Place,
-    /// Velocities at the start are drawn evenly between these corners, m/s. Default: at rest.
+    /// Corner of the box of uniform random initial velocities, m/s. Default: at rest.
     #[serde(default)]
     pub velocity_from_mps: Place,
-    /// See `velocity_from_mps`.
+    /// Opposite corner.
     #[serde(default)]
     pub velocity_to_mps: Place,
-    /// Goals of all.
+    /// Goals of all robots.
     #[serde(default)]
     pub goals_m: Vec<Place>,
-    /// Velocity of the goals, m/s. Default: they stay.
+    /// Velocity of the goals, m/s. Default: at rest.
     #[serde(default)]
     pub goal_velocity_mps: Place,
 }
@@ -283,16 +284,16 @@ pub struct CloudEntry {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScatteredDiscs {
-    /// How many.
+    /// Number of robots.
     pub count: u32,
-    /// Starts and goals are drawn evenly between these corners, metres, and again while they are too near to others.
+    /// Corner of the box of uniform starts and goals, metres; those too close are redrawn.
     pub from_m: Place,
-    /// See `from_m`.
+    /// Opposite corner.
     pub to_m: Place,
-    /// Goals are at most so far away along each axis, metres. Default: anywhere between the corners.
+    /// Farthest distance of a goal from its start along each axis, metres. Default: the whole box.
     #[serde(default = "infinite")]
     pub travel_m: f64,
-    /// Least distance of two starts, and of two goals, metres; as much as two radii, or more. Default: three radii.
+    /// Smallest distance of starts and of goals, metres, two radii or more. Default: three.
     pub spacing_m: Option<f64>,
 }
 
@@ -302,7 +303,7 @@ pub struct ScatteredDiscs {
 pub struct WallEntry {
     /// Two or more points, each joined to the next.
     pub points_m: Vec<[f64; 2]>,
-    /// Whether the last is joined to the first: a polygon. Default: false.
+    /// Whether the last point is joined to the first: a polygon. Default: false.
     #[serde(default)]
     pub closed: bool,
 }
@@ -311,9 +312,9 @@ pub struct WallEntry {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BallEntry {
-    /// Its centre.
+    /// Centre, metres.
     pub center_m: Place,
-    /// Its radius, metres.
+    /// Radius, metres.
     pub radius_m: f64,
 }
 
@@ -321,15 +322,15 @@ pub struct BallEntry {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BallsEntry {
-    /// How many.
+    /// Number of balls.
     pub count: u32,
     /// Radius of each, metres.
     pub radius_m: f64,
-    /// Centres are drawn evenly between these corners, metres.
+    /// Corner of the box of uniform random centres, metres.
     pub from_m: Place,
-    /// See `from_m`.
+    /// Opposite corner.
     pub to_m: Place,
-    /// Least distance of two of their surfaces, metres. Default: 0.
+    /// Smallest distance between two surfaces, metres. Default: 0.
     #[serde(default)]
     pub gap_m: f64,
 }
@@ -338,24 +339,24 @@ pub struct BallsEntry {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalfSpaceEntry {
-    /// A point of its border.
+    /// A point on its border, metres.
     pub point_m: Place,
     /// A vector out of it, of any length.
     pub normal: Place,
 }
 
-/// `[[plane.order]]`: a goal that moves.
+/// `[[plane.order]]`: a new goal from an operator.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OrderEntry {
-    /// When, seconds after the start.
+    /// Time, seconds after the start.
     pub at_s: f64,
-    /// Which of the goals, from 0. Default: 0.
+    /// Index of the goal, from 0. Default: 0.
     #[serde(default)]
     pub goal: u8,
-    /// Where to.
+    /// Position of the goal, metres.
     pub place_m: Place,
-    /// And on from there, m/s. Default: it stays.
+    /// Velocity of the goal, m/s. Default: at rest.
     #[serde(default)]
     pub velocity_mps: Place,
 }
@@ -370,24 +371,24 @@ pub struct OrcaTable {
     pub wall_horizon_s: Option<f64>,
     /// Own share of a correction.
     pub share: Option<f64>,
-    /// Distance kept on top of the radii, metres.
+    /// Distance kept in addition to the radii, metres.
     pub margin_m: Option<f64>,
-    /// How fast the ball around a silent robot grows, m/s. Default: the highest speed.
+    /// Growth rate of the ball around a silent robot, m/s. Default: the highest speed.
     #[serde(alias = "doubt_mps")]
     pub inflation_mps: Option<f64>,
-    /// How much it grows at most around one that is lost, metres. Default: the radius.
+    /// Largest growth of the ball around a lost robot, metres. Default: the radius.
     #[serde(alias = "doubt_m")]
     pub inflation_m: Option<f64>,
-    /// In space: how many times as far as beside each other robots keep apart above and below each other. Default: 1.
+    /// In space: ratio of the vertical to the horizontal separation. Default: 1.
     pub downwash: Option<f64>,
     /// How long a lost robot is remembered, seconds.
     pub remember_s: Option<f64>,
-    /// How fast a robot goes that has lost all others, m/s; `inf`: as ever.
+    /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
     pub alone_mps: Option<f64>,
 }
 
 impl OrcaTable {
-    /// Whether it says nothing.
+    /// Whether no field is set.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, .. } = self;
@@ -402,12 +403,13 @@ impl OrcaTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PushOutTable {
-    /// Least distance of two robots' centres, and of a centre from an obstacle (R_MinDist), metres.
+    /// Smallest distance of a centre from others and from obstacles (R_MinDist), metres.
     pub min_distance_m: f64,
-    /// `"radial"` (model 1: along the radius; the default) or `"tangential"` (model 2: along the border).
+    /// `"radial"` (model 1, along the radius; default) or `"tangential"` (model 2, along the
+    /// border).
     #[serde(default)]
     pub model: Model,
-    /// Whether only the nearest robot in the way is evaded. Default: false, all are.
+    /// Whether only the nearest robot in the way is avoided. Default: false, all are.
     #[serde(default)]
     pub single: bool,
 }
@@ -418,21 +420,23 @@ pub struct PushOutTable {
 pub struct LatticeTable {
     /// Distance of neighbours (d), metres.
     pub spacing_m: f64,
-    /// 1: only the others; 2: and the goal; 3: and obstacles. Default: 3.
+    /// Algorithm 1: other robots only; 2: also the goal; 3: also obstacles. Default: 3.
     pub algorithm: Option<u8>,
-    /// Gain on positions of robots among each other (c1 of the alpha-agents), 1/s^2.
+    /// Gain on positions of robots relative to each other (c1 of the alpha-agents), 1/s^2.
     pub c_alpha: Option<f64>,
-    /// The same of obstacles.
+    /// Gain on positions relative to obstacles (c1 of the beta-agents), 1/s^2.
     pub c_beta: Option<f64>,
-    /// The same of the goal.
+    /// Gain on positions relative to the goal (c1 of the gamma-agent), 1/s^2.
     pub c_gamma: Option<f64>,
-    /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays although it has one. Default: true.
+    /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays. Default: true.
     pub goal_moves: Option<bool>,
-    /// Over which way behind a goal that stays its velocity fades, metres: the flock comes to rest within it. Default: never.
+    /// Distance behind a stationary goal over which its velocity fades, metres: the flock comes to
+    /// rest within it. Default: never.
     pub goal_rest_m: Option<f64>,
-    /// Whether robots in algorithm 3 press on nobody who is nearer to the goal: so they pass gaps one after the other. Default: false.
+    /// Whether robots in algorithm 3 do not push neighbours that are nearer to the goal, so that
+    /// they pass gaps one by one. Default: false.
     pub takes_turns: Option<bool>,
-    /// Distance kept from obstacles over spacing (d' / d). Default: 0.6.
+    /// Distance from obstacles over spacing (d' / d). Default: 0.6.
     pub obstacle_ratio: Option<f64>,
 }
 
@@ -440,17 +444,17 @@ pub struct LatticeTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GoalFlockTable {
-    /// Least distance of two robots' centres (R_MinDist), metres.
+    /// Smallest distance of two robots' centres (R_MinDist), metres.
     pub min_distance_m: f64,
-    /// How far neighbours are seen (R_nbh), metres. Default: four times that.
+    /// Range of neighbours (R_nbh), metres. Default: four times `min_distance_m`.
     pub neighborhood_m: Option<f64>,
-    /// Pull of the goal.
+    /// Weight of the pull towards the goal.
     pub k1: Option<f64>,
-    /// Pull of the middle of the neighbours.
+    /// Weight of the pull towards the neighbours' centre.
     pub k2: Option<f64>,
-    /// Push of neighbours that are too near.
+    /// Weight of the push from neighbours that are too near.
     pub k3: Option<f64>,
-    /// How near a goal counts as being there, metres. Default: `neighborhood_m`.
+    /// Distance at which a goal counts as reached, metres. Default: `neighborhood_m`.
     pub arrival_m: Option<f64>,
 }
 
@@ -458,12 +462,12 @@ pub struct GoalFlockTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BoidsTable {
-    /// Nearer than this, a boid turns away, metres.
+    /// Distance below which a boid turns away, metres.
     pub crowded_m: f64,
-    /// Up to this a neighbour counts, metres.
+    /// Range of neighbours, metres.
     pub closest_m: f64,
-    /// Largest turn in a tick towards the others, radians. Default: 0.05.
+    /// Largest turn per tick towards the others, radians. Default: 0.05.
     pub max_turn: Option<f64>,
-    /// Largest turn in a tick away from one that is too near, radians. Default: 0.02.
+    /// Largest turn per tick away from a boid that is too near, radians. Default: 0.02.
     pub max_turn_away: Option<f64>,
 }

@@ -27,7 +27,7 @@ fn setup(text: &str) -> PlaneSetup {
 }
 
 #[test]
-fn staleness_inflation_is_read_by_its_former_names_too() {
+fn staleness_inflation_accepts_its_former_names() {
     for (growth, most) in [("inflation_mps", "inflation_m"), ("doubt_mps", "doubt_m")] {
         let table = format!("[plane.orca]\n{growth} = 0.25\n{most} = 0.75\n");
         let (params, inflation) = (AvoidParams::default(), StalenessInflation { growth_mps: 0.25, max_m: 0.75 });
@@ -56,14 +56,14 @@ fn the_smallest_plane_has_the_documented_defaults() {
 }
 
 #[test]
-fn what_silence_means_is_read() {
+fn the_reaction_to_silence_is_read() {
     let table = "[plane.orca]\nremember_s = 2.5\nalone_mps = inf\n";
     let silence = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.silence;
     assert_eq!(silence, Silence { remember: Duration::from_millis(2500), alone_mps: f32::MAX });
 }
 
 #[test]
-fn the_readme_says_the_defaults_of_orca() {
+fn the_defaults_of_orca_match_the_readme() {
     let readme = include_str!("../../../../../scenarios/README.md");
     let row = |field: &str| {
         let mut rows = readme.lines().skip_while(|line| !line.contains("`[plane.orca]`"));
@@ -134,7 +134,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             after("[[plane.balls]]\ncount = 0\nradius_m = 1\nfrom_m = [9, 9]\nto_m = [12, 12]\n"),
             "s.toml:9: plane.balls[0].count: 0 is out of range; give 1 to 1000000 balls",
         ),
-        // Who takes part.
+        // Missing or ambiguous robots.
         (format!("{HEAD}{PLANE}"), "s.toml:3: plane.robots: it is not clear who takes part; give either plane.robots"),
         (robots(""), "s.toml:6: plane.robots: it is not clear who takes part; give exactly one of"),
         (robots("list = []"), "s.toml:7: plane.robots.list: nobody takes part"),
@@ -176,7 +176,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             format!("{HEAD}{PLANE}[robots]\nscattered = {{ count = 2 }}\n"),
             "s.toml:6: robots: there are no cells; give [terrain]",
         ),
-        // Where they are.
+        // Positions and speeds.
         (
             robots("list = [{ start_m = [0, 0] }, { start_m = [2000001, 0] }]"),
             "s.toml:7: plane.robots.list[1].start_m: this is too far away; stay within 2000 km",
@@ -197,7 +197,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             robots("circle = { count = 40, radius_m = 2 }"),
             "s.toml:6: plane.robots: robots 1 and 2 overlap at the start",
         ),
-        // What goes with what.
+        // Combinations of tables.
         (
             with("guidance = \"route\"\n"),
             "s.toml:6: plane.guidance: this guidance goes from cell to cell; give [terrain]",
@@ -323,7 +323,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
     refused(&cases);
 }
 
-/// Each of these texts is refused, with these words and a remedy.
+/// Asserts that each text is refused with these words and a remedy.
 fn refused(cases: &[(String, &str)]) {
     let mut wrong = String::new();
     for (text, expected) in cases {
@@ -357,7 +357,7 @@ fn a_normal_may_have_any_length() {
 }
 
 #[test]
-fn a_cloud_has_room_for_everybody_and_is_the_same_each_time() {
+fn a_cloud_has_no_overlaps_and_is_reproducible() {
     let text = format!("{HEAD}{PLANE}[plane.robots]\ncloud = {{ count = 100, from_m = [-4, 4], to_m = [4, -4] }}\n");
     let starts = setup(&text).starts;
     assert_eq!(starts, setup(&text).starts);
@@ -372,7 +372,7 @@ fn a_cloud_has_room_for_everybody_and_is_the_same_each_time() {
 }
 
 #[test]
-fn orders_come_by_time_whatever_their_order_in_the_file() {
+fn orders_are_sorted_by_time() {
     let order = |at_s: f64, x: f64| format!("[[plane.order]]\nat_s = {at_s}\nplace_m = [{x}, 0]\n");
     let text = format!("tick_s = 0.5\n{HEAD}{PLANE}{TWO}{}{}{}", order(3.1, 1.0), order(0.0, 2.0), order(3.0, 3.0));
     let orders = setup(&text).orders;
@@ -382,7 +382,7 @@ fn orders_come_by_time_whatever_their_order_in_the_file() {
 }
 
 #[test]
-fn robots_of_the_grid_start_in_the_middles_of_their_cells() {
+fn robots_of_the_grid_start_at_cell_centres() {
     let text =
         format!("{HEAD}{LAND}[robots]\nlist = [{{ start = [0, 1], goal = [3, 8] }}]\n{PLANE}guidance = \"route\"\n");
     let plane = setup(&text);
@@ -421,7 +421,7 @@ proptest! {
     }
 }
 
-/// A lattice with this radio and these gains: (c_alpha, c_gamma), and what is said of it.
+/// Gains (c_alpha, c_gamma) of a lattice, and the warnings about it.
 fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
     let text = format!(
         "{HEAD}tick_s = 0.1\n{PLANE}guidance = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\
@@ -436,8 +436,8 @@ fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
 }
 
 #[test]
-fn gains_of_a_lattice_bear_its_radio_and_gains_that_do_not_are_remarked_on() {
-    // Beacons come every 0.1 s: too seldom for gains of 10.
+fn default_gains_are_stable_and_unstable_ones_cause_a_warning() {
+    // Beacons every 0.1 s are too infrequent for gains of 10.
     let (alpha, gamma, said) = gains("", "");
     assert!((alpha - 4.0).abs() < 1e-3 && (gamma - 0.8).abs() < 1e-3 && said.is_empty(), "{alpha} {gamma} {said:?}");
     let (late, _, said) = gains("delay_ms = 100", "");
@@ -447,7 +447,7 @@ fn gains_of_a_lattice_bear_its_radio_and_gains_that_do_not_are_remarked_on() {
     let (alpha, gamma, said) = gains("delay_ms = 100", "c_alpha = 10");
     assert_eq!((alpha, gamma), (10.0, 2.0));
     assert!(said[0].contains("c_alpha = 10") && said[0].contains("at most 1.00"), "{said:?}");
-    // In algorithm 2 the goal squeezes.
+    // In algorithm 2 the goal compresses the flock.
     let (alpha, gamma, said) = gains("", "algorithm = 2");
     assert!((alpha / gamma - 50.0).abs() < 1e-3 && said.is_empty());
     let (_, _, said) = gains("", "algorithm = 2\nc_gamma = 1");
@@ -455,7 +455,7 @@ fn gains_of_a_lattice_bear_its_radio_and_gains_that_do_not_are_remarked_on() {
 }
 
 #[test]
-fn scattered_robots_have_goals_of_their_own_apart_from_each_other_and_from_balls() {
+fn scattered_robots_have_separate_goals_clear_of_balls() {
     let text = format!(
         "{HEAD}{PLANE}[plane.robots]\nscattered = {{ count = 200, from_m = [0, 0], to_m = [20, 20], travel_m = 5 }}\n\
          [[plane.balls]]\ncount = 20\nradius_m = 0.5\nfrom_m = [0, 0]\nto_m = [20, 20]\ngap_m = 1\n"

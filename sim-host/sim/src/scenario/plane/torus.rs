@@ -1,4 +1,4 @@
-//! `plane.torus_m`: a plane that closes around itself.
+//! `plane.torus_m`: a plane with periodic borders.
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
@@ -7,17 +7,16 @@ use super::{PlaneSetup, within};
 use crate::nearby::Space;
 use staya_controller::agent::{GuidanceKind, GuidanceSetup};
 
-/// Largest side, metres: up to here a side in whole millimetres is one in `f32` too.
+/// Largest side, metres: up to here, whole millimetres are also exact in `f32`.
 const LARGEST_M: f64 = 16_000.0;
-/// Height of the space, metres. All are at height 0, so that the least one serves: then cells lie in one layer.
+/// Height of the space, metres. A minimal height keeps the spatial index to one layer.
 const HIGH_M: f64 = 0.001;
 
-/// The space of a plane with these sides.
 pub(super) fn space(torus_m: Option<[f64; 2]>) -> Space<f64, 3> {
     torus_m.and_then(|[width, height]| Space::torus([width, height, HIGH_M])).unwrap_or(Space::OPEN)
 }
 
-/// Whether its sides are some, and nothing stands on it that knows of no torus.
+/// Checks the side lengths, and refuses features that do not support a torus.
 pub(super) fn check(
     source: &Source<'_>,
     file: &ScenarioFile,

@@ -1,4 +1,4 @@
-//! What a scenario file says in `[robots]`.
+//! Fields of the `[robots]` table.
 
 use super::super::formation::{self, FormationEntry};
 use serde::Deserialize;
@@ -8,14 +8,14 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotsTable {
-    /// Each robot by itself.
+    /// Individual robots.
     pub list: Option<Vec<RobotEntry>>,
     /// A formation that travels together, or several: `[[robots.formation]]`.
     #[serde(default, deserialize_with = "formation::one_or_more")]
     pub formation: Vec<FormationEntry>,
     /// The first robots of a Moving AI multi-agent scenario.
     pub scen: Option<ScenEntry>,
-    /// Robots at random places.
+    /// Robots at random cells.
     pub scattered: Option<ScatteredEntry>,
 }
 
@@ -23,11 +23,11 @@ pub struct RobotsTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotEntry {
-    /// Its number, 1 or more. Default: its place in the list, counted from 1.
+    /// Id, 1 or more. Default: its position in the list, counted from 1.
     pub id: Option<u32>,
-    /// The cell where it starts.
+    /// Start cell.
     pub start: [i16; 2],
-    /// The cell where it should go.
+    /// Goal cell.
     pub goal: [i16; 2],
 }
 
@@ -37,7 +37,7 @@ pub struct RobotEntry {
 pub struct ScenEntry {
     /// The `.scen` file; its map must be the terrain, uncropped.
     pub file: PathBuf,
-    /// How many robots to take from it, from the top.
+    /// Number of robots to take, from the top of the file.
     pub count: u32,
 }
 
@@ -45,8 +45,8 @@ pub struct ScenEntry {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScatteredEntry {
-    /// How many robots, each in a cell of its own.
+    /// Number of robots, each in its own cell.
     pub count: u32,
-    /// Farthest distance of a goal from its start in cells along each axis. Default: the whole map.
+    /// Farthest distance of a goal from its start along each axis, cells. Default: the whole map.
     pub travel: Option<u16>,
 }

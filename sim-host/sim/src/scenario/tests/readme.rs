@@ -1,4 +1,4 @@
-//! scenarios/README.md says what files may say.
+//! Compares scenarios/README.md with the code.
 
 use super::*;
 use staya_controller::cost::Gain;
@@ -53,7 +53,7 @@ fn every_scenario_is_in_the_list_of_the_readme() {
 }
 
 #[test]
-fn the_defaults_in_the_readme_are_the_controllers() {
+fn the_defaults_in_the_readme_match_the_controller() {
     let readme = include_str!("../../../../../scenarios/README.md");
     let last_column = |field: &str| {
         let row = readme.lines().find(|line| line.starts_with(&format!("| `{field}`")));

@@ -1,13 +1,14 @@
-//! A landscape with a wanted configuration entropy S and total edge TE.
+//! Random terrain with a given configuration entropy S and total edge TE.
 //!
-//! Source: KUZ section 4, which cites A. Kuznetsov, "Generation of a Random Landscape by given Configuration Entropy
-//! and Total Edge", Computational Technologies 22(4), 2017. The method is our own: S depends on the sizes of the classes alone, and TE on
-//! their places alone, so the two are met one after the other.
+//! Source: KUZ section 4, which cites A. Kuznetsov, "Generation of a Random Landscape by given
+//! Configuration Entropy and Total Edge", Computational Technologies 22(4), 2017. The method here
+//! is our own: S depends only on the sizes of the classes, and TE only on their places, so the two
+//! are matched one after the other.
 //!
-//! - S: class sizes fall by a constant ratio from class 1 upwards; the ratio is found by bisection.
-//! - TE: cells take their classes in the order of a field. White noise has nearly the greatest TE; the wider noise is
-//!   smoothed, the smaller TE gets; stripes come last. The search starts from the first field with at most the
-//!   wanted TE and exchanges pairs of cells as long as that brings TE nearer.
+//! - S: class sizes fall by a constant ratio from class 1 upwards; bisection finds the ratio.
+//! - TE: cells get their classes in the order of a field. White noise has nearly the greatest TE;
+//!   smoothing over a larger radius reduces TE; stripes are last. The search starts from the first
+//!   field with at most the target TE, and exchanges pairs of cells while that brings TE closer.
 
 use super::super::Terrain;
 use super::super::error::{TerrainError, parameter_error};
@@ -16,30 +17,31 @@ use super::{LAND, LandPlan};
 use staya_controller::rand::Rng;
 use std::cmp::Reverse;
 
-/// What the landscape should measure.
+/// Target metrics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ByMetrics {
     /// Configuration entropy S, 0..=ln(classes).
     pub entropy: f64,
-    /// How far S may be off. Class sizes are whole: small maps need more than large ones.
+    /// Tolerance of S. Class sizes are integers, so small maps need a larger tolerance.
     pub entropy_tolerance: f64,
     /// Total edge TE.
     pub total_edge: u64,
-    /// How far TE may be off.
+    /// Tolerance of TE.
     pub edge_tolerance: u64,
 }
 
-/// Exchanges tried per cell before the search gives up.
+/// Exchanges per cell before the search is aborted.
 const TRIES_PER_CELL: u32 = 200;
-/// Radii beyond this could overflow the sums of [`smooth`].
+/// Larger radii could overflow the sums of [`smooth`].
 const MAX_RADIUS: u16 = 1024;
 
-/// A landscape with the wanted S and TE, each within its tolerance.
+/// Generates terrain with the given S and TE, each within its tolerance.
 ///
 /// O(size log size) per field and about 20 fields at most; then at most 200 exchanges per cell.
 ///
 /// # Errors
-/// [`TerrainError::Parameter`] for a plan out of range, and for an S or TE that cannot be reached, with the range that can.
+/// A [`TerrainError::Parameter`] if the plan is out of range, or if S or TE cannot be reached; the
+/// error contains the possible range.
 pub fn by_metrics(plan: &LandPlan, wanted: &ByMetrics) -> Result<Terrain, TerrainError> {
     plan.check()?;
     let sizes = class_sizes(plan, wanted)?;
@@ -57,7 +59,7 @@ pub fn by_metrics(plan: &LandPlan, wanted: &ByMetrics) -> Result<Terrain, Terrai
     let start = search.edges;
     search.approach(wanted.total_edge);
     if search.edges.abs_diff(wanted.total_edge) > wanted.edge_tolerance {
-        // What the search found is one end of the range; the other is where it cannot go on either.
+        // This search found one end of the possible range; another finds the other.
         let (low, high) = if search.edges > wanted.total_edge {
             let low = search.edges;
             let mut upward = Search::new(plan, fill(&noise, &sizes));
@@ -78,14 +80,14 @@ pub fn by_metrics(plan: &LandPlan, wanted: &ByMetrics) -> Result<Terrain, Terrai
     Terrain::from_cells(plan.width, plan.height, search.cells)
 }
 
-/// Cells of each class 1..=l (index 0 is class 1) whose entropy is the wanted one.
+/// Number of cells of each class 1..=l (index 0 is class 1) for the given entropy.
 fn class_sizes(plan: &LandPlan, wanted: &ByMetrics) -> Result<Vec<usize>, TerrainError> {
     let cells = plan.cells() as usize;
     let sizes_at = |ratio: f64| {
         let shares: Vec<f64> =
             std::iter::successors(Some(1.0), |share| Some(share * ratio)).take(plan.classes.into()).collect();
         let total: f64 = shares.iter().sum();
-        // Rounding the running sums keeps the total exact.
+        // Rounding the cumulative sums keeps the total exact.
         let mut taken = 0;
         let mut sum = 0.0;
         let round = |share: &f64| {
@@ -124,7 +126,7 @@ fn class_sizes(plan: &LandPlan, wanted: &ByMetrics) -> Result<Vec<usize>, Terrai
     ))
 }
 
-/// The fields in whose order cells take their classes, from rough to smooth.
+/// Fields that give the order of the cells, from rough to smooth.
 fn fields<'a>(plan: &'a LandPlan, noise: &'a [u64]) -> impl Iterator<Item = Vec<u64>> + 'a {
     let longest = plan.width.max(plan.height);
     let radii = std::iter::successors(Some(1_u16), |radius| Some(radius + (radius / 2).max(1)));
@@ -139,7 +141,7 @@ fn fields<'a>(plan: &'a LandPlan, noise: &'a [u64]) -> impl Iterator<Item = Vec<
     std::iter::once(noise.to_vec()).chain(smoothed).chain(std::iter::once_with(move || stripes.collect()))
 }
 
-/// Two passes of the mean over a square of `radius` (as sums), on a torus: no border shows in the land.
+/// Two passes of a box filter of `radius` (as sums), on a torus to avoid borders.
 fn smooth(field: &[u64], width: u16, radius: u16) -> Vec<u64> {
     let (width, radius) = (usize::from(width), usize::from(radius));
     let mut field = field.to_vec();
@@ -158,7 +160,7 @@ fn smooth(field: &[u64], width: u16, radius: u16) -> Vec<u64> {
     field
 }
 
-/// For each place of a ring, the sum from `radius` before to `radius` behind it (at most once round).
+/// Sums over a ring from `radius` before to `radius` after each place (at most once round).
 fn sums(ring: &[u64], radius: usize) -> Vec<u64> {
     let length = ring.len();
     let radius = radius.min((length - 1) / 2);
@@ -173,7 +175,7 @@ fn sums(ring: &[u64], radius: usize) -> Vec<u64> {
         .collect()
 }
 
-/// Gives the cells with the smallest values to class 1, the next ones to class 2 and so on.
+/// Assigns class 1 to the cells with the smallest values, then class 2, and so on.
 fn fill(field: &[u64], sizes: &[usize]) -> Vec<u8> {
     let mut order: Vec<u32> = (0..field.len() as u32).collect();
     order.sort_unstable_by_key(|at| (Reverse(field[*at as usize]), *at));
@@ -188,7 +190,6 @@ fn fill(field: &[u64], sizes: &[usize]) -> Vec<u8> {
     cells
 }
 
-/// A landscape whose total edge is being changed by exchanges of cells.
 struct Search {
     cells: Vec<u8>,
     width: usize,
@@ -206,7 +207,8 @@ impl Search {
         }
     }
 
-    /// Exchanges random pairs of cells of different classes unless that takes TE farther from `wanted`.
+    /// Exchanges random pairs of cells of different classes unless that moves TE away from
+    /// `wanted`.
     fn approach(&mut self, wanted: u64) {
         let total = self.cells.len() as u32;
         for _ in 0..u64::from(total) * u64::from(TRIES_PER_CELL) {
@@ -217,7 +219,7 @@ impl Search {
             if self.cells[a] == self.cells[b] {
                 continue;
             }
-            // The side between neighbours a and b counts twice before and twice after.
+            // A side shared by a and b counts twice before and twice after.
             let before = self.sides(a) + self.sides(b);
             self.cells.swap(a, b);
             let edges = self.edges + self.sides(a) + self.sides(b) - before;
@@ -229,7 +231,6 @@ impl Search {
         }
     }
 
-    /// Sides of a cell towards other classes.
     fn sides(&self, at: usize) -> u64 {
         let here = self.cells[at];
         let x = at % self.width;
@@ -254,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn wanted_entropy_and_edges_are_met_from_stripes_to_checkerboards() {
+    fn targets_are_met_from_stripes_to_checkerboards() {
         for (entropy, edges) in [
             (0.3, 100),
             (0.3, 700),
@@ -277,14 +278,14 @@ mod tests {
     }
 
     #[test]
-    fn seeds_decide_and_nothing_else() {
+    fn the_result_depends_only_on_plan_and_seed() {
         let land = |seed| by_metrics(&LandPlan { seed, ..PLAN }, &wanted(1.5, 1500)).unwrap();
         assert_eq!(land(1), land(1));
         assert_ne!(land(1), land(2));
     }
 
     #[test]
-    fn what_is_out_of_reach_is_said_with_the_range() {
+    fn unreachable_targets_are_refused_with_the_possible_range() {
         let message = |plan: &LandPlan, wanted: &ByMetrics| by_metrics(plan, wanted).unwrap_err().to_string();
         let high = message(&PLAN, &wanted(2.3, 1000));
         assert!(high.contains("entropy 2.3 is out of reach") && high.contains("0 to 2.1972"), "{high}");
@@ -302,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn the_smallest_lands_work() {
+    fn the_smallest_terrains_are_generated() {
         let one = LandPlan { width: 1, height: 1, ..PLAN };
         assert_eq!(by_metrics(&one, &wanted(0.0, 0)).unwrap().cells(), [1]);
         let two = LandPlan { width: 2, height: 1, classes: 2, seed: 0 };

@@ -1,9 +1,10 @@
-//! What "natural" land may mean: readings of one sentence.
+//! Interpretations of "natural" terrain.
 //!
-//! KUZ section 5 says "several cells of the greatest impassability, surrounded by less impassable ones, which are in turn
-//! surrounded by still less impassable ones, and so on", and that the number of obstacles is N(S) there. Its reference
-//! 15, which has the generator, was not at hand. Each reading here makes something of "and so on"; what entropy each gives beside
-//! the paper's stands in `docs/limits.md`.
+//! KUZ section 5 describes "several cells of the greatest impassability, surrounded by less
+//! impassable ones, which are in turn surrounded by still less impassable ones, and so on", and
+//! gives the number of obstacles there as N(S). The paper's reference 15, which contains the
+//! generator, was not available. Each variant here interprets "and so on" differently;
+//! `docs/limits.md` compares their entropy with the paper's.
 
 use super::{LandPlan, check_obstacles, sample};
 use crate::terrain::Terrain;
@@ -12,24 +13,24 @@ use staya_controller::grid::Norm;
 use staya_controller::names::Named;
 use staya_controller::rand::Rng;
 
-/// Purpose of the random numbers that make hills rough.
 const ROUGH: u32 = 0x0054_0002;
-/// One in the slopes of rough hills.
+/// Scale of the slopes of rough hills.
 const ONE: u64 = 256;
 
-/// How impassability falls with the distance d from the nearest obstacle, to 1 at least; l is the highest class.
+/// Decrease of impassability with the distance d from the nearest obstacle, to 1 at least; l is the
+/// highest class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hills {
-    /// By one each cell: l - floor d.
+    /// By one per cell: l - floor d.
     #[default]
     Even,
-    /// The same, d rounded: l - round d.
+    /// By one per cell, with d rounded: l - round d.
     Rounded,
-    /// By one every second cell: l - floor(d / 2).
+    /// By one per two cells: l - floor(d / 2).
     Wide,
-    /// By one each cell, and hills that overlap add up.
+    /// By one per cell; overlapping hills add up.
     Added,
-    /// By 0 to 2 each cell, a slope drawn for every cell: l - floor(q d), q evenly from 0 to 2.
+    /// By a random slope for each cell: l - floor(q d), q uniform from 0 to 2.
     Rough,
 }
 
@@ -47,10 +48,10 @@ impl Named for Hills {
     }
 }
 
-/// Natural land by any reading; see [`natural`](super::natural). O(size * obstacles).
+/// Generates natural terrain; see [`natural`](super::natural). O(size * obstacles).
 ///
 /// # Errors
-/// As [`natural`](super::natural).
+/// See [`natural`](super::natural).
 pub fn natural_by(plan: &LandPlan, obstacles: u32, norm: Norm, hills: Hills) -> Result<Terrain, TerrainError> {
     if hills == Hills::Even {
         return super::natural(plan, obstacles, norm);
@@ -70,7 +71,7 @@ pub fn natural_by(plan: &LandPlan, obstacles: u32, norm: Norm, hills: Hills) -> 
             }
         };
         let nearest = || drawn.iter().map(square).min();
-        // Of each cell one, whatever is near.
+        // One draw per cell, for any distance.
         let slope = u64::from(rough.below(2 * ONE as u32));
         let fall = match hills {
             Hills::Even => nearest().map(u64::isqrt),
@@ -97,11 +98,11 @@ mod tests {
     const PLAN: LandPlan = LandPlan { width: 100, height: 100, classes: 9, seed: 1 };
 
     #[test]
-    fn readings_of_one_hill_differ_as_they_say() {
+    fn variants_of_a_hill_differ_as_documented() {
         let plan = LandPlan { width: 31, height: 1, ..PLAN };
         let row = |hills| {
             let land = natural_by(&plan, 1, Norm::Euclidean, hills).expect("land");
-            // Around it there may be more that are as high.
+            // Other cells around it may be as high.
             let peak = natural(&plan, 1, Norm::Euclidean).expect("land");
             let top = peak.cells().iter().position(|&u| u == 9).expect("an obstacle");
             let side = if top < 15 {
@@ -123,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn rough_hills_have_the_papers_entropy_within_a_fifth() {
+    fn rough_hills_have_the_entropy_of_the_paper_within_a_fifth() {
         for (obstacles, paper) in [(10, 1.52), (33, 1.80), (70, 1.98), (130, 2.13)] {
             let of = |seed| {
                 let land = natural_by(&LandPlan { seed, ..PLAN }, obstacles, Norm::Euclidean, Hills::Rough);

@@ -1,7 +1,7 @@
-//! Random landscapes; a function of their parameters and a seed.
+//! Random terrain, as a function of parameters and a seed.
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), section 5 and figure 7 (`uniform`, `natural`), section 4 and its reference 15
-//! (landscapes of a given configuration entropy and total edge).
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 5 and figure 7 (`uniform`, `natural`), section 4 and
+//! its reference 15 (terrain with a given configuration entropy and total edge).
 
 mod by_metrics;
 mod hills;
@@ -15,19 +15,18 @@ use crate::file::has_memory;
 use staya_controller::grid::Norm;
 use staya_controller::rand::Rng;
 
-/// Purpose of the generators' random numbers.
 const LAND: u32 = 0x0054_0001;
 
-/// Size, classes and seed of a random landscape.
+/// Size, classes and seed of random terrain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LandPlan {
     /// Cells from west to east, 1..=[`MAX_SIDE`].
     pub width: u16,
     /// Cells from south to north, 1..=[`MAX_SIDE`].
     pub height: u16,
-    /// Number of classes l, 1..=255: impassability is 1..=l, and nothing is blocked.
+    /// Number of classes l, 1..=255: impassability is 1..=l, and no cell is blocked.
     pub classes: u8,
-    /// Equal seeds give equal landscapes.
+    /// Equal seeds give equal terrain.
     pub seed: u64,
 }
 
@@ -40,7 +39,7 @@ impl LandPlan {
                 format!("each side must be 1..={MAX_SIDE}"),
             ));
         }
-        // A cell, and its number in a drawing of lots.
+        // One byte per cell, and four for its index in a random sample.
         let bytes = 5 * u64::from(self.cells());
         if !has_memory(bytes) {
             return Err(parameter_error(
@@ -68,10 +67,11 @@ impl LandPlan {
     }
 }
 
-/// Each cell's impassability is drawn on its own, uniform in 1..=l (KUZ figure 7c). O(size).
+/// Generates terrain in which the impassability of each cell is independent and uniform in 1..=l
+/// (KUZ figure 7c). O(size).
 ///
 /// # Errors
-/// [`TerrainError::Parameter`] for a plan out of range.
+/// A [`TerrainError::Parameter`] if the plan is out of range.
 pub fn uniform(plan: &LandPlan) -> Result<Terrain, TerrainError> {
     plan.check()?;
     let mut rng = plan.rng();
@@ -80,12 +80,12 @@ pub fn uniform(plan: &LandPlan) -> Result<Terrain, TerrainError> {
     Terrain::from_cells(plan.width, plan.height, cells.collect())
 }
 
-/// Hills of mud: `obstacles` different cells, drawn uniformly, are of class l, and each next class lies one cell further
-/// out, u = max(1, l - floor(distance to the nearest obstacle)) (KUZ figures 7a and 7b). Distances are Euclidean or
-/// Chebyshev, by `norm`. O(size + obstacles l^2).
+/// Generates hills of mud: `obstacles` different random cells have class l, and impassability falls
+/// by one per cell, u = max(1, l - floor(distance to the nearest obstacle)) (KUZ figures 7a and
+/// 7b). Distances are Euclidean or Chebyshev, by `norm`. O(size + obstacles l^2).
 ///
 /// # Errors
-/// [`TerrainError::Parameter`] for a plan out of range, or more obstacles than cells.
+/// A [`TerrainError::Parameter`] for a plan out of range or more obstacles than cells.
 pub fn natural(plan: &LandPlan, obstacles: u32, norm: Norm) -> Result<Terrain, TerrainError> {
     check_obstacles(plan, obstacles)?;
     let width = usize::from(plan.width);
@@ -109,9 +109,9 @@ fn check_obstacles(plan: &LandPlan, obstacles: u32) -> Result<(), TerrainError> 
     Ok(())
 }
 
-/// `count` different numbers below `total`, each set of them equally likely, in a random order.
+/// `count` different numbers below `total` in random order; all sets are equally likely.
 ///
-/// Draws again what was drawn before while few are wanted; otherwise the front of a shuffle.
+/// Small samples are drawn by rejection, large ones by a partial shuffle.
 fn sample(total: u32, count: u32, rng: &mut Rng) -> Vec<u32> {
     if u64::from(count) * 4 < u64::from(total) {
         let mut taken = std::collections::HashSet::new();
@@ -133,9 +133,7 @@ fn sample(total: u32, count: u32, rng: &mut Rng) -> Vec<u32> {
     }
 }
 
-/// The impassability around one obstacle; beyond it everything is 1.
 struct Hill {
-    /// Half the side of the square that holds it.
     reach: usize,
     square: Vec<u8>,
 }
@@ -156,13 +154,13 @@ impl Hill {
         Self { reach: reach as usize, square: square.collect() }
     }
 
-    /// Raises the land around column `x`, row `y` to the hill.
+    /// Raises the terrain around column `x`, row `y` to the hill.
     fn stamp(&self, cells: &mut [u8], width: usize, x: usize, y: usize) {
         let side = 2 * self.reach + 1;
         let height = cells.len() / width;
         let columns = x.saturating_sub(self.reach)..(x + self.reach + 1).min(width);
         for row in y.saturating_sub(self.reach)..(y + self.reach + 1).min(height) {
-            // Column c of the land is column c + reach - x of the square.
+            // Column c of the terrain is column c + reach - x of the square.
             let start = (row + self.reach - y) * side + columns.start + self.reach - x;
             let hill = &self.square[start..start + columns.len()];
             let land = &mut cells[row * width..][columns.clone()];
@@ -182,7 +180,7 @@ mod tests {
 
     const PLAN: LandPlan = LandPlan { width: 100, height: 100, classes: 9, seed: 1 };
 
-    /// u by the definition: the nearest obstacle of all.
+    /// Reference implementation of u: the nearest of all obstacles.
     fn by_definition(land: &Terrain, classes: u8, obstacles: &[Cell], norm: Norm) -> Vec<u8> {
         let cell = |at: usize| {
             let width = usize::from(land.width());
@@ -203,7 +201,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn natural_land_follows_the_definition(
+        fn natural_terrain_follows_the_definition(
             width in 1..40_u16,
             height in 1..40_u16,
             classes in 1..=12_u8,
@@ -226,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_decide_and_nothing_else() {
+    fn the_result_depends_only_on_plan_and_seed() {
         assert_eq!(uniform(&PLAN).unwrap(), uniform(&PLAN).unwrap());
         let other = LandPlan { seed: 2, ..PLAN };
         assert_ne!(uniform(&PLAN).unwrap(), uniform(&other).unwrap());
@@ -236,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn uniform_land_has_equal_shares_and_the_greatest_entropy() {
+    fn uniform_terrain_has_equal_shares_and_the_greatest_entropy() {
         let land = uniform(&PLAN).unwrap();
         let counts = class_counts(land.cells());
         // Binomial with mean 1111 and deviation 31.4: five deviations.
@@ -246,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn natural_entropy_agrees_with_the_corrected_formula_where_it_should() {
+    fn natural_entropy_agrees_with_the_corrected_formula() {
         let mean = |obstacles: u32| {
             let s = (0..50).map(|seed| {
                 let land = natural(&LandPlan { seed, ..PLAN }, obstacles, Norm::Euclidean).unwrap();
@@ -261,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn limits_are_lands_and_beyond_them_are_errors() {
+    fn plans_at_the_limits_work_and_others_are_refused() {
         let tiny = LandPlan { width: 1, height: 1, classes: 1, seed: 0 };
         assert_eq!(natural(&tiny, 0, Norm::Euclidean).unwrap().cells(), [1]);
         assert_eq!(natural(&tiny, 1, Norm::Euclidean).unwrap().cells(), [1]);

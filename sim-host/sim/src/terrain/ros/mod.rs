@@ -1,13 +1,14 @@
-//! Maps of the Robot Operating System: a `map_server` YAML file that names a PGM picture.
+//! Maps of the Robot Operating System: a `map_server` YAML file with a PGM image.
 //!
-//! A pixel of brightness x out of the picture's largest value M is occupied with probability
-//! p = 1 - x/M (x/M when `negate` is set). p > `occupied_thresh` is blocked, p < `free_thresh` is free (impassability 1). What lies
-//! between is unknown in mode `trinary`, and in mode `scale` slow: 1 + round((l - 1)(p - free)/(occupied - free)) with l classes.
-//! Pictures list rows from the north; [`super::rows`] turns them round.
+//! A pixel of brightness x out of the image's largest value M is occupied with probability p = 1 -
+//! x/M (x/M if `negate` is set). p > `occupied_thresh` is blocked, p < `free_thresh` is free
+//! (impassability 1). Values between the thresholds are unknown in mode `trinary`. In mode `scale`
+//! they have impassability 1 + round((l - 1)(p - free)/(occupied - free)) with l classes. Images
+//! list rows from the north; [`super::rows`] reverses them.
 //!
-//! This is also the format in which Staya writes terrain ([`save`]): mode `scale` and the number of classes under the key
-//! `impassability_classes`, which ROS ignores. Every impassability reads back exactly, the picture shows the land (darker is slower), and
-//! ROS tools can open it.
+//! Staya writes terrain in this format too ([`save`]): with mode `scale` and the number of classes
+//! under the key `impassability_classes`, which ROS ignores. Every impassability is restored
+//! exactly, the image shows the terrain (darker is slower), and ROS tools can open it.
 //!
 //! Source: ROS wiki, `map_server`, "Map format"; Netpbm, "PGM".
 
@@ -24,11 +25,11 @@ use std::path::{Path, PathBuf};
 pub use pgm::parse_pgm;
 pub use yaml::{Meta, Mode, parse_meta};
 
-/// Thresholds that keep 255 classes and a wall apart: 255 grey levels from p = 0 to 254/255, and black.
+/// Thresholds for 255 classes and walls: 255 grey levels from p = 0 to 254/255, and black.
 const FREE_THRESH: f64 = 0.0;
 const OCCUPIED_THRESH: f64 = 0.997;
 
-/// The impassability of occupancy probability `p`.
+/// Impassability of occupancy probability `p`.
 fn impassability(p: f64, meta: &Meta, options: &LoadOptions) -> u8 {
     if p > meta.occupied_thresh {
         return BLOCKED;
@@ -47,10 +48,10 @@ fn impassability(p: f64, meta: &Meta, options: &LoadOptions) -> u8 {
     }
 }
 
-/// The terrain that a picture means. O(size).
+/// Converts an image to terrain. O(size).
 ///
 /// # Errors
-/// [`TerrainError::Size`] for a picture that is too large; [`TerrainError::Parameter`] for 0 classes.
+/// A [`TerrainError::Size`] if the image is too large; a [`TerrainError::Parameter`] for 0 classes.
 pub fn interpret(picture: &Picture, meta: &Meta, options: &LoadOptions) -> Result<Terrain, TerrainError> {
     if options.classes == 0 {
         return Err(parameter_error("classes is 0", "give the number of classes, 1..=255"));
@@ -71,10 +72,10 @@ pub fn interpret(picture: &Picture, meta: &Meta, options: &LoadOptions) -> Resul
     Ok(terrain)
 }
 
-/// Reads a YAML file and the picture that it names (relative to the YAML file).
+/// Reads a YAML file and the image that it names (relative to the YAML file).
 ///
 /// # Errors
-/// [`TerrainError::Read`] and [`TerrainError::Format`] for either file.
+/// A [`TerrainError::Read`] or [`TerrainError::Format`] for either file.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError> {
     let meta = parse_meta(&read(path)?, path)?;
     let image = path.parent().unwrap_or(Path::new("")).join(&meta.image);
@@ -90,10 +91,11 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError>
     interpret(&parse_pgm(&read(&image)?, &image)?, &meta, options)
 }
 
-/// Writes `path` (.yaml) and the picture of the same name with .pgm; [`Terrain::load`] of `path` gives back an equal terrain.
+/// Writes `path` (.yaml) and an image with the same name and the extension .pgm; [`Terrain::load`]
+/// of `path` gives an equal terrain.
 ///
 /// # Errors
-/// [`TerrainError::Write`]; [`TerrainError::Format`] when the file name has no place in a YAML line.
+/// A [`TerrainError::Write`]; a [`TerrainError::Format`] if YAML cannot hold the file name.
 pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
     let image: PathBuf = path.with_extension("pgm");
     let name = image.file_name().and_then(|name| name.to_str()).filter(|name| !name.contains(['"', '\\', '\n', '\r']));
@@ -120,9 +122,9 @@ pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
     write(path, meta.as_bytes())
 }
 
-/// The brightness of a class: white for 1, nearly black for the slowest, black for a wall.
+/// Brightness of a class: white for 1, nearly black for the slowest, black for a wall.
 ///
-/// The inverse of [`impassability`]: rounding to a grey level shifts the class by less than one half.
+/// Inverse of [`impassability`]: rounding to a grey level shifts the class by less than one half.
 fn brightness(impassability: u8, classes: u8) -> u8 {
     if impassability == BLOCKED {
         return 0;
@@ -160,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn negated_maps_mean_the_opposite() {
+    fn negated_maps_are_inverted() {
         let meta = META.replace("negate: 0", "negate: 1");
         let terrain = read(&meta, PICTURE, &LoadOptions::default());
         assert_eq!(terrain.cells(), [1, BLOCKED, BLOCKED, BLOCKED, BLOCKED, 1]);
@@ -183,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn every_class_of_every_count_reads_back() {
+    fn every_class_is_restored_for_any_number_of_classes() {
         let meta = Meta {
             mode: Mode::Scale,
             free_thresh: FREE_THRESH,
@@ -211,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn other_pictures_and_missing_files_are_named() {
+    fn unsupported_images_and_missing_files_are_named() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.yaml");
         let message = |path: &Path| Terrain::load(path).unwrap_err().to_string();

@@ -1,25 +1,25 @@
-//! Grey pictures: PGM, plain (P2) and raw (P5), 8 or 16 bits.
+//! Grey images: PGM, plain (P2) and raw (P5), 8 or 16 bits.
 
 use super::super::error::{MAX_SIDE, Place, TerrainError, fits, format_error};
 use std::path::Path;
 
-/// A grey picture, first row at the top.
+/// A grey image, first row at the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Pixels from left to right.
     pub width: u16,
     /// Pixels from top to bottom.
     pub height: u16,
-    /// The brightness of white, 1..=65535; no pixel is brighter.
+    /// Brightness of white, 1..=65535; no pixel is brighter.
     pub largest: u16,
     /// Brightness, row by row.
     pub pixels: Vec<u16>,
 }
 
-/// Reads a PGM picture. O(size).
+/// Reads a PGM image. O(size).
 ///
 /// # Errors
-/// [`TerrainError::Format`] with the byte, for everything that the format does not allow.
+/// A [`TerrainError::Format`] with the byte, if the file violates the format.
 pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
     let mut words = Words { bytes, at: 0 };
     let fail = |at: usize, what: String, remedy: &str| Err(format_error(path, Place::Byte(at), what, remedy));
@@ -47,7 +47,7 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
     let mut pixels = Vec::new();
     let truncated = "it is truncated: fetch it again, or correct the header";
     if is_raw {
-        // Exactly one blank separates the header from the pixels.
+        // Exactly one whitespace byte separates the header from the pixels.
         let body = bytes.get(words.at + 1..).unwrap_or_default();
         let depth = if largest < 256 { 1 } else { 2 };
         if body.len() < wanted * depth {
@@ -62,7 +62,7 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
     } else {
         while pixels.len() < wanted {
             match words.number() {
-                // Brighter than white is refused below.
+                // Values above white are refused below.
                 Ok(number) => pixels.push(u16::try_from(number).unwrap_or(u16::MAX)),
                 Err(Trouble::End) => {
                     let what = format!("the file ends after {} of {wanted} pixels", pixels.len());
@@ -85,13 +85,12 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
     Ok(Picture { width, height, largest, pixels })
 }
 
-/// Why there is no number.
 enum Trouble {
     End,
     NoNumber,
 }
 
-/// Reads decimal numbers between blanks and comments.
+/// Parses decimal numbers separated by whitespace and comments.
 struct Words<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -102,7 +101,7 @@ impl Words<'_> {
         self.bytes.get(self.at).copied()
     }
 
-    /// The next number, saturating; the position is then the byte behind it.
+    /// Next number, saturating; the position is then the byte after it.
     fn number(&mut self) -> Result<u32, Trouble> {
         loop {
             match self.peek() {
@@ -144,12 +143,12 @@ mod tests {
     }
 
     #[test]
-    fn two_byte_pixels_have_the_high_byte_first() {
+    fn sixteen_bit_pixels_are_big_endian() {
         assert_eq!(picture(b"P5 1 1 256 \x01\x00").unwrap().pixels, [256]);
     }
 
     #[test]
-    fn a_pixel_that_looks_like_a_blank_or_a_comment_is_a_pixel() {
+    fn raw_pixels_may_equal_whitespace_or_comment_bytes() {
         assert_eq!(picture(b"P5 2 1 255\n #").unwrap().pixels, [32, 35]);
     }
 

@@ -1,43 +1,43 @@
-//! The YAML file of a `map_server` map: flat `key: value` lines, which is all that such files hold.
+//! The YAML file of a `map_server` map, which consists of flat `key: value` lines.
 //!
-//! By hand: a serde YAML crate brings six to twenty others, and does not tell the line of a value that is YAML but no sense.
+//! A hand-written parser: a serde YAML crate has six to twenty dependencies, and does not report
+//! the line of a value that is valid YAML but out of range.
 
 use super::super::error::{Place, TerrainError, format_error};
 use super::super::text::{finite, lines, quoted, text};
 use std::path::Path;
 
-/// How pixels between the thresholds are read.
+/// Interpretation of pixels between the thresholds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
     /// Free, occupied or unknown.
     #[default]
     Trinary,
-    /// Everything between the thresholds is more or less slow.
+    /// A pixel between the thresholds has an impassability in proportion to its value.
     Scale,
 }
 
-/// What the YAML file says.
+/// Fields of the YAML file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meta {
-    /// The picture, relative to the YAML file.
+    /// Path of the image, relative to the YAML file.
     pub image: String,
     /// Side of a pixel, metres; more than 0.
     pub resolution_m: f64,
-    /// World position of the south-west corner of the picture, metres.
+    /// World position of the south-west corner of the image, metres.
     pub origin_m: [f64; 2],
-    /// Occupied when the probability is greater.
+    /// A pixel is occupied if its probability is greater.
     pub occupied_thresh: f64,
-    /// Free when the probability is less.
+    /// A pixel is free if its probability is less.
     pub free_thresh: f64,
-    /// Whether bright pixels are the occupied ones.
+    /// Whether bright pixels are occupied.
     pub negate: bool,
-    /// How pixels between the thresholds are read; `trinary` when the file does not say.
+    /// Interpretation of pixels between the thresholds; default `trinary`.
     pub mode: Mode,
-    /// Number of classes in mode `scale`, when the file says (Staya's own key).
+    /// Number of classes in mode `scale`, if given (Staya's own key).
     pub classes: Option<u8>,
 }
 
-/// The value of a key with the line that it stands in.
 type Entry<'a> = Option<(usize, &'a str)>;
 
 #[derive(Default)]
@@ -53,11 +53,11 @@ struct Entries<'a> {
     classes: Entry<'a>,
 }
 
-/// Reads the YAML file of a map. Keys that ROS does not know are ignored, as ROS does.
+/// Reads the YAML file of a map. Keys that ROS does not know are ignored, as in ROS.
 ///
 /// # Errors
-/// [`TerrainError::Format`] with the line: a key that is missing, given twice or has no sensible value, a rotated origin (yaw
-/// other than 0), mode `raw`.
+/// A [`TerrainError::Format`] with the line: a key is missing, duplicated or has an invalid value,
+/// the origin is rotated (yaw other than 0), or the mode is `raw`.
 pub fn parse_meta(bytes: &[u8], path: &Path) -> Result<Meta, TerrainError> {
     let text = text(bytes, path)?;
     let entries = collect(text, path)?;
@@ -136,7 +136,6 @@ fn choice(path: &Path, line: usize, key: &str, word: &str, remedy: &str) -> Terr
     format_error(path, Place::Line(line), what, remedy)
 }
 
-/// Sorts the lines of the file by key.
 fn collect<'a>(text: &'a str, path: &Path) -> Result<Entries<'a>, TerrainError> {
     let mut entries = Entries::default();
     let mut in_origin = false;
@@ -147,7 +146,7 @@ fn collect<'a>(text: &'a str, path: &Path) -> Result<Entries<'a>, TerrainError> 
             entries.origin_items.push((line, item.trim()));
             continue;
         }
-        // Indented lines belong to keys that a map does not have.
+        // Indented lines belong to foreign keys.
         let is_top = !row.starts_with([' ', '\t', '-']);
         if bare.is_empty() || bare == "---" || bare == "..." || !is_top {
             continue;
@@ -180,7 +179,7 @@ fn collect<'a>(text: &'a str, path: &Path) -> Result<Entries<'a>, TerrainError> 
     Ok(entries)
 }
 
-/// The line up to a `#` that begins it or follows a blank, outside quotes.
+/// The line up to a `#` at its start or after whitespace, outside quotes.
 fn without_comment(row: &str) -> &str {
     let mut quote = None;
     let mut before = ' ';
@@ -201,7 +200,7 @@ fn unquoted(value: &str) -> &str {
     ['"', '\''].into_iter().find_map(|quote| value.strip_prefix(quote)?.strip_suffix(quote)).unwrap_or(value)
 }
 
-/// The origin: `[x, y, yaw]` in one line, or three lines with a dash.
+/// Parses the origin: `[x, y, yaw]` in one line, or three lines with a dash.
 fn origin(entries: &Entries<'_>, path: &Path) -> Result<[f64; 2], TerrainError> {
     let place = entries.origin.map_or(Place::File, |(line, _)| Place::Line(line));
     let in_line = entries.origin.and_then(|(line, value)| {
@@ -241,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn the_usual_file_is_read() {
+    fn a_typical_file_is_read() {
         let expected = Meta {
             image: "my #1 map.pgm".into(),
             resolution_m: 0.1,
@@ -256,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_with_dashes_foreign_keys_and_document_marks_are_read() {
+    fn dash_lists_foreign_keys_and_document_marks_are_accepted() {
         let text = FILE.replace("[-1, 2.5, 0.0]", "\n- -1\n  - 2.5\n- 0.0");
         let text = format!("---\r\n{text}mode: scale\nother:\n  deep: 1\n  - x\nimpassability_classes: 12\n...\n");
         let meta = meta(&text).unwrap();

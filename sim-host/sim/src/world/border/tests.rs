@@ -4,11 +4,10 @@ use crate::world::MoveRules;
 use proptest::prelude::*;
 use staya_controller::rand::Rng;
 
-/// A crowd by one process, and by ranks that have its bodies as `owner` says, however mixed.
+/// A crowd in one process, and the same crowd in several ranks partitioned by `owner`.
 struct Crowd {
     whole: World,
     parts: Vec<World>,
-    /// The places in `whole` of each part's bodies.
     here: Vec<Vec<u32>>,
 }
 
@@ -45,7 +44,7 @@ impl Crowd {
         Self { parts: here.iter().map(part).collect(), here, whole }
     }
 
-    /// One tick. Returns how many rounds it took.
+    /// Runs one tick. Returns the number of rounds.
     fn advance(&mut self, tick: u32, commands: &[Command<f32>]) -> usize {
         self.whole.advance(tick, commands);
         let told: Vec<Vec<_>> =
@@ -91,7 +90,6 @@ impl Crowd {
     }
 }
 
-/// Wishes of up to eight moves at random.
 fn wishes(draws: &mut Rng, bodies: usize) -> Vec<Command<f32>> {
     let wish = |draws: &mut Rng| {
         let count = draws.below(9);
@@ -104,7 +102,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn a_dense_crowd_moves_alike_however_it_is_cut(
+    fn a_dense_crowd_moves_identically_for_any_partition(
         side in 4_u16..40,
         fill in 1_usize..100,
         seed: u64,
@@ -114,7 +112,7 @@ proptest! {
     ) {
         let bodies = usize::from(side) * usize::from(side) * fill / 100;
         let walls: Vec<_> = walls.into_iter().filter(|&(x, y)| x < side as i16 && y < side as i16).collect();
-        // In strips, or each cell by itself.
+        // In strips, or each cell separately.
         let owner = |cell: Cell| match mixed {
             true => Rng::keyed(seed, 1, cell.x as u32, cell.y as u32).below(ranks as u32) as usize,
             false => usize::from(cell.x.cast_unsigned()) * ranks / usize::from(side),
@@ -130,8 +128,8 @@ proptest! {
 }
 
 #[test]
-fn a_chain_over_a_border_is_settled_in_several_rounds() {
-    // One row of bodies without a gap but at its end, each of which wants to go east: who may depends on all before it.
+fn a_chain_across_borders_takes_several_rounds() {
+    // A gapless row of bodies that want to go east: each move depends on all before it.
     let side = 40;
     let walls: Vec<_> = (1..side).flat_map(|y| (0..side).map(move |x| (x, y))).collect();
     let strips = |cell: Cell| usize::from(cell.x.cast_unsigned()) / 2 % 2;

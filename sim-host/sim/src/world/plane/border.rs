@@ -1,49 +1,49 @@
-//! How near bodies are to those of other ranks.
+//! Distances between bodies of different MPI ranks.
 
 use super::{Clearance, Disc, Plane, ROUNDING_M, is_washed};
 use crate::nearby::{Query, Search};
 use serde::{Deserialize, Serialize};
 use staya_controller::robot::RobotId;
 
-/// A body of another rank, as far as others' nearness depends on it.
+/// Data of a body of another rank that distances depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Beside {
-    /// The robot.
+    /// Id of the robot.
     pub id: RobotId,
-    /// Its centre, metres.
+    /// Centre, metres.
     pub position_m: [f64; 3],
-    /// Its radius, metres.
+    /// Radius, metres.
     pub radius_m: f64,
-    /// How many times higher than wide its place is, for the air that it blows down.
+    /// Ratio of height to width of the space that other bodies should avoid because of downwash.
     pub downwash: f64,
 }
 
 impl Plane {
-    /// How far apart bodies are at most that count as near, metres.
+    /// Search radius for neighbours of a body, metres.
     pub const fn reach_m(&self) -> f64 {
         self.reach_m
     }
 
-    /// Keeps these bodies alone, by their places, in this order. What counts as near is what did before.
+    /// Keeps only the bodies with the indices `here`, in this order, and the search radius.
     pub fn keep(&mut self, here: &[u32]) {
         self.discs = here.iter().map(|&index| self.discs[index as usize]).collect();
         self.shut = vec![Vec::new(); here.len()];
     }
 
-    /// A body comes from another rank, behind those that are here.
+    /// Appends a body that comes from another rank.
     pub fn admit(&mut self, disc: Disc) {
         self.discs.push(disc);
         self.shut.push(Vec::new());
     }
 
-    /// A body goes to another rank; the last one takes its place.
+    /// Removes a body that goes to another rank; the last body takes its index.
     pub fn dismiss(&mut self, index: usize) {
         self.discs.swap_remove(index);
         self.shut.swap_remove(index);
     }
 
-    /// What [`Plane::clearance`], which was called before, does not see: pairs of a body here and one of another rank. An overlap is counted
-    /// where the body with the lower number is.
+    /// Distances between bodies of this rank and those of other ranks. Call [`Plane::clearance`]
+    /// first. The rank that holds the body with the lower id counts an overlap.
     pub fn clearance_beside(&self, beside: &[Beside]) -> Clearance {
         let mut clearance = Clearance::FREE;
         let mut found = Vec::new();
@@ -52,7 +52,7 @@ impl Plane {
             self.index.within(&query, &mut found);
             for near in &found {
                 let disc = &self.discs[near.index as usize];
-                // In the order in which the body here would look at the other one.
+                // Same order of operations as in `clearance`, for identical rounding.
                 let gap = near.distance_squared.sqrt() - disc.radius_m - other.radius_m;
                 clearance.bodies_m = clearance.bodies_m.min(gap);
                 if other.id < disc.id {

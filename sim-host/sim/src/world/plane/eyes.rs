@@ -1,4 +1,4 @@
-//! Whom robots see: what a camera, UWB or motion capture would tell.
+//! Detection of other robots by camera, UWB or motion capture.
 
 use super::{Disc, Plane, Solid};
 use crate::nearby::{Cells, Found, Query, Search, Space};
@@ -8,63 +8,62 @@ use staya_controller::rand::Rng;
 use staya_controller::time::Duration;
 use std::collections::VecDeque;
 
-/// Keeps what eyes draw apart from other uses of randomness.
 const PURPOSE: u32 = u32::from_be_bytes(*b"eyes");
 
-/// What eyes robots have: `[plane.eyes]` of a scenario.
+/// Properties of the sensors: `[plane.eyes]` of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eyes {
-    /// How far robots see each other, from centre to centre, metres.
+    /// Range from centre to centre, metres.
     pub range_m: f64,
-    /// Standard deviation of places seen along each axis, metres.
+    /// Standard deviation of measured positions along each axis, metres.
     pub noise_m: f64,
-    /// Whether bodies, obstacles and closed cells hide what is behind them.
+    /// Whether bodies, obstacles and closed cells occlude robots behind them.
     pub is_occluded: bool,
-    /// Whether they see who it is.
+    /// Whether a detection contains the robot's id.
     pub sees_names: bool,
-    /// Each robot looks once in so many ticks.
+    /// Ticks between two detections of a robot.
     pub every_ticks: u32,
-    /// Ticks from a look to what comes of it.
+    /// Delay of a detection, ticks.
     pub delay_ticks: u32,
-    /// Whether robots say anything.
+    /// Whether robots send beacons.
     pub has_beacons: bool,
-    /// What the controller makes of it.
+    /// Parameters of the controller's tracker.
     pub tracking: TrackParams<f32>,
 }
 
-/// The robots' eyes, and where everybody was when they looked.
+/// The robots' sensors and the past positions that they measure.
 #[derive(Clone, Debug)]
 pub struct Sight {
     eyes: Eyes,
     seed: u64,
     tick_us: u32,
-    /// Whether all goes on at one height, so that errors do too.
+    /// Whether all bodies stay at one height; then measured heights have no error.
     is_flat: bool,
-    /// Where the bodies and, behind them, the intruders were, the latest last.
+    /// Past positions of the bodies, then the intruders; latest entry last.
     past: VecDeque<Vec<[f64; 3]>>,
     index: Cells<f64, 3>,
 }
 
 impl Sight {
-    /// Eyes that have not looked yet.
+    /// Creates sensors without past positions.
     pub fn new(eyes: Eyes, seed: u64, tick_us: u32, is_flat: bool) -> Self {
         let index = Cells::new(Space::OPEN, eyes.range_m);
         Self { eyes, seed, tick_us, is_flat, past: VecDeque::new(), index }
     }
 
-    /// Takes note of where everybody is at the start of a tick.
+    /// Records all positions at the start of a tick.
     pub fn look(&mut self, plane: &Plane) {
         let bodies = plane.discs().iter().chain(plane.intruders());
         self.past.push_back(bodies.map(|disc| disc.position_m).collect());
         self.keep();
     }
 
-    /// Where everybody was, for checkpoints.
+    /// Recorded positions, for checkpoints.
     pub fn past(&self) -> &VecDeque<Vec<[f64; 3]>> {
         &self.past
     }
 
-    /// Puts that back.
+    /// Restores the recorded positions.
     pub fn put_past(&mut self, past: VecDeque<Vec<[f64; 3]>>) {
         self.past = past;
         self.keep();
@@ -80,7 +79,8 @@ impl Sight {
         }
     }
 
-    /// Whom body `index` sees at `tick`, nearest first. Those of `plane` who say nothing where they are although they could, silent intruders, are seen as obstacles.
+    /// Writes the detections of body `index` at `tick` to `sightings`, nearest first. Silent
+    /// intruders are excluded, because robots detect them as obstacles.
     pub fn sightings(&self, plane: &Plane, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
         sightings.clear();
         let (eyes, delay) = (&self.eyes, self.eyes.delay_ticks);
@@ -115,7 +115,7 @@ impl Sight {
             let [x, y, z] = [0, 1, 2].map(|axis| (to[axis] - at[axis] + noise[axis]) as f32);
             sightings.push(Sighting {
                 offset_m: Vec3::new(x, y, z),
-                // Even the best eyes see to the millimetre at most.
+                // The reported deviation is at least a millimetre.
                 deviation_m: eyes.noise_m.max(0.001) as f32,
                 age: Duration::from_micros((delay * self.tick_us).cast_signed()),
                 radius_m: body.radius_m as f32,
@@ -129,7 +129,7 @@ impl Sight {
     }
 }
 
-/// A draw from the normal distribution (Box and Muller 1958).
+/// A sample of the standard normal distribution (Box and Muller 1958).
 fn normal(rng: &mut Rng) -> f64 {
     let unit = |draw: u32| (f64::from(draw) + 0.5) / 4_294_967_296.0;
     let (radius, angle) = (unit(rng.next_u32()), unit(rng.next_u32()));
@@ -144,7 +144,6 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The distance of a point from the line between two others, metres.
 fn distance_m(from: [f64; 3], to: [f64; 3], point: [f64; 3]) -> f64 {
     let (way, off) = (minus(to, from), minus(point, from));
     let square = dot(way, way);
@@ -153,7 +152,6 @@ fn distance_m(from: [f64; 3], to: [f64; 3], point: [f64; 3]) -> f64 {
     libm::sqrt(dot(rest, rest))
 }
 
-/// Whether an obstacle or a closed cell lies between two places.
 fn is_walled(plane: &Plane, from: [f64; 3], to: [f64; 3]) -> bool {
     let way = minus(to, from);
     let length_m = libm::sqrt(dot(way, way));
@@ -169,7 +167,6 @@ fn is_walled(plane: &Plane, from: [f64; 3], to: [f64; 3]) -> bool {
     })
 }
 
-/// Whether an obstacle lies between two places.
 fn hides(solid: &Solid, from: [f64; 3], to: [f64; 3]) -> bool {
     match *solid {
         Solid::Ball { center_m, radius_m } => distance_m(from, to, center_m) < radius_m,
@@ -191,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_wall_a_ball_and_the_ground_hide_what_is_behind_them() {
+    fn walls_balls_and_the_ground_occlude() {
         let (from, to) = ([0.0; 3], [4.0, 0.0, 0.0]);
         let wall = |x: f64, low: f64| Solid::Wall([[x, low], [x, 1.0]]);
         assert!(hides(&wall(2.0, -1.0), from, to));
@@ -203,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_have_the_deviation_that_was_asked_for() {
+    fn errors_have_the_configured_deviation() {
         let mut rng = Rng::keyed(1, PURPOSE, 2, 3);
         let draws: Vec<f64> = (0..100_000).map(|_| normal(&mut rng)).collect();
         let mean = draws.iter().sum::<f64>() / 1e5;

@@ -1,8 +1,9 @@
-//! Bodies in the plane or in space: discs (balls) that take the velocity they are told, as far as their inertia and the
-//! land under them allow.
+//! Bodies in the plane or in space: discs (balls) that follow velocity commands within the limits
+//! of their inertia and the terrain.
 //!
-//! This is no physics engine: nothing stops a body but its own robot. Bodies pass through each other and through
-//! obstacles, and each such overlap is counted, so that no controller can rely on the world to be safe.
+//! This is not a physics engine: only its own robot stops a body. Bodies pass through each other
+//! and through obstacles, and each overlap is counted, so that a controller cannot rely on the
+//! world for safety.
 
 mod border;
 mod eyes;
@@ -33,7 +34,7 @@ use std::collections::HashMap;
 /// A robot's body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// The robot.
+    /// Id of the robot.
     pub id: RobotId,
     /// Radius, metres.
     pub radius_m: f64,
@@ -41,64 +42,62 @@ pub struct Disc {
     pub position_m: [f64; 3],
     /// World velocity, metres per second.
     pub velocity_mps: [f64; 3],
-    /// What it can do.
+    /// Speed and acceleration limits.
     pub abilities: Abilities,
-    /// How many times higher than wide the room is that others should leave it, for its rotors; 1: a ball.
+    /// Ratio of height to width of the space to avoid because of downwash; 1: a ball.
     pub downwash: f64,
 }
 
-/// What a body can do.
+/// Speed and acceleration limits of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Abilities {
-    /// Highest speed on easy land (impassability 1) and off the map, m/s; u times less where the land takes u times
-    /// longer to cross.
+    /// Highest speed on land of impassability 1 and off the map, m/s; else divided by it.
     pub max_speed_mps: f64,
-    /// Highest acceleration, m/s^2; infinite: none.
+    /// Highest acceleration, m/s^2; may be infinite.
     pub max_acceleration_mps2: f64,
     /// Length of a tick, seconds.
     pub step_s: f64,
 }
 
-/// Bodies, land and obstacles.
+/// Bodies, terrain and obstacles.
 #[derive(Clone, Debug)]
 pub struct Plane {
     terrain: Option<Terrain>,
     solids: Solids,
     discs: Vec<Disc>,
-    /// By body: cells that were closed while it was there, as they were. It may leave them, and nobody enters.
+    /// By body: cells that closed while it was inside, with their previous class. It may leave
+    /// them; no body may enter.
     shut: Vec<Vec<(Cell, u8)>>,
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
     index: Cells<f64, 3>,
     space: Space<f64, 3>,
-    /// How far neighbours are looked for, metres.
     reach_m: f64,
-    /// Radius of the largest body, metres.
     largest_m: f64,
 }
 
-/// How near bodies are to each other and to obstacles.
+/// Distances of bodies to each other and to obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clearance {
-    /// Least distance between the surfaces of two bodies, metres, negative when they overlap; infinite when no two are
-    /// within three radii of each other.
+    /// Smallest distance between the surfaces of two bodies, metres, negative if they overlap;
+    /// infinite if no two are within three radii of each other.
     pub bodies_m: f64,
-    /// Least distance between a body's surface and an obstacle, metres; infinite without obstacles.
+    /// Smallest distance between a body and an obstacle, metres; infinite without obstacles.
     pub solids_m: f64,
     /// Pairs of bodies that overlap.
     pub overlaps: u64,
-    /// Bodies that overlap an obstacle, or whose centre is in a blocked cell that was not closed around them.
+    /// Bodies that overlap an obstacle, or are in a blocked cell that did not close around them.
     pub intrusions: u64,
-    /// Least distance between a body's surface and an intruder's, metres; infinite without intruders.
+    /// Smallest gap between a body and an intruder, metres; infinite without intruders.
     pub intruders_m: f64,
     /// Pairs of a body and an intruder that overlap.
     pub intruder_overlaps: u64,
-    /// Pairs of bodies of which one is in the other's downwash, without overlap.
+    /// Pairs of bodies without overlap, one of which is in the other's downwash.
     pub washed: u64,
 }
 
 impl Clearance {
-    /// Nothing is near.
+    /// No bodies and obstacles in range.
     pub const FREE: Self = Self {
         bodies_m: f64::INFINITY,
         solids_m: f64::INFINITY,
@@ -109,7 +108,7 @@ impl Clearance {
         washed: 0,
     };
 
-    /// Takes in those of another moment.
+    /// Adds the values of another moment.
     pub fn add(&mut self, other: &Self) {
         self.bodies_m = self.bodies_m.min(other.bodies_m);
         self.solids_m = self.solids_m.min(other.solids_m);
@@ -121,17 +120,16 @@ impl Clearance {
     }
 }
 
-/// Bodies that a thread takes at least at a time.
 const BATCH: usize = 256;
 
-/// Obstacles are looked for within so many radii of the largest body at least.
+/// Smallest search radius for obstacles, in radii of the largest body.
 const CLOSE: f64 = 4.0;
 
-/// Less overlap than this is rounding, metres.
+/// Overlaps smaller than this are rounding errors, metres.
 const ROUNDING_M: f64 = 1e-9;
 
 impl Plane {
-    /// A world with these bodies.
+    /// Creates a plane with these bodies.
     #[must_use]
     pub fn new(terrain: Option<Terrain>, solids: Vec<Solid>, discs: Vec<Disc>) -> Self {
         let largest_m = discs.iter().map(|disc| disc.radius_m).fold(0.0, f64::max);
@@ -151,14 +149,14 @@ impl Plane {
         }
     }
 
-    /// The same with bodies that are no robots: they go on as they go, through everything.
+    /// Adds intruders: foreign bodies that move at constant velocity through everything.
     #[must_use]
     pub fn with_intruders(mut self, intruders: Vec<Disc>) -> Self {
         self.intruders = intruders;
         self
     }
 
-    /// The same in another space, such as a torus: who leaves on one side comes in on the other.
+    /// Replaces the space, for example by a torus with periodic borders.
     #[must_use]
     pub fn in_space(mut self, space: Space<f64, 3>) -> Self {
         self.space = space;
@@ -166,7 +164,7 @@ impl Plane {
         self
     }
 
-    /// The same whose obstacles are quickly found from so far away, metres.
+    /// Extends the obstacle index to this search radius, metres.
     #[must_use]
     pub fn with_sight(mut self, sight_m: f64) -> Self {
         let reach_m = sight_m.max(self.solids.reach_m());
@@ -174,7 +172,7 @@ impl Plane {
         self
     }
 
-    /// The bodies that are no robots.
+    /// The intruders.
     #[must_use]
     pub fn intruders(&self) -> &[Disc] {
         &self.intruders
@@ -192,12 +190,13 @@ impl Plane {
         self.solids.all()
     }
 
-    /// The obstacles within `within_m` of a place, metres, in their order. O(those within sight and a few around it).
+    /// The obstacles within `within_m` of a position, metres, in their order. O(obstacles within
+    /// sight and a few around it).
     pub fn solids_near(&self, place_m: [f64; 3], within_m: f64) -> impl Iterator<Item = &Solid> {
         self.solids.near(place_m, within_m).filter(move |solid| solid.distance_m(place_m) <= within_m)
     }
 
-    /// Puts body `index`, behind the robots' an intruder's, where it was at another time, with the velocity that it had.
+    /// Restores position and velocity of a body; intruders follow the robots.
     pub(crate) fn put(&mut self, index: usize, position_m: [f64; 3], velocity_mps: [f64; 3]) {
         let intruders = self.intruders.iter_mut();
         if let Some(disc) = self.discs.iter_mut().chain(intruders).nth(index) {
@@ -205,19 +204,18 @@ impl Plane {
         }
     }
 
-    /// Replaces all obstacles.
     pub(crate) fn put_solids(&mut self, solids: Vec<Solid>) {
         self.solids.change(|all| *all = solids);
     }
 
-    /// Changes a cell of the land, whoever is there.
+    /// Restores a terrain cell, even if a body is inside.
     pub(crate) fn put_cell(&mut self, cell: Cell, class: u8) {
         if let Some(terrain) = &mut self.terrain {
             terrain.set(cell, class);
         }
     }
 
-    /// Changes cells of the land, whoever is there: what closes around a body stays open to it until it is out.
+    /// Changes terrain cells. A cell that closes around a body stays open for it until it leaves.
     /// O(bodies x cells under one + cells).
     pub fn change(&mut self, cells: &[(Cell, u8)]) {
         let Some(terrain) = &mut self.terrain else { return };
@@ -231,26 +229,25 @@ impl Plane {
         }
     }
 
-    /// The cells that were closed while body `index` was there and in which it still is, as they were.
+    /// Cells that closed around body `index` and still hold it, with their previous class.
     #[must_use]
     pub fn shut(&self, index: usize) -> &[(Cell, u8)] {
         &self.shut[index]
     }
 
-    /// Puts back what [`Plane::shut`] gave.
     pub(crate) fn put_shut(&mut self, index: usize, shut: Vec<(Cell, u8)>) {
         self.shut[index] = shut;
     }
 
-    /// Puts obstacles behind those that there are, wherever bodies are.
+    /// Appends obstacles, even where bodies are.
     pub fn add_solids(&mut self, solids: impl IntoIterator<Item = Solid>) {
         self.solids.change(|all| all.extend(solids));
     }
 
-    /// Moves an obstacle at once.
+    /// Moves an obstacle instantly.
     ///
     /// # Errors
-    /// There are not so many.
+    /// The obstacle does not exist.
     pub fn move_solid(&mut self, index: usize, by_m: [f64; 2]) -> Result<(), Refusal> {
         self.solids.change(|all| {
             let count = all.len();
@@ -260,10 +257,10 @@ impl Plane {
         })
     }
 
-    /// Takes an obstacle away; those behind it move up.
+    /// Removes an obstacle; the indices of later obstacles decrease by one.
     ///
     /// # Errors
-    /// There are not so many.
+    /// The obstacle does not exist.
     pub fn remove_solid(&mut self, index: usize) -> Result<(), Refusal> {
         if index >= self.solids().len() {
             return Err(no_solid(index, self.solids().len()));
@@ -272,10 +269,10 @@ impl Plane {
         Ok(())
     }
 
-    /// Changes a cell of the land; 0 is a wall.
+    /// Changes a terrain cell; 0 is a wall.
     ///
     /// # Errors
-    /// There is no such cell, or somebody is in it.
+    /// The cell does not exist or is occupied.
     pub fn set_cell(&mut self, cell: Cell, class: u8) -> Result<(), Refusal> {
         let is_taken = self.discs.iter().any(|disc| self.cell(disc.position_m) == Some(cell));
         let Some(terrain) = &mut self.terrain else {
@@ -284,30 +281,30 @@ impl Plane {
         set_cell(terrain, cell, class, is_taken)
     }
 
-    /// The land, if there is any.
+    /// The terrain, if there is any.
     #[must_use]
     pub const fn terrain(&self) -> Option<&Terrain> {
         self.terrain.as_ref()
     }
 
-    /// The cell of the land under a place; `None` off the map and without land.
+    /// Terrain cell at a position; `None` off the map and without terrain.
     #[must_use]
     pub fn cell(&self, position_m: [f64; 3]) -> Option<Cell> {
         let [x, y, _] = position_m;
         self.terrain.as_ref()?.cell_at([x, y])
     }
 
-    /// How fast body `index` can go at a place, m/s. In a blocked cell, where it should not be, as on the worst land.
+    /// Highest speed of body `index` at a position, m/s. A blocked cell counts as the slowest land.
     #[must_use]
     pub fn max_speed_mps(&self, index: usize, position_m: [f64; 3]) -> f64 {
         max_speed_mps(self.terrain(), &self.shut[index], &self.discs[index].abilities, position_m)
     }
 
-    /// Moves the bodies for one tick as their robots command; `commands[i]` belongs to body `i`. A body goes at even speed
-    /// throughout the tick; one that is told to hold, or to move by cells, brakes.
+    /// Moves the bodies by one tick; `commands[i]` belongs to body `i`. A body has constant
+    /// velocity within the tick. A hold command or a command for cells makes it brake.
     ///
     /// # Panics
-    /// When there are fewer commands than bodies.
+    /// If there are fewer commands than bodies.
     pub fn advance(&mut self, commands: &[Command<f32>]) {
         assert!(commands.len() >= self.discs.len(), "a command for each body");
         let (land, space) = (self.terrain.as_ref(), self.space);
@@ -330,7 +327,7 @@ impl Plane {
             disc.velocity_mps = [v.x, v.y, v.z];
             disc.go();
             if space.period().is_some() {
-                // Heights do not close.
+                // The height is not periodic.
                 let [x, y, _] = space.fold(disc.position_m);
                 (disc.position_m[0], disc.position_m[1]) = (x, y);
             }
@@ -342,8 +339,8 @@ impl Plane {
         self.intruders.iter_mut().for_each(Disc::go);
     }
 
-    /// How near bodies are to each other, to obstacles and to intruders now. O(bodies x (neighbours + obstacles near by +
-    /// intruders)); when no body is near an obstacle, O(bodies x obstacles).
+    /// Current distances between bodies, obstacles and intruders. O(bodies x (neighbours +
+    /// obstacles in range + intruders)); if no body is near an obstacle, O(bodies x obstacles).
     pub fn clearance(&mut self) -> Clearance {
         self.centers.clear();
         self.centers.extend(self.discs.iter().map(|disc| disc.position_m));
@@ -357,7 +354,7 @@ impl Plane {
                 one
             },
         );
-        // Whoever was not looked at is farther off than that.
+        // Obstacles outside the index are farther away than this.
         if !self.solids().is_empty() && clearance.solids_m > close_m - self.largest_m {
             let gaps = bodies().map(|(_, disc)| self.solid_gap_m(disc, f64::INFINITY));
             clearance.solids_m = gaps.reduce(|| f64::INFINITY, f64::min);
@@ -365,16 +362,15 @@ impl Plane {
         clearance
     }
 
-    /// How far the nearest of the obstacles within `within_m` is from a body's surface, metres.
+    /// Distance between a body's surface and the nearest obstacle within `within_m`, metres.
     fn solid_gap_m(&self, disc: &Disc, within_m: f64) -> f64 {
         let gaps = self.solids.near(disc.position_m, within_m).map(|solid| solid.distance_m(disc.position_m));
         gaps.fold(f64::INFINITY, f64::min) - disc.radius_m
     }
 
-    /// What one body adds to it: each pair counts with its first body.
+    /// Contribution of one body; a pair counts at its first body.
     fn clearance_of(&self, number: usize, found: &mut Vec<Found<f64, 3>>) -> Clearance {
         let disc = &self.discs[number];
-        // There are no more than 2^32 - 1.
         let number = number as u32;
         let mut clearance = Clearance::FREE;
         let query = Query { at: disc.position_m, radius: self.reach_m, most: usize::MAX, except: Some(number) };
@@ -411,7 +407,6 @@ impl Plane {
 }
 
 impl Disc {
-    /// Goes on for a tick as it goes.
     fn go(&mut self) {
         for (place, speed) in self.position_m.iter_mut().zip(self.velocity_mps) {
             *place += speed * self.abilities.step_s;
@@ -434,14 +429,14 @@ fn max_speed_mps(land: Option<&Terrain>, shut: &[(Cell, u8)], abilities: &Abilit
     abilities.max_speed_mps / f64::from(ticks)
 }
 
-/// The cells of the land under a body. O(cells).
+/// Terrain cells under a body. O(cells).
 fn cells_under(land: &Terrain, disc: &Disc) -> impl Iterator<Item = Cell> {
     let ([x, y, _], r) = (disc.position_m, disc.radius_m);
     let (low, high) = (land.nearest_cell([x - r, y - r]), land.nearest_cell([x + r, y + r]));
     let (cell_m, origin_m) = (land.cell_m, land.origin_m);
     let all = (low.y..=high.y).flat_map(move |row| (low.x..=high.x).map(move |column| Cell::new(column, row)));
     all.filter(move |cell| {
-        // From the centre to the nearest place of the cell.
+        // Distance from the centre to the nearest point of the cell.
         let off = |at: f64, cells: i16, axis: usize| {
             let west = origin_m[axis] + f64::from(cells) * cell_m;
             (west - at).max(at - west - cell_m).max(0.0)
@@ -455,7 +450,7 @@ fn no_solid(index: usize, count: usize) -> Refusal {
     Refusal::new("index", what, format!("there are {count}, counted from 0"))
 }
 
-/// Whether one of two bodies is in the other's downwash: an ellipsoid that is higher than wide.
+/// Whether one of two bodies is in the other's downwash, an ellipsoid higher than wide.
 fn is_washed(one: &Disc, other: &Disc) -> bool {
     let high = one.downwash.max(other.downwash);
     let [x, y, z] = [0, 1, 2].map(|axis| other.position_m[axis] - one.position_m[axis]);

@@ -1,41 +1,40 @@
-//! What somebody can put into the plane.
+//! Shapes of obstacles that interventions add.
 
 use super::super::Refusal;
 use serde::{Deserialize, Serialize};
 
-/// Farthest coordinate, metres.
+/// Largest coordinate, metres.
 pub const FAR_M: f64 = 1e6;
-/// Points of a polygon at most.
 const POINTS: usize = 1000;
 
-/// What stands in the plane.
+/// Shape of an added obstacle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
-    /// A disc, as high as there is anything.
+    /// An upright cylinder of unlimited height.
     Circle {
-        /// Its centre.
+        /// Centre, metres.
         center_m: [f64; 2],
-        /// Its radius.
+        /// Radius, metres.
         radius_m: f64,
     },
     /// A wall without thickness.
     Segment {
-        /// One end.
+        /// One end, metres.
         from_m: [f64; 2],
-        /// The other.
+        /// The other end, metres.
         to_m: [f64; 2],
     },
     /// Walls around a polygon.
     Polygon {
-        /// Its corners.
+        /// Corners, metres.
         points_m: Vec<[f64; 2]>,
     },
     /// A ball.
     Ball {
-        /// Its centre.
+        /// Centre, metres.
         center_m: [f64; 3],
-        /// Its radius.
+        /// Radius, metres.
         radius_m: f64,
     },
 }
@@ -50,10 +49,10 @@ impl Shape {
         }
     }
 
-    /// Whether it is something, somewhere.
+    /// Checks coordinates, radius and number of corners.
     ///
     /// # Errors
-    /// What is wrong, and what to give instead.
+    /// Names the error and the remedy.
     pub fn check(&self) -> Result<(), Refusal> {
         let (coordinates, radius_m) = self.numbers();
         if coordinates.iter().any(|x| x.abs().partial_cmp(&FAR_M).is_none_or(std::cmp::Ordering::is_gt)) {

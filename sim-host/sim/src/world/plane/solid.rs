@@ -1,4 +1,4 @@
-//! What stands in the plane and does not move.
+//! Static obstacles in the plane.
 
 use super::shape::Shape;
 use serde::{Deserialize, Serialize};
@@ -8,18 +8,18 @@ use staya_controller::obstacle::Obstacle;
 /// An obstacle in world coordinates, metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Solid {
-    /// An upright wall of no thickness between two points.
+    /// An upright wall without thickness between two points.
     Wall([[f64; 2]; 2]),
-    /// A ball, in the plane a disc.
+    /// A ball; in the plane a disc.
     Ball {
-        /// Its centre.
+        /// Centre.
         center_m: [f64; 3],
-        /// Its radius.
+        /// Radius.
         radius_m: f64,
     },
-    /// Everything behind a plane.
+    /// A half-space.
     Plane {
-        /// A point of the plane.
+        /// A point on its border.
         point_m: [f64; 3],
         /// Unit vector out of the obstacle.
         normal: [f64; 3],
@@ -27,7 +27,7 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// What somebody has put into the plane.
+    /// The obstacles that a shape consists of.
     #[must_use]
     pub fn of(shape: &Shape) -> Vec<Self> {
         match shape {
@@ -43,7 +43,7 @@ impl Solid {
         }
     }
 
-    /// The same elsewhere, metres.
+    /// The obstacle, displaced by (`x`, `y`) metres.
     #[must_use]
     pub fn moved(&self, [x, y]: [f64; 2]) -> Self {
         let flat = |point: [f64; 2]| [point[0] + x, point[1] + y];
@@ -55,7 +55,7 @@ impl Solid {
         }
     }
 
-    /// The obstacle as it is seen from a place: relative to it, to the precision of `f64`.
+    /// The obstacle relative to a position, in the precision of `f64`.
     #[must_use]
     pub fn seen_from(&self, place_m: [f64; 3]) -> Obstacle<f64> {
         let flat = |point: [f64; 2]| Vec2::new(point[0] - place_m[0], point[1] - place_m[1]);
@@ -70,19 +70,18 @@ impl Solid {
         }
     }
 
-    /// Distance from a place to the obstacle, metres; negative inside.
+    /// Distance from a position to the obstacle, metres; negative inside.
     #[must_use]
     pub fn distance_m(&self, place_m: [f64; 3]) -> f64 {
         match (self.seen_from(place_m).nearest_point(), *self) {
             (Some((_, distance_m)), _) => distance_m,
-            // In the very centre.
             (None, Self::Ball { radius_m, .. }) => -radius_m,
             (None, _) => f64::INFINITY,
         }
     }
 }
 
-/// An obstacle in the controller's numbers; robot-relative, so that they are small.
+/// Converts an obstacle to `f32`; its coordinates must be relative to the robot.
 pub fn narrow(obstacle: &Obstacle<f64>) -> Obstacle<f32> {
     let flat = |v: Vec2<f64>| Vec2::new(v.x as f32, v.y as f32);
     let way = |v: Vec3<f64>| Vec3::new(v.x as f32, v.y as f32, v.z as f32);

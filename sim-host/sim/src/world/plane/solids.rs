@@ -1,16 +1,16 @@
-//! Which obstacles are near a place, without a look at all of them.
+//! Spatial index of obstacles.
 
 use super::solid::Solid;
 
-/// Up to so many are looked at one by one.
+/// Up to this number, obstacles are searched without an index.
 const FEW: usize = 8;
-/// What rounding may lose of a distance, metres, within 2000 km of the origin and more.
+/// Bound on the rounding error of a distance, metres, within 2000 km of the origin and more.
 const MARGIN_M: f64 = 1e-6;
 
-/// Obstacles, with a grid whose squares each list those that can be within a reach of a place in them.
+/// Obstacles with a grid. Each square lists the obstacles within the reach of any position in it.
 ///
-/// Bytes: 4 for each square (at most 16 for each obstacle) and for each entry of a list (at most 256 for each obstacle):
-/// where more would be needed, squares are larger and lists longer.
+/// Bytes: 4 for each square (at most 16 per obstacle) and for each list entry (at most 256 per
+/// obstacle). If more would be needed, squares are larger and lists longer.
 #[derive(Clone, Debug)]
 pub struct Solids {
     all: Vec<Solid>,
@@ -20,49 +20,47 @@ pub struct Solids {
 
 #[derive(Clone, Debug, Default)]
 struct Grid {
-    /// South-west corner, metres.
     low_m: [f64; 2],
-    /// Of a square, metres.
     side_m: f64,
     /// Squares along each axis; 0: there is no grid.
     counts: [usize; 2],
-    /// Where the list of each square begins in `listed`, and the end of the last.
+    /// Start of each square's list in `listed`, and the end of the last.
     starts: Vec<usize>,
-    /// Places in the list of all, rising in each square.
+    /// Indices of obstacles, sorted within each square.
     listed: Vec<u32>,
-    /// Half-spaces: they are everywhere.
+    /// Half-spaces; they are in every list.
     endless: Vec<u32>,
 }
 
 impl Solids {
-    /// These, found within `reach_m` of any place.
+    /// Creates an index that finds obstacles within `reach_m` of any position.
     #[must_use]
     pub fn new(all: Vec<Solid>, reach_m: f64) -> Self {
         let grid = Grid::lay(&all, reach_m);
         Self { all, reach_m, grid }
     }
 
-    /// All of them.
+    /// All obstacles.
     #[must_use]
     pub fn all(&self) -> &[Solid] {
         &self.all
     }
 
-    /// How far from a place they are found without a look at all, metres.
+    /// Search radius of the index, metres.
     #[must_use]
     pub const fn reach_m(&self) -> f64 {
         self.reach_m
     }
 
-    /// Changes them, and lays the grid anew.
+    /// Changes the obstacles and rebuilds the index.
     pub fn change<T>(&mut self, change: impl FnOnce(&mut Vec<Solid>) -> T) -> T {
         let changed = change(&mut self.all);
         self.grid = Grid::lay(&self.all, self.reach_m);
         changed
     }
 
-    /// All that are within `within_m` of a place, and perhaps others, in their order. O(those within the reach); O(all)
-    /// when `within_m` is more than that.
+    /// All obstacles within `within_m` of a position, and possibly others, in their order.
+    /// O(obstacles within the reach); O(all) if `within_m` is larger than the reach.
     pub fn near(&self, place_m: [f64; 3], within_m: f64) -> impl Iterator<Item = &Solid> {
         let is_laid = self.grid.counts[0] > 0 && within_m <= self.reach_m;
         let (listed, all) = if is_laid { (self.grid.list(place_m), &[][..]) } else { (&[][..], self.all.as_slice()) };
@@ -80,7 +78,7 @@ impl Grid {
             return Self::default();
         }
         let mut grid = Self { low_m, side_m: reach_m.max(1e-3) / 2.0, ..Self::default() };
-        // Doubling the side ends: at last there is one square.
+        // The loop ends because doubling the side leads to a single square.
         let squares = |grid: &Self, [from, to]: [[usize; 2]; 2]| -> f64 {
             (0..2).map(|axis| (to[axis].min(grid.counts[axis] - 1) - from[axis] + 1) as f64).product()
         };
@@ -97,7 +95,6 @@ impl Grid {
         grid
     }
 
-    /// The squares that a box touches, first and last along each axis.
     fn span(&self, bounds: [[f64; 2]; 2]) -> [[usize; 2]; 2] {
         bounds.map(|corner| {
             [0, 1].map(|axis| {
@@ -135,7 +132,7 @@ impl Grid {
     fn list(&self, [x, y, _]: [f64; 3]) -> &[u32] {
         let [column, row] = [(x - self.low_m[0]) / self.side_m, (y - self.low_m[1]) / self.side_m];
         let [columns, rows] = self.counts;
-        // Beyond there is nothing within reach; nor is a place that is not a number.
+        // Outside the grid no obstacle is within reach; NaN positions also end here.
         if !(column >= 0.0 && column < columns as f64 && row >= 0.0 && row < rows as f64) {
             return &self.endless;
         }
@@ -144,7 +141,7 @@ impl Grid {
     }
 }
 
-/// Seen from above: never farther than it is.
+/// Projection to the plane, which does not increase distances.
 fn flat(solid: &Solid) -> Solid {
     match *solid {
         Solid::Ball { center_m: [x, y, _], radius_m } => Solid::Ball { center_m: [x, y, 0.0], radius_m },
@@ -152,7 +149,7 @@ fn flat(solid: &Solid) -> Solid {
     }
 }
 
-/// The box around it, from above; `None` when it has no end.
+/// Bounding box from above; `None` if it is unbounded.
 fn bounds(solid: &Solid) -> Option<[[f64; 2]; 2]> {
     match *solid {
         Solid::Wall([a, b]) => Some([[a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), a[1].max(b[1])]]),
@@ -195,7 +192,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_near_is_what_a_look_at_all_finds(
+        fn the_index_finds_the_same_obstacles_as_a_full_search(
             all in proptest::collection::vec(solid(), 0..60),
             reach_m in 0.0..20.0_f64,
             share in 0.0..1.2_f64,
@@ -220,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_few_are_looked_at() {
+    fn few_of_many_obstacles_are_visited() {
         let ball = |index: u32| Solid::Ball {
             center_m: [f64::from(index % 40) * 10.0, f64::from(index / 40) * 10.0, 0.0],
             radius_m: 1.0,
@@ -231,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn far_apart_or_everywhere_they_still_fit_into_memory() {
+    fn distant_or_dense_obstacles_fit_into_memory() {
         let far = |index: u32| Solid::Wall([[f64::from(index), -1e6], [-f64::from(index), 1e6]]);
         let solids = Solids::new((0..1000).map(far).collect(), 1.0);
         assert!(solids.grid.listed.len() <= 256_000 && solids.grid.starts.len() <= 16_001);

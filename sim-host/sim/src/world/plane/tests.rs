@@ -18,7 +18,7 @@ fn go(x: f32, y: f32) -> Command<f32> {
 }
 
 #[test]
-fn a_body_goes_as_told_within_its_speed() {
+fn a_body_follows_commands_within_its_speed_limit() {
     let mut plane = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]);
     plane.advance(&[go(1.0, -0.5)]);
     assert_eq!(plane.discs()[0].position_m, [0.5, -0.25, 0.0]);
@@ -43,7 +43,7 @@ fn inertia_takes_time() {
 }
 
 #[test]
-fn rough_land_slows_down_and_walls_are_no_place_to_be() {
+fn rough_land_slows_bodies_and_walls_count_as_intrusions() {
     let mut terrain = Terrain::flat(3, 1);
     terrain.cell_m = 10.0;
     terrain.set(Cell::new(1, 0), 4);
@@ -61,7 +61,7 @@ fn rough_land_slows_down_and_walls_are_no_place_to_be() {
 }
 
 #[test]
-fn clearances_and_overlaps_are_those_of_the_surfaces() {
+fn clearances_and_overlaps_are_between_surfaces() {
     let wall = Solid::Wall([[2.0, -5.0], [2.0, 5.0]]);
     let ball = Solid::Ball { center_m: [-3.0, 0.0, 0.0], radius_m: 1.0 };
     let floor = Solid::Plane { point_m: [0.0, 0.0, -8.0], normal: [0.0, 0.0, 1.0] };
@@ -78,7 +78,7 @@ fn clearances_and_overlaps_are_those_of_the_surfaces() {
 }
 
 #[test]
-fn bodies_of_different_sizes_and_speeds_move_and_touch_as_each_of_them_does() {
+fn each_body_has_its_own_size_and_speed() {
     let large = Disc { radius_m: 2.0, ..disc(1, 0.0, 0.0) };
     let fast = Abilities { max_speed_mps: 8.0, ..ABILITIES };
     let quick = Disc { radius_m: 0.25, abilities: fast, ..disc(2, 2.5, 0.0) };
@@ -90,7 +90,7 @@ fn bodies_of_different_sizes_and_speeds_move_and_touch_as_each_of_them_does() {
 }
 
 #[test]
-fn intruders_go_through_everything_and_are_counted_by_themselves() {
+fn intruders_pass_through_everything_and_are_counted_separately() {
     let intruder = Disc { velocity_mps: [-40.0, 0.0, 0.0], ..disc(9, 21.0, 0.0) };
     let mut plane = Plane::new(None, vec![], vec![disc(1, 0.0, 0.0)]).with_intruders(vec![intruder]);
     assert_eq!(plane.clearance().intruders_m, 20.0);
@@ -103,7 +103,7 @@ fn intruders_go_through_everything_and_are_counted_by_themselves() {
 }
 
 #[test]
-fn who_is_below_another_one_is_in_its_downwash_and_who_is_beside_it_is_not() {
+fn downwash_is_below_a_body_and_not_beside_it() {
     let washed = |downwash: f64, x: f64, z: f64| {
         let one = Disc { downwash, ..disc(1, 0.0, 0.0) };
         let other = Disc { position_m: [x, 0.0, z], ..disc(2, 0.0, 0.0) };
@@ -117,9 +117,10 @@ fn who_is_below_another_one_is_in_its_downwash_and_who_is_beside_it_is_not() {
     assert_eq!(washed(1.0, 0.0, -1.1), (0, 0));
 }
 
-/// Obstacles far away and near by, so many that they have a grid: the least gap and who overlaps are those of a look at all.
+/// Many obstacles near and far, so that they have a grid: the smallest gap and the overlaps equal
+/// those of a full search.
 #[test]
-fn the_nearest_of_many_obstacles_counts_wherever_it_is() {
+fn the_nearest_of_many_obstacles_is_found_anywhere() {
     let ball = |x: f64, y: f64| Solid::Ball { center_m: [x, y, 0.0], radius_m: 1.0 };
     let solids: Vec<_> = (0..400).map(|index| ball(f64::from(index % 20) * 9.0, f64::from(index / 20) * 9.0)).collect();
     for at in [[4.5, 4.5], [3.0, 0.5], [-60.0, 20.0], [500.0, -500.0], [90.2, 89.9]] {

@@ -1,7 +1,7 @@
 use super::super::*;
 
 #[test]
-fn a_body_flies_nose_first_and_level_from_side_to_side() {
+fn the_nose_points_along_the_velocity_and_the_wings_are_level() {
     let velocities: [[f64; 3]; 7] = [
         [3.0, 0.0, 0.0],
         [0.0, -2.0, 0.5],
@@ -21,7 +21,6 @@ fn a_body_flies_nose_first_and_level_from_side_to_side() {
         {
             assert!((dot(a, b) - product).abs() < 1e-12, "{velocity:?}: {a:?} {b:?}");
         }
-        // Right-handed, level, and never upside down.
         let cross = [r1[1] * r2[2] - r1[2] * r2[1], r1[2] * r2[0] - r1[0] * r2[2], r1[0] * r2[1] - r1[1] * r2[0]];
         assert!(length(minus(cross, r3)) < 1e-12 && r2[2] == 0.0 && r3[2] >= 0.0, "{velocity:?}: {r2:?} {r3:?}");
     }

@@ -16,7 +16,7 @@ fn meter(params: &LatticeParams<f64>) -> EnergyMeter<2> {
     EnergyMeter::new(params).expect("sound")
 }
 
-/// One step of the bare law by the engine's rule (first the velocity, then the place), everybody knowing all at once.
+/// One step of the law by the engine's rule: velocity first, then position.
 fn step(params: &LatticeParams<f64>, dt: f64, places: &mut [[f64; 2]], velocities: &mut [[f64; 2]]) {
     let vec = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0);
     let changes: Vec<Vec3<f64>> = (0..places.len())
@@ -49,7 +49,7 @@ fn step(params: &LatticeParams<f64>, dt: f64, places: &mut [[f64; 2]], velocitie
     }
 }
 
-/// Thirty robots at places of no order, about as dense as a lattice, each with a velocity of its own.
+/// Thirty robots at irregular positions, about as dense as a lattice, with different velocities.
 fn crowd() -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     let share = |i: u32, by: f64| (f64::from(i) * by).fract();
     let place = |i| [50.0 * share(i, 0.618_033_988_7), 50.0 * share(i, 0.414_213_562_4)];
@@ -98,7 +98,7 @@ fn lattice_of(places: &[[f64; 2]], scale: f64) -> Vec<[f64; 2]> {
     places.iter().map(|place| place.map(|c| c * scale)).collect()
 }
 
-/// Largest rise of H in a step over all that is lost, in 20 s of steps of `dt`.
+/// Largest rise of H in a step over the total decrease, in 20 s of steps of `dt`.
 fn largest_rise(algorithm: Algorithm, dt: f64) -> f64 {
     let params = params(algorithm);
     let mut meter = meter(&params);
@@ -114,7 +114,7 @@ fn largest_rise(algorithm: Algorithm, dt: f64) -> f64 {
 }
 
 #[test]
-fn the_hamiltonian_falls_at_each_of_the_papers_steps() {
+fn the_hamiltonian_falls_in_each_step_of_the_papers_length() {
     for algorithm in [Algorithm::One, Algorithm::Two] {
         for dt in [0.01, 0.03] {
             let rise = largest_rise(algorithm, dt);
@@ -129,7 +129,7 @@ fn steps_that_are_too_long_gain_energy() {
     assert!(rise > 1e-2, "{rise}");
 }
 
-/// The largest rise of H in a step over what it was at first.
+/// Largest rise of H in a step, relative to its initial value.
 fn largest_rise_or_blast(dt: f64) -> f64 {
     let params = params(Algorithm::Two);
     let mut meter = meter(&params);

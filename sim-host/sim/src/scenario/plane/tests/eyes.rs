@@ -10,7 +10,7 @@ fn eyes(text: &str) -> Eyes {
 }
 
 #[test]
-fn the_smallest_eyes_have_the_documented_defaults() {
+fn minimal_sensors_have_the_documented_defaults() {
     let found = eyes(&format!("{HEAD}tick_s = 0.05\n{PLANE}{EYES}{TWO}"));
     assert_eq!((found.noise_m, found.every_ticks, found.delay_ticks), (0.0, 1, 0));
     assert!(found.is_occluded && found.has_beacons && !found.sees_names);
@@ -21,13 +21,13 @@ fn the_smallest_eyes_have_the_documented_defaults() {
 }
 
 #[test]
-fn who_looks_seldom_and_late_remembers_for_longer() {
+fn rare_and_late_detections_are_remembered_longer() {
     let found = eyes(&format!("{HEAD}tick_s = 0.05\n{PLANE}{EYES}every_ticks = 4\ndelay_ticks = 2\n{TWO}"));
     assert_eq!(found.tracking.forget, Duration::from_millis(14 * 50));
 }
 
 #[test]
-fn eyes_that_make_no_sense_are_refused_with_a_remedy() {
+fn invalid_sensors_are_refused_with_a_remedy() {
     let cases = [
         (format!("{PLANE}[plane.eyes]\nrange_m = 0\n{TWO}"), "plane.eyes.range_m"),
         (format!("{PLANE}{EYES}noise_m = -1\n{TWO}"), "plane.eyes.noise_m"),

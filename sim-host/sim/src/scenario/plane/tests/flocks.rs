@@ -2,7 +2,7 @@ use super::*;
 use staya_controller::flock::lattice::{Algorithm, ReferenceMotion};
 
 #[test]
-fn a_goal_that_stays_may_give_rest_and_one_that_moves_may_not() {
+fn only_a_stationary_goal_may_have_a_rest_distance() {
     let motion = |fields: &str| {
         let text = format!(
             "{HEAD}tick_s = 0.02\n{PLANE}guidance = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\
@@ -34,7 +34,7 @@ fn a_goal_that_stays_may_give_rest_and_one_that_moves_may_not() {
 }
 
 #[test]
-fn a_torus_is_for_boids_alone_and_has_whole_millimetres() {
+fn a_torus_is_only_for_boids_and_in_whole_millimetres() {
     let plane = "[plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"boids\"\n";
     let boids = "[plane.boids]\ncrowded_m = 1\nclosest_m = 4\n";
     let text = |fields: &str, starts: &str, more: &str| {
@@ -53,7 +53,7 @@ fn a_torus_is_for_boids_alone_and_has_whole_millimetres() {
         (text("torus_m = [8.5, 8]", two, ""), "plane.robots: robot 2 starts beside the torus"),
         (text("torus_m = [9, 8]", "{ start_m = [0, 0, 1] }", ""), "at height 0"),
         (text("torus_m = [9, 8]", two, "[[plane.ball]]\ncenter_m = [4, 4]\nradius_m = 1\n"), "know of no torus"),
-        // Over the seam.
+        // Across the border.
         (text("torus_m = [9, 8]", "{ start_m = [0, 0] }, { start_m = [8.8, 0] }", ""), "robots 1 and 2 overlap"),
         (lattice, "plane.torus_m: robots with guidance \"waypoint\" know of no torus"),
     ] {

@@ -1,25 +1,23 @@
-//! Robots that differ, places on the way, intruders.
+//! Groups of different robots, waypoints, and intruders.
 
 use super::*;
 
-/// Robots of a group that goes from cell to cell.
 fn by_route(list: &str) -> String {
     format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{list}]\n")
 }
 
-/// Two robots of a group in formation.
 fn in_formation(fields: &str) -> String {
     let formation = format!("{{ rows = 1, columns = 2, spacing = [2, 2], {fields} }}");
     format!("{HEAD}{LAND}{PLANE}[[plane.group]]\nguidance = \"formation\"\nrobots.formation = {formation}\n")
 }
 
 #[test]
-fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() {
+fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
     let after = |rest: &str| format!("{HEAD}{PLANE}{TWO}{rest}");
     let robots = |robots: &str| format!("{HEAD}{PLANE}[plane.robots]\n{robots}\n");
     let group = |fields: &str| after(&format!("[[plane.group]]\n{fields}\nrobots.list = [{{ start_m = [9, 9] }}]\n"));
     let cases = [
-        // What goes from cell to cell beside others.
+        // Groups that move from cell to cell.
         (
             format!(
                 "{HEAD}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{{ start_m = [1, 1], goal_m = [9, 1] }}]\n"
@@ -109,7 +107,7 @@ fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() 
             robots("list = [{ start_m = [0, 0], max_speed_mps = 0 }]"),
             "s.toml:7: plane.robots.list[0].max_speed_mps: 0 is out of range",
         ),
-        // Ways.
+        // Waypoints.
         (
             robots("list = [{ start_m = [0, 0], via_m = [[1, 0]] }]"),
             "s.toml:7: plane.robots.list[0].via_m: a way needs an end; give goal_m too",
@@ -158,7 +156,7 @@ fn mistakes_in_groups_ways_and_intruders_are_named_with_line_field_and_remedy() 
 }
 
 #[test]
-fn groups_and_robots_differ_in_what_they_say_and_share_the_rest() {
+fn groups_and_robots_override_fields_and_inherit_the_rest() {
     let text = format!(
         "{HEAD}{PLANE}sight_m = 5\nsafety = \"template_2k\"\norca = {{ share = 0.6 }}\n{}\
          [[plane.group]]\nradius_m = 0.5\nmax_speed_mps = 2\nrobots.list = [{{ start_m = [9, 9], goal_m = [0, 9] }}, \
@@ -185,13 +183,13 @@ fn groups_and_robots_differ_in_what_they_say_and_share_the_rest() {
     assert_eq!((large.cruise_mps, large.tolerance_m, large.sight_m), (2.0, 0.05, 5.0));
     let ways: Vec<_> = plane.starts[1].places.iter().map(|target| target.position_m).collect();
     assert_eq!(ways, [[3.0, 3.0, 0.0], [2.0, 2.0, 0.0], [0.0; 3]]);
-    // Robots of the last group are drawn between those before them, and overlap none.
+    // Robots of the last group are placed at random between those before them, without overlaps.
     assert_eq!((plane.starts.len(), plane.group(12).guidance.kind()), (13, GuidanceKind::Boids));
     assert_eq!(plane.group(12).safety, SafetySetup::None);
 }
 
 #[test]
-fn groups_in_metres_stand_beside_robots_in_cells_and_may_go_from_cell_to_cell() {
+fn groups_in_metres_mix_with_robots_in_cells_and_may_use_routes() {
     let text =
         by_route("{ start_m = [1, 1], goal_m = [9, 5] }").replace("[plane]\n", "[plane]\nguidance = \"route\"\n");
     let text = format!(
@@ -212,7 +210,7 @@ fn groups_in_metres_stand_beside_robots_in_cells_and_may_go_from_cell_to_cell() 
 }
 
 #[test]
-fn formations_of_groups_are_told_apart_by_numbers_and_flocks_by_numbers_that_are_no_places() {
+fn formations_differ_by_ids_and_flock_numbers_are_not_places() {
     let one = in_formation("start = [0, 0], goal = [0, 8]");
     let text = format!(
         "{one}[[plane.group]]\nguidance = \"formation\"\nsafety = \"none\"\nradius_m = 0.3\n\

@@ -1,9 +1,9 @@
-//! What is allowed and hardly meant.
+//! Warnings about valid but probably unintended settings.
 
 use super::super::remarks;
 use super::*;
 
-/// What is said of robots with these starts and goals, and of the rest of a scenario.
+/// Warnings about robots with these starts and goals and the rest of a scenario.
 fn said(robots: &str, rest: &str) -> Vec<String> {
     let scenario = parse(&format!("tick_s = 0.1\n{HEAD}{PLANE}{rest}\n[plane.robots]\nlist = [{robots}]\n"));
     scenario.unwrap_or_else(|error| panic!("{error}")).remarks()
@@ -13,7 +13,7 @@ const YARD: &str = "[[plane.wall]]\npoints_m = [[4, -2], [8, -2], [8, 2], [4, 2]
 const ONE: &str = "{ start_m = [0, 0], goal_m = [6, 0] }";
 
 #[test]
-fn goals_that_nobody_can_be_at_are_remarked_on() {
+fn unreachable_goals_cause_a_warning() {
     assert_eq!(said(ONE, ""), Vec::<String>::new());
     let ball = "[[plane.ball]]\ncenter_m = [6.5, 0]\nradius_m = 0.4\n";
     assert_eq!(
@@ -24,19 +24,19 @@ fn goals_that_nobody_can_be_at_are_remarked_on() {
         said(ONE, YARD),
         ["plane.robots: the goal of robot 1 is on the other side of a closed wall: there is no way there"]
     );
-    // Who is inside already may have its goal there, and an open wall has a way in.
+    // A robot that is already inside may have its goal there, and an open wall has an entrance.
     assert_eq!(said("{ start_m = [5, 1], goal_m = [6, 0] }", YARD), Vec::<String>::new());
     assert_eq!(said(ONE, &YARD.replace("closed = true", "closed = false")), Vec::<String>::new());
     let many: Vec<_> = (0..6).map(|y| format!("{{ start_m = [0, {y}], goal_m = [6, 0] }}")).collect();
     let many = said(&many.join(", "), YARD);
     assert!(many.len() == 1 && many[0].contains("the goal of robots 1, 2, 3 and 3 more is"), "{many:?}");
-    // A yard beside another one, and none of both.
+    // A goal between two yards is inside neither.
     let two = format!("{YARD}{}", YARD.replace("[4, ", "[14, ").replace("[8, ", "[18, "));
     assert_eq!(said("{ start_m = [0, 0], goal_m = [11, 0] }", &two), Vec::<String>::new());
 }
 
 #[test]
-fn goals_at_another_height_need_a_layer_that_goes_there() {
+fn goals_at_another_height_need_a_safety_layer_in_space() {
     let up = "{ start_m = [0, 0, 1], goal_m = [6, 0, 3] }";
     for safety in ["orca", "template_2k"] {
         let said = said(up, &format!("safety = \"{safety}\"\n"));
@@ -48,7 +48,7 @@ fn goals_at_another_height_need_a_layer_that_goes_there() {
 }
 
 #[test]
-fn a_tick_in_which_bodies_pass_each_other_unseen_is_remarked_on() {
+fn a_tick_in_which_a_body_moves_more_than_its_width_causes_a_warning() {
     let of_tick = |tick_s: f64| {
         let text = format!("tick_s = {tick_s}\n{HEAD}{PLANE}[plane.robots]\nlist = [{ONE}]\n");
         parse(&text).expect("good").remarks()
@@ -59,19 +59,19 @@ fn a_tick_in_which_bodies_pass_each_other_unseen_is_remarked_on() {
 }
 
 #[test]
-fn a_closed_wall_that_crosses_itself_is_remarked_on() {
+fn a_closed_wall_that_crosses_itself_causes_a_warning() {
     let bow = "[[plane.wall]]\npoints_m = [[4, 4], [8, 8], [8, 4], [4, 8]]\nclosed = true\n";
     assert_eq!(
         said("{ start_m = [0, 0] }", bow),
         ["plane.wall: sides 1 and 3 of the closed wall that begins at [4, 4] cross: what is inside it is not clear"]
     );
-    // A corner that turns in, and walls that touch at their ends, do not cross.
+    // A concave corner, and walls that touch at their ends, do not cross.
     let notch = "[[plane.wall]]\npoints_m = [[4, 4], [8, 4], [8, 8], [6, 6], [4, 8]]\nclosed = true\n";
     assert_eq!(said("{ start_m = [0, 0] }", notch), Vec::<String>::new());
 }
 
 #[test]
-fn scenarios_of_this_repository_mean_what_they_say() {
+fn scenarios_of_the_repository_cause_no_warnings() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     let files = std::fs::read_dir(folder).expect("scenarios").flatten().map(|entry| entry.path());
     let mut count = 0;
