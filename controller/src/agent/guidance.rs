@@ -22,12 +22,16 @@ use serde::{Deserialize, Serialize};
 /// ```
 /// # use staya_controller::{agent::*, grid::Cell, time::Instant};
 /// # type Route = RouteGuidance<CELLS, VISITS>;
-/// fn sound(grid: &mut RouteAgent, plane: &mut OrcaAgent, cell: OnGrid, free: InPlane<f32>, now: Instant) {
+/// # fn workspace() -> GridWorkspace<CELLS> { GridWorkspace::new() }
+/// fn on_grid(agent: &mut RouteAgent, surroundings: OnGrid, now: Instant) {
 ///     let (state, inbox) = (KinematicState::default(), &[]);
-///     grid.assign_goal(Cell::new(9, 5));
-///     let _ = grid.step(&Inputs { state, surroundings: cell, inbox }, now, &mut GridWorkspace::new());
-///     plane.assign_waypoint(0, &Waypoint::fixed(Default::default()));
-///     let _ = plane.step(&Inputs { state, surroundings: free, inbox }, now, &mut ());
+///     agent.assign_goal(Cell::new(9, 5));
+///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut workspace());
+/// }
+/// fn in_plane(agent: &mut OrcaAgent, surroundings: InPlane<f32>, now: Instant) {
+///     let (state, inbox) = (KinematicState::default(), &[]);
+///     agent.assign_waypoint(0, &Waypoint::fixed(Default::default()));
+///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut ());
 /// }
 /// fn law(law: CellFollower<f32, Route>) -> impl Guidance<f32> { law }
 /// ```
@@ -45,8 +49,8 @@ use serde::{Deserialize, Serialize};
 /// ```compile_fail
 /// # use staya_controller::{agent::*, time::Instant};
 /// fn step(grid: &mut RouteAgent, free: InPlane<f32>, now: Instant) {
-///     let (state, inbox) = (KinematicState::default(), &[]);
-///     let _ = grid.step(&Inputs { state, surroundings: free, inbox }, now, &mut GridWorkspace::new());
+///     let inputs = Inputs { state: KinematicState::default(), surroundings: free, inbox: &[] };
+///     let _ = grid.step(&inputs, now, &mut GridWorkspace::new());
 /// }
 /// ```
 ///
@@ -59,7 +63,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// ```compile_fail
 /// # use staya_controller::agent::*;
-/// fn send(grid: &mut RouteAgent) { grid.assign_waypoint(0, &Waypoint::fixed(Default::default())); }
+/// fn send(grid: &mut RouteAgent, to: &Waypoint<f32>) { grid.assign_waypoint(0, to); }
 /// ```
 ///
 /// A follower of cells around a law without cells:

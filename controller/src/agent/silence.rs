@@ -14,9 +14,9 @@ use serde::{Deserialize, Serialize};
 /// | one neighbour silent | avoids the growing ball in which it may be |
 /// | one neighbour [lost] | avoids its ball, which grows by at most [`max_m`] |
 /// | fewer than half fresh | avoids the balls of all silent robots, then stands |
-/// | all lost | reports [`ContactLost`]; avoids their balls, then stands |
+/// | all lost | reports [`NobodyHeard`]; avoids their balls, then stands |
 /// | all lost for longer than [`remember`](Self::remember) | stands until a robot is in contact |
-/// | all lost, all left radio range | reports [`ContactLost`], moves freely |
+/// | all lost, all left radio range | reports [`NobodyHeard`], moves freely |
 /// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
 /// | never any since power-on | moves freely: it is the first or only robot of its swarm |
 ///
@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 /// [`Room`]: crate::neighbor::Room
 /// [lost]: crate::neighbor::Ages::expire_after
 /// [`max_m`]: crate::neighbor::StalenessInflation::max_m
-/// [`ContactLost`]: super::Event::NobodyHeard
+/// [`NobodyHeard`]: super::Event::NobodyHeard
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Silence<S> {
