@@ -59,7 +59,6 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, cons
     LooksAhead(Large<FormationGuidance<CELLS, M, F, L, Course>>),
 }
 
-/// Applies an expression to the law inside.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {

@@ -48,19 +48,15 @@ pub(super) struct Beside<S> {
     is_beside: bool,
 }
 
-/// The decision of a robot about its occupied place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Claim<S> {
-    /// It goes there.
     Goes,
     /// Another robot goes first; keep this distance, metres.
     Yields(S),
-    /// It has arrived beside the place.
     IsBeside,
 }
 
 impl<S: Scalar> Beside<S> {
-    /// The state of a robot on its way.
     pub(super) const NEW: Self = Self { nearest_m: S::ZERO, idle_m: S::ZERO, is_beside: false };
 
     /// Decides about a stationary goal at offset `way_m`. Call it in each step. O(nearby).

@@ -31,7 +31,6 @@ pub struct CellFollower<S, G> {
     last: Option<Last<S>>,
 }
 
-/// The last decision of the law.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Last<S> {
     cell: Cell,
@@ -47,12 +46,10 @@ impl<S: Scalar, G> CellFollower<S, G> {
         Self { law, speed_mps, last: None }
     }
 
-    /// Cruising speed, m/s.
     pub(super) const fn speed_mps(&self) -> S {
         self.speed_mps
     }
 
-    /// Makes the law decide in the next step.
     pub(super) fn decide_anew(&mut self) {
         self.last = None;
     }

@@ -104,7 +104,6 @@ impl<S: Scalar, G> Commanded<S, G> {
         &self.inside
     }
 
-    /// Starts a new command, and replaces an expired one.
     fn renew(&mut self, now: Instant) {
         let valid = match &mut self.wish {
             Wish::Velocity { valid, .. } => Some(*valid),

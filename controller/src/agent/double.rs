@@ -49,7 +49,6 @@ impl Said {
         Self([0; SAID])
     }
 
-    /// Stores the fingerprint of a message sent with a sequence number.
     pub(super) fn note(&mut self, sequence: u16, message: &Message) {
         if let (Some(said), Some(print)) = (self.0.get_mut(usize::from(sequence) & (SAID - 1)), print(message)) {
             *said = print;
@@ -87,7 +86,6 @@ fn print(message: &Message) -> Option<u16> {
     Some((print >> 16) as u16)
 }
 
-/// The position in a beacon; `None` for other messages.
 pub(super) fn place(message: &Message) -> Option<Position> {
     match message {
         Message::Beacon(beacon) => Some(Position::from_mm(beacon.position_mm)),

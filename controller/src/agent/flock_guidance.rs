@@ -103,7 +103,6 @@ pub struct GoalFlockGuidance<S> {
     arrival_m: S,
     seed: u64,
     goals: Goals<GOALS>,
-    /// The goals that move.
     moving: [Option<Waypoint<S>>; GOALS],
 }
 

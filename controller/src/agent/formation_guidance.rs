@@ -52,11 +52,9 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     travel: Travel,
     pace: Pace,
     leader: RobotId,
-    /// From the leader's place to the own one.
     leader_offset: Cell,
     /// Consecutive decisions with another robot in the place of a neighbour.
     crowded: u8,
-    /// The leader was asked to stop.
     has_asked: bool,
     /// Consecutive decisions in which the robot waited for others.
     waited: u16,
@@ -69,12 +67,10 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     steering: K,
 }
 
-/// The leader as a follower's reference.
 struct Guide {
     anchor: Anchor,
     /// Own deviation behind its place, [`UNIT`](crate::grid::UNIT)s.
     lag: u32,
-    /// The top leader has arrived at its goal.
     has_arrived: bool,
 }
 
@@ -204,7 +200,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.router.weights_over(&self.route, field, shown, (cell, target), others, input.land).ok()
     }
 
-    /// Route of a follower to its place.
     #[inline(never)]
     fn follow<S>(
         &self,
@@ -236,7 +231,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         Some(weights.plus(&price))
     }
 
-    /// The top leader as a reference for a follower.
     fn guide<S>(
         &mut self,
         input: &GuidanceInput<'_, S>,

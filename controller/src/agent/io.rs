@@ -138,7 +138,6 @@ pub struct Refused {
 }
 
 impl Refused {
-    /// Counts an error if it is an authentication failure.
     pub(super) fn count(&mut self, error: DecodeError) {
         let count = match error {
             DecodeError::Unsigned => &mut self.unsigned,

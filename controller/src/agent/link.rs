@@ -27,24 +27,19 @@ const WAYPOINTS: usize = 4;
 /// Capacity of requests received from other robots.
 const ORDERS: usize = 8;
 
-/// Messages that the agent handles itself.
 pub(super) enum News<S> {
-    /// A request to choose another direction.
     Redirect,
     /// A stop or resume request to pass on to the own leader.
     PassOn(Request),
     /// A part of a template for this robot. `is_anew` is true if the sender changed or restarted,
     /// so that its version numbers start anywhere.
     Template { part: TemplateAssignment, is_anew: bool },
-    /// A goal for the top leader of this robot's formation.
     Goal(Cell),
-    /// A patch of another robot's map.
     Land(LandPatch),
     /// Waypoint `index`. Call [`Link::placed`] if it was accepted.
     Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },
 }
 
-/// The state of the link between steps. `P` is the payload of the guidance law.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Link<S, const N: usize, W, P> {
     wire: W,
@@ -55,7 +50,6 @@ pub(super) struct Link<S, const N: usize, W, P> {
     pub(super) company: Company,
     suspects: Suspects,
     loss: LossEstimate,
-    /// One window per entry of the table.
     windows: Vec<(RobotId, SequenceWindow), N>,
     requests: Requests<PENDING>,
     orders: Orders<ORDERS>,
@@ -166,7 +160,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         });
     }
 
-    /// Removes the next frame from the bytes of an inbox.
     pub(super) fn next_frame<'a>(&self, inbox: &mut &'a [u8]) -> Option<&'a [u8]> {
         self.wire.next_frame(inbox)
     }
@@ -280,7 +273,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 }
             }
             Message::Land(patch) => return Some(News::Land(patch)),
-            // A payload of size 0 carries no information.
             Message::Payload(bytes) if size_of::<P>() > 0 && arrival.is_latest() => self.table.tell(id, bytes.get()),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
@@ -334,13 +326,11 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         let _ = self.requests.ask(to, origin, kind, millis, now);
     }
 
-    /// Whether no request is pending.
     #[cfg(test)]
     pub(super) fn is_quiet(&self) -> bool {
         self.requests.is_empty()
     }
 
-    /// Whether a stop request from another robot is active.
     pub(super) fn is_stopped(&mut self, now: Instant) -> bool {
         self.orders.is_stopped(now)
     }
@@ -416,7 +406,6 @@ fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
     core::mem::replace(last, now) != now
 }
 
-/// Adds an event if there is room.
 pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
 }

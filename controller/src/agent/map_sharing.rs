@@ -41,14 +41,12 @@ struct Map<const T: usize> {
 /// Moves with the map without a new least distance to the goal.
 const PATIENCE: u8 = 32;
 
-/// Whether the map brings the robot nearer to its goal.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Progress {
     /// Last cell and goal.
     way: Option<(Cell, Cell)>,
     /// Least squared distance to the goal so far.
     least: u64,
-    /// Moves since then.
     idle: u8,
     /// Limit of `idle`.
     patience: u8,

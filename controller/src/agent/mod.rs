@@ -234,7 +234,6 @@ pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = P
     goal: Option<Goal>,
     /// Number of decisions so far; it keys the random numbers of each decision.
     decisions: u32,
-    /// The results of the last decision that beacons and the next step need.
     last: Last,
 }
 
@@ -246,12 +245,10 @@ enum Goal {
     Formation(Cell),
 }
 
-/// The part of a decision that is kept until the next step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Last {
     situation: Situation,
     target: Cell,
-    /// The own cell on the grid.
     cell: Cell,
     leader: RobotId,
     heading: Dir,

@@ -59,9 +59,7 @@ pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize
     has_chosen: bool,
     /// The temporary target (lines 11 and 19).
     detour: Option<Cell>,
-    /// The leader was asked to stop.
     has_asked: bool,
-    /// A stop request of another robot is active.
     is_stopped: bool,
     /// The last preferred move, which is excluded if another direction is requested.
     choice: Dir,

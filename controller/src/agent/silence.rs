@@ -60,7 +60,6 @@ impl<S: Scalar> Silence<S> {
     }
 }
 
-/// The state of contact with other robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Company {
     /// Never in contact, or all other robots have left radio range.

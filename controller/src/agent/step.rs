@@ -67,7 +67,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.speak(inputs, now, out);
     }
 
-    /// Returns the nearby robots if this robot moves by velocities.
     #[inline(never)]
     fn look(&self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant) -> Vec<Nearby<S>, N> {
         if inputs.surroundings.in_plane().is_none() {
@@ -159,7 +158,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         })
     }
 
-    /// Calls the guidance law if the robot is free to move; returns `None` otherwise.
     #[inline(never)]
     fn decide(
         &mut self,

@@ -16,12 +16,9 @@ use serde::{Deserialize, Serialize};
 /// Decisions after which a robot in the way is asked to choose another direction.
 pub(super) const PATIENCE: u8 = 4;
 
-/// The last decisions of a robot.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Travel {
-    /// The cell of the last decision.
     cell: Option<Cell>,
-    /// The preferred move.
     choice: Dir,
     /// Consecutive decisions to leave this cell.
     attempts: u8,
@@ -38,7 +35,6 @@ impl Travel {
         self.choice
     }
 
-    /// Excludes the last choice from the next decision.
     pub(super) fn redirect(&mut self) {
         self.redirected = true;
     }
@@ -54,7 +50,6 @@ impl Travel {
         self.attempts > PATIENCE
     }
 
-    /// The weights without the last choice.
     pub(super) fn without_last(&self, weights: Weights) -> Weights {
         weights.without(self.choice)
     }
@@ -94,7 +89,6 @@ impl Travel {
     }
 }
 
-/// Returns a robot last known to be in a cell.
 fn occupant<'a, S>(input: &GuidanceInput<'a, S>, cell: Cell) -> Option<&'a Neighbor<S>> {
     input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
 }

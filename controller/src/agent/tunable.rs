@@ -12,7 +12,6 @@ use crate::push_out::PushOutParams;
 use crate::route::RouteParams;
 use crate::scalar::Scalar;
 
-/// A set of parameters, some of which can be tuned.
 pub(super) trait Tunable<S>: Copy {
     /// Returns the value of a parameter, or `None` if the set does not have it.
     fn get(&self, parameter: Parameter) -> Option<S>;
@@ -20,7 +19,6 @@ pub(super) trait Tunable<S>: Copy {
     /// Changes a parameter. Returns whether the set has it. `value` is within [`Parameter::range`].
     fn set(&mut self, parameter: Parameter, value: S) -> bool;
 
-    /// Whether the values are consistent.
     fn is_sound(&self) -> bool {
         true
     }

@@ -22,12 +22,9 @@ const PASSED_RADII: i32 = 3;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
-    /// Index of the current waypoint.
     leg: u8,
     beside: Beside<S>,
-    /// Distance at which the robot counts as arrived, metres.
     tolerance_m: S,
-    /// Cruising speed, m/s; the speed limit of the body holds too.
     speed_mps: S,
 }
 

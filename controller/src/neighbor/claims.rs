@@ -130,11 +130,9 @@ fn is_longer<S: Scalar>(vector: Vec3<S>, length: S) -> bool {
     vector.length_key() > Vec3::new(length, S::ZERO, S::ZERO).length_key()
 }
 
-/// A robot whose positions are in doubt.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Suspect {
     id: RobotId,
-    /// The position that it last reported.
     place: Position,
     /// Start of the mutually reachable positions.
     since: Instant,

@@ -34,7 +34,6 @@ pub struct LossEstimate {
     frames: u16,
     /// Gaps of more than [`SHORT`] frames.
     gaps: u16,
-    /// Gaps that ended.
     ended: u16,
     /// Frames lost in gaps, beyond the first [`SHORT`] of each.
     lost: u16,
@@ -78,7 +77,6 @@ impl LossEstimate {
     /// It is `longest` if 64 periods are not enough, which bounds the work.
     #[must_use]
     pub fn patience(&self, neighbors: usize, period: Duration, longest: Duration) -> Duration {
-        // Q16.
         let chance = |part: u16, whole: u16| {
             ((u32::from(part) + 1) << 16).checked_div(u32::from(whole) + 2).map_or(1 << 16, u64::from)
         };

@@ -351,7 +351,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Moves the last entry to its sorted position.
     fn sort_last(&mut self) {
         sink_last(&mut self.entries, |before, after| (before.is_lost, before.id) > (after.is_lost, after.id));
     }
@@ -400,7 +399,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
 
     /// Number of known robots, which precede the lost ones.
     fn count(&self) -> usize {
-        // Few tables hold a lost robot; the last entry shows whether this one does.
         match self.entries.last() {
             Some(last) if last.is_lost => self.entries.partition_point(|entry| !entry.is_lost),
             _ => self.entries.len(),

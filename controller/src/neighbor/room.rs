@@ -70,7 +70,6 @@ pub struct Room<'a, S> {
     pub may_be_alone: bool,
 }
 
-/// The limit that one robot imposes.
 #[derive(Clone, Copy)]
 struct Limit<S> {
     /// Unit vector towards it.

@@ -40,9 +40,7 @@ pub struct Track<S> {
     pub velocity_variance: S,
     /// Radius of the ball around its body, metres.
     pub radius_m: S,
-    /// Time of the last detection, if recent.
     pub(super) seen: Option<Instant>,
-    /// Time of the last beacon, if any.
     pub(super) heard: Option<Instant>,
     /// The entry of the neighbour table that is already part of this estimate.
     pub(super) known: Option<(Instant, Position)>,
@@ -165,7 +163,6 @@ impl<S: Scalar> Track<S> {
         self.position_variance = known * left;
     }
 
-    /// Updates with a measured velocity of a variance in m^2/s^2.
     fn correct_velocity(&mut self, velocity_mps: Vec3<S>, variance: S) {
         let known = self.velocity_variance;
         let gain = |of: S| of.checked_div(known + variance);

@@ -54,7 +54,6 @@ const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 pub struct Tracker<S> {
     params: TrackParams<S>,
     tracks: Vec<Track<S>, TRACKS>,
-    /// Robots whose tracks were replaced in this step.
     displaced: Vec<Displaced, TRACKS>,
     /// Number of anonymous tracks so far; wraps.
     nameless: u16,
@@ -65,7 +64,6 @@ pub struct Tracker<S> {
 struct Displaced {
     id: RobotId,
     heard: Option<Instant>,
-    /// [`Track::known`].
     known: Option<(Instant, Position)>,
 }
 
@@ -202,7 +200,6 @@ impl<S: Scalar> Tracker<S> {
         })
     }
 
-    /// Starts a track from a detection.
     fn begin(&mut self, id: RobotId, placed: &Placed<'_, S>, own: Position, count: &mut Sighted) {
         let &Placed { sighting, place, at } = placed;
         let mut track = Track::new(id, at, place, sighting.deviation_m, &self.params);

@@ -36,7 +36,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
                 (is_top || concerns(other.id)) == wanted
             });
             for other in others {
-                // Robots beyond the capacity are dropped.
                 let _ = all.push(seen_at(other, self.foresee(input, window, other)));
             }
         }

@@ -33,12 +33,10 @@ pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usiz
     beside: Beside<S>,
     /// The last desired velocity as a leader, m/s.
     wish_mps: Vec2<S>,
-    /// How long it has waited for others without interruption.
     waited: Duration,
     is_there: bool,
 }
 
-/// Position and abilities of the robot in a step.
 struct Step<'a, S> {
     window: Window<'a>,
     cell: Cell,
@@ -48,12 +46,10 @@ struct Step<'a, S> {
 }
 
 impl<S: Scalar> Step<'_, S> {
-    /// Converts a difference of cells to metres.
     fn metres(&self, cells: Cell) -> Vec2<S> {
         Vec2::new(S::from_i32(cells.x.into()) * self.cell_m, S::from_i32(cells.y.into()) * self.cell_m)
     }
 
-    /// The offset of the centre of a cell, metres.
     fn to_middle(&self, cell: Cell) -> Vec2<S> {
         self.metres(cell - self.cell) - self.offset_m
     }
@@ -130,7 +126,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         input.neighbor(id).filter(|_| keeps_touch).map(|leader| (leader, offset))
     }
 
-    /// Refines a decision between cells to a velocity in the plane.
     #[inline(never)]
     fn refine(
         &mut self,
