@@ -8,6 +8,7 @@ use crate::scalar::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Body<S> {
+    /// Own id.
     pub id: RobotId,
     /// Own velocity in the world, m/s.
     pub velocity_mps: Vec3<S>,

@@ -28,13 +28,16 @@ const WAYPOINTS: usize = 4;
 const ORDERS: usize = 8;
 
 pub(super) enum News<S> {
+    /// A request to choose another direction.
     Redirect,
     /// A stop or resume request to pass on to the own leader.
     PassOn(Request),
     /// A part of a template for this robot. `is_anew` is true if the sender changed or restarted,
     /// so that its version numbers start anywhere.
     Template { part: TemplateAssignment, is_anew: bool },
+    /// A goal for the top leader of this robot's formation.
     Goal(Cell),
+    /// A patch of another robot's map.
     Land(LandPatch),
     /// Waypoint `index`. Call [`Link::placed`] if it was accepted.
     Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },

@@ -43,6 +43,7 @@ const LEAVES_FROM: i32 = 750;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Neighbor<S, P = ()> {
+    /// Its id.
     pub id: RobotId,
     /// When the state was received, own clock.
     pub heard: Instant,

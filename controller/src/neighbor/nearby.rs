@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Nearby<S> {
+    /// Its id.
     pub id: RobotId,
     /// Its position minus the own position, metres.
     pub offset_m: Vec3<S>,
