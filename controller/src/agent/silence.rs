@@ -33,8 +33,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Silence<S> {
     /// How long a silent robot is remembered; at most half an hour. Longer: a robot that was
-    /// carried away blocks its place for longer, and one that drives out of range stays known for
-    /// longer. Shorter: a dead robot is hit sooner. Below
+    /// carried away blocks its place for longer, and this robot continues for longer after it left
+    /// the radio range of the others. Shorter: a dead robot is hit sooner. Below
     /// [`Ages::expire_after`](crate::neighbor::Ages::expire_after), no robot is remembered.
     pub remember: Duration,
     /// Speed when all robots are lost, m/s. With 0 the robot stands until another one is in
