@@ -20,9 +20,9 @@ pub struct AgentConfig<S> {
     /// number). After a restart with an unchanged number, other robots ignore this robot until they
     /// have forgotten it; see [`crate::wire::SequenceWindow`].
     pub boot: u8,
-    /// Time base; above 0. On the grid, the time in which the robot crosses a cell of impassability
-    /// 1. For robots that move by velocities, the time between two steps, which the caller must
-    /// keep, since a command is planned for exactly that time.
+    /// Time base; above 0. On the grid, the time to cross a cell of impassability 1. For robots
+    /// that move by velocities, the time between two steps, which the caller must keep, since a
+    /// command is planned for exactly that time.
     pub tick: Duration,
     /// Time between two beacons. A longer period saves airtime, and neighbours work with older
     /// states.

@@ -163,8 +163,8 @@ type Entries<S, const N: usize, P> = crate::list::Seldom<Neighbor<S, P>, N>;
 /// At most `N` robots, sorted by id: first the known robots, then the lost ones that are
 /// remembered.
 ///
-/// Bytes: `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the payload), plus
-/// 16. With the feature `host`, only the memory of the stored robots.
+/// Bytes: `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the payload), and
+/// 16 more. With the feature `host`, only the memory of the stored robots.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTable<S, const N: usize, P = ()> {
     entries: Entries<S, N, P>,
