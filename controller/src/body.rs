@@ -1,32 +1,33 @@
-//! What a robot knows of its own body: all that guidance and collision avoidance need of it.
+//! The state and limits of the robot's own body that guidance and collision avoidance use.
 
 use crate::geom::Vec3;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 
-/// The own body right now.
+/// The robot's own body at the current step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Body<S> {
-    /// Own number.
+    /// Own id.
     pub id: RobotId,
     /// Own velocity in the world, m/s.
     pub velocity_mps: Vec3<S>,
-    /// Radius of the ball around it, metres.
+    /// Radius of the ball around the body, metres.
     pub radius_m: S,
-    /// How fast it can go where it is, m/s.
+    /// Highest speed at the current place, m/s.
     pub max_speed_mps: S,
-    /// How fast it can change its velocity, m/s^2; [`Scalar::MAX`] when that plays no part.
+    /// Largest acceleration, m/s^2; [`Scalar::MAX`] for a body without inertia.
     pub max_acceleration_mps2: S,
-    /// Time from one decision to the next, seconds; more than 0.
+    /// Time between two decisions, seconds; above 0.
     pub step_s: S,
 }
 
 impl<S: Scalar> Body<S> {
-    /// The velocity nearest to `wish_mps` that the body can have after one step: within its
-    /// acceleration and its speed. What is not a number counts as zero.
+    /// Returns the velocity nearest to `wish_mps` that the body can have after one step, within its
+    /// acceleration and speed limits, m/s. A component of the wish that is not a number counts as
+    /// zero.
     ///
-    /// A body that is faster than it should be (it came upon rough land) slows down first.
+    /// A body above its speed limit (it has just entered rough terrain) slows down first.
     #[must_use]
     pub fn reach(&self, wish_mps: Vec3<S>) -> Vec3<S> {
         let wish = wish_mps.clamp_norm(self.max_speed_mps);
@@ -61,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_without_inertia_does_what_it_wishes_within_its_speed() {
+    fn a_body_without_inertia_takes_any_velocity_within_its_speed() {
         let body = body([1.0, 0.0], 2.0, f32::MAX);
         let wish = Vec3::new(-1.0, 0.5, 0.0);
         assert_eq!(body.reach(wish), wish);
@@ -80,17 +81,17 @@ mod tests {
     }
 
     #[test]
-    fn a_body_with_inertia_gets_there_in_steps() {
+    fn a_body_with_inertia_changes_velocity_in_steps() {
         let body = body([1.0, 0.0], 2.0, 1.0);
         assert_eq!(body.reach(Vec3::new(-2.0, 0.0, 0.0)).x, 0.5);
         assert_eq!(body.reach(Vec3::new(1.25, 0.0, 0.0)).x, 1.25);
-        // Too fast for where it is now.
+        // Faster than the speed limit of its current place.
         assert_eq!(Body { max_speed_mps: 0.25, ..body }.reach(Vec3::ZERO).x, 0.5);
     }
 
     proptest! {
         #[test]
-        fn the_change_is_bounded_and_finite(v in any::<[i8; 2]>(), wish: [u32; 2], most in 0.1f32..9.0) {
+        fn the_change_of_velocity_is_bounded_and_finite(v in any::<[i8; 2]>(), wish: [u32; 2], most in 0.1f32..9.0) {
             let v = v.map(f32::from);
             let wish = wish.map(f32::from_bits);
             let body = body(v, 3.0, most);

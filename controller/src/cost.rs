@@ -1,13 +1,13 @@
-//! What moves cost: integers, so that host and device agree to the bit.
+//! Costs of moves as integers, identical on host and device.
 //!
-//! A cost is time: the unit is 1/[`TICK`] of a tick, a tick being the time in which a robot
-//! crosses a cell of impassability 1. Behaviours give each of the eight moves a weight and add
-//! their weights up (A. V. Kuznetsov 2017, KUZ, section 7: "it is simplest to add them").
+//! A cost is a time in units of 1/[`TICK`] of a tick; a tick is the time in which a robot crosses a
+//! cell of impassability 1. Behaviours give each of the eight moves a weight and add their weights
+//! (A. V. Kuznetsov 2017, KUZ, section 7: "it is simplest to add them").
 
 use crate::grid::{Dir, UNIT};
 use serde::{Deserialize, Serialize};
 
-/// A cost in units of 1/[`TICK`] tick; [`EXCLUDED`] when there is no way.
+/// A cost in units of 1/[`TICK`] tick; [`EXCLUDED`] if no route exists.
 pub type Cost = u32;
 
 /// Cost of crossing one cell of impassability 1 by an axis move with gain 1.
@@ -22,7 +22,7 @@ pub const EXCLUDED: Cost = Cost::MAX;
 pub struct Gain(u16);
 
 impl Gain {
-    /// Bits behind the point.
+    /// Number of fractional bits.
     pub const FRACTION_BITS: u32 = 4;
     /// 0: the term has no effect.
     pub const ZERO: Self = Self(0);
@@ -54,42 +54,43 @@ impl Gain {
     }
 }
 
-/// What each of the eight moves costs at best: for a route, the least T over the routes that begin
-/// with it and do not return to the robot's cell (KUZ eq. 8).
+/// The best cost of each of the eight moves. For a route, it is the least T over the routes that
+/// begin with the move and do not return to the robot's cell (KUZ eq. 8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Weights([Cost; 8]);
 
 impl Weights {
-    /// No move is open.
+    /// Weights with all moves closed.
     pub const CLOSED: Self = Self([EXCLUDED; 8]);
 
-    /// Weights from the costs of the moves in the order of [`Dir::MOVES`].
+    /// Creates weights from the costs of the moves in the order of [`Dir::MOVES`].
     #[must_use]
     pub const fn new(costs: [Cost; 8]) -> Self {
         Self(costs)
     }
 
-    /// The weight of a move; [`EXCLUDED`] for closed ones and for [`Dir::Stay`].
+    /// Returns the weight of a move; [`EXCLUDED`] for closed moves and for [`Dir::Stay`].
     #[must_use]
     pub fn get(&self, dir: Dir) -> Cost {
         self.0.get(dir.index()).copied().unwrap_or(EXCLUDED)
     }
 
-    /// Replaces the weight of a move; `Stay` has none.
+    /// Sets the weight of a move; ignored for `Stay`.
     pub fn set(&mut self, dir: Dir, cost: Cost) {
         if let Some(slot) = self.0.get_mut(dir.index()) {
             *slot = cost;
         }
     }
 
-    /// The cheapest move, the first of equals in the order of [`Dir::MOVES`]; `None` if all are closed.
+    /// Returns the cheapest move, the first of equals in the order of [`Dir::MOVES`]; `None` if all
+    /// are closed.
     #[must_use]
     pub fn best(&self) -> Option<Dir> {
         self.iter().filter(|&(_, cost)| cost != EXCLUDED).min_by_key(|&(_, cost)| cost).map(|(dir, _)| dir)
     }
 
-    /// The sum of both for each move; a move that is closed in one of them stays closed.
+    /// Adds the weights of each move. A move that is closed in one of them stays closed.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         for (dir, cost) in other.iter() {
@@ -110,7 +111,7 @@ impl Weights {
         self
     }
 
-    /// All moves with their weights.
+    /// Iterates over all moves and their weights.
     pub fn iter(&self) -> impl Iterator<Item = (Dir, Cost)> + '_ {
         Dir::MOVES.into_iter().zip(self.0)
     }
@@ -121,7 +122,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sums_close_no_move_that_both_leave_open() {
+    fn a_sum_keeps_moves_open_that_are_open_in_both() {
         let costs = |first, second| {
             let mut weights = Weights::new([1; 8]);
             weights.set(Dir::East, first);

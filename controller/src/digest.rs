@@ -1,25 +1,26 @@
-//! A fingerprint of any state: equal states, equal digests, on every target.
+//! A hash of any state: equal states have equal digests on every target.
 //!
-//! [`digest`] walks a value with serde and mixes its numbers in order. Widths of `usize`, the order of fields in memory and
-//! padding play no part; the sign and payload of NaN, which differ between processors, neither. It tells states
-//! apart that differ by accident; it is no protection against somebody who wants them to collide.
+//! [`digest`] walks a value with serde and mixes its numbers in order. It does not depend on the
+//! width of `usize`, the order of fields in memory, padding, or the sign and payload of NaN, which
+//! differ between processors. It detects accidental differences; it does not resist deliberate
+//! collisions.
 
 use core::fmt::{self, Display};
 use serde::ser::{self, Impossible, Serialize};
 
-/// The fingerprint of a state. O(its numbers): a multiplication of 64 bits each.
+/// Returns the hash of a state. O(numbers in the state), with a 64-bit multiplication each.
 ///
-/// Values made of numbers, booleans, options, enums, tuples, structs and sequences; what else serde knows
-/// (text, maps, bytes) counts as nothing.
+/// It covers numbers, booleans, options, enums, tuples, structs and sequences. Text, maps and byte
+/// strings are ignored.
 #[must_use]
 pub fn digest<T: Serialize + ?Sized>(value: &T) -> u64 {
     let mut state = Digest(0xCBF2_9CE4_8422_2325);
-    // What cannot be walked is the same on all targets too.
+    // A value that cannot be walked stops the walk at an identical point on all targets.
     let _ = value.serialize(&mut state);
     state.0
 }
 
-/// Two digests in order as one.
+/// Combines two digests in order.
 #[must_use]
 pub const fn chained(before: u64, next: u64) -> u64 {
     let mut state = Digest(before);
@@ -28,25 +29,25 @@ pub const fn chained(before: u64, next: u64) -> u64 {
     state.0
 }
 
-/// State that no digest counts, for `#[serde(with = "uncounted")]`: keys, and what says nothing more than the rest. It is to
-/// be kept and moved all the same.
+/// State that digests omit, for `#[serde(with = "uncounted")]`: keys, and values derived from other
+/// state. It is still serialised.
 pub mod uncounted {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     pub(super) const NAME: &str = "$uncounted";
 
-    /// As it is, but for digests.
+    /// Serialises the value, except for digests.
     ///
     /// # Errors
-    /// The serializer's.
+    /// Those of the serializer.
     pub fn serialize<T: Serialize + ?Sized, Z: Serializer>(value: &T, serializer: Z) -> Result<Z::Ok, Z::Error> {
         serializer.serialize_newtype_struct(NAME, value)
     }
 
-    /// What [`serialize`] wrote.
+    /// Deserialises a value written by [`serialize`].
     ///
     /// # Errors
-    /// The deserializer's.
+    /// Those of the deserializer.
     pub fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
         T::deserialize(deserializer)
     }
@@ -55,8 +56,8 @@ pub mod uncounted {
 struct Digest(u64);
 
 impl Digest {
-    /// A bijection of the state for each word, so that no difference is lost. Not inlined: a state has hundreds of words,
-    /// and firmware would pay for each.
+    /// A bijection of the state for each word, so that no difference is lost. Not inlined, because
+    /// a state has hundreds of words and firmware would pay for each.
     #[inline(never)]
     const fn mix(&mut self, word: u32) {
         let mixed = (self.0 ^ word as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -69,7 +70,6 @@ impl Digest {
     }
 }
 
-/// Something that is not walked.
 #[derive(Debug)]
 struct NotWalked;
 
@@ -87,7 +87,7 @@ impl ser::Error for NotWalked {
     }
 }
 
-/// Numbers of up to 32 bits.
+/// Implements numbers of up to 32 bits.
 macro_rules! words {
     ($($name:ident: $number:ty),*) => {
         $(fn $name(self, value: $number) -> Result<(), NotWalked> {
@@ -183,7 +183,7 @@ impl ser::Serializer for &mut Digest {
     }
 
     fn serialize_seq(self, len: Option<usize>) -> Result<Self, NotWalked> {
-        // A sequence and what follows it must not be taken for another one.
+        // The length distinguishes a sequence and its successor from another split.
         self.mix(len.map_or(u32::MAX, |len| len as u32));
         Ok(self)
     }
@@ -235,7 +235,7 @@ impl ser::Serializer for &mut Digest {
     }
 }
 
-/// What has parts: one after the other.
+/// Implements values with parts, in order.
 macro_rules! parts {
     ($($name:ident::$part:ident),*) => {
         $(impl ser::$name for &mut Digest {
@@ -260,7 +260,7 @@ parts!(
     SerializeTupleVariant::serialize_field
 );
 
-/// What has parts with names: the names play no part.
+/// Implements values with named parts; names are ignored.
 macro_rules! named_parts {
     ($($name:ident),*) => {
         $(impl ser::$name for &mut Digest {
@@ -326,13 +326,13 @@ mod tests {
 
     #[test]
     fn digests_are_pinned() {
-        // What firmware in the field and a host of another version compare.
+        // Firmware in the field and hosts of other versions compare these values.
         assert_eq!(digest(&7_u8), 0x1E15_259D_950C_7521);
         assert_eq!(digest(&Q16::from_i32(-2)), digest(&-131_072_i32));
     }
 
     #[test]
-    fn all_nans_are_one() {
+    fn all_nans_have_one_digest() {
         let nan = f32::from_bits(0xFFC0_0001);
         assert!(nan.is_nan());
         assert_eq!(digest(&nan), digest(&f32::NAN));
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_uncounted_is_kept_and_does_not_count() {
+    fn uncounted_state_is_serialised_but_not_digested() {
         #[derive(Serialize, serde::Deserialize, PartialEq, Debug)]
         struct Robot {
             #[serde(with = "uncounted")]

@@ -1,21 +1,21 @@
 //! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixint")]`.
 //!
-//! Postcard writes integers in 7-bit groups (varint): short for small numbers, up to half longer
-//! for large ones. Positions and times are large, and a fixed width keeps the greatest length of a
-//! frame near the usual one. The bytes are those of `postcard::fixint::le`, which knows plain
-//! integers only.
+//! Postcard writes integers in 7-bit groups (varint), which is short for small numbers and up to
+//! half longer for large ones. Positions and times are large, and a fixed width keeps the greatest
+//! length of a frame near the usual one. The bytes equal those of `postcard::fixint::le`, which
+//! supports plain integers only.
 
 use crate::grid::Cell;
 use crate::time::Instant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A value that always takes the same number of bytes.
+/// A value with a fixed number of bytes.
 pub(crate) trait Fixed: Copy {
-    /// Its bytes: an array, or an array of arrays.
+    /// An array of bytes, or an array of arrays.
     type Bytes: Serialize + for<'de> Deserialize<'de>;
-    /// To bytes, least significant first.
+    /// Converts to bytes, least significant first.
     fn to_bytes(self) -> Self::Bytes;
-    /// From bytes; every combination is a value.
+    /// Converts from bytes; every combination is valid.
     fn from_bytes(bytes: Self::Bytes) -> Self;
 }
 

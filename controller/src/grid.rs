@@ -1,5 +1,5 @@
-//! The lattice: cells, the eight unit moves, norms, the borrowed window of terrain, and the one
-//! place that converts between cells and metres.
+//! The grid: cells, the eight unit moves, norms, the borrowed window of terrain, and the conversion
+//! between cells and metres.
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3. Cells are (x, y), x east and y north.
 
@@ -9,10 +9,11 @@ use crate::scalar::Scalar;
 use core::ops::{Add, Sub};
 use serde::{Deserialize, Serialize};
 
-/// Fixed-point cost units per cell of an axis move: sqrt 2 is 99/70, off by 5.1e-5 relative.
+/// Fixed-point cost units per cell of an axis move: sqrt 2 is 99/70, with a relative error of
+/// 5.1e-5.
 ///
-/// All route costs, formation distances and tick counts of the grid use this unit, so that host
-/// and device agree to the bit.
+/// All route costs, formation distances and tick counts of the grid use this unit, so results on
+/// host and device are identical.
 pub const UNIT: u32 = 70;
 /// Cost units of a diagonal move under the Euclidean norm.
 pub const DIAGONAL: u32 = 99;
@@ -84,10 +85,10 @@ named! {
     /// The norm of a unit move (KUZ section 2: a parameter).
     #[derive(Default)]
     pub enum Norm {
-        /// A diagonal move is sqrt 2 long.
+        /// A diagonal move has length sqrt 2.
         #[default]
         Euclidean = "euclidean",
-        /// A diagonal move is 1 long.
+        /// A diagonal move has length 1.
         Chebyshev = "chebyshev",
     }
 }
@@ -111,7 +112,7 @@ pub enum Dir {
 }
 
 impl Dir {
-    /// The eight moves in the order of their numbers.
+    /// The eight moves in the order of their indices.
     pub const MOVES: [Self; 8] = [
         Self::East,
         Self::NorthEast,
@@ -123,13 +124,13 @@ impl Dir {
         Self::SouthEast,
     ];
 
-    /// The number of the move, 0..=7, or 8 for `Stay`.
+    /// The index of the move, 0..=7, or 8 for `Stay`.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// The move with that number; anything above 7 is `Stay`.
+    /// The move with that index; `Stay` for an index above 7.
     #[must_use]
     pub fn from_index(index: u8) -> Self {
         Self::MOVES.get(usize::from(index)).copied().unwrap_or(Self::Stay)
@@ -151,7 +152,7 @@ impl Dir {
         }
     }
 
-    /// The move from one cell to an adjacent one (or the same); `None` when farther apart.
+    /// The move from one cell to an adjacent or identical one; `None` if they are farther apart.
     #[must_use]
     pub fn between(from: Cell, to: Cell) -> Option<Self> {
         let step = to - from;
@@ -164,7 +165,7 @@ impl Dir {
         matches!(self, Self::NorthEast | Self::NorthWest | Self::SouthWest | Self::SouthEast)
     }
 
-    /// Length of the move in [`UNIT`]s; `Stay` counts as one cell, the price of waiting.
+    /// Length of the move in [`UNIT`]s. `Stay` counts as one cell, the cost of waiting.
     #[must_use]
     pub const fn length(self, norm: Norm) -> u32 {
         match norm {
@@ -176,8 +177,8 @@ impl Dir {
 
 /// A rectangle of terrain around the robot, borrowed from the caller for one step.
 ///
-/// `cells` holds the impassability of each cell, row by row from the south-west corner:
-/// 1..=255 ticks to cross, or [`BLOCKED`]. Cells outside the rectangle are unknown.
+/// `cells` holds the impassability of each cell, row by row from the south-west corner: 1..=255
+/// ticks to cross, or [`BLOCKED`]. Cells outside the rectangle are unknown.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Window<'a> {
@@ -188,7 +189,8 @@ pub struct Window<'a> {
 }
 
 impl<'a> Window<'a> {
-    /// A window whose south-west cell is `origin`; `None` unless `cells` has `width * height` entries.
+    /// Creates a window whose south-west cell is `origin`; `None` unless `cells` has `width *
+    /// height` entries.
     #[must_use]
     pub fn new(cells: &'a [u8], origin: Cell, width: u16, height: u16) -> Option<Self> {
         let fits = cells.len() == usize::from(width) * usize::from(height);
@@ -219,7 +221,7 @@ impl<'a> Window<'a> {
         self.cells
     }
 
-    /// Position of `cell` in [`Window::cells`]; `None` outside.
+    /// Index of `cell` in [`Window::cells`]; `None` outside of the window.
     #[must_use]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let dx = u16::try_from(i32::from(cell.x) - i32::from(self.origin.x)).ok()?;
@@ -228,15 +230,15 @@ impl<'a> Window<'a> {
         inside.then(|| usize::from(dy) * usize::from(self.width) + usize::from(dx))
     }
 
-    /// The part of the window within `radius` cells (Chebyshev) of `center`: its south-west cell, width
-    /// and height; width or height is 0 when there is none.
+    /// Returns the part of the window within `radius` cells (Chebyshev) of `center`: its south-west
+    /// cell, width and height. Width or height is 0 if they do not intersect.
     #[must_use]
     pub fn cut(&self, center: Cell, radius: u8) -> (Cell, u16, u16) {
         let radius = i32::from(radius);
         let span = |center: i16, origin: i16, size: u16| {
             let low = (i32::from(center) - radius).max(i32::from(origin));
             let high = (i32::from(center) + radius).min(i32::from(origin) + i32::from(size) - 1);
-            // Between two i16 values: the origin's and the centre's, or no farther west.
+            // Between two i16 values, those of the origin and the centre, or not farther west.
             (low as i16, u16::try_from(high - low + 1).unwrap_or(0))
         };
         let (west, width) = span(center.x, self.origin.x, self.width);
@@ -244,33 +246,34 @@ impl<'a> Window<'a> {
         (Cell::new(west, south), width, height)
     }
 
-    /// Impassability of `cell`: `None` when outside the window, `Some(BLOCKED)` for a wall.
+    /// Impassability of `cell`: `None` outside of the window, `Some(BLOCKED)` for a wall.
     #[must_use]
     pub fn get(&self, cell: Cell) -> Option<u8> {
         self.cells.get(self.index(cell)?).copied()
     }
 
-    /// All cells with their impassability, row by row from the south-west corner. Those beyond the range of coordinates are its last.
+    /// Iterates over all cells and their impassability, row by row from the south-west corner.
+    /// Cells beyond the coordinate range are clamped to it.
     pub fn iter(&self) -> impl Iterator<Item = (Cell, u8)> + '_ {
         let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
         let cell = |(x, y): (u16, u16)| self.origin + Cell::new(x.cast_signed(), y.cast_signed());
         rows.map(cell).zip(self.cells.iter().copied())
     }
 
-    /// Whether `cell` is known and passable.
+    /// Whether `cell` is visible and passable.
     #[must_use]
     pub fn is_passable(&self, cell: Cell) -> bool {
         self.get(cell).is_some_and(|u| u != BLOCKED)
     }
 }
 
-/// Where the grid lies in the world: the one place that converts between cells and metres.
+/// The position of the grid in the world, for conversions between cells and metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GridFrame<S> {
     /// World position of the south-west corner of cell (0, 0), metres.
     pub origin_m: Vec2<S>,
-    /// Side of a cell, metres; more than 0.
+    /// Side length of a cell, metres; above 0.
     pub cell_m: S,
 }
 
@@ -285,7 +288,7 @@ impl<S: Scalar> GridFrame<S> {
         )
     }
 
-    /// The cell that holds a world position; `None` outside the coordinate range or for NaN.
+    /// The cell that contains a world position; `None` outside of the coordinate range or for NaN.
     #[must_use]
     pub fn cell(&self, position_m: Vec2<S>) -> Option<Cell> {
         let index = |at: S, origin: S| -> Option<i16> {
@@ -306,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn every_move_is_found_again_and_has_unit_chebyshev_length() {
+    fn every_move_is_recovered_from_its_cells_and_has_unit_chebyshev_length() {
         for dir in Dir::MOVES {
             let from = Cell::new(-3, 7);
             assert_eq!(Dir::between(from, from + dir.offset()), Some(dir));
@@ -332,14 +335,14 @@ mod tests {
     }
 
     #[test]
-    fn window_shows_each_cell_where_it_is() {
+    fn window_cells_have_their_positions() {
         let window = Window::new(&[1, 2, 3, 4, 5, BLOCKED], Cell::new(-1, 10), 3, 2).unwrap();
         assert_eq!(window.iter().count(), 6);
         assert!(window.iter().all(|(cell, u)| window.get(cell) == Some(u)));
     }
 
     #[test]
-    fn window_answers_only_inside() {
+    fn window_covers_only_its_rectangle() {
         let cells = [1, 2, 3, 4, 5, BLOCKED];
         let window = Window::new(&cells, Cell::new(-1, 10), 3, 2).unwrap();
         assert_eq!(window.get(Cell::new(-1, 10)), Some(1));

@@ -1,14 +1,16 @@
 #![doc = include_str!("../README.md")]
-//!
 //! ## Layers
 //!
-//! Modules use only what stands before them:
-//! numbers, geometry, names and what robots are called ([`names`], [`scalar`], [`geom`], [`time`], [`rand`], [`grid`],
-//! [`cost`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`]) < what is known of oneself and of others ([`body`],
-//! [`neighbor`], [`template`], [`wire`]) < behaviours ([`route`], [`formation`], [`orca`], [`flock`], [`push_out`];
-//! they never import each other) < composition ([`supervisor`], [`agent`]).
+//! Modules use only modules of an earlier layer:
+//!
+//! 1. Numbers, geometry, names and ids: [`names`], [`scalar`], [`geom`], [`time`], [`rand`],
+//!    [`grid`], [`cost`], [`shuffle`], [`obstacle`], [`land`], [`robot`], [`auth`].
+//! 2. State of the own robot and of its neighbours: [`body`], [`neighbor`], [`template`], [`wire`].
+//! 3. Behaviours, which never import each other: [`route`], [`formation`], [`orca`], [`flock`],
+//!    [`push_out`].
+//! 4. Composition: [`supervisor`], [`agent`].
 #![no_std]
-// What may panic has no place on a robot; tests may.
+// Code that may panic is denied on a robot and allowed in tests.
 #![cfg_attr(
     not(test),
     deny(
@@ -66,7 +68,8 @@ pub mod supervisor;
 pub mod template;
 pub mod time;
 #[cfg(feature = "wire")]
-// Numbers from the air: where one is added to, it is meant to wrap, or the reason is there why it cannot.
+// Decoded values come from the radio: each addition is meant to wrap, or a comment says why it
+// cannot overflow.
 #[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
 
@@ -88,7 +91,7 @@ const _: () = {
     }
 };
 
-/// Of the profile that tests are built with.
+/// Checks the build profile of the tests.
 #[cfg(all(test, debug_assertions))]
 mod tests {
     #[test]

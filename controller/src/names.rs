@@ -1,23 +1,24 @@
-//! One word for each value of an enum, the same in files, on command lines and in reports.
+//! Enums with one name per value, identical in files, on command lines and in reports.
 //!
-//! `named!` makes the enum and its words in one place: serde's, [`Display`]'s, [`FromStr`](core::str::FromStr)'s and a
-//! list of all. A firmware that reads and prints none of them has none of them in it.
+//! `named!` defines the enum together with its names for serde, [`Display`] and
+//! [`FromStr`](core::str::FromStr), and a list of all values. Firmware that does not use them does
+//! not contain them.
 
 use core::fmt::{self, Debug, Display, Formatter};
 use core::marker::PhantomData;
 
-/// An enum whose values have names, in `snake_case`.
+/// An enum whose values have names in `snake_case`.
 pub trait Named: Copy + PartialEq + 'static {
-    /// All values, each with its name.
+    /// All values with their names.
     const NAMES: &'static [(&'static str, Self)];
 
-    /// The name, as scenario files have it.
+    /// Returns the name, as in scenario files.
     fn name(self) -> &'static str;
 
-    /// The value of that name; dashes may stand for underscores. O(values).
+    /// Returns the value with that name; dashes may replace underscores. O(values).
     ///
     /// # Errors
-    /// [`UnknownName`] if no value has it.
+    /// [`UnknownName`] if no value has that name.
     fn from_name(name: &str) -> Result<Self, UnknownName<Self>> {
         let is_same = |own: &str| own.len() == name.len() && own.bytes().zip(name.bytes()).all(|(a, b)| is_like(a, b));
         let found = Self::NAMES.iter().find(|(own, _)| is_same(own));
@@ -25,12 +26,12 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Whether `given` can stand for the letter of a name.
+/// Whether a given letter matches a letter of a name.
 const fn is_like(own: u8, given: u8) -> bool {
     own == given || (own == b'_' && given == b'-')
 }
 
-/// A word that names no value of `T`.
+/// A word that does not name a value of `T`.
 pub struct UnknownName<T>(PhantomData<T>);
 
 impl<T> Debug for UnknownName<T> {
@@ -48,7 +49,7 @@ impl<T> PartialEq for UnknownName<T> {
 impl<T> Eq for UnknownName<T> {}
 
 impl<T: Named> Display for UnknownName<T> {
-    /// All names that there are.
+    /// Lists all valid names.
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         formatter.write_str("give one of ")?;
         for (index, (name, _)) in T::NAMES.iter().enumerate() {
@@ -61,7 +62,7 @@ impl<T: Named> Display for UnknownName<T> {
 
 impl<T: Named> core::error::Error for UnknownName<T> {}
 
-/// An enum of plain values, each with its name: `Variant = "name"`.
+/// Defines an enum of plain values with names: `Variant = "name"`.
 macro_rules! named {
     ($(#[$outer:meta])* pub enum $name:ident {
         $($(#[$inner:meta])* $variant:ident = $word:literal),* $(,)?
@@ -74,7 +75,7 @@ macro_rules! named {
         }
 
         impl $name {
-            /// As scenario files have it.
+            /// Returns the name, as in scenario files.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -114,13 +115,10 @@ mod tests {
     use std::string::ToString;
 
     named! {
-        /// How to go on.
         #[derive(Default)]
         pub enum Way {
-            /// As before.
             #[default]
             Straight = "straight",
-            /// Elsewhere.
             OffToTheLeft = "off_to_the_left",
         }
     }
@@ -136,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_names_nothing_is_told_what_there_is() {
+    fn an_unknown_name_lists_the_valid_ones() {
         for wrong in ["", "Straight", "straigh", "straight ", "off-to-the-", "off to the left"] {
             let error = wrong.parse::<Way>().expect_err(wrong);
             assert_eq!(error.to_string(), "give one of straight, off_to_the_left");

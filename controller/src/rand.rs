@@ -1,7 +1,8 @@
-//! A small seeded generator: integers only, hence the same sequence on every target.
+//! A small seeded random generator that uses integers only, so its sequence is identical on every
+//! target.
 //!
 //! Random numbers are a function of a key, never of a shared stream: [`Rng::keyed`] gives each
-//! (seed, purpose, robot, tick) its own generator, so that neither the order of robots nor the
+//! (seed, purpose, robot, tick) its own generator. Therefore neither the order of robots nor the
 //! number of threads can change a result.
 //!
 //! Source: SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators",
@@ -10,10 +11,10 @@
 use crate::scalar::integer::log2_q32;
 use core::num::NonZeroU64;
 
-/// The odd integer nearest to 2^64 / golden ratio: steps of the state never fall into a pattern.
+/// The odd integer nearest to 2^64 / golden ratio, so that steps of the state do not form patterns.
 const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// A bijection of 64-bit words in which each bit of the input reaches all bits of the output.
+/// A bijection of 64-bit words in which each input bit affects all output bits.
 const fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -22,7 +23,7 @@ const fn mix(mut z: u64) -> u64 {
 
 /// A generator of random numbers; 8 bytes of state, period 2^64.
 ///
-/// Not `Copy`: two copies would silently repeat each other.
+/// Not `Copy`, because two copies would silently repeat each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rng {
@@ -30,16 +31,16 @@ pub struct Rng {
 }
 
 impl Rng {
-    /// The generator of a seed; any seed is good, also 0.
+    /// Creates the generator of a seed; any seed is valid, including 0.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
-    /// The generator of a key.
+    /// Creates the generator of a key.
     ///
-    /// `purpose` is a constant of the caller that keeps its uses of randomness apart. With three of
-    /// the inputs fixed, no two values of the fourth give the same generator.
+    /// `purpose` is a constant of the caller that separates its uses of random numbers. If three of
+    /// the inputs are fixed, different values of the fourth give different generators.
     #[must_use]
     pub const fn keyed(seed: u64, purpose: u32, robot: u32, tick: u32) -> Self {
         let who = ((purpose as u64) << 32) | robot as u64;
@@ -59,10 +60,10 @@ impl Rng {
         (self.next_u64() >> 32) as u32
     }
 
-    /// Uniform in `0..n`; 0 when `n` is 0. Always one draw.
+    /// Uniform in `0..n`; 0 if `n` is 0. Always one draw.
     ///
-    /// A 64-bit multiplication in place of rejection keeps the work bounded; a value's probability
-    /// is off by less than 2^-32 of itself.
+    /// It multiplies in 64 bits instead of rejecting draws, which bounds the work. The relative
+    /// error of each probability is below 2^-32.
     pub const fn below(&mut self, n: u32) -> u32 {
         let bits = self.next_u64();
         let low = (bits & 0xFFFF_FFFF) * n as u64;
@@ -75,17 +76,17 @@ impl Rng {
         self.next_u32()
     }
 
-    /// True with probability `p` (Q0.32): 0 is never, `u32::MAX` is always. Always one draw.
+    /// True with probability `p` (Q0.32): never for 0, always for `u32::MAX`. Always one draw.
     pub const fn chance_q32(&mut self, p: u32) -> bool {
         let drawn = self.unit_q32();
         p == u32::MAX || drawn < p
     }
 
-    /// A sample of the exponential distribution with mean 1 in Q16.16: at least 2^-16 (so that
-    /// dividing it by a weight keeps its meaning), at most 44.37; off by less than 3e-5 from the
-    /// exact logarithm of the same draw.
+    /// A sample of the exponential distribution with mean 1 in Q16.16: at least 2^-16 (so that it
+    /// can be divided by a weight), at most 44.37. The error is below 3e-5 compared with the exact
+    /// logarithm of the draw.
     pub fn exponential_q16(&mut self) -> u32 {
-        // A draw of 0 counts as 1: the logarithm is always finite.
+        // A draw of 0 counts as 1, so the logarithm is always finite.
         let draw = NonZeroU64::new(self.next_u64()).unwrap_or(NonZeroU64::MIN);
         negative_ln_q16(draw).max(1)
     }
@@ -94,7 +95,7 @@ impl Rng {
 /// -ln(k / 2^64) in Q16.16, rounded to nearest.
 fn negative_ln_q16(k: NonZeroU64) -> u32 {
     const LN_2_Q24: u64 = 11_629_080;
-    // log2 stays below 64 (tested at the end), and 64 * 2^32 * LN_2_Q24 < 2^62.
+    // log2 stays below 64 (tested at the ends), and 64 * 2^32 * LN_2_Q24 < 2^62.
     let log2 = (64 << 32) - log2_q32(k);
     ((log2 * LN_2_Q24 + (1 << 39)) >> 40) as u32
 }

@@ -1,14 +1,15 @@
-//! Who a robot is, and what it is doing as a whole.
+//! The id and the mode of a robot.
 
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// A robot's number, 1 to 2^31 - 2^16 - 1; 0 means nobody (the paper's "anyone").
+/// The id of a robot, 1 to 2^31 - 2^16 - 1; 0 stands for no robot (the paper's "anyone").
 ///
-/// Each robot has one of its own. When two have the same by mistake, those that hear both know one of them as its
-/// [double](Self::double): the numbers from 2^31 on are for these. Those before them are for whom a robot [sees](Self::local).
+/// Ids must be unique. If two robots use one id by mistake, robots in range of both know one of
+/// them under its [duplicate id](Self::double), from 2^31 on. The 2^16 ids below are
+/// [local](Self::local): a robot assigns them to detected robots without an id.
 ///
-/// 32 bits, because a simulated swarm has up to a million robots; small numbers stay small on the
+/// It has 32 bits because a simulated swarm has up to a million robots. Small ids are short on the
 /// wire (varint).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -16,35 +17,36 @@ use serde::{Deserialize, Serialize};
 pub struct RobotId(pub u32);
 
 impl RobotId {
-    /// Nobody in particular; as an addressee: everybody.
+    /// No particular robot; as a receiver, all robots.
     pub const NOBODY: Self = Self(0);
 
-    /// Whether this is the number of a robot.
+    /// Whether this is not [`RobotId::NOBODY`].
     #[must_use]
     pub const fn is_somebody(self) -> bool {
         self.0 != 0
     }
 
-    /// Somebody whose number nobody has told, as number `n` of those whom a robot [sees](crate::neighbor::Tracker): one of the last 2^16 numbers
-    /// before those of doubles. It means something to that robot alone; no robot should be given one.
+    /// The id of anonymous robot `n` among the robots that a robot
+    /// [detects](crate::neighbor::Tracker). It is valid on that robot only, and must not be
+    /// assigned to a robot.
     #[must_use]
     pub const fn local(n: u16) -> Self {
         Self(FIRST_LOCAL | n as u32)
     }
 
-    /// Whether it is one of [`RobotId::local`].
+    /// Whether this is a [`RobotId::local`] id.
     #[must_use]
     pub const fn is_local(self) -> bool {
         self.0 & !0xFFFF == FIRST_LOCAL
     }
 
-    /// What a second robot of this number is known as; a number that nobody has.
+    /// The id under which a second robot with this id is known; no robot uses it itself.
     #[must_use]
     pub const fn double(self) -> Self {
         Self(self.0 | DOUBLE)
     }
 
-    /// The number of the robot that this is the double of; `None` when it is none.
+    /// The shared id, if this is a duplicate id.
     #[must_use]
     pub const fn doubled(self) -> Option<Self> {
         if self.0 & DOUBLE == 0 { None } else { Some(Self(self.0 & !DOUBLE)) }
@@ -61,42 +63,43 @@ impl fmt::Display for RobotId {
     }
 }
 
-/// Set in the numbers of doubles.
+/// This bit is set in duplicate ids.
 const DOUBLE: u32 = 1 << 31;
 
-/// The first of those that a robot gives to whom it sees.
+/// The first local id.
 const FIRST_LOCAL: u32 = DOUBLE - (1 << 16);
 
-/// What the robot is doing as a whole; see [`crate::supervisor`].
+/// The current activity of a robot; see [`crate::supervisor`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum Mode {
-    /// No goal yet.
+    /// It has no goal.
     #[default]
     Idle,
-    /// Taking its place in the formation, before or during travel.
+    /// It takes its place in the formation, before or during travel.
     Forming,
-    /// On the way to its target.
+    /// It is on the way to its goal.
     Cruise,
-    /// Standing because somebody asked or no way is open.
+    /// It stands because it was asked to, or because no route is open.
     Hold,
-    /// At its target.
+    /// It is at its goal.
     Arrived,
-    /// Own input is missing or wrong; standing.
+    /// It stands because an input is missing or invalid.
     Fault,
-    /// Its agent does not steer it: the motors are off, or somebody else does.
+    /// Its agent does not steer it: the motors are off, or another controller steers.
     Passive,
 }
 
 impl Mode {
-    /// Whether it wants to go nowhere: it has arrived, or nobody has sent it.
+    /// Whether it does not intend to move: it has arrived, or has no goal.
     #[must_use]
     pub const fn is_parked(self) -> bool {
         matches!(self, Self::Idle | Self::Arrived)
     }
 
-    /// Whether its agent steers it at all, be it to stand, so that others can count on its giving way.
+    /// Whether its agent steers it, even if only to stand, so that other robots can rely on it
+    /// giving way.
     #[must_use]
     pub const fn gives_way(self) -> bool {
         !matches!(self, Self::Fault | Self::Passive)

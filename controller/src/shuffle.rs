@@ -1,17 +1,19 @@
-//! The weighted shuffle: moves in random order, cheap ones likelier in front.
+//! The weighted shuffle: moves in random order, with cheap moves more likely to come first.
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), section 7, item 3; Efraimidis and Spirakis 2006, "Weighted random sampling with
-//! a reservoir", algorithm A: sort by key = Exp(1) / w'. The paper leaves open how a cost w becomes a priority w'; here
-//! w' = 2^(-(w - least) / h): the priority halves with every h of extra cost, so that only differences between moves
-//! matter and h says what difference is noticed. Keys are compared by their logarithm, log2 Exp(1) + (w - least) / h,
-//! in integers.
+//! Source: A. V. Kuznetsov 2017 (KUZ), section 7, item 3; Efraimidis and Spirakis 2006, "Weighted
+//! random sampling with a reservoir", algorithm A: sort by key = Exp(1) / w'. The paper does not
+//! define how a cost w becomes a priority w'. Here w' = 2^(-(w - least) / h): the priority halves
+//! with every h of extra cost. Thus only differences between moves matter, and h is the scale of a
+//! relevant difference. Keys are compared by their logarithm, log2 Exp(1) + (w - least) / h, in
+//! integers.
 //!
-//! What the paper asks of the shuffle holds: equal moves come first equally often, and "the probability
-//! of a direction that breaks the formation is close to zero" (item 4), since a move that is k halvings
-//! worse comes before the best one in 1 of 2^k + 1 draws. A w' like 1 / w would not do: on a long way all
-//! w are large and nearly equal, and the robot would walk at random. Small h gives the greedy order
-//! with ties drawn; the larger h, the oftener robots leave the best way, and the sooner two that block
-//! each other part.
+//! The requirements of the paper hold. Equal moves come first equally often. "The probability of a
+//! direction that breaks the formation is close to zero" (item 4), because a move that is k
+//! halvings worse comes before the best one in 1 of 2^k + 1 draws. A priority like 1 / w would not
+//! work: on a long route all w are large and nearly equal, and the robot would move at random.
+//!
+//! A small h gives the greedy order with random ties. The larger h is, the more often robots leave
+//! the best route, and the sooner two robots that block each other separate.
 
 use crate::cost::{Cost, EXCLUDED, Gain, Weights};
 use crate::grid::{Dir, UNIT};
@@ -26,17 +28,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Sharpness {
-    /// Cheapest first, equals in the order of [`Dir::MOVES`]: no randomness. Two robots in each
-    /// other's way can stay there for ever.
+    /// Cheapest first, equals in the order of [`Dir::MOVES`], without randomness. Two robots in
+    /// each other's way can stay there for ever.
     #[default]
     Greedy,
-    /// A move that costs so many ticks more than another one is half as likely to come first. 0 is
-    /// the same as `Greedy`; large values walk at random.
+    /// A move that costs this many ticks more than another one is half as likely to come first. 0
+    /// equals `Greedy`; large values give a random walk.
     HalvedPer(Gain),
 }
 
-/// The moves that are not excluded, in the order in which they should be tried. O(1); always eight
-/// draws, unless `Greedy`.
+/// Returns the moves that are not excluded, in the order in which to try them. O(1); eight draws,
+/// or none with `Greedy`.
 #[must_use]
 pub fn weighted_shuffle(weights: &Weights, sharpness: Sharpness, rng: &mut Rng) -> Vec<Dir, 8> {
     let least = weights.iter().map(|(_, cost)| cost).min().unwrap_or(0);
@@ -48,21 +50,21 @@ pub fn weighted_shuffle(weights: &Weights, sharpness: Sharpness, rng: &mut Rng) 
     for (dir, cost) in weights.iter() {
         let key = key(cost - least, half, rng);
         if cost != EXCLUDED {
-            // Eight moves, eight places.
+            // Cannot fail: eight moves, capacity 8.
             let _ = keyed.push((key, dir));
-            // Equals stay in the order of the moves.
+            // Equal keys keep the order of the moves.
             sink_last(&mut keyed, |before, after| before.0 > after.0);
         }
     }
     list::collect(keyed.iter().map(|&(_, dir)| dir))
 }
 
-/// log2 Exp(1) + extra / half in Q.32, moved up so that it is never negative.
+/// log2 Exp(1) + extra / half in Q.32, shifted so that it is never negative.
 fn key(extra: Cost, half: Cost, rng: &mut Rng) -> u64 {
     let Some(halvings) = (u64::from(extra) << 32).checked_div(u64::from(half)) else {
         return u64::from(extra);
     };
-    // At least 2^-16 as Q16.16, hence at least 1.
+    // At least 2^-16 in Q16.16, so at least 1 as an integer.
     let sample = NonZeroU64::new(u64::from(rng.exponential_q16())).unwrap_or(NonZeroU64::MIN);
     log2_q32(sample).saturating_add(halvings)
 }
@@ -75,7 +77,7 @@ mod tests {
     const TWO: Weights = Weights::new([3 * TICK, EXCLUDED, EXCLUDED, TICK, EXCLUDED, EXCLUDED, EXCLUDED, EXCLUDED]);
 
     #[test]
-    fn greedy_sorts_by_cost_and_leaves_out_what_is_excluded() {
+    fn greedy_sorts_by_cost_without_excluded_moves() {
         let order = weighted_shuffle(&TWO, Sharpness::Greedy, &mut Rng::new(1));
         assert_eq!(order, [Dir::NorthWest, Dir::East]);
         let none = weighted_shuffle(&Weights::CLOSED, Sharpness::Greedy, &mut Rng::new(1));

@@ -1,37 +1,41 @@
-//! The mode of a robot as one pure function of its mode and its situation. Read [`next_mode`] first.
+//! The mode of a robot as one pure function of its previous mode and its situation.
+//!
+//! Start with [`next_mode`].
 
 use crate::robot::Mode;
 use serde::{Deserialize, Serialize};
 
-/// What the next mode depends on.
+/// The conditions on which the next mode depends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Situation {
-    /// The motors are off, or somebody else steers.
+    /// The motors are off, or another controller steers the robot.
     pub is_passive: bool,
-    /// An input that the guidance needs is missing or wrong.
+    /// An input that the guidance law needs is missing or invalid.
     pub has_fault: bool,
-    /// There is somewhere to go.
+    /// The robot has a goal.
     pub has_goal: bool,
-    /// The robot stands where it should.
+    /// The robot is at its goal.
     pub is_at_goal: bool,
-    /// Somebody asked the robot to stand, or its followers are too far behind.
+    /// Another robot asked this one to stop, or its followers are too far behind.
     pub is_stopped: bool,
-    /// No way is open.
+    /// No open route exists.
     pub is_stuck: bool,
-    /// It is too far from its place in the formation.
+    /// The robot is too far from its place in the formation.
     pub is_off_place: bool,
 }
 
-/// The mode that follows `mode` in a situation: the first of these rules that applies.
+/// Returns the mode that follows `mode` in the given situation: the first of these rules that
+/// applies.
 ///
-/// 1. One that is not to be steered is passive, whatever else holds.
-/// 2. A fault stands the robot still.
-/// 3. Out of [`Mode::Passive`] and [`Mode::Fault`] the way leads through [`Mode::Idle`]: for one step it stands and looks.
-/// 4. Without a goal it is idle.
-/// 5. At its goal it has arrived; a stop changes nothing there.
-/// 6. A stop, or no open way, holds it.
-/// 7. Off its place it is forming; [`Mode::Cruise`] otherwise.
+/// 1. A robot that its agent may not steer is [`Mode::Passive`].
+/// 2. A fault stops the robot: [`Mode::Fault`].
+/// 3. A robot leaves [`Mode::Passive`] and [`Mode::Fault`] through [`Mode::Idle`]: it stands still
+///    for one step.
+/// 4. Without a goal it is [`Mode::Idle`].
+/// 5. At its goal it is [`Mode::Arrived`], even if it was asked to stop.
+/// 6. A stop, or the lack of an open route, gives [`Mode::Hold`].
+/// 7. Away from its place in the formation it is [`Mode::Forming`], otherwise [`Mode::Cruise`].
 #[must_use]
 pub const fn next_mode(mode: Mode, situation: Situation) -> Mode {
     let s = situation;
@@ -52,7 +56,7 @@ pub const fn next_mode(mode: Mode, situation: Situation) -> Mode {
     }
 }
 
-/// Whether a robot in this mode moves of its own accord.
+/// Returns whether a robot in this mode moves by its own decision.
 #[must_use]
 pub const fn moves(mode: Mode) -> bool {
     matches!(mode, Mode::Forming | Mode::Cruise)
@@ -80,9 +84,8 @@ mod tests {
         })
     }
 
-    /// Each pair of modes: exactly the situations that lead from one to the other.
     #[test]
-    fn every_pair_of_modes_has_its_condition() {
+    fn every_transition_has_exactly_its_condition() {
         for from in MODES {
             for s in situations() {
                 let to = next_mode(from, s);
@@ -106,17 +109,17 @@ mod tests {
     }
 
     #[test]
-    fn every_mode_is_reached_from_every_other_that_is_steered() {
+    fn every_steered_mode_leads_to_all_modes() {
         for from in MODES {
             let reached: std::collections::HashSet<Mode> = situations().map(|s| next_mode(from, s)).collect();
-            // From the two others the way leads through one step of standing.
+            // The two passive modes always lead through one idle step.
             let modes = if from.gives_way() { 7 } else { 3 };
             assert_eq!(reached.len(), modes, "{from:?}");
         }
     }
 
     #[test]
-    fn only_travelling_modes_move() {
+    fn only_forming_and_cruise_move() {
         let moving: std::vec::Vec<Mode> = MODES.into_iter().filter(|&m| moves(m)).collect();
         assert_eq!(moving, [Mode::Forming, Mode::Cruise]);
     }

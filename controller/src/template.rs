@@ -1,4 +1,5 @@
-//! A robot's place in a formation: where its neighbours there should be, from a graph of the whole.
+//! The place of a robot in a formation, and the relative places of its neighbours there, derived
+//! from the graph of the formation.
 
 use crate::fixint;
 use crate::grid::{Cell, DIAGONAL, Dir, UNIT};
@@ -7,42 +8,43 @@ use crate::robot::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// A robot's place in the formation and where its neighbours there should be (A. V. Kuznetsov 2017, KUZ,
-/// section 3), at most `F` of them.
+/// The place of one robot in the formation, and the relative places of at most `F` neighbours there
+/// (A. V. Kuznetsov 2017, KUZ, section 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Template<const F: usize> {
-    /// The robot's place in the formation.
+    /// Index of the robot's place in the formation.
     pub slot: u8,
     /// Cell difference from the top leader's place to this robot's place.
     pub offset: Cell,
-    /// The neighbours within the geodesic radius, in the sender's order.
+    /// The neighbours within the geodesic radius, in the order of the sender.
     pub entries: Vec<TemplateEntry, F>,
 }
 
-/// Where a neighbour in the formation should be, relative to oneself (KUZ section 3: template).
+/// The place of one neighbour in the formation, relative to the own place (KUZ section 3:
+/// template).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TemplateEntry {
-    /// Wanted cell difference, neighbour minus self.
+    /// Desired cell difference, neighbour minus own robot.
     #[serde(with = "fixint")]
     pub offset: Cell,
-    /// Which robot should stand there; nobody = anyone.
+    /// The robot that should be there; [`RobotId::NOBODY`] if any robot may be.
     pub id: RobotId,
-    /// Geodesic distance from self in the formation's graph, 1..=rho.
+    /// Geodesic distance from the own place in the graph of the formation, 1..=rho.
     pub hops: u8,
 }
 
-/// A graph that gives no template.
+/// The reasons why a graph gives no template.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum TemplateError {
-    /// There is no such place, or the graph has more than 255.
+    /// The requested place is not in the graph, or its index exceeds 255.
     NoSuchPlace,
     /// An edge names a place that does not exist, or joins a place to itself.
     BadEdge,
-    /// More neighbours within the geodesic radius than the template holds: a smaller radius or a
-    /// larger `F`.
+    /// More neighbours are within the geodesic radius than the template holds. Use a smaller radius
+    /// or a larger `F`.
     TooMany,
 }
 
@@ -59,11 +61,11 @@ impl core::fmt::Display for TemplateError {
 impl core::error::Error for TemplateError {}
 
 impl<const F: usize> Template<F> {
-    /// The template of the robot at place `own` of a formation graph (KUZ section 2: Phi): everybody
-    /// within the geodesic radius `rho`, nearest first, then by place.
+    /// Builds the template of the robot at place `own` of a formation graph (KUZ section 2: Phi).
+    /// It holds all robots within the geodesic radius `rho`, sorted by distance, then by place.
     ///
-    /// `places` are cells in any common frame, the first one being the top leader's; `edges` are
-    /// pairs of indices into it. The robot at place i has the number i + 1. O(rho * edges * F).
+    /// `places` are cells in any common frame, the top leader's first. `edges` are pairs of indices
+    /// into `places`. The robot at index i has the id i + 1. O(rho * edges * F).
     ///
     /// # Errors
     /// See [`TemplateError`].
@@ -106,9 +108,11 @@ impl<const F: usize> Template<F> {
         self.entries.iter().find(|entry| entry.id == id).map(|entry| entry.hops)
     }
 
-    /// The same formation turned: what was ahead for a robot heading east lies in direction
-    /// `heading` (the template's frame is fixed by default, KUZ section 3). Turns by 45 degrees
-    /// round to whole cells, so that places less than two cells apart may fall together.
+    /// Returns the formation turned: cells ahead of a robot that heads east come to lie in
+    /// direction `heading`. (By default the frame of the template is fixed, KUZ section 3.)
+    ///
+    /// Turns by odd multiples of 45 degrees round to whole cells, so places less than two cells
+    /// apart may coincide.
     #[must_use]
     pub fn turned(mut self, heading: Dir) -> Self {
         self.offset = rotated(self.offset, heading);
@@ -123,8 +127,11 @@ fn number(place: usize) -> RobotId {
     RobotId(u32::try_from(place).unwrap_or(u32::MAX).saturating_add(1))
 }
 
-/// `offset`, given for a robot that heads east, for one that heads in direction `heading`: turned
-/// counter-clockwise by a multiple of 45 degrees and rounded to whole cells. `Stay` turns nothing.
+/// Turns `offset`, given for a robot that heads east, for a robot that heads in direction
+/// `heading`.
+///
+/// The turn is counter-clockwise by a multiple of 45 degrees, rounded to whole cells. `Stay` turns
+/// nothing.
 #[must_use]
 pub fn rotated(offset: Cell, heading: Dir) -> Cell {
     let (x, y) = (i32::from(offset.x), i32::from(offset.y));
@@ -138,7 +145,7 @@ pub fn rotated(offset: Cell, heading: Dir) -> Cell {
     let (turned_x, turned_y) = (x * cos - y * sin, x * sin + y * cos);
     let scale = |value: i32| {
         if heading.is_diagonal() {
-            // Divided by sqrt 2 = DIAGONAL / UNIT, rounded to nearest, away from 0 at one half.
+            // Divided by sqrt 2 = DIAGONAL / UNIT, rounded to nearest, halves away from 0.
             let (unit, diagonal) = (UNIT.cast_signed(), DIAGONAL.cast_signed());
             let half = if value < 0 { -diagonal } else { diagonal };
             (2 * value * unit + half).checked_div(2 * diagonal).unwrap_or(0)

@@ -1,12 +1,12 @@
-//! Integer time: microseconds that wrap, compared by difference.
+//! Integer time: wrapping microseconds, compared by difference.
 
 use core::ops::{Add, Sub};
 use serde::{Deserialize, Serialize};
 
-/// A moment on the robot's clock in microseconds; wraps after 71.6 minutes.
+/// A time on the robot's clock in microseconds; wraps after 71.6 minutes.
 ///
-/// Two instants compare by their wrapped difference, so an order exists only between moments
-/// less than 35.8 minutes apart. There is no `Ord`: use [`Instant::is_before`].
+/// Two instants compare by their wrapped difference, so they are ordered only if they are less than
+/// 35.8 minutes apart. Therefore `Ord` is not implemented: use [`Instant::is_before`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
@@ -19,19 +19,19 @@ pub struct Instant(u32);
 pub struct Duration(i32);
 
 impl Instant {
-    /// The moment `micros` microseconds after the clock's zero (modulo 2^32).
+    /// The instant `micros` microseconds after the zero of the clock (modulo 2^32).
     #[must_use]
     pub const fn from_micros(micros: u32) -> Self {
         Self(micros)
     }
 
-    /// Microseconds since the clock's zero (modulo 2^32).
+    /// Microseconds since the zero of the clock (modulo 2^32).
     #[must_use]
     pub const fn as_micros(self) -> u32 {
         self.0
     }
 
-    /// The span from `earlier` to `self`; negative when `earlier` is the later one.
+    /// The span from `earlier` to `self`; negative if `earlier` is later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Duration {
         Duration(self.0.wrapping_sub(earlier.0).cast_signed())
@@ -43,10 +43,11 @@ impl Instant {
         self.since(other).0 < 0
     }
 
-    /// Whether `due`, a moment that was at most `longest` ahead when it was set, has come.
+    /// Whether the deadline `due`, which was at most `longest` ahead when it was set, has passed.
     ///
-    /// Unlike `!self.is_before(due)` this also holds after a pause of more than half the clock's range,
-    /// when a moment long past seems to lie ahead: nothing that is due waits for another half hour.
+    /// Unlike `!self.is_before(due)`, this also holds after a pause of more than half of the
+    /// clock's range, when a past instant seems to lie ahead. So a deadline is not delayed by
+    /// another half hour.
     #[must_use]
     pub const fn has_reached(self, due: Self, longest: Duration) -> bool {
         let left = due.since(self).0;
@@ -55,9 +56,9 @@ impl Instant {
 }
 
 impl Duration {
-    /// No time at all.
+    /// A span of length 0.
     pub const ZERO: Self = Self(0);
-    /// The longest span that still orders two instants.
+    /// The longest span between two ordered instants.
     pub const MAX: Self = Self(i32::MAX);
 
     /// A span of `micros` microseconds.
@@ -115,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_due_stays_due_however_long_nobody_asks() {
+    fn a_passed_deadline_stays_passed_until_the_clock_has_wrapped() {
         let longest = Duration::from_millis(10);
         for start in [0, u32::MAX - 5_000] {
             let due = Instant::from_micros(start) + longest;

@@ -1,5 +1,5 @@
-//! Guidance law and safety layer chosen at run time: for the simulator and for firmware that is told by its host. A firmware that
-//! knows what it wants names the types and pays for nothing else.
+//! Guidance law and safety layer chosen at run time, for the simulator and for firmware that its
+//! host configures. Firmware with a fixed law names the types and does not pay for others.
 
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
@@ -25,14 +25,13 @@ use crate::scalar::Scalar;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// A law whose state is larger than that of others. On a part its room is there from the start; on a host with many robots the small
-/// ones do not pay for it.
+/// A law with a large state. Firmware stores it in place; a host with many robots allocates it, so
+/// robots with small laws do not pay for it.
 #[cfg(not(feature = "host"))]
 type Large<G> = G;
 #[cfg(feature = "host")]
 type Large<G> = alloc::boxed::Box<G>;
 
-/// Gives such a law its room.
 #[cfg(not(feature = "host"))]
 pub(in crate::agent) const fn large<G>(law: G) -> Large<G> {
     law
@@ -60,7 +59,6 @@ pub enum AnyGuidance<S, const CELLS: usize, const M: usize, const F: usize, cons
     LooksAhead(Large<FormationGuidance<CELLS, M, F, L, Course>>),
 }
 
-/// Does the same with whatever is inside.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {
@@ -202,7 +200,7 @@ impl<S: Scalar> HalfSpaces<S> for AnyHalfPlanes {
     }
 }
 
-/// Any safety layer; at most `K` half-planes count.
+/// Any safety layer, with at most `K` half-planes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound(deserialize = ""))]
 #[expect(missing_docs, reason = "each variant's type says it")]

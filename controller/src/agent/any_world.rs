@@ -1,4 +1,4 @@
-//! A law of the plane where hosts tell robots whatever there is.
+//! Adapts a law of the plane to surroundings of any kind.
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
 use super::{AnySurroundings, InPlane, Parameter, Surroundings, Waypoint};
@@ -11,8 +11,9 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// A law of the plane or of space that is told of any surroundings, as a simulator or a host with a link tells of them. On the
-/// grid alone the robot is in [`Mode::Fault`](crate::robot::Mode::Fault).
+/// A law of the plane or of space with [`AnySurroundings`] as its input, as a simulator or a host
+/// link delivers them. With surroundings of the grid alone the robot is in
+/// [`Mode::Fault`](crate::robot::Mode::Fault).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AnyWorld<G>(pub G);
 

@@ -1,4 +1,4 @@
-//! What becomes of a robot whose goal is taken by another one.
+//! Handles a goal that another robot occupies.
 
 use super::GuidanceInput;
 use crate::geom::Vec3;
@@ -6,58 +6,60 @@ use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// After coming no nearer for so long that one could have gone so many own radii, a robot asks whether its place is taken.
+/// The robot checks its goal after this idle distance: the distance, in own radii, that it could
+/// have covered since it last came nearer.
 const PATIENCE: i32 = 4;
-/// From then on it takes others than the one on its goal for those who have arrived beside it.
+/// From this idle distance on, stationary robots ahead also count as arrived.
 const LONG_PATIENCE: i32 = 40;
-/// Until then the nearest goes first.
+/// Up to this idle distance the nearest robot goes first.
 const BY_DISTANCE: i32 = 12;
-/// Until then the smallest number goes first.
+/// Up to this idle distance the robot with the smallest id goes first.
 const BY_NUMBER: i32 = 24;
-/// Farther off than this it does not matter yet who goes first.
+/// Beyond this distance to the goal, in own radii, precedence is not decided yet.
 const ABOUT: i32 = 8;
-/// How much nearer counts as nearer, thousandths of the own radius.
+/// Approach that counts as progress, thousandths of the own radius.
 const NEARER: i32 = 250;
-/// So much farther off than it was, it begins anew: it was sent elsewhere, or pushed away.
+/// A robot that is this much farther away starts again, because it was sent elsewhere or pushed
+/// away; thousandths of the own radius.
 const FARTHER: i32 = 8_000;
-/// Places as near to the goal as that are equally near, thousandths of the own radius: what both know is rounded.
+/// Distances to the goal that differ by less than this are equal, because both robots know rounded
+/// values; thousandths of the own radius.
 const TIE: i32 = 100;
-/// Slower is standing, thousandths of the top speed.
+/// Speed below which a robot stands, thousandths of the top speed.
 const SLOW: i32 = 100;
 
-/// Whether the place that a robot goes to is free. Lengths are in own radii.
+/// Decides whether the place that a robot goes to is free. Lengths are in own radii.
 ///
-/// - A robot that comes no nearer for [`PATIENCE`] looks at who is where its own body should be.
-/// - If somebody stands there for good (parked, or out of order), it has arrived beside him, until the place is free. So
-///   have those who stand around them, after [`LONG_PATIENCE`]: others may be in the way for another reason.
-/// - If it is somebody on the move, perhaps to the same place or to one close by, one of them goes on: until
-///   [`BY_DISTANCE`] the nearest, until [`BY_NUMBER`] the smallest number (each can be nearest to its own place). The other
-///   ones leave him the room that he needs. Then all try again.
+/// - A robot that has not come nearer for [`PATIENCE`] checks for robots that overlap its own body
+///   at the goal.
+/// - If a robot stands there permanently (parked, or in fault), this robot has arrived beside it
+///   until the place is free. After [`LONG_PATIENCE`] so have robots that stand around them; before
+///   that, a robot may be in the way for another reason.
+/// - If a moving robot is there, perhaps on its way to the same place or a close one, one of them
+///   goes first: the nearest until [`BY_DISTANCE`], the smallest id until [`BY_NUMBER`] (each can
+///   be nearest to its own place). The other robots leave it the space that it needs. Then all try
+///   again.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Beside<S> {
-    /// The least distance to the goal so far, metres; 0: it has not looked yet.
+    /// Least distance to the goal so far, metres; 0 before the first check.
     nearest_m: S,
-    /// How far it could have gone since it last came nearer, metres.
+    /// Distance that it could have covered since it last came nearer, metres.
     idle_m: S,
     is_beside: bool,
 }
 
-/// What a robot does about its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Claim<S> {
-    /// It goes there.
     Goes,
-    /// It lets another one go there first, and keeps so far off, metres.
+    /// Another robot goes first; keep this distance, metres.
     Yields(S),
-    /// It has arrived beside it.
     IsBeside,
 }
 
 impl<S: Scalar> Beside<S> {
-    /// Of a robot on its way.
     pub(super) const NEW: Self = Self { nearest_m: S::ZERO, idle_m: S::ZERO, is_beside: false };
 
-    /// What to do about a goal `way_m` off that does not move; to be asked in each step. O(nearby).
+    /// Decides about a stationary goal at offset `way_m`. Call it in each step. O(nearby).
     pub(super) fn claim<P>(&mut self, input: &GuidanceInput<'_, S, P>, way_m: Vec3<S>, tolerance_m: S) -> Claim<S> {
         let GuidanceInput { body, nearby, .. } = input;
         let distance = way_m.norm();
@@ -71,7 +73,7 @@ impl<S: Scalar> Beside<S> {
         if !has_waited(PATIENCE) {
             return Claim::Goes;
         }
-        // Whether there is no room for the own body at the goal.
+        // Whether another robot leaves no space for the own body at the goal.
         let covers =
             |other: &&Nearby<S>| (way_m - other.offset_m).norm() + tolerance_m < body.radius_m + other.radius_m;
         let touches = |other: &Nearby<S>| other.offset_m.norm() < body.radius_m + body.radius_m + other.radius_m;

@@ -1,4 +1,4 @@
-//! A guidance law made for the grid, on a body that moves in the plane.
+//! Runs a guidance law of the grid on a body that moves in the plane.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Teamwork};
 use super::{CellState, InCells, OnGrid, Parameter};
@@ -11,17 +11,19 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// How far from the middle of its cell, along an axis, a robot is in the next one: thousandths of a cell.
+/// Distance from the centre of its cell, along an axis, beyond which a robot counts as in the next
+/// cell, thousandths of a cell.
 const LEAVES_AT: i32 = 750;
 
-/// Goes towards the centre of the cell that a guidance law `G` of the grid would move to.
+/// Moves towards the centre of the cell that a guidance law `G` of the grid would move to.
 ///
-/// The law decides anew when the robot has come well into another cell, halfway from the border to the middle (on the
-/// border it could change its mind for ever), and while it does not get on, as often as it would on the grid: once in
-/// the time that the robot needs to cross a cell of its land at cruising speed. It sees other robots by their cells as
-/// ever; that they may share a cell now is the safety layer's business. Its way has no place that it goes to straight
-/// for longer than a cell: who shall give way, and how to get past each other, the law decides by its prices and
-/// requests.
+/// The law decides again when the robot is well inside another cell, halfway from the border to the
+/// centre; on the border it could alternate for ever. If the robot does not advance, the law
+/// decides as often as on the grid: once per time to cross a cell of its terrain at cruising speed.
+///
+/// The law sees other robots by their cells, as on the grid. Robots may share a cell here; the
+/// safety layer keeps them apart. The robot heads straight for at most a cell, so it does not pass
+/// a way point to the safety layer: the law handles precedence by its prices and requests.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CellFollower<S, G> {
     law: G,
@@ -29,7 +31,6 @@ pub struct CellFollower<S, G> {
     last: Option<Last<S>>,
 }
 
-/// What the law decided last.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Last<S> {
     cell: Cell,
@@ -38,23 +39,22 @@ struct Last<S> {
 }
 
 impl<S: Scalar, G> CellFollower<S, G> {
-    /// `law` in the plane, cruising at `speed_mps` (the body's own limit holds too).
+    /// Runs `law` in the plane at a cruising speed of `speed_mps`; the speed limit of the body
+    /// holds too.
     #[must_use]
     pub const fn new(law: G, speed_mps: S) -> Self {
         Self { law, speed_mps, last: None }
     }
 
-    /// The speed at which it cruises, m/s.
     pub(super) const fn speed_mps(&self) -> S {
         self.speed_mps
     }
 
-    /// Makes the law decide in the next step whatever the robot does.
     pub(super) fn decide_anew(&mut self) {
         self.last = None;
     }
 
-    /// The law of the grid, for what it can tell of itself.
+    /// The wrapped law of the grid, for inspection.
     #[must_use]
     pub const fn inside(&self) -> &G {
         &self.law
@@ -110,7 +110,7 @@ where
 
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         if parameter == Parameter::Speed {
-            // Without a speed it could not decide.
+            // The law cannot decide at speed 0.
             self.speed_mps = value.max(S::from_milli(1));
             return true;
         }
@@ -118,7 +118,8 @@ where
     }
 }
 
-/// One step behind a law of the grid that decides by `decide`; the same code whichever law it is.
+/// One step of a law of the grid that decides by `decide`. Not generic over the law, so it is
+/// compiled once.
 #[inline(never)]
 fn follow<S: Scalar, P>(
     speed_mps: S,
@@ -162,7 +163,7 @@ fn follow<S: Scalar, P>(
         }
     };
     let way = way(&decision);
-    // On the last step no farther than the centre.
+    // The last step goes no farther than the centre.
     let needed = way.norm().checked_div(input.body.step_s).unwrap_or(speed);
     let ahead = way.normalized().unwrap_or_default();
     decision.action = Action::Velocity { wish_mps: (ahead * needed.min(speed)).extend(S::ZERO), way_m: None };

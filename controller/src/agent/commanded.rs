@@ -1,4 +1,4 @@
-//! A robot that an operator may take over for a while.
+//! Lets an operator take over a robot temporarily.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, pass_on};
 use super::waypoint_guidance::WaypointGuidance;
@@ -14,62 +14,66 @@ use crate::time::{Duration, Instant};
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// What an operator wants of a robot.
+/// A command of an operator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Wish<S> {
-    /// Its own behaviour.
+    /// Follow the own guidance law.
     #[default]
     Own,
-    /// To be left alone: its motors are off, or somebody else steers. It is in [`Mode::Passive`](crate::robot::Mode::Passive), so that the
-    /// others hear where it is and do not count on its giving way.
+    /// Release control: the motors are off, or another controller steers. In
+    /// [`Mode::Passive`](crate::robot::Mode::Passive) the robot sends its position, and other
+    /// robots do not rely on it giving way.
     Off,
-    /// To stay where it is (and give way to others).
+    /// Stay at the current position, and give way to other robots.
     Hold,
-    /// To go with a velocity, m/s, for so long at most; then to hold. What the body cannot do is cut.
+    /// Move with a velocity for a limited time, then hold. The velocity is limited to the abilities
+    /// of the body.
     Velocity {
-        /// The velocity.
+        /// The velocity, m/s.
         velocity_mps: Vec3<S>,
-        /// How long it stands unless it is renewed; at most 35 minutes.
+        /// Lifetime unless renewed; at most 35 minutes.
         valid: Duration,
     },
-    /// To go to a waypoint and stay there, as [`WaypointGuidance`] does. One that moves is followed for so long at most, from when it was
-    /// said on; then to hold.
+    /// Go to a waypoint and stay there, as [`WaypointGuidance`] does. A waypoint that moves is
+    /// followed from the time of the command, then the robot holds.
     Waypoint {
-        /// The waypoint when it was said, and how it moves.
+        /// The waypoint at the time of the command, and its velocity.
         waypoint: Waypoint<S>,
-        /// How long it stands unless it is renewed; `None`: until another wish.
+        /// Lifetime unless renewed; `None`: until another command.
         valid: Option<Duration>,
     },
-    /// On the grid: to go to a cell, as the own guidance law would.
+    /// On the grid: go to a cell with the own guidance law.
     Cell(Cell),
 }
 
-/// Guidance law `G` until an operator wishes something else, and again when he wishes no more.
+/// Guidance law `G`, which an operator can override.
 ///
-/// It only wishes, as any guidance law does: the safety layer behind it keeps the robot clear of others whatever the
-/// operator wants. Robots that follow this one see by its beacon that it left its formation.
+/// The command is only a desired motion, so the safety layer still avoids other robots. Followers
+/// of this robot see in its beacon that it left the formation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Commanded<S, G> {
     inside: G,
     wish: Wish<S>,
-    /// When the wish was first seen; `None`: not yet.
+    /// When the command took effect; `None` before the first step.
     since: Option<Instant>,
     straight: WaypointGuidance<S>,
 }
 
 impl<S: Scalar, G> Commanded<S, G> {
-    /// `inside`, and for [`Wish::Waypoint`] a cruising speed in m/s and how near is there, metres.
+    /// Wraps `inside`. For [`Wish::Waypoint`]: cruising speed in m/s, and the distance in metres at
+    /// which the robot counts as arrived.
     #[must_use]
     pub const fn new(inside: G, speed_mps: S, tolerance_m: S) -> Self {
         Self { inside, wish: Wish::Own, since: None, straight: WaypointGuidance::new(speed_mps, tolerance_m) }
     }
 
-    /// The operator's wish from the next step on.
+    /// Sets the command from the next step on.
     ///
     /// # Errors
-    /// [`WrongTask`] for a velocity or a waypoint where the law inside moves cell by cell, for a cell where it does not go to cells, and
-    /// for a velocity that is no number. The wish that held before goes on.
+    /// [`WrongTask`] for a velocity or a waypoint if the law inside moves cell by cell, for a cell
+    /// if it does not go to cells, and for a velocity that is NaN or infinite. The previous command
+    /// then stays active.
     pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
     where
         G: Guidance<S>,
@@ -88,19 +92,18 @@ impl<S: Scalar, G> Commanded<S, G> {
         Ok(())
     }
 
-    /// The wish that holds now: one that has run out is [`Wish::Hold`].
+    /// The active command; [`Wish::Hold`] after a command has expired.
     #[must_use]
     pub const fn wish(&self) -> &Wish<S> {
         &self.wish
     }
 
-    /// The guidance law inside.
+    /// The wrapped guidance law.
     #[must_use]
     pub const fn inside(&self) -> &G {
         &self.inside
     }
 
-    /// Takes the wish in, and lets it run out.
     fn renew(&mut self, now: Instant) {
         let valid = match &mut self.wish {
             Wish::Velocity { valid, .. } => Some(*valid),
@@ -122,7 +125,7 @@ impl<S: Scalar, G> Commanded<S, G> {
     }
 }
 
-/// Does `action`, whoever asks it to go on or to stop.
+/// The decision for `action`, which ignores stop and resume requests.
 fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
     let stays = matches!(action, Action::Stay);
     Decision {
@@ -140,7 +143,8 @@ impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
     pass_on!(land: self => self.inside);
 }
 
-/// An ordered velocity leads to a place so many own radii ahead: farther than any from which one swerves.
+/// The way point of a commanded velocity lies this many own radii ahead, farther than any distance
+/// at which robots swerve.
 const LEADS_TO_RADII: i32 = 100;
 
 impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
@@ -164,7 +168,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
             Wish::Velocity { velocity_mps, .. } => {
                 input.can_go()?;
                 let wish_mps = velocity_mps.clamp_norm(input.body.max_speed_mps);
-                // Somewhere ahead, so that two who are sent against each other get past.
+                // A point ahead lets two robots that are sent against each other pass.
                 let far_m = input.body.radius_m * S::from_i32(LEADS_TO_RADII);
                 let way_m = wish_mps.normalized().map(|ahead| ahead * far_m);
                 let action = Action::Velocity { wish_mps, way_m };
@@ -211,7 +215,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
         self.inside.parameter(parameter).or_else(|| self.straight.parameter(parameter))
     }
 
-    /// Speed and tolerance also hold for [`Wish::Waypoint`].
+    /// Speed and tolerance also apply to [`Wish::Waypoint`].
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         self.inside.tune(parameter, value) | self.straight.tune(parameter, value)
     }

@@ -1,4 +1,4 @@
-//! What a robot's agent knows of itself from its start.
+//! The configuration with which the agent of one robot starts.
 
 use super::Silence;
 use crate::neighbor::{Ages, Claims};
@@ -8,47 +8,53 @@ use crate::time::Duration;
 use crate::wire::Retry;
 use serde::{Deserialize, Serialize};
 
-/// What does not change while the robot runs.
+/// The configuration of one robot, fixed while it runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AgentConfig<S> {
-    /// Own number, 1 or more.
+    /// Own id, 1 or more.
     pub id: RobotId,
-    /// Seed of what the robot draws at random, together with its number.
+    /// Seed of the robot's random numbers, combined with its id.
     pub seed: u64,
-    /// Changes with each start (counted in lasting memory, or drawn at random): with the old one a robot that has restarted is not heard
-    /// until the others have forgotten it; see [`crate::wire::SequenceWindow`].
+    /// Boot number, which must change at each start (a counter in non-volatile memory, or a random
+    /// number). After a restart with an unchanged number, other robots ignore this robot until they
+    /// have forgotten it; see [`crate::wire::SequenceWindow`].
     pub boot: u8,
-    /// More than 0. On the grid the time in which the robot crosses a cell of impassability 1; for robots that go by velocities the time
-    /// from one step to the next, which must then be kept: the command is meant to hold for so long.
+    /// Time base; above 0. On the grid, the time to cross a cell of impassability 1. For robots
+    /// that move by velocities, the time between two steps, which the caller must keep, since a
+    /// command is planned for exactly that time.
     pub tick: Duration,
-    /// Time between two beacons. Longer saves the radio and makes everybody's news older.
+    /// Time between two beacons. A longer period saves airtime, and neighbours work with older
+    /// states.
     pub beacon_period: Duration,
     /// Radius of the ball around the body, metres.
     pub radius_m: S,
-    /// How fast the body can change its velocity, m/s^2; [`Scalar::MAX`]: at once. For robots that do not
-    /// move cell by cell.
+    /// Largest acceleration of the body, m/s^2; [`Scalar::MAX`] for no limit. Used by robots that
+    /// move by velocities.
     pub max_acceleration_mps2: S,
-    /// How old news is when it arrives: neighbours are taken to have gone on for so long. At least 0.
+    /// Age of a beacon when it arrives; at least 0. Neighbours are extrapolated over this time.
     pub latency: Duration,
-    /// How old news of others may be.
+    /// Ages at which the state of a neighbour counts as stale and as expired.
     pub ages: Ages,
     /// How requests are resent.
     pub retry: Retry,
-    /// How long a stop stands that is not renewed: bounds what a lost "resume" costs.
+    /// Lifetime of a stop request that is not renewed. It bounds the delay that a lost resume
+    /// request costs.
     pub stop_valid: Duration,
-    /// What it makes of silence.
+    /// The reaction to lost contact.
     pub silence: Silence<S>,
-    /// What others may say of themselves and be believed.
+    /// Limits on the values that other robots may report.
     pub claims: Claims<S>,
-    /// The flock that it is of. Those of other flocks are nothing but in the way of one that [flocks](crate::flock). Any number;
-    /// 0 too is a flock, of all who are in none. A robot in formation has 0: what says the flock on the air says its
-    /// place there ([`Beacon::slot`](crate::wire::Beacon::slot)).
+    /// The own flock. A robot that [flocks](crate::flock) treats members of other flocks as
+    /// obstacles only. Flock 0 is the flock of all robots that belong to none.
+    ///
+    /// A robot in formation has flock 0, because its beacon carries its place there in the field of
+    /// the flock ([`Beacon::slot`](crate::wire::Beacon::slot)).
     pub flock: u8,
 }
 
 impl<S: Scalar> AgentConfig<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> AgentConfig<T> {
         AgentConfig {
@@ -69,12 +75,13 @@ impl<S: Scalar> AgentConfig<S> {
         }
     }
 
-    /// What no robot can do without; `tick` and `radius_m` as the fields say. On the grid, where a body is its cell, the radius counts for
-    /// nothing and may be 0.
+    /// Creates a configuration from the values that every robot needs. On the grid a body is a
+    /// cell, so the radius is unused and may be 0.
     ///
-    /// The rest: seed 0, flock 0, a beacon each tick, news stale after 4 and forgotten after 30 ticks, requests resent every
-    /// 3 ticks, stops for 12 ticks, no inertia, no latency, and whatever others say of themselves is believed. Robots that go by velocities on real radios need their
-    /// [`latency`](Self::latency) besides.
+    /// Defaults: seed 0, boot 0, flock 0, a beacon per tick, states stale after 4 ticks and expired
+    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no latency,
+    /// and no plausibility limits. A robot that moves by velocities with a real radio also needs
+    /// its [`latency`](Self::latency).
     #[must_use]
     pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
         Self {

@@ -12,11 +12,11 @@ use crate::scalar::Scalar;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
 
-/// Goals that a robot of a goal flock has room for.
+/// Goals that a robot of a goal flock can store.
 pub const GOALS: usize = WAYPOINTS;
 
-/// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances that follow a reference, if they are given
-/// one as waypoint 0.
+/// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances, which follow a reference
+/// if it is given as waypoint 0.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
@@ -25,14 +25,15 @@ pub struct LatticeGuidance<S> {
 }
 
 impl<S: Scalar> LatticeGuidance<S> {
-    /// `moves`: whether the reference goes where its velocity takes it (a dynamic gamma-agent), or stays, with a velocity
-    /// all the same (a static one, as in the paper's obstacle courses).
+    /// Creates the law. `moves`: whether the reference moves with its velocity (a dynamic
+    /// gamma-agent), or stays in place and only has a velocity (a static one, as in the obstacle
+    /// courses of the paper).
     #[must_use]
     pub const fn new(params: LatticeParams<S>, moves: bool) -> Self {
         Self::following(params, if moves { ReferenceMotion::Dynamic } else { ReferenceMotion::Static })
     }
 
-    /// With a reference that goes on like this.
+    /// Creates the law with a reference of the given motion.
     #[must_use]
     pub const fn following(params: LatticeParams<S>, motion: ReferenceMotion<S>) -> Self {
         Self { params, reference: None, motion }
@@ -93,26 +94,27 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
     }
 }
 
-/// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, there each robot draws one of
-/// them. Goals may move, by velocities of their own: the middle moves along, and who has drawn one follows it.
+/// The goal flock (V. E. and V. V. Pavlovsky, PAV): moves to the centre of the goals together;
+/// there each robot draws one goal. Goals may move with their own velocities. The centre moves with
+/// them, and a robot follows the goal that it drew.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,
     arrival_m: S,
     seed: u64,
     goals: Goals<GOALS>,
-    /// Those of them that move.
     moving: [Option<Waypoint<S>>; GOALS],
 }
 
 impl<S: Scalar> GoalFlockGuidance<S> {
-    /// `arrival_m`: how near counts as being there; a crowd needs room, so about the neighbourhood. `seed`: of the draws.
+    /// Creates the law. `arrival_m`: distance at which the robot counts as arrived; a crowd needs
+    /// space, so about the neighbourhood radius. `seed`: seed of the draws.
     #[must_use]
     pub const fn new(params: GoalParams<S>, arrival_m: S, seed: u64) -> Self {
         Self { params, arrival_m, seed, goals: Goals::new(), moving: [None; GOALS] }
     }
 
-    /// Takes moving goals to where they are at `now`. Goals that stand keep their very place.
+    /// Moves goals to their positions at `now`. Goals without a velocity stay exactly in place.
     fn follow_goals(&mut self, own: Position, now: Instant) {
         for (index, waypoint) in self.moving.iter_mut().enumerate() {
             let place = waypoint.as_mut().and_then(|waypoint| own.moved(waypoint.way(own, now)));
@@ -122,14 +124,14 @@ impl<S: Scalar> GoalFlockGuidance<S> {
         }
     }
 
-    /// Where the robot is on its way.
+    /// The stage of the robot's route.
     #[must_use]
     pub const fn stage(&self) -> Stage {
         self.goals.stage()
     }
 
-    /// Whether it may stand: near its own goal, and kept by the others from going nearer. Who stood as soon as it was near
-    /// would be a wall around the goal to all who come later.
+    /// Whether the robot may stop: near its own goal, and kept from it by other robots. Stopping as
+    /// soon as it is near would block the goal for later robots.
     fn is_there(&self, own: Position, way_m: Option<Vec3<S>>, wish_mps: Vec3<S>) -> bool {
         let is_drawn = matches!(self.goals.stage(), Stage::Goal(_));
         let is_near = is_drawn && self.goals.has_arrived(own, self.arrival_m);
@@ -195,7 +197,8 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     }
 }
 
-/// Boids (V. A. Starovoitova 2018, STA): even speed, headings that follow the neighbours'.
+/// Boids (V. A. Starovoitova 2018, STA): constant speed, headings that follow those of the
+/// neighbours.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct BoidsGuidance<S> {
     params: BoidsParams<S>,
@@ -204,7 +207,7 @@ pub struct BoidsGuidance<S> {
 }
 
 impl<S: Scalar> BoidsGuidance<S> {
-    /// At `speed_mps`; the first heading is that of the body, or drawn if it stands.
+    /// Creates the law. The first heading is that of the body, or random if it stands.
     #[must_use]
     pub const fn new(params: BoidsParams<S>, speed_mps: S) -> Self {
         Self { params, speed_mps, heading: None }
@@ -232,7 +235,7 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
             let (sin, cos) = (turn * S::PI).sin_cos();
             Vec2::new(cos, sin)
         };
-        // Where a safety layer has turned the body, there it looks.
+        // Follow the body if a safety layer has turned it.
         let moving = input.body.velocity_mps.xy().normalized();
         let heading = moving.or(self.heading).unwrap_or_else(&mut draw);
         let heading = self.params.steer(input.id, heading, input.nearby);

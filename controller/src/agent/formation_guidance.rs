@@ -1,5 +1,6 @@
-//! Travelling in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the way for all, the others
-//! keep their places beside it. See [`crate::formation`] for what differs from the paper and why.
+//! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the route
+//! for all robots, and the others keep their places beside it. [`crate::formation`] explains the
+//! differences from the paper.
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::route_guidance::GridWorkspace;
@@ -30,20 +31,20 @@ mod in_plane;
 
 pub use in_plane::FormationInPlane;
 
-/// Moves that a robot of a formation tries: its best and the next best. One that is crowded out of
-/// both waits; trying all eight it would run away from its place.
+/// Number of moves to try: the best and the next best. A robot that finds both occupied waits; with
+/// all eight it would leave its place.
 const ALTERNATIVES: usize = 2;
 
-/// Travelling in formation; remembers visits of `M` cells and a template of `F` neighbours.
+/// Moving in formation. Remembers the visits of `M` cells and a template of `F` neighbours.
 ///
-/// Without a template the robot travels alone. `K` is how followers take their leader to go on: by its next move, or by its
-/// [`Course`](crate::formation::Course).
+/// Without a template the robot moves alone. `K` predicts the motion of the leader: by its next
+/// move, or by its [`Course`](crate::formation::Course).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, K = NextMove> {
     route: RouteParams,
     formation: FormationParams,
     sharpness: Sharpness,
-    /// As it was given; what the robot goes by is [`Self::view`].
+    /// The assigned template; [`Self::view`] is the one in use.
     template: Template<F>,
     ranks: Ranks,
     assembler: TemplateAssembler<F>,
@@ -51,34 +52,30 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     travel: Travel,
     pace: Pace,
     leader: RobotId,
-    /// From the leader's place to one's own.
     leader_offset: Cell,
-    /// Decisions in which somebody stood in a neighbour's place.
+    /// Consecutive decisions with another robot in the place of a neighbour.
     crowded: u8,
-    /// The robot has asked its leader to stop.
     has_asked: bool,
-    /// Decisions on end in which it waited for others.
+    /// Consecutive decisions in which the robot waited for others.
     waited: u16,
-    /// Decisions on end in which it was behind, or not there yet when the top leader was.
+    /// Consecutive decisions in which it was behind, or not in place while the top leader had
+    /// arrived.
     behind: u16,
-    /// Nobody falls behind, as in the plane: the slowest makes the pace.
+    /// As in the plane, no robot may fall behind: the slowest sets the pace.
     #[serde(with = "crate::digest::uncounted")]
     is_rigid: bool,
     steering: K,
 }
 
-/// What a follower steers by.
 struct Guide {
-    /// The top leader as an anchor.
     anchor: Anchor,
     /// Own deviation behind its place, [`UNIT`](crate::grid::UNIT)s.
     lag: u32,
-    /// The top leader stands at its goal.
     has_arrived: bool,
 }
 
 impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationGuidance<CELLS, M, F, L> {
-    /// With these parameters and this place in the formation.
+    /// Creates the law with these parameters and this place in the formation.
     #[must_use]
     pub const fn new(route: RouteParams, formation: FormationParams, template: Template<F>) -> Self {
         Self::steered(route, formation, template, NextMove)
@@ -88,7 +85,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> Formati
 impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
     FormationGuidance<CELLS, M, F, L, K>
 {
-    /// The same, with followers who steer by `steering`.
+    /// Creates the law with followers that steer by `steering`.
     #[must_use]
     pub const fn steered(route: RouteParams, formation: FormationParams, template: Template<F>, steering: K) -> Self {
         Self {
@@ -112,21 +109,22 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         }
     }
 
-    /// How strictly the order of moves follows their weights.
+    /// Sets how strictly the order of moves follows their weights.
     #[must_use]
     pub const fn sharpness(mut self, sharpness: Sharpness) -> Self {
         self.sharpness = sharpness;
         self
     }
 
-    /// The template that it keeps.
+    /// The assigned template.
     #[must_use]
     pub const fn template(&self) -> &Template<F> {
         &self.template
     }
 
-    /// How far the neighbours are from what the template wants, for robot `id` in `cell` that knows
-    /// `neighbors`: see [`Agent::neighbors`](super::Agent::neighbors). O(F N).
+    /// Returns how far the neighbours are from their places in the template, for robot `id` in
+    /// `cell` with the neighbours `neighbors`: see [`Agent::neighbors`](super::Agent::neighbors).
+    /// O(F N).
     #[must_use]
     pub fn graph_distance<S>(&self, id: RobotId, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
         let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
@@ -134,7 +132,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         graph_distance(cell, &found)
     }
 
-    /// The template as it is when some have died and others closed ranks.
+    /// The template after the formation has closed gaps of lost robots.
     fn view<S>(&self, own: RobotId, neighbors: &[Neighbor<S>]) -> Template<F> {
         if self.formation.closes_ranks {
             self.ranks.view(own, &self.template, holders(neighbors))
@@ -143,14 +141,14 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         }
     }
 
-    // What has much on the stack is not inlined below, so that only one of it is there at a time.
+    // Functions with large stack frames are not inlined, so only one frame is live at a time.
 
-    /// The robot farthest up the leader chain whose place is known, and one's own place relative to its
-    /// place: the top leader if it was heard, else a leader that the template names.
+    /// Returns the highest robot of the leader chain with a known place, and the own place relative
+    /// to it: the top leader if it is known, otherwise a leader in the template.
     fn top<S>(&self, input: &GuidanceInput<'_, S>, view: &Template<F>) -> Option<(RobotId, Cell)> {
         let heard = |id: RobotId| input.neighbor(id);
         let first = heard(self.leader)?;
-        // Numbers fall along the chain, so that it ends; a wrong beacon cannot make it a circle.
+        // Ids decrease along the chain, so it ends; a wrong beacon cannot make it a cycle.
         let chain = successors(Some(first), |robot| heard(robot.leader).filter(|next| next.id < robot.id));
         let placed = chain.filter_map(|robot| {
             let named = view.entries.iter().find(|e| e.id == robot.id);
@@ -165,21 +163,21 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         placed.last()
     }
 
-    /// Whom to follow: once found, the leader stays while it is heard, however far it is (the paper
-    /// looks for it at t = 0 only).
+    /// Chooses the leader. A leader stays while it is known, however far away it is (the paper
+    /// chooses it only at t = 0).
     fn choose_leader<S>(&mut self, input: &GuidanceInput<'_, S>, found: &Found<F>) {
         let leader = find_leader(input.id, &found.members);
         if leader.is_somebody() || input.neighbor(self.leader).is_none() {
             self.leader = leader;
         }
-        // In a place for anyone the template does not tell whose place it is.
+        // A place for any robot does not determine whose place it is.
         let member = found.members.iter().find(|m| m.seen.id == self.leader);
         if let Some(member) = member {
             self.leader_offset = Cell::default() - member.offset;
         }
     }
 
-    /// The way of a robot that leads or is alone: for itself, on land priced for all.
+    /// Route of a robot that leads or is alone: its own search, on terrain priced for all.
     #[inline(never)]
     fn lead<S>(
         &mut self,
@@ -202,7 +200,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.router.weights_over(&self.route, field, shown, (cell, target), others, input.land).ok()
     }
 
-    /// The way of a follower to its place.
     #[inline(never)]
     fn follow<S>(
         &self,
@@ -225,8 +222,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         if place == cell {
             return Some(price);
         }
-        // Beyond the window it can circle before a hill, hence remembers; near its place it comes by
-        // the same cells for good reasons.
+        // Beyond the window it could circle in front of an obstacle, so it remembers visits. Near
+        // its place it may revisit cells.
         let is_in_sight = window.get(place).is_some();
         let visits = (!is_in_sight).then_some(self.router.visits());
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
@@ -234,7 +231,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         Some(weights.plus(&price))
     }
 
-    /// The top leader seen by a follower.
     fn guide<S>(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -254,8 +250,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         })
     }
 
-    /// Whether the robot has been behind, or not there when the top leader was, for so long that it goes to its goal by
-    /// itself, until it is back in its place.
+    /// Whether the robot has been behind, or not in place while the top leader had arrived, for so
+    /// long that it goes to its goal alone until it is back in its place.
     fn has_lost_touch(&mut self, guide: &Guide) -> bool {
         let limit = if self.behind == 0 { self.formation.halt_lag } else { self.formation.resume_lag };
         let is_behind = guide.has_arrived || guide.lag > u32::from(limit.min(self.formation.halt_lag));
@@ -263,8 +259,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.behind > self.formation.patience
     }
 
-    /// Asks a stranger who has stood in a neighbour's place for long to choose another direction (KUZ
-    /// section 7, item 6).
+    /// Asks a foreign robot that has been in a neighbour's place for too long to choose another
+    /// direction (KUZ section 7, item 6).
     fn ask_surplus(&mut self, found: &Found<F>) -> Option<Ask> {
         if found.more == 0 {
             self.crowded = 0;
@@ -278,7 +274,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         Some(Ask { to: found.surplus, kind: RequestKind::Redirect })
     }
 
-    /// Asks the leader to stop when too far behind, and to resume when near again.
+    /// Asks the leader to stop if too far behind, and to resume when near again.
     fn ask_pace(&mut self, leader: RobotId, lag: u32) -> Option<Ask> {
         let has_fallen_behind = self.pace.update(&self.formation, lag);
         let kind = match (has_fallen_behind, self.has_asked) {
@@ -291,7 +287,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 }
 
-/// Whether a robot follows oneself, as far as its leaders were heard. Numbers fall along the chain, so that it ends.
+/// Whether a robot follows this one, as far as its leaders are known. Ids decrease along the chain,
+/// so it ends.
 fn comes_after<S>(input: &GuidanceInput<'_, S>, other: RobotId, leader: RobotId) -> bool {
     let heard = |id: RobotId| input.neighbor(id);
     let chain = successors(Some((other, leader)), |&(id, leader)| {
@@ -300,12 +297,10 @@ fn comes_after<S>(input: &GuidanceInput<'_, S>, other: RobotId, leader: RobotId)
     chain.last().is_some_and(|(_, leader)| leader.is_somebody())
 }
 
-/// Who says to hold which place.
 fn holders<S>(neighbors: &[Neighbor<S>]) -> impl Iterator<Item = (RobotId, u8)> + Clone {
     neighbors.iter().map(|other| (other.id, other.slot))
 }
 
-/// A neighbour as the formation sees it.
 fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }
@@ -383,19 +378,20 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             self.router.begin_anew();
             list::extend(&mut asks, self.ask_pace(leader, guide.lag));
             status.is_off_place = self.pace.waits();
-            // The goal counts when the formation is there.
+            // The goal counts only once the formation has arrived.
             status.is_at_goal &= guide.has_arrived;
             let weights = self.follow(input, &window, (cell, target), guide, &found, workspace);
             if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
-                // By the place that it should have, be it in a wall.
+                // Relative to the assigned place, even if it is impassable.
                 let [_, place] = self.steering.aims(&self.formation, &guide.anchor, target);
                 stays = should_stay(cell, place, first);
             }
             weights
         } else {
-            // Who says that he cannot go on is not waited for, nor who has arrived: a part of the formation that lost the rest
-            // on the way would wait for ever for those who are at the goal before it.
-            // Nor who follows somebody else, nor anybody by one who has lost touch.
+            // Do not wait for a robot that cannot continue or has arrived: a part of the formation
+            // that lost the rest would wait for ever for robots that reached the goal first. Do not
+            // wait for a robot that follows another one. A robot that travels alone waits for no
+            // robot.
             let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
             let able = found.members.iter();
             let able = able.filter(|Member { seen, .. }| {
@@ -434,7 +430,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice, 0);
         if status.waits_for.is_none() && !status.is_at_goal {
-            // Asks hold three: for the pace, and these two.
+            // There are at most three requests: for the pace, and these two.
             list::extend(&mut asks, blocked);
             list::extend(&mut asks, self.ask_surplus(&found));
         }

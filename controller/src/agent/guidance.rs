@@ -1,4 +1,4 @@
-//! What the agent asks of a guidance law.
+//! The interface between the agent and its guidance law.
 
 use super::{KinematicState, Parameter, Surroundings, Wait, Waypoint};
 use crate::body::Body;
@@ -14,24 +14,29 @@ use crate::wire::{Payload, RequestKind, TemplateAssignment};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Chooses where to go. An agent has one; each composes behaviours of the layer below.
+/// Chooses where to go. An agent has one law, which composes behaviours of the layer below.
 ///
-/// Its type decides what its robot is told, where it can be sent and what it can be wrapped in, so that a robot that is wired wrong does not compile:
+/// The associated types of a law determine its inputs, its kinds of goal and the laws that can wrap
+/// it, so that a wrong combination does not compile:
 ///
 /// ```
 /// # use staya_controller::{agent::*, grid::Cell, time::Instant};
 /// # type Route = RouteGuidance<CELLS, VISITS>;
-/// fn sound(grid: &mut RouteAgent, plane: &mut OrcaAgent, cell: OnGrid, free: InPlane<f32>, now: Instant) {
+/// # fn workspace() -> GridWorkspace<CELLS> { GridWorkspace::new() }
+/// fn on_grid(agent: &mut RouteAgent, surroundings: OnGrid, now: Instant) {
 ///     let (state, inbox) = (KinematicState::default(), &[]);
-///     grid.assign_goal(Cell::new(9, 5));
-///     let _ = grid.step(&Inputs { state, surroundings: cell, inbox }, now, &mut GridWorkspace::new());
-///     plane.assign_waypoint(0, &Waypoint::fixed(Default::default()));
-///     let _ = plane.step(&Inputs { state, surroundings: free, inbox }, now, &mut ());
+///     agent.assign_goal(Cell::new(9, 5));
+///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut workspace());
+/// }
+/// fn in_plane(agent: &mut OrcaAgent, surroundings: InPlane<f32>, now: Instant) {
+///     let (state, inbox) = (KinematicState::default(), &[]);
+///     agent.assign_waypoint(0, &Waypoint::fixed(Default::default()));
+///     let _ = agent.step(&Inputs { state, surroundings, inbox }, now, &mut ());
 /// }
 /// fn law(law: CellFollower<f32, Route>) -> impl Guidance<f32> { law }
 /// ```
 ///
-/// Told of a grid where it moves by velocities, or the other way round:
+/// Grid inputs for a law that moves by velocities, or the reverse:
 ///
 /// ```compile_fail
 /// # use staya_controller::{agent::*, time::Instant};
@@ -44,12 +49,12 @@ use serde::{Deserialize, Serialize};
 /// ```compile_fail
 /// # use staya_controller::{agent::*, time::Instant};
 /// fn step(grid: &mut RouteAgent, free: InPlane<f32>, now: Instant) {
-///     let (state, inbox) = (KinematicState::default(), &[]);
-///     let _ = grid.step(&Inputs { state, surroundings: free, inbox }, now, &mut GridWorkspace::new());
+///     let inputs = Inputs { state: KinematicState::default(), surroundings: free, inbox: &[] };
+///     let _ = grid.step(&inputs, now, &mut GridWorkspace::new());
 /// }
 /// ```
 ///
-/// Sent to a cell where it goes to waypoints, or the other way round:
+/// A cell as the goal of a law with waypoints, or the reverse:
 ///
 /// ```compile_fail
 /// # use staya_controller::{agent::*, grid::Cell};
@@ -58,30 +63,31 @@ use serde::{Deserialize, Serialize};
 ///
 /// ```compile_fail
 /// # use staya_controller::agent::*;
-/// fn send(grid: &mut RouteAgent) { grid.assign_waypoint(0, &Waypoint::fixed(Default::default())); }
+/// fn send(grid: &mut RouteAgent, to: &Waypoint<f32>) { grid.assign_waypoint(0, to); }
 /// ```
 ///
-/// From cell to cell by a law that knows none:
+/// A follower of cells around a law without cells:
 ///
 /// ```compile_fail
 /// # use staya_controller::agent::*;
 /// fn law(law: CellFollower<f32, WaypointGuidance<f32>>) -> impl Guidance<f32> { law }
 /// ```
 pub trait Guidance<S: Scalar>: Teamwork {
-    /// What it must be told besides own state and radio: [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane) or
-    /// [`InCells`](super::InCells).
+    /// The input in addition to own state and radio: [`OnGrid`](super::OnGrid),
+    /// [`InPlane`](super::InPlane) or [`InCells`](super::InCells).
     type Input<'a>: Surroundings<S>;
 
-    /// Where it can be sent.
+    /// The kind of goal.
     type Destination: Destination;
 
-    /// Scratch memory; holds nothing between calls, so that many robots can share one.
+    /// Scratch memory. It holds no state between calls, so many robots can share one.
     type Workspace;
 
-    /// What it tells others of its kind behind each beacon, and knows of them as [`Neighbor::payload`]; `()` for nothing, at no cost.
+    /// Data for robots with the same law. It is sent after each beacon and received as
+    /// [`Neighbor::payload`]; `()` for none, at no cost.
     type Payload: Payload;
 
-    /// Chooses what to do next. Called when the robot has somewhere to go and is free to move.
+    /// Decides on the next action. Called when the robot has a goal and is free to move.
     ///
     /// # Errors
     /// [`BadInput`] puts the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
@@ -93,86 +99,91 @@ pub trait Guidance<S: Scalar>: Teamwork {
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput>;
 
-    /// Whether a cell of the grid is what it goes to; where the type does not tell, it must say so.
+    /// Returns whether its goal is a cell of the grid. Override this if
+    /// [`Self::Destination`](Guidance::Destination) does not determine it.
     fn goes_to_cells(&self) -> bool {
         Self::Destination::IS_CELL
     }
 
-    /// Whether it decides on velocities, not on moves from cell to cell.
+    /// Returns whether it decides on velocities instead of moves between cells.
     fn goes_by_velocity(&self) -> bool {
         true
     }
 
-    /// Whether it knows where to go without a cell as its goal.
+    /// Returns whether it has a goal other than an assigned cell.
     fn has_own_goal(&self) -> bool {
         false
     }
 
-    /// What follows those whom the robot sees; `None`: it knows of nobody but by radio. See [`NeighborTracking`](super::NeighborTracking).
+    /// Returns the tracker of detected robots, or `None` if neighbours are known by radio only. See
+    /// [`NeighborTracking`](super::NeighborTracking).
     fn tracker(&mut self) -> Option<&mut Tracker<S>> {
         None
     }
 
-    /// Takes a waypoint to go to, number `index` of those that the robot has; whether it was of use.
+    /// Sets waypoint `index`. Returns whether it was accepted.
     fn assign_waypoint(&mut self, _index: u8, _waypoint: &Waypoint<S>) -> bool {
         false
     }
 
-    /// What to tell others of its kind, asked when a beacon is due. Several robots hear it late, repeatedly or never, so it should be
-    /// what holds now, not what has changed.
+    /// Returns the payload, called when a beacon is due. Receivers may get it late, repeatedly or
+    /// never, so it should describe a state rather than a change.
     fn payload(&mut self, _now: Instant) -> Self::Payload {
         Self::Payload::default()
     }
 
-    /// What a parameter is now; `None` when it has no such one.
+    /// Returns the value of a parameter, or `None` if the law does not have it.
     fn parameter(&self, _parameter: Parameter) -> Option<S> {
         None
     }
 
-    /// Changes a parameter; whether it has such one. `value` is within [`Parameter::range`].
+    /// Changes a parameter. Returns whether the law has it and accepts the value. `value` is within
+    /// [`Parameter::range`].
     fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
         false
     }
 }
 
-/// What robots that travel together say to each other beyond beacons. A law that has no use for it takes the defaults:
-/// `impl Teamwork for MyLaw {}`.
+/// Messages between robots that travel together, in addition to beacons. A law that does not use
+/// them takes the defaults: `impl Teamwork for MyLaw {}`.
 pub trait Teamwork {
-    /// "Choose another direction" (A. V. Kuznetsov 2017, KUZ, section 7): excludes the last choice from the next one.
+    /// Handles a request to choose another direction (A. V. Kuznetsov 2017, KUZ, section 7): the
+    /// last choice is excluded from the next decision.
     fn redirect(&mut self) {}
 
-    /// Whether somebody's request to stand holds at the decision that follows. Who follows nobody stands without the law's doing
-    /// ([`Status::recovers`] goes on); a law in which others stand too takes note of it.
+    /// Reports before a decision whether a stop request is active. The agent itself stops a robot
+    /// without a leader (unless [`Status::recovers`] is set). A law in which other robots stop as
+    /// well stores the flag.
     fn note_stop(&mut self, _is_asked: bool) {}
 
-    /// Takes a part of a formation template in; whether the part was of use. `is_anew`: its sender is
-    /// another one than before, or has started anew.
+    /// Handles a part of a formation template. Returns whether it was accepted. `is_anew`: the
+    /// sender changed or restarted.
     fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
         false
     }
 
-    /// From the top leader's goal to the own goal.
+    /// Returns the cell difference from the top leader's goal to the own goal.
     fn goal_offset(&self) -> Cell {
         Cell::default()
     }
 
-    /// Takes in what somebody says of the land.
+    /// Merges a patch of another robot's map.
     fn hear_land(&mut self, _patch: &LandPatch) {}
 
-    /// What to tell others of the land, behind each beacon.
+    /// Returns the patch of the own map to send after a beacon.
     fn say_land(&mut self, _now: Instant) -> Option<LandPatch> {
         None
     }
 
-    /// Whether a full neighbour table must keep this robot.
+    /// Returns whether a full neighbour table must keep this robot.
     fn needs(&self, _id: RobotId) -> bool {
         false
     }
 }
 
-/// The functions of [`Teamwork`] in a law around another one, `$inside`, that does nothing of its own in them: `orders` those
-/// about formations, `land` those about the land. A function that is forgotten in such a law is lost without a word
-/// (`tests/wrapped.rs` looks).
+/// Forwards the functions of [`Teamwork`] to the wrapped law `$inside`: `orders` for formations,
+/// `land` for maps. A function that is missing here would fall back to its default without a
+/// warning (`tests/wrapped.rs` checks this).
 macro_rules! pass_on {
     (orders: $self:ident => $inside:expr) => {
         fn redirect(&mut $self) {
@@ -207,28 +218,29 @@ macro_rules! pass_on {
 }
 pub(super) use pass_on;
 
-/// Where a guidance law can be sent: one of [`ToCells`], [`ToWaypoints`], [`Roams`] and [`ToAny`].
+/// The kind of goal of a guidance law: [`ToCells`], [`ToWaypoints`], [`Roams`] or [`ToAny`].
 pub trait Destination {
-    /// Whether it is a cell of the grid.
+    /// Whether the goal is a cell of the grid.
     const IS_CELL: bool;
 }
 
-/// To a cell of the grid: agents have [`Agent::assign_goal`](super::Agent::assign_goal).
+/// A cell of the grid, set by [`Agent::assign_goal`](super::Agent::assign_goal).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToCells {}
 
-/// To waypoints: agents have [`Agent::assign_waypoint`](super::Agent::assign_waypoint).
+/// Waypoints, set by [`Agent::assign_waypoint`](super::Agent::assign_waypoint).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToWaypoints {}
 
-/// Nowhere.
+/// No goal.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Roams {}
 
-/// That is known only at run time: agents have [`Agent::assign`](super::Agent::assign), as all have.
+/// A kind of goal chosen at run time, set by [`Agent::assign`](super::Agent::assign), which every
+/// agent has.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToAny {}
@@ -249,43 +261,43 @@ impl Destination for ToAny {
     const IS_CELL: bool = false;
 }
 
-/// What any guidance law may know at a decision; `P` is its [`Guidance::Payload`].
+/// Inputs of a decision that are common to all guidance laws. `P` is the [`Guidance::Payload`].
 #[derive(Clone, Copy, Debug)]
 pub struct GuidanceInput<'a, S, P = ()> {
-    /// Own number.
+    /// Own id.
     pub id: RobotId,
-    /// The moment of the decision.
+    /// Time of the decision.
     pub now: Instant,
-    /// The time in which a robot crosses a cell of impassability 1.
+    /// Time in which a robot crosses a cell of impassability 1.
     pub tick: Duration,
-    /// Own state.
+    /// Own position and velocity.
     pub state: KinematicState<S>,
-    /// The cell to go to; for a law that has a goal of its own any cell.
+    /// The goal cell; any cell for a law that has another kind of goal.
     pub goal: Cell,
     /// Own body.
     pub body: Body<S>,
-    /// Who is near by, nearest first; nobody for robots that move cell by cell.
+    /// Nearby robots, nearest first; empty for robots that move cell by cell.
     pub nearby: &'a [Nearby<S>],
-    /// Who was heard, by rising number; nobody older than [`Ages::expire_after`].
+    /// Known robots in ascending order of ids, none older than [`Ages::expire_after`].
     pub neighbors: &'a [Neighbor<S, P>],
-    /// How old news may be.
+    /// Age limits of neighbour states.
     pub ages: Ages,
-    /// What is known of the land beyond the window: see [`MapSharing`](super::MapSharing).
+    /// Terrain beyond the window, from a shared map: see [`MapSharing`](super::MapSharing).
     pub land: Option<&'a dyn FarLand>,
 }
 
 impl<S: Scalar, P> GuidanceInput<'_, S, P> {
-    /// Whether the body can go by velocities.
+    /// Checks that the body can move by velocities.
     ///
     /// # Errors
-    /// [`BadInput`] when [`InPlane::max_speed_mps`](super::InPlane::max_speed_mps) says that it cannot move.
+    /// [`BadInput`] if [`InPlane::max_speed_mps`](super::InPlane::max_speed_mps) is 0 or less.
     pub fn can_go(&self) -> Result<(), BadInput> {
         if self.body.max_speed_mps > S::ZERO { Ok(()) } else { Err(BadInput) }
     }
 }
 
 impl<'a, S, P> GuidanceInput<'a, S, P> {
-    /// A neighbour by its number. O(log N).
+    /// Returns a neighbour by its id. O(log N).
     #[must_use]
     pub fn neighbor(&self, id: RobotId) -> Option<&'a Neighbor<S, P>> {
         let at = self.neighbors.binary_search_by_key(&id, |n| n.id).ok()?;
@@ -293,48 +305,50 @@ impl<'a, S, P> GuidanceInput<'a, S, P> {
     }
 }
 
-/// What a guidance law decided.
+/// The decision of a guidance law.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 pub struct Decision<S> {
-    /// What the robot would do with nobody in the way; what becomes of it is the supervisor's and the safety layer's matter.
+    /// The intended action, without regard to collisions. The supervisor and the safety layer may
+    /// change it.
     pub action: Action<S>,
-    /// How it stands.
+    /// Progress towards the goal.
     pub status: Status,
-    /// The cell that it really heads for: the goal, or near it if the goal is a wall.
+    /// The cell that the robot heads for: the goal, or a cell near it if the goal is impassable.
     pub target: Cell,
-    /// Whom the robot follows.
+    /// The robot that this one follows.
     pub leader: RobotId,
     /// Its place in the formation.
     pub slot: u8,
-    /// What it asks of others.
+    /// Requests to other robots.
     pub asks: Vec<Ask, 3>,
 }
 
-/// What to do until the next decision.
+/// The action until the next decision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Action<S> {
-    /// To stand.
+    /// Stand still.
     #[default]
     Stay,
-    /// To take the first of these moves, best first, that leads into a free cell.
+    /// Take the first of these moves, best first, that leads into a free cell.
     Moves(Vec<Dir, 8>),
-    /// To go.
+    /// Move with a velocity.
     Velocity {
-        /// How it would go with nobody in the way, m/s.
+        /// The desired velocity without regard to collisions, m/s.
         wish_mps: Vec3<S>,
-        /// The next place on its way that it goes to straight, relative to its own place, metres; `None` when it has
-        /// none: then nobody coming nearer is a reason to swerve.
+        /// Offset of the point that the robot heads straight for, relative to its own position,
+        /// metres. With `None`, the robot does not swerve to pass an approaching robot.
         way_m: Option<Vec3<S>>,
     },
-    /// To leave the body alone: its motors are off, or somebody else steers ([`Mode::Passive`](crate::robot::Mode::Passive)).
+    /// Release control: the motors are off, or another controller steers
+    /// ([`Mode::Passive`](crate::robot::Mode::Passive)).
     Release,
 }
 
 impl<S> Action<S> {
-    /// The moves, if there are any.
+    /// Returns the moves; empty for other actions.
     #[must_use]
     pub fn moves(&self) -> &[Dir] {
         match self {
@@ -344,35 +358,35 @@ impl<S> Action<S> {
     }
 }
 
-/// How a robot stands to where it should be.
+/// The state of a robot relative to its goal and its formation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
-    /// It is where it should be, or beside.
+    /// It is at its goal, or beside its occupied goal.
     pub is_at_goal: bool,
-    /// It should stand and wait for this; [`Wait::Place`] if it is at its goal by standing beside it.
+    /// The reason to stand still and wait; [`Wait::Place`] if it arrived beside its occupied goal.
     pub waits_for: Option<Wait>,
-    /// No exit of the window can be reached.
+    /// No exit of the window is reachable.
     pub is_stuck: bool,
-    /// It heads for where its followers are off to, and so goes on though they ask it to stop.
+    /// It heads for its scattered followers, and therefore continues although they request a stop.
     pub recovers: bool,
     /// It is too far from its place in the formation.
     pub is_off_place: bool,
-    /// It was asked to make way, or its waypoint moves: it moves even if it has arrived or waits.
+    /// It moves even if it has arrived or waits: it was asked to make way, or its waypoint moves.
     pub makes_way: bool,
 }
 
-/// A request that a guidance law wants made.
+/// A request that a guidance law sends to another robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ask {
-    /// To whom.
+    /// The receiver.
     pub to: RobotId,
-    /// What for.
+    /// The kind of the request.
     pub kind: RequestKind,
 }
 
-/// An input without which the guidance law cannot decide is missing, or contradicts another one.
+/// A required input of the guidance law is missing or contradicts another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BadInput;

@@ -1,4 +1,4 @@
-//! What goes into a step and what comes out of it.
+//! Inputs and outputs of a step.
 
 use super::{AnySurroundings, Wait};
 use crate::geom::{Position, Vec3};
@@ -26,115 +26,118 @@ pub struct KinematicState<S> {
     pub velocity_mps: Vec3<S>,
 }
 
-/// What one step gets; `I` is what the guidance law must be told: [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane),
-/// [`InCells`](super::InCells) or [`AnySurroundings`](super::AnySurroundings).
+/// Inputs of one step. `I` is the input of the guidance law: [`OnGrid`](super::OnGrid),
+/// [`InPlane`](super::InPlane), [`InCells`](super::InCells) or
+/// [`AnySurroundings`](super::AnySurroundings).
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a, S, I> {
-    /// Own state.
+    /// Own position and velocity.
     pub state: KinematicState<S>,
-    /// What is around.
+    /// The surroundings as the guidance law needs them.
     pub surroundings: I,
-    /// What the radio delivered since the last step: frames of the agent's wire format, in order of arrival. Damaged, foreign
-    /// and partial ones are recognised and counted.
+    /// Bytes received since the last step: frames of the agent's wire format, in order of arrival.
+    /// Damaged, foreign and partial frames are detected and counted.
     pub inbox: &'a [u8],
 }
 
-/// What a robot gets whose guidance law is known only at run time.
+/// Inputs of an agent whose guidance law is chosen at run time.
 pub type AnyInputs<'a, S> = Inputs<'a, S, AnySurroundings<'a, S>>;
 
 impl<'a, S: Scalar, I: Into<AnySurroundings<'a, S>>> Inputs<'a, S, I> {
-    /// The same for a law that is known only at run time.
+    /// Converts the inputs for an agent whose guidance law is chosen at run time.
     #[must_use]
     pub fn any(self) -> AnyInputs<'a, S> {
         Inputs { state: self.state, surroundings: self.surroundings.into(), inbox: self.inbox }
     }
 }
 
-/// What the body should do until the next step.
+/// The motion of the body until the next step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Command<S> {
-    /// Stand.
+    /// Stand still.
     #[default]
     Hold,
-    /// Take the first of these moves whose cell is free and passable; none free: stand
-    /// (A. V. Kuznetsov 2017, KUZ, algorithm 4).
+    /// Take the first of these moves whose cell is free and passable; stand still if none is (A. V.
+    /// Kuznetsov 2017, KUZ, algorithm 4).
     Move(Vec<Dir, 8>),
-    /// Go with this world velocity, m/s: within the speed that the body can have.
+    /// Move with this world velocity, m/s, which is within the speed limit of the body.
     Velocity(Vec3<S>),
 }
 
-/// Something that the robot's owner may want to know.
+/// An event for the robot's operator or firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Event {
     /// The supervisor changed its mode.
     ModeChanged {
-        /// Before.
+        /// Previous mode.
         from: Mode,
-        /// Now.
+        /// Current mode.
         to: Mode,
     },
-    /// No exit of the window can be reached.
+    /// No exit of the window is reachable.
     NoRoute,
     /// The target lay in an impassable cell and moved to the nearest passable one.
     TargetMoved {
-        /// As assigned.
+        /// The assigned cell.
         from: Cell,
-        /// As used.
+        /// The cell used instead.
         to: Cell,
     },
     /// A request ran out of retries.
     RequestExpired {
-        /// Whom it asked.
+        /// The robot that was asked.
         to: RobotId,
-        /// What it asked.
+        /// The kind of the request.
         kind: RequestKind,
     },
-    /// A neighbour came into the table.
+    /// A neighbour was added to the table.
     NeighborFound(RobotId),
-    /// A neighbour was silent for too long.
+    /// A neighbour was silent for longer than packet loss explains.
     NeighborLost(RobotId),
-    /// The table was full and a neighbour had to go.
+    /// The table was full, and this neighbour was removed.
     NeighborEvicted(RobotId),
-    /// A neighbour's clock or sequence restarted.
+    /// The clock or the sequence number of a neighbour restarted.
     NeighborRebooted(RobotId),
-    /// Nobody is heard any more: all are lost. What the robot makes of it: [`Silence`](super::Silence).
+    /// All neighbours are lost. [`Silence`](super::Silence) determines the reaction.
     NobodyHeard,
-    /// Two robots have this number, the own one or that of another robot, and one of them should get another. Said once, and
-    /// again when that one is found again after it was lost. What such robots do: the second one is kept clear of as
-    /// [`RobotId::double`], and by that number it is lost.
+    /// Two robots use this id, which is the own id or that of a neighbour. Give one of them another
+    /// id.
+    ///
+    /// Reported once, and again if the robot is found again after it was lost. The second robot is
+    /// avoided under the id [`RobotId::double`], and is reported as lost under that id.
     DuplicateId(RobotId),
-    /// A robot says of itself what is beyond [`AgentConfig::claims`](super::AgentConfig::claims). Said when it begins; of numbers that no
-    /// robot has, once in a step.
+    /// A robot reported a value beyond [`AgentConfig::claims`](super::AgentConfig::claims).
+    /// Reported when it begins; for ids that no robot has, once per step.
     Overclaimed {
-        /// Who.
+        /// The sender.
         id: RobotId,
-        /// What.
+        /// The implausible value.
         claim: Claim,
     },
-    /// The robot says nothing any more: its format has no counter or timestamp left to authenticate frames with
-    /// ([`EncodeError::Exhausted`](crate::wire::EncodeError)). Said for each beacon that was due; a new key ends it.
+    /// The robot cannot send: its wire format has no counter or timestamp left to authenticate
+    /// frames with ([`EncodeError::Exhausted`](crate::wire::EncodeError)). Reported for each beacon
+    /// that is due, until a new key is set.
     Muted,
 }
 
-/// Frames that were refused for who may have said them and when, by a format that authenticates them: [`Sealed`](crate::wire::Sealed) or MAVLink's
-/// signatures.
+/// Counts of frames that failed authentication. Only formats that authenticate frames fill it:
+/// [`Sealed`](crate::wire::Sealed) and signed MAVLink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Refused {
-    /// Without tag or signature.
+    /// Without a tag or signature.
     pub unsigned: u16,
-    /// With one of another key, or of another content.
+    /// With a tag or signature that does not match: another key, or changed content.
     pub forged: u16,
-    /// Recorded, repeated by the radio, or of a time too far ahead.
+    /// Recorded and replayed, repeated by the radio, or with a timestamp too far ahead.
     pub replayed: u16,
-    /// Of senders for whom there is no room.
+    /// From a sender for which the replay window has no room.
     pub no_room: u16,
 }
 
 impl Refused {
-    /// Counts why a frame was refused, if it is for such a reason.
     pub(super) fn count(&mut self, error: DecodeError) {
         let count = match error {
             DecodeError::Unsigned => &mut self.unsigned,
@@ -147,22 +150,21 @@ impl Refused {
     }
 }
 
-/// Beacons that said what is beyond [`AgentConfig::claims`](super::AgentConfig::claims).
+/// Counts of beacons with values beyond [`AgentConfig::claims`](super::AgentConfig::claims).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Overclaims {
-    /// A number that no robot has; refused.
+    /// Ids that no robot has; the beacon was refused.
     pub numbers: u16,
-    /// A radius that was cut.
+    /// Radii that were reduced to the limit.
     pub radii: u16,
-    /// A velocity that was cut.
+    /// Velocities that were reduced to the limit.
     pub speeds: u16,
-    /// A place where the robot cannot be yet; refused.
+    /// Places that the robot cannot have reached yet; the beacon was refused.
     pub jumps: u16,
 }
 
 impl Overclaims {
-    /// Counts one.
     pub(super) fn count(&mut self, claim: Claim) {
         let count = match claim {
             Claim::Number => &mut self.numbers,
@@ -174,34 +176,36 @@ impl Overclaims {
     }
 }
 
-/// What one step gives.
+/// Outputs of one step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "a step only decides; the caller moves the body and sends the bytes"]
 pub struct Outputs<S> {
-    /// What the body should do.
+    /// The motion of the body.
     pub command: Command<S>,
-    /// What the robot waits for, if it does not get on; [`Wait::Place`] when it has arrived beside its goal.
+    /// The cause if the robot does not advance; [`Wait::Place`] if it has arrived beside its
+    /// occupied goal.
     pub wait: Option<Wait>,
-    /// Frames of the inbox that were heard: sound, not seen before, of somebody else.
+    /// Frames of the inbox that were accepted: valid, not duplicates, from other robots.
     pub received: u16,
-    /// Frames of the inbox that were refused: damaged, of another version, repeated or replayed. Those of others on the same band
-    /// ([`DecodeError::Foreign`](crate::wire::DecodeError)) count neither here nor there.
+    /// Frames of the inbox that were rejected: damaged, of another version, repeated or replayed.
+    /// Foreign frames on the same band ([`DecodeError::Foreign`](crate::wire::DecodeError)) count
+    /// as neither received nor rejected.
     pub rejected: u16,
-    /// How many of the refused were not authentic.
+    /// The rejected frames that failed authentication.
     pub refused: Refused,
-    /// What was heard and not believed, or not all of it.
+    /// Received beacons with implausible values.
     pub overclaims: Overclaims,
-    /// Bytes for the radio: frames of the agent's wire format; postcard's end with a zero byte each.
+    /// Bytes to send: frames of the agent's wire format. Each postcard frame ends with a zero byte.
     pub outbox: Vec<u8, OUTBOX>,
-    /// What happened; the oldest ones when more than [`EVENTS`].
+    /// Events of this step; if more than [`EVENTS`] occur, the first ones.
     pub events: Vec<Event, EVENTS>,
-    /// When to call again if nothing arrives before.
+    /// When to call the step again if nothing arrives earlier.
     pub call_again: Instant,
 }
 
 impl<S> Outputs<S> {
-    /// As [`Outputs::default`], in place.
+    /// Resets to [`Outputs::default`] in place.
     pub(super) fn clear(&mut self) {
         (self.command, self.wait) = (Command::Hold, None);
         (self.received, self.rejected) = (0, 0);

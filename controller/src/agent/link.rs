@@ -1,4 +1,4 @@
-//! The agent's end of the radio: bytes to news, and what is to be said to bytes.
+//! The radio link of an agent: decodes received frames and encodes frames to send.
 
 use super::double::Said;
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
@@ -21,60 +21,57 @@ use serde::{Deserialize, Serialize};
 mod sight;
 mod who;
 
-/// Requests to others on their way at a time.
+/// Capacity of requests that wait for an acknowledgement.
 const PENDING: usize = 4;
-/// Waypoints that a robot can be given.
 const WAYPOINTS: usize = 4;
-/// Matters of others that are remembered.
+/// Capacity of requests received from other robots.
 const ORDERS: usize = 8;
 
-/// News that is not kept here but acted on by the agent.
 pub(super) enum News<S> {
-    /// Somebody asks to choose another direction.
+    /// A request to choose another direction.
     Redirect,
-    /// Somebody's request to stand or go on is to be passed on up the chain.
+    /// A stop or resume request to pass on to the own leader.
     PassOn(Request),
-    /// A part of a template for this robot; `is_anew` when its sender is another one than before or
-    /// has started anew, so that versions count from anywhere.
+    /// A part of a template for this robot. `is_anew` is true if the sender changed or restarted,
+    /// so that its version numbers start anywhere.
     Template { part: TemplateAssignment, is_anew: bool },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
-    /// Land that somebody knows of.
+    /// A patch of another robot's map.
     Land(LandPatch),
-    /// A waypoint, number `index` of several; once it is taken, [`Link::placed`] wants to know.
+    /// Waypoint `index`. Call [`Link::placed`] if it was accepted.
     Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },
 }
 
-/// What the link keeps between steps; `P` is what the law tells others.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Link<S, const N: usize, W, P> {
-    /// The format of the frames.
     wire: W,
     header: Header,
-    /// What was said last, to know it again.
+    /// The last frames sent, to recognise echoes.
     said: Said,
     pub(super) table: NeighborTable<S, N, P>,
     pub(super) company: Company,
     suspects: Suspects,
     loss: LossEstimate,
-    /// One window per entry of the table.
     windows: Vec<(RobotId, SequenceWindow), N>,
     requests: Requests<PENDING>,
     orders: Orders<ORDERS>,
     goal: Newest,
     waypoints: [Newest; WAYPOINTS],
-    /// Who gave the last goal, the last template and the last waypoint, each with its boot.
+    /// The senders of the last goal, the last template and the last waypoint, each with its boot
+    /// number.
     commanders: [Option<(RobotId, u8)>; 3],
     beacon_due: Instant,
     has_sent: bool,
-    /// The torus that simulated robots live on. It is equal for all of a run, so digests do not count it.
+    /// The torus of simulated robots. It is constant in a run, so digests omit it.
     #[cfg(feature = "host")]
     #[serde(with = "crate::digest::uncounted")]
     torus: Option<Torus<S>>,
 }
 
-/// Own position, when what arrives was said, how fast others can be (if that is known), how often they speak, what they may say of
-/// themselves, and who must stay in a full table.
+/// The context in which frames are received: own position, the time at which arriving frames were
+/// sent, the top speed of other robots (if known), their beacon period, plausibility limits, and
+/// the robots that a full table must keep.
 pub(super) struct Listener<'a, S> {
     pub(super) position: Position,
     pub(super) heard_at: Instant,
@@ -119,7 +116,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         None
     }
 
-    /// The image of a place that is nearest to another one: in the open plane, the place itself.
+    /// Returns the image of a position that is nearest to another one; without a torus, the
+    /// position itself.
     fn image(&self, place: Position, other: Position) -> Position {
         self.torus().map_or(place, |torus| torus.image(place, other))
     }
@@ -132,10 +130,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         &mut self.wire
     }
 
-    /// Loses who was silent for too long, and remembers the lost for `remember`. The first thing in each step.
+    /// Moves neighbours from the table to the list of lost robots once they have been silent for
+    /// longer than packet loss explains. Call this first in each step.
     ///
-    /// Too long is more than the radio explains when all speak once in a `period` and are heard `latency` later. Who
-    /// remembers the lost, as balls that stand, takes them for that only after [`Ages::expire_after`].
+    /// The limit follows from the beacon `period`, the radio's `latency` and the measured loss. If
+    /// lost robots are remembered (`remember` > 0), as stationary balls, a neighbour counts as lost
+    /// only after [`Ages::expire_after`].
     pub(super) fn expire(
         &mut self,
         own: Position,
@@ -163,12 +163,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         });
     }
 
-    /// Takes the next frame off the bytes of an inbox.
     pub(super) fn next_frame<'a>(&self, inbox: &mut &'a [u8]) -> Option<&'a [u8]> {
         self.wire.next_frame(inbox)
     }
 
-    /// Takes one frame in, acknowledges a request, and returns what the agent must act on.
+    /// Processes one frame, acknowledges a request, and returns a message that the agent must
+    /// handle.
     pub(super) fn hear(
         &mut self,
         bytes: &[u8],
@@ -177,7 +177,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         out: &mut Outputs<S>,
     ) -> Option<News<S>> {
         let frame = match self.wire.decode(bytes) {
-            // Others talk on the same band: neither news nor damage.
+            // Frames of other systems on the same band count as neither received nor rejected.
             Err(DecodeError::Foreign) => return None,
             Err(error) => {
                 out.refused.count(error);
@@ -196,7 +196,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.take(frame, id, arrival, now, listener, out)
     }
 
-    /// How a frame stands to those before it; `None` for one to refuse.
+    /// Classifies a frame by its sequence number; `None` if it must be refused.
     fn arrival(&mut self, sender: RobotId, header: Header, out: &mut Outputs<S>) -> Option<Arrival> {
         let window = self.windows.iter_mut().find(|(id, _)| *id == sender);
         let (missed, arrival) =
@@ -225,7 +225,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         match frame.message {
             Message::Beacon(beacon) if arrival.is_latest() => {
                 let mut neighbor = Neighbor::from_beacon(id, &beacon, listener.heard_at);
-                // What its law told comes by itself; that of an earlier life is void.
+                // The payload arrives in a separate frame. After a restart the old one is invalid.
                 let known = self.table.get(id, now).known().filter(|_| arrival != Arrival::Rebooted);
                 neighbor.payload = known.map_or(neighbor.payload, |known| known.payload);
                 self.keep(neighbor, frame.header, now, listener, out);
@@ -240,7 +240,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 }
             }
             Message::Ack(ack) if is_mine(ack.to) => {
-                // A second acknowledgement of the same request is as good as none.
+                // A repeated acknowledgement has no effect.
                 let _ = self.requests.acknowledged(sender, &ack);
             }
             Message::Template(part) if is_mine(part.to) => {
@@ -276,14 +276,13 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 }
             }
             Message::Land(patch) => return Some(News::Land(patch)),
-            // Of no size: nothing that could be told.
             Message::Payload(bytes) if size_of::<P>() > 0 && arrival.is_latest() => self.table.tell(id, bytes.get()),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
                 }
             }
-            // An old beacon, or for somebody else.
+            // An outdated beacon, or a message for another robot.
             _ => {}
         }
         None
@@ -309,38 +308,38 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         if matches!(put, Put::Inserted | Put::Evicted(_)) {
             let mut window = SequenceWindow::new();
             let _ = window.check(header);
-            // As many windows as entries.
+            // Cannot fail: there are as many windows as entries.
             let _ = self.windows.push((id, window));
             report(out, id.doubled().map_or(Event::NeighborFound(id), Event::DuplicateId));
         }
     }
 
-    /// Takes note that a waypoint was of use. One that was not is news when it comes again: what it needed may be there then.
+    /// Marks a waypoint as accepted. A waypoint that was not accepted is reported again when it is
+    /// repeated, because it may be usable by then.
     pub(super) fn placed(&mut self, index: u8, version: u8) {
         if let Some(newest) = self.waypoints.get_mut(usize::from(index)) {
             let _ = newest.admit(version);
         }
     }
 
-    /// Takes on a request; one that finds no room is dropped, its reason will come again.
+    /// Queues a request. It is dropped if the queue is full, because its cause will recur.
     pub(super) fn ask(&mut self, to: RobotId, origin: RobotId, kind: RequestKind, valid: Duration, now: Instant) {
         let millis = valid.as_micros().max(0).checked_div(1000).unwrap_or(0);
         let millis = u16::try_from(millis).unwrap_or(u16::MAX);
         let _ = self.requests.ask(to, origin, kind, millis, now);
     }
 
-    /// Whether no request is on its way.
     #[cfg(test)]
     pub(super) fn is_quiet(&self) -> bool {
         self.requests.is_empty()
     }
 
-    /// Whether somebody's stop stands.
     pub(super) fn is_stopped(&mut self, now: Instant) -> bool {
         self.orders.is_stopped(now)
     }
 
-    /// Sends requests that are due, then the beacon if it is due, and behind it what the law tells and land if there is room.
+    /// Sends due requests, then the beacon if it is due, followed by the payload and a map patch if
+    /// there is room.
     pub(super) fn speak(
         &mut self,
         now: Instant,
@@ -349,7 +348,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         told: impl FnOnce() -> (P, Option<LandPatch>),
         out: &mut Outputs<S>,
     ) {
-        // Twice as many polls as requests always empty the list.
+        // Polling twice per request always empties the list.
         for _ in 0..2 * PENDING {
             match self.requests.poll(now) {
                 Some(Due::Send(request)) => self.say_early(&Message::Request(request), out),
@@ -365,7 +364,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             if self.say(&beacon, 0, out) == Err(EncodeError::Exhausted) {
                 report(out, Event::Muted);
             }
-            // What finds no room is told again when its turn comes.
+            // Data that does not fit is sent again at its next turn.
             let (payload, land) = told();
             if size_of::<P>() > 0
                 && let Some(bytes) = PayloadBytes::of(&payload)
@@ -386,11 +385,11 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
 
     /// Appends a frame to the outbox if a beacon still fits behind it.
     fn say_early(&mut self, message: &Message, out: &mut Outputs<S>) {
-        // What finds no room is asked for again.
+        // A dropped frame is requested again by its receiver.
         let _ = self.say(message, self.wire.beacon_len(), out);
     }
 
-    /// Appends a frame to the outbox if `reserved` bytes stay free behind it.
+    /// Appends a frame to the outbox if `reserved` bytes remain free behind it.
     fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs<S>) -> Result<(), EncodeError> {
         let before = out.outbox.len();
         self.wire.encode(self.header, message, &mut out.outbox)?;
@@ -403,19 +402,18 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 }
 
-/// Whether a frame comes from somebody else than the last one, or from another of its lives;
-/// remembers whom it comes from.
+/// Returns whether a frame comes from another sender or another boot than the last one, and stores
+/// its sender.
 fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
     let now = Some((header.sender, header.boot));
     core::mem::replace(last, now) != now
 }
 
-/// Adds an event if there is room.
 pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
 }
 
-/// What the robot says of itself. Lengths saturate; what is not a number counts as 0.
+/// Builds the own beacon. Lengths saturate, and NaN counts as 0.
 pub(super) fn beacon<S: Scalar>(
     config: &AgentConfig<S>,
     last: &Last,

@@ -1,4 +1,4 @@
-//! A robot that tells others what it has seen of the land, and finds its way by what they tell.
+//! Shares a map of the terrain with other robots and plans with it.
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
 use super::{Parameter, Surroundings, Waypoint};
@@ -13,14 +13,17 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// Guidance law `G` with a map of `T` tiles beyond the window: [`LandMap`]. Laws on the grid price the exits of their windows by it
-/// ([`GuidanceInput::land`]), whoever leads; the others have no use for it.
+/// Guidance law `G` with a map of `T` tiles beyond the window: [`LandMap`]. Laws on the grid price
+/// the exits of their windows by it ([`GuidanceInput::land`]) while they lead; other laws ignore
+/// it.
 ///
-/// What others tell costs time at most, whoever they are: the robot goes by its map as long as it comes nearer to its goal than it ever was at
-/// least once in 32 moves. When it does not, it goes as `G` does alone until it is nearer, and the next time it has a quarter of the
-/// patience: in all 42 moves for a goal, and the ways back from where they led.
+/// False reports of other robots cost only time. The robot uses its map as long as it reaches a new
+/// least distance to its goal at least once in 32 moves. Otherwise it moves as `G` without a map
+/// until it does, and the next limit is a quarter. That bounds the loss to 42 moves per goal, plus
+/// the ways back.
 ///
-/// With each beacon the robot says one patch of its map. Who is not to share keeps nothing, says nothing and does as `G` does.
+/// After each beacon the robot sends one patch of its map. A robot that does not share stores and
+/// sends nothing and behaves as `G`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MapSharing<G, const T: usize> {
     inside: G,
@@ -35,24 +38,22 @@ struct Map<const T: usize> {
     progress: Progress,
 }
 
-/// Moves without coming nearer to the goal for which a robot goes by its map at first.
+/// Moves with the map without a new least distance to the goal.
 const PATIENCE: u8 = 32;
 
-/// Whether the map gets the robot on.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Progress {
-    /// Where it was and where it goes.
+    /// Last cell and goal.
     way: Option<(Cell, Cell)>,
     /// Least squared distance to the goal so far.
     least: u64,
-    /// Moves since then.
     idle: u8,
-    /// How many there may be.
+    /// Limit of `idle`.
     patience: u8,
 }
 
 impl Progress {
-    /// Whether the robot in `cell` goes on by its map.
+    /// Returns whether the robot in `cell` still uses its map.
     fn goes_on(&mut self, cell: Cell, goal: Cell) -> bool {
         let before = self.way.replace((cell, goal));
         if before.is_none_or(|(_, old)| old != goal) {
@@ -71,7 +72,7 @@ impl Progress {
     }
 }
 
-/// What a robot without a map writes of it: for digests nothing.
+/// Serialisation of the map; digests omit a map that does not exist.
 mod counted_if_shared {
     use super::{Map, Seldom};
     use serde::{Deserialize, Deserializer};
@@ -92,24 +93,24 @@ mod counted_if_shared {
 }
 
 impl<G, const T: usize> MapSharing<G, T> {
-    /// `inside`, with a map kept by `params`; `None`: without one.
+    /// Wraps `inside` with a map kept according to `params`, or without a map if `None`.
     #[must_use]
     pub fn new(inside: G, params: Option<MapParams>) -> Self {
         let mut map = Seldom::new();
         if let Some(params) = params {
-            // One has room.
+            // Cannot fail: the capacity is 1.
             let _ = map.push(Map { land: LandMap::new(), params, progress: Progress::default() });
         }
         Self { inside, map }
     }
 
-    /// The guidance law inside.
+    /// The wrapped guidance law.
     #[must_use]
     pub const fn inside(&self) -> &G {
         &self.inside
     }
 
-    /// What it knows of the land, if it shares.
+    /// The map, if the robot shares it.
     #[must_use]
     pub fn land(&self) -> Option<&LandMap<T>> {
         self.map.first().map(|map| &map.land)

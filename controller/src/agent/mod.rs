@@ -1,23 +1,32 @@
-//! The one composer of behaviours: [`Agent::step`]. Read that function first.
+//! The controller of one robot, which composes the behaviours. Start with [`Agent::step`].
 //!
-//! A step hears (`link`), decides (a [`Guidance`] law, then the [`crate::supervisor`]), keeps clear (a
-//! [`Safety`] layer) and speaks. The laws compose the behaviours of the layer below. A law's type says what a robot must be told
-//! ([`Guidance::Input`]), where it can be sent ([`Guidance::Destination`]), and so what does not compile:
+//! A step receives frames (`link`), decides (a [`Guidance`] law, then the [`crate::supervisor`]),
+//! avoids collisions (a [`Safety`] layer) and sends frames. The type of a law determines the inputs
+//! of a step ([`Guidance::Input`]) and the kinds of goal ([`Guidance::Destination`]), so that a
+//! wrong combination does not compile:
 //!
-//! | guidance law | told besides own state and inbox | where to go | command |
+//! | guidance law | surroundings | goal | command |
 //! | --- | --- | --- | --- |
-//! | [`RouteGuidance`], [`FormationGuidance`], `PublishedFormation` | [`OnGrid`] | [`Agent::assign_goal`] | [`Command::Move`] |
-//! | [`RouteGuidance`] within [`CellFollower`], [`FormationInPlane`] | [`InCells`] | [`Agent::assign_goal`] | [`Command::Velocity`] |
-//! | [`WaypointGuidance`], [`GoalFlockGuidance`] | [`InPlane`] | [`Agent::assign_waypoint`] | [`Command::Velocity`] |
-//! | [`LatticeGuidance`] | [`InPlane`] | [`Agent::assign_waypoint`], or nowhere: it flocks | [`Command::Velocity`] |
-//! | [`BoidsGuidance`] | [`InPlane`] | nowhere: it roams | [`Command::Velocity`] |
+//! | [`RouteGuidance`] | [`OnGrid`] | [cell] | [move] |
+//! | [`FormationGuidance`], `PublishedFormation` | [`OnGrid`] | [cell] | [move] |
+//! | [`RouteGuidance`] in [`CellFollower`] | [`InCells`] | [cell] | [velocity] |
+//! | [`FormationInPlane`] | [`InCells`] | [cell] | [velocity] |
+//! | [`WaypointGuidance`], [`GoalFlockGuidance`] | [`InPlane`] | [waypoint] | [velocity] |
+//! | [`LatticeGuidance`] | [`InPlane`] | [waypoint] or none: it flocks | [velocity] |
+//! | [`BoidsGuidance`] | [`InPlane`] | none: it roams | [velocity] |
 //!
-//! What a robot's sensors do not show for a while is told as missing ([`OnGrid::window`], [`InPlane::max_speed_mps`]): that puts it into
-//! [`Mode::Fault`], and it stands.
+//! [cell]: Agent::assign_goal
+//! [waypoint]: Agent::assign_waypoint
+//! [move]: Command::Move
+//! [velocity]: Command::Velocity
 //!
-//! What turns velocities into PWM, bytes of a UART into an inbox and ranges into a window is in the crate `staya-robot`.
+//! An input that the sensors did not deliver for some time is passed as missing
+//! ([`OnGrid::window`], [`InPlane::max_speed_mps`]). The robot then stops in [`Mode::Fault`].
 //!
-//! Cell by cell, to a goal on the grid:
+//! The crate `staya-robot` turns velocities into PWM, UART bytes into an inbox, and range readings
+//! into a window.
+//!
+//! A robot that moves cell by cell to a goal on the grid:
 //!
 //! ```
 //! use staya_controller::agent::*;
@@ -34,7 +43,7 @@
 //! let mut workspace = GridWorkspace::new();
 //! agent.assign_goal(Cell::new(9, 5));
 //!
-//! // What a robot's own sensors and radio would say: flat land, nobody heard.
+//! // Sensors and radio report flat terrain and no other robot.
 //! let (land, mut cell, mut now) = ([1; 121], Cell::new(5, 5), Instant::from_micros(0));
 //! for _ in 0..4 {
 //!     let inputs = Inputs {
@@ -55,7 +64,7 @@
 //! assert_eq!(cell, Cell::new(9, 5));
 //! ```
 //!
-//! By velocities, behind ORCA, to a waypoint two metres east:
+//! A robot that moves by velocities, behind ORCA, to a waypoint two metres east:
 //!
 //! ```
 //! use staya_controller::agent::*;
@@ -68,7 +77,8 @@
 //!
 //! let tick = Duration::from_millis(50);
 //! let config = AgentConfig::new(RobotId(3), 0.1, tick);
-//! let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
+//! let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
+//! let safety = OrcaSafety::new(AvoidParams::default(), inflation);
 //! let mut agent = OrcaAgent::new(&config, WaypointGuidance::new(0.5, 0.02), safety, Postcard);
 //! agent.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([2000, 0, 0])));
 //!
@@ -80,7 +90,7 @@
 //!         inbox: &[],
 //!     };
 //!     let out = agent.step(&inputs, now, &mut ());
-//!     // A body without inertia: it goes as it is told.
+//!     // A body without inertia follows the command at once.
 //!     if let Command::Velocity(velocity_mps) = out.command {
 //!         state.velocity_mps = velocity_mps;
 //!         state.position = state.position.moved(velocity_mps * 0.05).unwrap();
@@ -163,32 +173,35 @@ use crate::wire::{MAX_PAYLOAD, Postcard, Wire};
 use link::Link;
 use serde::{Deserialize, Serialize};
 
-/// Cells of a search for windows of radius 5 (A. V. Kuznetsov 2017, KUZ) with their border: (2 * 5 + 3)^2.
+/// Cells of a route search in a window of radius 5 (A. V. Kuznetsov 2017, KUZ) with a border: (2 *
+/// 5 + 3)^2.
 pub const CELLS: usize = 169;
-/// Neighbours that an agent of default capacity knows.
+/// Capacity of the neighbour table of an agent with default capacities.
 pub const NEIGHBORS: usize = 16;
-/// Cells whose visits an agent of default capacity remembers.
+/// Number of cells whose visits an agent with default capacities remembers.
 pub const VISITS: usize = 64;
-/// Costs that an agent of default capacity learns: 2 KiB. With 0 it gets out of dead ends along their walls.
+/// Number of costs that an agent with default capacities learns: 2 KiB. With 0 it leaves dead ends
+/// by following their walls.
 pub const LEARNED: usize = 256;
-/// Tiles in a map of default capacity, for robots that share what they see: 128 x 128 cells around the robot, 3 KiB and 6 KiB of
-/// stack while it decides.
+/// Tiles in the map of an agent with default capacities that shares its map: 128 x 128 cells around
+/// the robot, 3 KiB, and 6 KiB of stack during a decision.
 pub const MAP_TILES: usize = 1024;
 /// Neighbours in a template of default capacity.
 pub const TEMPLATE: usize = 8;
 
-/// Half-planes that a safety layer of default capacity reckons with: one per neighbour, and as many of obstacles.
+/// Half-planes in a safety layer of default capacity: one per neighbour, and equally many for
+/// obstacles.
 pub const HALF_PLANES: usize = 2 * NEIGHBORS;
 
-/// A robot for itself on the grid, with default capacities.
+/// An agent for a single robot on the grid, with default capacities.
 pub type RouteAgent = Agent<f32, RouteGuidance<CELLS, VISITS, LEARNED>, NEIGHBORS>;
-/// A robot in formation on the grid, with default capacities.
+/// An agent for a robot in formation on the grid, with default capacities.
 pub type FormationAgent = Agent<f32, FormationGuidance<CELLS, VISITS, TEMPLATE, LEARNED>, NEIGHBORS>;
-/// A robot for itself in the plane behind ORCA, with default capacities.
+/// An agent for a single robot in the plane behind ORCA, with default capacities.
 pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>>;
 
-// What a firmware pays: one agent, and one workspace for all agents of a processor. A change here is
-// news for everybody's memory map.
+// Memory in firmware: one agent, and one workspace for all agents of a processor. A change of these
+// sizes changes the memory map of every user.
 #[cfg(not(feature = "host"))]
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
@@ -197,12 +210,19 @@ const _: () = assert!(BYTES[0] <= 4400 && BYTES[1] <= 4672 && BYTES[2] <= 1992 &
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
 const _: () = assert!(matches!(BYTES, [4408, 4680, 2008, 2720]));
 
-/// The controller of one robot: guidance law `G`, at most `N` known neighbours, safety layer `A`, wire format `W`.
+/// The controller of one robot: guidance law `G`, at most `N` known neighbours, safety layer `A`,
+/// wire format `W`.
 ///
-/// Bytes for the default capacities on a 32-bit part: at most 4400 for [`RouteAgent`] and 4672 for [`FormationAgent`],
-/// 2 KiB of them what a robot learns of its way, 1992 for [`OrcaAgent`], and at most 2720 of workspace that all agents
-/// on the grid of a processor share; on a 64-bit host 4408, 4680, 2008 and 2720, or with the feature `host` what is in
-/// their lists. The build fails when one of them changes unnoticed.
+/// Bytes with default capacities; the build fails if one of them changes:
+///
+/// | type | 32-bit part | 64-bit host |
+/// | --- | --- | --- |
+/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4400 | 4408 |
+/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4672 | 4680 |
+/// | [`OrcaAgent`] | at most 1992 | 2008 |
+/// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
+///
+/// With the feature `host`, lists take only the memory of their entries.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound(deserialize = "G: Deserialize<'de>, A: Deserialize<'de>, W: Deserialize<'de>"))]
 pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = Postcard> {
@@ -212,27 +232,23 @@ pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = P
     link: Link<S, N, W, G::Payload>,
     mode: Mode,
     goal: Option<Goal>,
-    /// Decisions so far: each has random numbers of its own.
+    /// Number of decisions so far; it keys the random numbers of each decision.
     decisions: u32,
-    /// The last decision, as others and the next step need it.
     last: Last,
 }
 
-/// Where to go.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 enum Goal {
-    /// This robot, wherever its place in a formation is.
+    /// A goal for this robot, regardless of its place in a formation.
     Own(Cell),
-    /// The top leader of its formation, and this robot beside it, wherever its place will be then.
+    /// A goal for the top leader of the formation; this robot goes to its own place beside it.
     Formation(Cell),
 }
 
-/// What stays of a decision.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Last {
     situation: Situation,
     target: Cell,
-    /// Where it was on the grid.
     cell: Cell,
     leader: RobotId,
     heading: Dir,
@@ -240,8 +256,10 @@ struct Last {
 }
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// A robot that has just started: idle, without a goal, knowing nobody. `safety` is [`Unguarded`] where bodies cannot collide or should, and
-    /// all robots of a swarm have the same `wire`, such as [`Postcard`].
+    /// Creates a robot that has just started: idle, without a goal and without known neighbours.
+    ///
+    /// Use [`Unguarded`] as `safety` where bodies cannot collide or may touch. All robots of a
+    /// swarm must use the same `wire` format, for example [`Postcard`].
     #[must_use]
     pub const fn new(config: &AgentConfig<S>, guidance: G, safety: A, wire: W) -> Self {
         const { assert!(size_of::<G::Payload>() <= MAX_PAYLOAD, "what a law tells does not fit a frame") };
@@ -272,7 +290,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// Puts the robot on a torus: from now on it takes others at their images nearest to it. For simulated boids.
+    /// Puts the robot on a torus: it sees other robots at their nearest image. For simulated boids.
     #[cfg(feature = "host")]
     pub const fn set_torus(&mut self, torus: crate::geom::Torus<S>) {
         self.link.set_torus(torus);

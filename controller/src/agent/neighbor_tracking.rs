@@ -1,4 +1,4 @@
-//! A robot that sees others, beside or instead of hearing them.
+//! Adds sensor detections of other robots to a guidance law.
 
 use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pass_on};
 use super::{Agent, KinematicState, Outputs, Parameter, Safety, Waypoint};
@@ -15,10 +15,12 @@ use crate::wire::{TemplateAssignment, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Guidance law `G` of a robot that is told whom it sees ([`Agent::see`]): in the plane and in space. The law and its safety layer find those in the
-/// neighbour table, as others are there, merged with what is heard: see [`Tracker`].
+/// Guidance law `G` of a robot that detects other robots with sensors ([`Agent::see`]), in the
+/// plane and in space. Detected robots appear in the neighbour table, merged with their beacons:
+/// see [`Tracker`].
 ///
-/// It is a wrapper, so that a robot without eyes has no byte of it. One without [`TrackParams`] does as `G` does.
+/// It is a wrapper, so a robot without such sensors does not need memory for it. Without
+/// [`TrackParams`] it behaves as `G`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTracking<S: Scalar, G> {
     inside: G,
@@ -26,7 +28,7 @@ pub struct NeighborTracking<S: Scalar, G> {
     tracker: Seldom<Tracker<S>, 1>,
 }
 
-/// What a robot without eyes writes of them: for digests nothing.
+/// Serialisation of the tracker; digests omit a tracker that does not exist.
 mod counted_if_it_sees {
     use super::{Scalar, Seldom, Tracker};
     use serde::{Deserialize, Deserializer};
@@ -50,18 +52,18 @@ mod counted_if_it_sees {
 }
 
 impl<S: Scalar, G> NeighborTracking<S, G> {
-    /// `inside`, of a robot with eyes; `None`: without.
+    /// Wraps `inside` with a tracker, or without one if `params` is `None`.
     #[must_use]
     pub fn new(inside: G, params: Option<TrackParams<S>>) -> Self {
         let mut tracker = Seldom::new();
         if let Some(params) = params {
-            // One has room.
+            // Cannot fail: the capacity is 1.
             let _ = tracker.push(Tracker::new(params));
         }
         Self { inside, tracker }
     }
 
-    /// The guidance law inside.
+    /// The wrapped guidance law.
     #[must_use]
     pub const fn inside(&self) -> &G {
         &self.inside
@@ -69,11 +71,12 @@ impl<S: Scalar, G> NeighborTracking<S, G> {
 }
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// Takes in whom the robot sees at `now`, in the state that the next step is told; to be called before each
-    /// [`step`](Agent::step) that there is something for, with all sensors' sightings at once. A robot whose law is not within a [`NeighborTracking`] has no
-    /// use for them.
+    /// Processes the detections of all sensors at `now`, relative to the `state` that is passed to
+    /// the next step. Call it before each [`step`](Agent::step) for which detections exist. If the
+    /// law is not wrapped in a [`NeighborTracking`], all detections are dropped and counted in
+    /// [`Sighted::no_room`].
     ///
-    /// Work: see [`Tracker::see`]; and in each step O(N TRACKS).
+    /// Work: see [`Tracker::see`], and O(N TRACKS) in each step.
     pub fn see(&mut self, sightings: &[Sighting<S>], state: &KinematicState<S>, now: Instant) -> Sighted {
         let own = self.config.id;
         match self.guidance.tracker() {
@@ -82,7 +85,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// Those who are seen become neighbours, once the step has heard what there is to hear.
+    /// Stores detected robots as neighbours, after the frames of the step.
     pub(super) fn merge_sightings(&mut self, position: Position, now: Instant, out: &mut Outputs<S>) {
         if self.guidance.tracker().is_none() {
             return;

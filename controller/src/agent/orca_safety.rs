@@ -10,7 +10,8 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// An [`Avoider`]: in the plane, where heights are left alone, or in space, as its source of constraints says.
+/// An [`Avoider`] as a safety layer. Its source of constraints `P` determines whether it avoids in
+/// the plane, leaving heights unchanged, or in space.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound(deserialize = "P: serde::Deserialize<'de>, Avoider<S, K, P>: serde::Deserialize<'de>"))]
 pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
@@ -18,11 +19,12 @@ pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
     inflation: StalenessInflation<S>,
 }
 
-/// For robots that fly: at most `K` half-spaces.
+/// ORCA for flying robots, with at most `K` half-spaces.
 pub type FlySafety<S, const K: usize> = OrcaSafety<S, K, InSpace<S>>;
 
 impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
-    /// In the plane, with exact half-planes. `inflation`: how the balls of silent neighbours grow.
+    /// Creates a layer in the plane with exact half-planes. `inflation`: growth of the balls of
+    /// silent neighbours.
     #[must_use]
     pub const fn new(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
         Self::with_source(params, inflation, Analytic)
@@ -30,8 +32,9 @@ impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
 }
 
 impl<S: Scalar, const K: usize> FlySafety<S, K> {
-    /// In space. `inflation`: how the balls of silent neighbours grow; robots with rotors keep clear of each other's
-    /// downwash by [`InSpace::downwash`], with [`OrcaSafety::with_source`].
+    /// Creates a layer in space. `inflation`: growth of the balls of silent neighbours. For robots
+    /// with rotors, use [`OrcaSafety::with_source`] with [`InSpace::downwash`] to avoid each
+    /// other's downwash.
     #[must_use]
     pub const fn in_space(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
         Self::with_source(params, inflation, InSpace { downwash: S::ONE })
@@ -39,13 +42,13 @@ impl<S: Scalar, const K: usize> FlySafety<S, K> {
 }
 
 impl<S: Scalar, const K: usize, P: HalfSpaces<S>> OrcaSafety<S, K, P> {
-    /// With constraints from `source`.
+    /// Creates a layer with constraints from `source`.
     #[must_use]
     pub const fn with_source(params: AvoidParams<S>, inflation: StalenessInflation<S>, source: P) -> Self {
         Self { avoider: Avoider::with_source(params, source), inflation }
     }
 
-    /// The avoider, for what it can tell of itself.
+    /// The avoider, for inspection.
     #[must_use]
     pub const fn avoider(&self) -> &Avoider<S, K, P> {
         &self.avoider

@@ -9,15 +9,15 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Push-out (V. E. and V. V. Pavlovsky, PAV): steps that lead too near are put right, but only against where others are
-/// now.
+/// Push-out (V. E. and V. V. Pavlovsky, PAV) as a safety layer: corrects steps that lead too near
+/// to the current positions of other robots. It does not predict their motion.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PushOutSafety<S> {
     params: PushOutParams<S>,
 }
 
 impl<S: Scalar> PushOutSafety<S> {
-    /// With these parameters.
+    /// Creates a layer with these parameters.
     #[must_use]
     pub const fn new(params: PushOutParams<S>) -> Self {
         Self { params }

@@ -1,7 +1,7 @@
-//! What of a running robot can be tuned: by an operator, or by its own firmware.
+//! Parameters of a running robot that an operator or its firmware can tune.
 //!
-//! The names, units, limits and words of all parameters stand here; where each is in a law's or a layer's own parameters,
-//! in [`tunable`](super::tunable).
+//! This module holds the names, units, limits and descriptions of all parameters.
+//! [`tunable`](super::tunable) maps each parameter to a field of a law or a safety layer.
 
 use super::Agent;
 use super::guidance::Guidance;
@@ -12,16 +12,17 @@ use crate::time::Duration;
 use crate::wire::Wire;
 
 named! {
-    /// A number that may change while the robot runs. What it means and what more or less of it does stands where it is set
-    /// at first; [`Parameter::what`] says it in a line.
+    /// A number that may change while the robot runs. [`Parameter::what`] describes it in one line;
+    /// the linked field describes its effect.
     pub enum Parameter {
-        /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m): less than the body's radius is not safe.
+        /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m). A value below the radius of the
+        /// body is not safe.
         Radius = "radius_m",
         /// [`AgentConfig::beacon_period`](super::AgentConfig::beacon_period).
         BeaconPeriod = "beacon_period_s",
-        /// Cruising speed; the body's own limit holds too.
+        /// Cruising speed; the speed limit of the body holds too.
         Speed = "speed_mps",
-        /// How near counts as being there.
+        /// Distance at which the robot counts as arrived.
         Tolerance = "tolerance_m",
         /// [`AvoidParams::horizon_s`](crate::orca::AvoidParams::horizon_s).
         Horizon = "horizon_s",
@@ -35,7 +36,7 @@ named! {
         Lean = "lean_rad",
         /// [`DeadlockParams::patience_radii`](crate::orca::DeadlockParams::patience_radii).
         PatienceRadii = "patience_radii",
-        /// Least distance of push-out and of the goal flock (R_MinDist).
+        /// Minimum distance of push-out and of the goal flock (R_MinDist).
         MinDistance = "min_distance_m",
         /// [`GoalParams::neighborhood_m`](crate::flock::goal::GoalParams::neighborhood_m) (R_nbh).
         Neighborhood = "neighborhood_m",
@@ -47,33 +48,35 @@ named! {
         RepulsionGain = "k3",
         /// [`LatticeParams::spacing_m`](crate::flock::lattice::LatticeParams::spacing_m) (d).
         Spacing = "spacing_m",
-        /// [`LatticeParams::range_ratio`](crate::flock::lattice::LatticeParams::range_ratio) (r / d).
+        /// [`LatticeParams::range_ratio`](crate::flock::lattice::LatticeParams::range_ratio) (r /
+        /// d).
         RangeRatio = "range_ratio",
-        /// [`LatticeParams::obstacle_ratio`](crate::flock::lattice::LatticeParams::obstacle_ratio) (d' / d).
+        /// [`LatticeParams::obstacle_ratio`](crate::flock::lattice::LatticeParams::obstacle_ratio)
+        /// (d' / d).
         ObstacleRatio = "obstacle_ratio",
         /// [`LatticeParams::attraction`](crate::flock::lattice::LatticeParams::attraction) (a).
         Attraction = "attraction",
         /// [`LatticeParams::repulsion`](crate::flock::lattice::LatticeParams::repulsion) (b).
         Repulsion = "repulsion",
-        /// Robots among each other, on positions.
+        /// Weight of positions between robots.
         AlphaPosition = "c1_alpha",
-        /// Robots among each other, on velocities.
+        /// Weight of velocities between robots.
         AlphaVelocity = "c2_alpha",
-        /// Obstacles, on positions.
+        /// Weight of obstacle positions.
         BetaPosition = "c1_beta",
-        /// Obstacles, on velocities.
+        /// Weight of obstacle velocities.
         BetaVelocity = "c2_beta",
-        /// The reference, on positions.
+        /// Weight of the position of the reference.
         GammaPosition = "c1_gamma",
-        /// The reference, on velocities.
+        /// Weight of the velocity of the reference.
         GammaVelocity = "c2_gamma",
-        /// Nearer than this a boid turns away.
+        /// Distance below which a boid turns away.
         Crowded = "crowded_m",
-        /// Up to this distance a neighbour counts for a boid.
+        /// Distance up to which a boid takes a neighbour into account.
         Closest = "closest_m",
-        /// Largest turn of a boid in a step.
+        /// Largest turn of a boid per step.
         MaxTurn = "max_turn",
-        /// Turn of a boid away from one that is too near.
+        /// Turn of a boid per step away from a robot that is too near.
         MaxTurnAway = "max_turn_away",
         /// [`RouteParams::a0`](crate::route::RouteParams::a0).
         TimeGain = "a0",
@@ -100,7 +103,6 @@ named! {
     }
 }
 
-/// What there is to say of a parameter.
 struct Facts {
     range: [f32; 2],
     unit: &'static str,
@@ -158,19 +160,20 @@ impl Parameter {
         }
     }
 
-    /// Least and greatest value that make sense for any robot; [`Agent::set_parameter`] takes no other.
+    /// The least and the greatest value that are reasonable for any robot. [`Agent::set_parameter`]
+    /// refuses other values.
     #[must_use]
     pub const fn range(self) -> [f32; 2] {
         self.facts().range
     }
 
-    /// Its unit, as people write it; empty for a plain number.
+    /// The unit, such as `m/s`; empty for a plain number.
     #[must_use]
     pub const fn unit(self) -> &'static str {
         self.facts().unit
     }
 
-    /// What it is, in a few words.
+    /// A description in a few words.
     #[must_use]
     pub const fn what(self) -> &'static str {
         self.facts().what
@@ -178,7 +181,7 @@ impl Parameter {
 }
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// What a parameter is now; `None` when this robot has no such one.
+    /// Returns the current value, or `None` if this robot does not have the parameter.
     #[must_use]
     pub fn parameter(&self, parameter: Parameter) -> Option<f32> {
         let guidance = || self.guidance.parameter(parameter);
@@ -190,8 +193,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         value.map(cast)
     }
 
-    /// Changes a parameter from the next step on; whether this robot has such one, `value` is within
-    /// [`Parameter::range`], and it goes with its other parameters.
+    /// Changes a parameter from the next step on. Returns whether the change was made: this robot
+    /// has the parameter, `value` is within [`Parameter::range`], and it is consistent with the
+    /// other parameters.
     pub fn set_parameter(&mut self, parameter: Parameter, value: f32) -> bool {
         let [least, greatest] = parameter.range();
         if !(least..=greatest).contains(&value) {
@@ -199,7 +203,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
         match parameter {
             Parameter::Radius => self.config.radius_m = cast(value),
-            // At most 60 seconds: no rounding in the millions that counts.
+            // At most 60 s, so the rounding error of `f32` is negligible.
             Parameter::BeaconPeriod => {
                 self.config.beacon_period = Duration::from_micros((value * 1e6) as i32);
             }
@@ -211,7 +215,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         true
     }
 
-    /// The guidance law, to be told something between two steps.
+    /// Returns the guidance law, to change it between two steps.
     pub const fn guidance_mut(&mut self) -> &mut G {
         &mut self.guidance
     }

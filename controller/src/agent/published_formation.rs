@@ -1,25 +1,23 @@
-//! Travelling in formation as the paper has it (A. V. Kuznetsov 2017, KUZ, algorithm 2): each robot weighs its own
-//! shortest
-//! way against all neighbours that it finds. To compare ours with, not to travel by: it jams (`staya experiment
-//! formation`).
+//! Moving in formation as published (A. V. Kuznetsov 2017, KUZ, algorithm 2): each robot weighs its
+//! own shortest route against all neighbours that it finds. It serves for comparison and not for
+//! use: it jams (`staya experiment formation`).
 //!
-//! Algorithm 2 line by line is [`PublishedFormation::decide`]; what it decides by is in
-//! [`crate::formation::published`]. Where the paper
-//! leaves something open or contradicts itself:
-//! - t = 0 (line 4) is over when everybody of the template was found once: packets take a tick, and are lost.
-//! - Lines 11 and 19 would put the temporary target into the place of the true one when they come again. The true one
-//!   is kept.
+//! [`PublishedFormation::decide`] follows algorithm 2 line by line; its criteria are in
+//! [`crate::formation::published`]. Where the paper is ambiguous or contradicts itself:
+//! - t = 0 (line 4) ends when every robot of the template was found once, because packets take a
+//!   tick and can be lost.
+//! - Lines 11 and 19 would replace the true target by the temporary one when they are repeated. The
+//!   true one is kept.
 //! - Line 12 heads for the cell that `def` points at, in one of eight directions.
-//! - Who is asked to stop stands, as does whoever passes the request on, but not while it heads for `def`; when its
-//!   own sum is
-//!   about r0 again, it goes on (line 15), whoever else still wants it to stand. On the wire each stop is its asker's,
-//!   so that line 16 lifts
-//!   what oneself has asked for; those farther up judge by their own sums.
-//! - Who has reached its target stands there (eq. 2), and asks nothing.
-//! - `predict` knows the other's target from its beacon; its neighbours are those of the own template.
-//! - Line 24 shuffles anew, which is another draw; with [`Sharpness::Greedy`] it changes nothing. Those missing and
-//!   those too many
-//!   are asked to choose another direction (item 6).
+//! - A robot that is asked to stop stands, and so does each robot that passes the request on, but
+//!   not while it heads for `def`. It continues when its own sum is about r0 again (line 15), even
+//!   if other robots still ask it to stop. On the wire each stop belongs to its sender, so line 16
+//!   cancels only own requests. Robots farther up the chain judge by their own sums.
+//! - A robot that has reached its target stands there (eq. 2) and sends no requests.
+//! - `predict` knows the target of another robot from its beacon; the neighbours of that robot are
+//!   those of the own template.
+//! - Line 24 shuffles again, which is another draw; with [`Sharpness::Greedy`] it changes nothing.
+//!   The missing and the surplus robots are asked to choose another direction (item 6).
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::route_guidance::GridWorkspace;
@@ -42,9 +40,11 @@ use crate::time::Duration;
 use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
 use serde::{Deserialize, Serialize};
 
-/// Travelling in formation as published; remembers visits of `M` cells and a template of `F` neighbours.
+/// Moving in formation as published. Remembers the visits of `M` cells and a template of `F`
+/// neighbours.
 ///
-/// Work of a decision: one search of the window, with [`Prediction::Reflexive`] one more per neighbour found.
+/// Work of a decision: one search of the window; with [`Prediction::Reflexive`], one more per
+/// neighbour found.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize> {
     route: RouteParams,
@@ -55,21 +55,19 @@ pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize
     visits: VisitMemory<M>,
     here: Option<Cell>,
     leader: RobotId,
-    /// Everybody of the template was found once: the leader stays who it is (line 4).
+    /// All robots of the template were found once, so the leader is fixed (line 4).
     has_chosen: bool,
     /// The temporary target (lines 11 and 19).
     detour: Option<Cell>,
-    /// It has asked its leader to stop.
     has_asked: bool,
-    /// Somebody's stop stands.
     is_stopped: bool,
-    /// What it wanted last, and not again if it was asked to choose another direction.
+    /// The last preferred move, which is excluded if another direction is requested.
     choice: Dir,
     is_redirected: bool,
 }
 
 impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELLS, M, F> {
-    /// With these parameters and this place in the formation.
+    /// Creates the law with these parameters and this place in the formation.
     #[must_use]
     pub const fn new(route: RouteParams, formation: PublishedParams, template: Template<F>) -> Self {
         Self {
@@ -90,14 +88,14 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         }
     }
 
-    /// How strictly the order of moves follows their weights: the paper shuffles.
+    /// Sets how strictly the order of moves follows their weights. The paper shuffles.
     #[must_use]
     pub const fn sharpness(mut self, sharpness: Sharpness) -> Self {
         self.sharpness = sharpness;
         self
     }
 
-    /// How far the neighbours are from what the template wants. O(F N).
+    /// Returns how far the neighbours are from their places in the template. O(F N).
     #[must_use]
     pub fn graph_distance<S>(&self, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
         let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
@@ -123,7 +121,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         found
     }
 
-    /// Where another robot will be at the next tick (section 7, item 1); `None`: where it is.
+    /// Position of another robot at the next tick (section 7, item 1); `None` if it does not move.
     fn predict<S>(
         &self,
         input: &GuidanceInput<'_, S>,
@@ -151,9 +149,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         ways.plus(&price).best().map(|dir| seen.cell + dir.offset())
     }
 
-    /// Lines 10 to 23: the formation is kept, lost, or found again. `target` is the true one; returns what is asked of
-    /// the own leader, and whether to go
-    /// on in spite of a stop.
+    /// Lines 10 to 23: the formation is kept, lost, or restored. `target` is the true one. Returns
+    /// the request to the own leader, and whether to continue despite a stop.
     fn keep(
         &mut self,
         (cell, target): (Cell, Cell),
@@ -164,7 +161,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         match kept {
             Kept::Lost if is_leader => self.detour = Some(cell + def(cell, &found.members).offset()),
             Kept::Lost => {
-                // Whose leader is not found has no place to head for.
+                // Without a known leader there is no place to head for.
                 let leader = found.members.iter().find(|member| member.seen.id == self.leader);
                 self.detour = leader.map(|member| member.seen.cell - member.offset).or(self.detour);
             }
@@ -178,12 +175,13 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
             Kept::Well | Kept::Fairly => None,
         };
         self.has_asked = is_asked_for || (self.has_asked && ask.is_none());
-        // A detour that is the goal is none.
+        // A detour to the target is not a detour.
         self.detour = self.detour.filter(|&detour| detour != target);
         (ask, kept == Kept::Well || (is_leader && self.detour.is_some()))
     }
 
-    /// Line 24 and item 6: whom to ask to choose another direction, the first of those too many and the first missing.
+    /// Line 24 and item 6: the robots to ask for another direction, the first surplus one and the
+    /// first missing one.
     fn ask_others<S>(&self, input: &GuidanceInput<'_, S>, found: &Found<F>) -> [Option<Ask>; 2] {
         if !self.formation.is_crowded(found) {
             return [None; 2];
@@ -196,7 +194,6 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
     }
 }
 
-/// A neighbour as the formation sees it.
 const fn seen_at<S>(other: &Neighbor<S>, predicted: Cell) -> Seen {
     Seen { id: other.id, cell: other.cell, predicted, heading: other.heading, leader: other.leader, mode: other.mode }
 }

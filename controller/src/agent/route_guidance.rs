@@ -1,4 +1,4 @@
-//! Every robot for itself, to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
+//! Routing of a single robot to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::travel::{Travel, on_grid, reachable_goal};
@@ -17,9 +17,8 @@ use serde::{Deserialize, Serialize};
 /// Scratch memory of the guidance laws on the grid; `CELLS` as for [`CostField`].
 #[derive(Clone, Debug)]
 pub struct GridWorkspace<const CELLS: usize> {
-    /// The search.
     pub(super) field: CostField<CELLS>,
-    /// Land as a formation prices it.
+    /// Terrain costs blended for a formation.
     pub(super) land: [u8; CELLS],
 }
 
@@ -30,20 +29,20 @@ impl<const CELLS: usize> Default for GridWorkspace<CELLS> {
 }
 
 impl<const CELLS: usize> GridWorkspace<CELLS> {
-    /// Ready for use.
+    /// Creates a workspace.
     #[must_use]
     pub const fn new() -> Self {
         Self { field: CostField::new(), land: [0; CELLS] }
     }
 
-    /// The last search in it.
+    /// The last search.
     #[must_use]
     pub const fn field(&self) -> &CostField<CELLS> {
         &self.field
     }
 }
 
-/// Windowed routing to the own goal; remembers visits of `M` cells.
+/// Windowed routing to the own goal. Remembers the visits of `M` cells.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0> {
     params: RouteParams,
@@ -54,7 +53,7 @@ pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0>
 }
 
 impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M, L> {
-    /// With these parameters, searching anew in each cell and trying cheap moves first.
+    /// Creates the law. By default it searches in each cell and tries cheap moves first.
     #[must_use]
     pub const fn new(params: RouteParams) -> Self {
         Self {
@@ -66,21 +65,22 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         }
     }
 
-    /// When to search anew. [`Replan::UntilChanged`] offers one move at a time and does not shuffle.
+    /// Sets when to repeat the search. [`Replan::UntilChanged`] offers one move at a time and does
+    /// not shuffle.
     #[must_use]
     pub const fn replan(mut self, replan: Replan) -> Self {
         self.replan = replan;
         self
     }
 
-    /// How strictly the order of moves follows their weights.
+    /// Sets how strictly the order of moves follows their weights.
     #[must_use]
     pub const fn sharpness(mut self, sharpness: Sharpness) -> Self {
         self.sharpness = sharpness;
         self
     }
 
-    /// The moves to try towards `target`; `None` when there is no way.
+    /// Returns the moves to try towards `target`; `None` if no route exists.
     fn moves<S>(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -99,19 +99,19 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         }
         let aside = |weights: Weights| self.travel.without_last(weights);
         let mut weights = if is_redirected && cell == target {
-            // It is there, and needs no way on.
+            // At its target it does not need a route.
             Weights::CLOSED
         } else {
             self.router.weights_over(params, field, window, (cell, target), others, input.land).ok()?
         };
         if is_redirected {
             weights = aside(weights);
-            // No other way on: into any free cell.
+            // No other route: move into any free cell.
             if weights.best().is_none() {
                 weights = aside(params.open_moves(window, cell));
             }
         }
-        // Whoever asked may stand where the best way out begins: not the same one each time.
+        // The robot that sent the request may be in the preferred direction, so vary the choice.
         let sharpness = if is_redirected { Sharpness::HalvedPer(Gain::ONE) } else { self.sharpness };
         Some(Travel::order(&weights, sharpness, 8, rng))
     }
@@ -148,7 +148,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
             moves = open.unwrap_or_default();
         }
         let choice = moves.first().copied().unwrap_or_default();
-        // Who makes way and cannot asks on.
+        // A robot that cannot make way asks other robots to.
         let idle = if makes_way { u8::MAX } else { self.router.idle() };
         Ok(Decision {
             action: Action::Moves(moves),

@@ -1,4 +1,4 @@
-//! The last layer before the body: from the velocity that the guidance law wishes to one that is safe.
+//! The last layer before the body: turns the desired velocity into a safe one.
 
 use super::Parameter;
 use crate::body::Body;
@@ -9,51 +9,55 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// What a safety layer may know.
+/// Inputs of a safety layer.
 #[derive(Clone, Copy, Debug)]
 pub struct SafetyInput<'a, S> {
     /// Own body.
     pub body: Body<S>,
-    /// The velocity that the guidance law wishes, m/s: finite, and zero when the robot should stand.
+    /// The velocity desired by the guidance law, m/s: finite, and zero if the robot should stand.
     pub wish_mps: Vec3<S>,
-    /// The next place on its way that it goes to straight, relative to its own place, metres; `None` when it only
-    /// roams, flocks or should stand.
+    /// Offset of the point that the robot heads straight for, relative to its own position, metres;
+    /// `None` if it roams, flocks or should stand.
     pub way_m: Option<Vec3<S>>,
-    /// Who is near by, nearest first.
+    /// Nearby robots, nearest first.
     pub nearby: &'a [Nearby<S>],
-    /// What it sees that does not move.
+    /// Visible static obstacles.
     pub obstacles: &'a [Obstacle<S>],
 }
 
-/// Keeps the robot clear of others and of obstacles. It also runs while the robot stands, because others count on
-/// its giving way.
+/// Avoids other robots and obstacles. It also runs while the robot stands, because other robots
+/// rely on it giving way.
 pub trait Safety<S: Scalar> {
-    /// A safe velocity near the wished one, m/s. The agent sees to it that the body can have it ([`Body::reach`]).
+    /// Returns a safe velocity near the desired one, m/s. The agent limits it to a velocity that
+    /// the body can have ([`Body::reach`]).
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
-    /// How neighbours that have fallen silent are to be seen; `None` when the layer leaves them to others, and the agent
-    /// neither limits its velocities to the [`Room`](crate::neighbor::Room) that there is nor stands when it hears nobody.
+    /// Returns how the balls of silent neighbours grow. With `None` the layer ignores silent
+    /// neighbours: the agent then neither limits velocities to the [`Room`](crate::neighbor::Room)
+    /// nor stops when contact is lost.
     fn inflation(&self) -> Option<StalenessInflation<S>> {
         None
     }
 
-    /// Whether it makes the robot wait for others who go first through a door, since the last step.
+    /// Returns whether the robot waits for other robots to pass a door first.
     fn waits_for_turn(&self) -> bool {
         false
     }
 
-    /// What a parameter is now; `None` when it has no such one.
+    /// Returns the value of a parameter, or `None` if the layer does not have it.
     fn parameter(&self, _parameter: Parameter) -> Option<S> {
         None
     }
 
-    /// Changes a parameter; whether it has such one. `value` is within [`Parameter::range`].
+    /// Changes a parameter. Returns whether the layer has it and accepts the value. `value` is
+    /// within [`Parameter::range`].
     fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
         false
     }
 }
 
-/// No safety layer: the wish is the command. For robots that move cell by cell, and to see what a layer is worth.
+/// No safety layer: the desired velocity is the command. For robots that move cell by cell, and as
+/// a baseline for comparisons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unguarded;

@@ -1,6 +1,8 @@
-//! What a robot is to be, as data: for hosts that tell firmware over a link, and for scenarios.
+//! The configuration of a robot as data, for scenarios and for hosts that configure firmware over a
+//! link.
 //!
-//! Numbers are `f32` here whatever the robot computes with, so that host and robot need not agree on a kind of number.
+//! Numbers are `f32` regardless of the robot's scalar type, so host and robot need not agree on
+//! one.
 
 use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety, large};
 use super::cell_follower::CellFollower;
@@ -35,8 +37,8 @@ use crate::wire::{Format, FromFormat, Postcard, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// An agent that can be anything: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, wire
-/// format `W`, `L` learned costs.
+/// An agent with any law and any safety layer: `CELLS` of a search, `M` remembered visits, `N`
+/// neighbours, `K` half-planes, wire format `W`, `L` learned costs.
 pub type AnyAgent<
     S,
     const CELLS: usize,
@@ -47,51 +49,51 @@ pub type AnyAgent<
     const L: usize = 0,
 > = Agent<S, AnyGuidance<S, CELLS, M, TEMPLATE, L>, N, AnySafety<S, K>, W>;
 
-/// All that makes a robot what it is before it has sensed anything.
+/// The complete configuration of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Setup {
-    /// Number, seed, timing and body.
+    /// Id, seed, timing and body.
     pub agent: AgentConfig<f32>,
-    /// How it goes.
+    /// The guidance law.
     pub guidance: GuidanceSetup,
-    /// What keeps it clear.
+    /// The safety layer.
     pub safety: SafetySetup,
-    /// How it speaks; the same for all robots of a swarm.
+    /// The wire format, equal for all robots of a swarm.
     pub format: Format,
 }
 
-/// Routing over a window.
+/// Configuration of windowed routing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RouteSetup {
-    /// What a route costs.
+    /// Costs of a route.
     pub params: RouteParams,
-    /// When to search anew.
+    /// When to repeat the search.
     pub replan: Replan,
     /// How strictly the order of moves follows their weights.
     pub sharpness: Sharpness,
 }
 
-/// Boids, as [`BoidsParams::new`] takes them.
+/// Configuration of boids, as input of [`BoidsParams::new`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoidsSetup {
-    /// Nearer than this is crowded, metres.
+    /// Distance below which a boid turns away, metres.
     pub crowded_m: f32,
-    /// Farther than this does not count, metres.
+    /// Distance up to which a neighbour counts, metres.
     pub closest_m: f32,
-    /// Largest turn to the mean heading and to the middle, radians a step.
+    /// Largest turn towards the mean heading and the centre, radians per step.
     pub max_turn: f32,
-    /// Largest turn away, radians a step.
+    /// Largest turn away, radians per step.
     pub max_turn_away: f32,
 }
 
 impl BoidsSetup {
-    /// The paper's values at a scale of one metre: 30, 150, 0.05, 0.02.
+    /// The values of the paper at a scale of one metre: 30, 150, 0.05, 0.02.
     pub const PAPER: Self = Self { crowded_m: 30.0, closest_m: 150.0, max_turn: 0.05, max_turn_away: 0.02 };
 
-    /// The parameters in a kind of number.
+    /// Returns the parameters in the given scalar type.
     #[must_use]
     pub fn params<S: Scalar>(&self) -> BoidsParams<S> {
         BoidsParams::new(cast(self.crowded_m), cast(self.closest_m), cast(self.max_turn), cast(self.max_turn_away))
@@ -125,21 +127,23 @@ pub enum GuidanceSetup {
         route: RouteSetup,
         speed_mps: Option<f32>,
     },
-    /// In the plane with a speed, cell by cell without one; it searches anew in each cell.
+    /// In the plane with a speed, cell by cell without one. It searches a route in each cell.
     Formation {
         route: RouteSetup,
         formation: FormationParams,
         template: Template<TEMPLATE>,
         speed_mps: Option<f32>,
     },
-    /// The paper's formation, cell by cell. Last, so that builds without it read the others.
+    /// The formation of the paper, cell by cell. This variant and the next are last, so that builds
+    /// without them can decode the others.
     #[cfg(feature = "published")]
     Published {
         route: RouteSetup,
         formation: PublishedParams,
         template: Template<TEMPLATE>,
     },
-    /// As `Formation` without a speed, with followers who look ahead ([`Course`]).
+    /// As `Formation` without a speed, with followers that use the leader's planned course
+    /// ([`Course`]).
     #[cfg(feature = "published")]
     LooksAhead {
         route: RouteSetup,
@@ -166,22 +170,23 @@ named! {
         /// Straight to the goal.
         #[default]
         Waypoint = "waypoint",
-        /// The alpha flock (R. Olfati-Saber, OLF): equal distances, with the first goal as its reference.
+        /// The alpha flock (R. Olfati-Saber, OLF): equal distances, with the first goal as its
+        /// reference.
         Lattice = "lattice",
-        /// The goal flock (V. E. and V. V. Pavlovsky, PAV): to the middle of the goals together, then each to one of
-        /// them.
+        /// The goal flock (V. E. and V. V. Pavlovsky, PAV): together to the centre of the goals,
+        /// then each robot to one goal.
         GoalFlock = "goal_flock",
         /// Boids (V. A. Starovoitova, STA).
         Boids = "boids",
-        /// By the grid's windowed routing (A. V. Kuznetsov, KUZ), from cell to cell.
+        /// Windowed routing on the grid (A. V. Kuznetsov, KUZ), cell by cell.
         Route = "route",
-        /// The same, keeping a formation.
+        /// Windowed routing on the grid in formation.
         Formation = "formation",
     }
 }
 
 impl GuidanceKind {
-    /// Whether it goes from cell to cell.
+    /// Returns whether the law plans on the grid.
     #[must_use]
     pub const fn is_on_grid(self) -> bool {
         matches!(self, Self::Route | Self::Formation)
@@ -192,14 +197,14 @@ named! {
     /// A safety layer by name.
     #[derive(Default)]
     pub enum SafetyKind {
-        /// Nothing.
+        /// No safety layer.
         None = "none",
         /// ORCA with exact half-planes.
         #[default]
         Orca = "orca",
         /// ORCA with half-planes from the voxel table (A. Tolok and others, FVM) of 2 KiB.
         Template2k = "template_2k",
-        /// ORCA in space, for robots that fly.
+        /// ORCA in space, for flying robots.
         Fly = "fly",
         /// Push-out (PAV).
         PushOut = "push_out",
@@ -207,7 +212,7 @@ named! {
 }
 
 impl SafetyKind {
-    /// The layer with those of the parameters that it has a use for; in space without downwash.
+    /// Returns the layer with the parameters that it uses; in space, without downwash.
     #[must_use]
     pub const fn setup(
         self,
@@ -226,18 +231,18 @@ impl SafetyKind {
     }
 }
 
-/// What a robot has to do.
+/// The task of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Task {
-    /// Go to this cell, or keep the formation whose top leader does.
+    /// Go to this cell, or keep the formation whose top leader goes there.
     Cell(Cell),
-    /// Go to these waypoints, by their numbers.
+    /// Go to these waypoints, given with their indices.
     Waypoints(Vec<(u8, Waypoint<f32>), WAYPOINTS>),
 }
 
 impl Setup {
-    /// The robot, just started; `None` unless `W` is, or can be, the format that it is to speak.
+    /// Creates the agent. Returns `None` if `W` cannot use the configured wire format.
     #[must_use]
     pub fn agent<
         S: Scalar,
@@ -253,7 +258,7 @@ impl Setup {
         Some(self.speaking(W::from_format(self.format)?))
     }
 
-    /// The robot, just started, that speaks `wire` whatever [`Setup::format`] says.
+    /// Creates the agent with the given `wire`, ignoring [`Setup::format`].
     #[must_use]
     pub fn speaking<
         S: Scalar,
@@ -270,8 +275,8 @@ impl Setup {
         Agent::new(&self.agent.cast(), self.guidance.guidance(), self.safety.safety(), wire)
     }
 
-    /// The largest search that the robot makes, in cells of a [`CostField`](crate::route::CostField): what `CELLS` must be at
-    /// least. 0 when it makes none.
+    /// Returns the largest search of the robot, in cells of a
+    /// [`CostField`](crate::route::CostField): the minimum of `CELLS`. 0 if it does not search.
     #[must_use]
     pub fn cells(&self) -> usize {
         match &self.guidance {
@@ -284,7 +289,7 @@ impl Setup {
 }
 
 impl GuidanceSetup {
-    /// Which law it is.
+    /// Returns the name of the law.
     #[must_use]
     pub const fn kind(&self) -> GuidanceKind {
         match self {
@@ -299,7 +304,7 @@ impl GuidanceSetup {
         }
     }
 
-    /// The guidance law, just started.
+    /// Creates the guidance law.
     #[must_use]
     pub fn guidance<S: Scalar, const CELLS: usize, const M: usize, const L: usize>(
         &self,
@@ -352,7 +357,7 @@ impl RouteSetup {
         side * side
     }
 
-    /// The guidance law on the grid, just started.
+    /// Creates the guidance law on the grid.
     #[must_use]
     pub const fn guidance<const CELLS: usize, const M: usize, const L: usize>(&self) -> RouteGuidance<CELLS, M, L> {
         RouteGuidance::new(self.params).replan(self.replan).sharpness(self.sharpness)
@@ -360,7 +365,7 @@ impl RouteSetup {
 }
 
 impl SafetySetup {
-    /// Which layer it is.
+    /// Returns the name of the layer.
     #[must_use]
     pub const fn kind(&self) -> SafetyKind {
         match self {
@@ -374,7 +379,7 @@ impl SafetySetup {
         }
     }
 
-    /// The safety layer, just started.
+    /// Creates the safety layer.
     #[must_use]
     pub fn safety<S: Scalar, const K: usize>(&self) -> AnySafety<S, K> {
         match self {

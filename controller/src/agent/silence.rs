@@ -1,30 +1,45 @@
-//! What a robot that goes by velocities makes of silence.
+//! The reaction of a robot that moves by velocities to lost contact.
 
 use super::AgentConfig;
 use crate::scalar::{Scalar, cast};
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// What a robot that goes by velocities makes of silence; behind a safety layer that looks at others.
+/// The reaction of a robot that moves by velocities to lost contact, with a safety layer that
+/// tracks silent neighbours.
 ///
-/// | it hears | it does |
+/// | contact | reaction |
 /// | --- | --- |
-/// | everybody, each tick | takes half of a gap in a step at most: see [`Room`](crate::neighbor::Room) |
-/// | one of them no more | keeps clear of where that one can be by now, a ball that grows; once it is [lost](crate::neighbor::Ages::expire_after), of one that grows up to [`max_m`](crate::neighbor::StalenessInflation::max_m), until it is heard again or [`remember`](Self::remember) is over. One that drove about as far off as any who are heard has gone out of range, and is forgotten |
-/// | fewer than half of them | keeps clear of where they can be, then stands |
-/// | nobody any more, all are lost | says so ([`Event::NobodyHeard`](super::Event)); keeps clear of where they can be, then stands. After [`remember`](Self::remember) it stands anyway, until somebody speaks |
-/// | the same, and all have gone out of range: the last ones drove on to beyond where anybody was ever heard | says so, goes as it likes |
-/// | the same as in the row before last, and it may be alone | goes on at [`alone_mps`](Self::alone_mps), around where the lost were last |
-/// | nobody ever, since it was switched on | goes as it likes: it is the first of its swarm, or all of it |
+/// | all neighbours in each tick | takes at most half of a gap per step, see [`Room`] |
+/// | one neighbour silent | avoids the growing ball in which it may be |
+/// | one neighbour [lost] | avoids its ball, which grows by at most [`max_m`] |
+/// | fewer than half fresh | avoids the balls of all silent robots, then stands |
+/// | all lost | reports [`NobodyHeard`]; avoids their balls, then stands |
+/// | all lost for longer than [`remember`](Self::remember) | stands until a robot is in contact |
+/// | all lost, all left radio range | reports [`NobodyHeard`], moves freely |
+/// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
+/// | never any since power-on | moves freely: it is the first or only robot of its swarm |
+///
+/// A lost robot is avoided until it is in contact again or [`remember`](Self::remember) has passed.
+/// A robot last known about as far away as the farthest fresh one has left radio range and is
+/// forgotten. If the last robots move beyond the greatest distance of any earlier contact, all have
+/// left.
+///
+/// [`Room`]: crate::neighbor::Room
+/// [lost]: crate::neighbor::Ages::expire_after
+/// [`max_m`]: crate::neighbor::StalenessInflation::max_m
+/// [`NobodyHeard`]: super::Event::NobodyHeard
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Silence<S> {
-    /// How long one that fell silent is remembered, at most half an hour. Longer: a robot that was taken away blocks its
-    /// place for longer, and one that drives out of range goes on for longer; shorter: one that lies dead somewhere is
-    /// hit sooner. With less than [`Ages::expire_after`](crate::neighbor::Ages::expire_after) nobody is.
+    /// How long a silent robot is remembered; at most half an hour. Longer: a robot that was
+    /// carried away blocks its place for longer, and this robot continues for longer after it left
+    /// the radio range of the others. Shorter: a dead robot is hit sooner. Below
+    /// [`Ages::expire_after`](crate::neighbor::Ages::expire_after), no robot is remembered.
     pub remember: Duration,
-    /// How fast to go, m/s, when all are lost: 0 stands until somebody speaks, [`Scalar::MAX`] goes on as if nothing
-    /// were. Above 0 only for robots that may be alone: whoever is still there and moves is not seen.
+    /// Speed when all robots are lost, m/s. With 0 the robot stands until another one is in
+    /// contact; with [`Scalar::MAX`] it continues at full speed. Set it above 0 only for robots
+    /// that may be alone, because robots that still move nearby cannot be detected.
     pub alone_mps: S,
 }
 
@@ -32,7 +47,7 @@ impl<S: Scalar> Silence<S> {
     /// Remembers for a minute, and stands.
     pub const DEFAULT: Self = Self { remember: Duration::from_millis(60_000), alone_mps: S::ZERO };
 
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Silence<T> {
         Silence { remember: self.remember, alone_mps: cast(self.alone_mps) }
@@ -45,24 +60,23 @@ impl<S: Scalar> Silence<S> {
     }
 }
 
-/// Whether anybody is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Company {
-    /// Nobody was ever heard, or all have gone out of range since.
+    /// Never in contact, or all other robots have left radio range.
     Unknown,
-    /// Somebody was heard last at this moment.
+    /// In contact; the time of the last reception.
     Heard(Instant),
-    /// All are lost; somebody was heard last at this moment.
+    /// All robots are lost; the time of the last reception.
     Lost(Instant),
-    /// All are forgotten.
+    /// All robots are lost and forgotten.
     Gone,
 }
 
 impl Company {
-    /// Takes note of the time; whether all have been lost just now. To be asked in each step, so that the clock never
-    /// goes half round unnoticed.
+    /// Updates the state. Returns whether contact was lost just now. Call it in each step, so that
+    /// the 32-bit clock cannot wrap unnoticed.
     ///
-    /// `have_left`: of those who are lost nobody is remembered, for all went out of range.
+    /// `have_left`: no lost robot is remembered, because all left radio range.
     pub(super) fn passes<S: Scalar>(&mut self, now: Instant, have_left: bool, config: &AgentConfig<S>) -> bool {
         let is_over = |at, longest| !(Duration::ZERO..=longest).contains(&now.since(at));
         let before = *self;

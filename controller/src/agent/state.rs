@@ -1,4 +1,4 @@
-//! What can be asked of an agent.
+//! Queries of the state of an agent.
 
 use super::{Agent, Guidance, Safety};
 use crate::digest::digest;
@@ -11,8 +11,9 @@ use crate::wire::Wire;
 use serde::Serialize;
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// A fingerprint of the whole state: two agents with equal ones have the same future. The same on every target and in
-    /// every build for the same history. O(bytes of the state).
+    /// Returns a hash of the whole state: two agents with equal hashes behave identically from then
+    /// on. For identical inputs it is identical on all targets and in all builds. O(bytes of the
+    /// state).
     #[must_use]
     pub fn digest(&self) -> u64
     where
@@ -21,49 +22,49 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         digest(self)
     }
 
-    /// What the robot is doing.
+    /// The current mode.
     #[must_use]
     pub const fn mode(&self) -> Mode {
         self.mode
     }
 
-    /// Whom it follows.
+    /// The leader of this robot.
     #[must_use]
     pub const fn leader(&self) -> RobotId {
         self.last.leader
     }
 
-    /// Where it is going; `None` without a goal.
+    /// The cell that it heads for; `None` without a goal.
     #[must_use]
     pub fn target(&self) -> Option<Cell> {
         self.goal.map(|_| self.last.target)
     }
 
-    /// Whom it knows, by rising number.
+    /// The known robots in ascending order of ids.
     #[must_use]
     pub fn neighbors(&self) -> &[Neighbor<S, G::Payload>] {
         self.link.table.as_slice()
     }
 
-    /// What is known of robot `id` at `now`, and whether it can still be trusted. O(log N).
+    /// Returns the knowledge about robot `id` at `now`: fresh, stale or unknown. O(log N).
     #[must_use]
     pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, G::Payload> {
         self.link.table.get(id, now)
     }
 
-    /// The guidance law, for what it can tell of itself.
+    /// The guidance law, for inspection.
     #[must_use]
     pub const fn guidance(&self) -> &G {
         &self.guidance
     }
 
-    /// The safety layer, for what it can tell of itself.
+    /// The safety layer, for inspection.
     #[must_use]
     pub const fn safety(&self) -> &A {
         &self.safety
     }
 
-    /// The safety layer, to be told something between two steps.
+    /// The safety layer, to change it between two steps.
     pub const fn safety_mut(&mut self) -> &mut A {
         &mut self.safety
     }
@@ -74,7 +75,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.link.wire()
     }
 
-    /// The wire format, to tell it what it must know besides: MAVLink's signatures the time.
+    /// The wire format, to change it between two steps; for example, MAVLink signatures need the
+    /// time.
     pub const fn wire_mut(&mut self) -> &mut W {
         self.link.wire_mut()
     }

@@ -1,4 +1,4 @@
-//! The composer of behaviours. Read [`Agent::step_into`] first.
+//! One step of an agent. Start with [`Agent::step_into`].
 
 use super::link::{Listener, News, beacon, report};
 use super::silence::Company;
@@ -19,17 +19,21 @@ use crate::time::{Duration, Instant};
 use crate::wire::Wire;
 use heapless::Vec;
 
-/// Keeps the agent's draws apart from other uses of randomness.
+/// Separates the random numbers of the agent from other uses.
 const PURPOSE: u32 = u32::from_be_bytes(*b"step");
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// One step: hear, decide, speak. A pure function of the agent, `inputs` and `now`.
+    /// Runs one step: receive, decide, avoid collisions, send. A pure function of the agent,
+    /// `inputs` and `now`.
     ///
-    /// Bounded work: O(frames of the inbox * N) to hear; the guidance law's decision when the robot is
-    /// free to move (for the grid: one search of the window, O((2r + 1)^2), with
-    /// [`Prediction::Reflexive`](crate::formation::Prediction) one more per entry of the template;
-    /// in the plane O(N) and the obstacles in sight) and its safety layer's (see there);
-    /// at most [`OUTBOX`](super::OUTBOX) bytes to send.
+    /// Bounded work:
+    /// - Receiving: O(frames of the inbox * N).
+    /// - The decision of the guidance law, when the robot is free to move. On the grid one search
+    ///   of the window, O((2r + 1)^2); with
+    ///   [`Prediction::Reflexive`](crate::formation::Prediction), one more per entry of the
+    ///   template. In the plane O(N + obstacles in sight).
+    /// - The safety layer: see its documentation.
+    /// - Sending: at most [`OUTBOX`](super::OUTBOX) bytes.
     pub fn step(
         &mut self,
         inputs: &Inputs<'_, S, G::Input<'_>>,
@@ -41,9 +45,10 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         out
     }
 
-    /// [`Agent::step`] into outputs that the caller keeps, whatever was in them: some 500 bytes less on the stack.
+    /// Runs [`Agent::step`] with outputs that the caller provides, which saves about 500 bytes of
+    /// stack. Previous contents of `out` are discarded.
     ///
-    /// The phases are not inlined, so that each gives its stack back before the next one.
+    /// The phases are not inlined, so each one frees its stack before the next one starts.
     pub fn step_into(
         &mut self,
         inputs: &Inputs<'_, S, G::Input<'_>>,
@@ -62,7 +67,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.speak(inputs, now, out);
     }
 
-    /// Who is near by, for robots that do not move cell by cell.
     #[inline(never)]
     fn look(&self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant) -> Vec<Nearby<S>, N> {
         if inputs.surroundings.in_plane().is_none() {
@@ -91,7 +95,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let leader = last.leader;
         let mut pass_on = Vec::<_, 4>::new();
         let heard_at = now - config.latency;
-        // Only who keeps clear of others has a use for where they were.
+        // Only a safety layer that tracks silent neighbours needs their last positions.
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
         let fastest_mps = safety.inflation().map(|inflation| inflation.growth_mps);
         let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
@@ -117,13 +121,13 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 None => {}
                 Some(News::Redirect) => guidance.redirect(),
                 Some(News::Land(patch)) => guidance.hear_land(&patch),
-                // To a robot that goes elsewhere it means nothing.
+                // A goal on the grid does not apply to a robot with another kind of goal.
                 Some(News::Goal(_)) if !guidance.goes_to_cells() => {}
                 Some(News::Goal(top)) => {
                     *goal = Some(Goal::Formation(top));
                     last.target = top + guidance.goal_offset();
                 }
-                // One that is refused is of no use, and its sender will not hear of it.
+                // A refused template is dropped; its sender is not notified.
                 Some(News::Template { part, is_anew }) => {
                     let _ = guidance.assign_template(&part, is_anew);
                 }
@@ -133,11 +137,12 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                         link.placed(index, version);
                     }
                 }
-                // One without room is lost: a stop is asked for again, an old one expires.
+                // A request beyond the capacity is lost: a stop is requested again, and an old one
+                // expires.
                 Some(News::PassOn(request)) => drop(pass_on.push(request)),
             }
         }
-        // At the end, so that what was acknowledged in this step has made room.
+        // Passed on at the end, when requests acknowledged in this step have freed their entries.
         for request in &pass_on {
             if leader.is_somebody() && leader != request.origin {
                 let valid = Duration::from_millis(request.valid_ms.into());
@@ -146,7 +151,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// The own goal in the world.
     fn goal_cell(&self) -> Option<Cell> {
         Some(match self.goal? {
             Goal::Own(cell) => cell,
@@ -154,7 +158,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         })
     }
 
-    /// Asks the guidance law when the robot is free to move; `None` otherwise.
     #[inline(never)]
     fn decide(
         &mut self,
@@ -165,14 +168,14 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         workspace: &mut G::Workspace,
         out: &mut Outputs<S>,
     ) -> Option<Decision<S>> {
-        // Asked in each step, so that its clock never goes half round unnoticed.
+        // Queried in each step, so that its 32-bit clock cannot wrap unnoticed.
         let is_stopped = self.link.is_stopped(now);
         let own_goal = self.guidance.has_own_goal();
         let goal = self.goal_cell().or(own_goal.then_some(Cell::default()));
         let situation = &mut self.last.situation;
         situation.has_goal = goal.is_some();
         let Some(goal) = goal else {
-            // Nothing was asked, so nothing is missing.
+            // Without a goal no input is required, so none is missing.
             (situation.is_passive, situation.has_fault) = (false, false);
             return None;
         };
@@ -225,12 +228,12 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         Some(decision)
     }
 
-    /// Whether it stands since it has not heard anybody for too long.
+    /// Whether the robot stands still because it lost contact with all other robots.
     fn is_left(&self) -> bool {
         self.link.company == Company::Gone && !self.config.silence.may_be_alone()
     }
 
-    /// The mode, and what it makes of the guidance law's wishes.
+    /// Updates the mode, and turns the decision of the law into a command if the mode allows it.
     #[inline(never)]
     fn supervise(
         &mut self,
@@ -255,7 +258,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             Mode::Hold if status.waits_for.is_some() => status.waits_for,
             Mode::Hold if status.is_stuck => Some(Wait::Way),
             Mode::Hold => Some(Wait::Request),
-            // It wanted to move, and has not.
+            // It intended to move in the last decision and is still in the same cell.
             _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Others),
             _ => None,
         };
@@ -269,8 +272,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// What the safety layer makes of the wished velocity. Who stands gives way too, unless its mode says that it does not
-    /// ([`Mode::gives_way`]).
+    /// Replaces the command by a collision-free velocity. A stationary robot gives way too, except
+    /// in modes without [`Mode::gives_way`].
     #[inline(never)]
     fn keep_clear(
         &mut self,
@@ -329,7 +332,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     fn speak(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
         let Self { config, last, guidance, .. } = self;
         let mode = self.mode;
-        // What it does from now on is of more use to others than what it did.
+        // The velocity of the next step is more useful to other robots than the previous one.
         let velocity_mps = match out.command {
             Command::Velocity(velocity_mps) => velocity_mps,
             Command::Hold | Command::Move(_) => inputs.state.velocity_mps,
@@ -339,7 +342,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let beacon = || beacon(config, last, mode, &inputs.state, on_grid, velocity_mps, now);
         let told = || (guidance.payload(now), guidance.say_land(now));
         self.link.speak(now, config.beacon_period, beacon, told, out);
-        // A robot that is free decides anew after a tick at the latest.
+        // A robot that is free decides again after a tick at the latest.
         let busy = on_grid.busy;
         let decision = now + if busy > Duration::ZERO { busy } else { config.tick };
         if decision.is_before(out.call_again) {

@@ -1,4 +1,4 @@
-//! What a robot must be told in a step besides its own state and the radio: each guidance law names the type that it needs.
+//! The surroundings of a robot in a step, in the form that each guidance law needs.
 
 use crate::geom::Vec2;
 use crate::grid::{Cell, Window};
@@ -12,56 +12,58 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CellState {
-    /// The cell it occupies.
+    /// The cell that it occupies.
     pub cell: Cell,
-    /// Time until it may leave; zero or less: free now (A. V. Kuznetsov 2017, KUZ, eq. 6).
+    /// Time until it may leave the cell; zero or less if it is free now (A. V. Kuznetsov 2017, KUZ,
+    /// eq. 6).
     pub busy: Duration,
 }
 
-/// For guidance laws that move cell by cell.
+/// Input of guidance laws that move cell by cell.
 #[derive(Clone, Copy, Debug)]
 pub struct OnGrid<'a> {
     /// Own state on the grid.
     pub cell: CellState,
-    /// The terrain that the robot can see, its own cell included; while it sees none it is in
-    /// [`Mode::Fault`](crate::robot::Mode::Fault) and stands. Of any size: routes are searched within the radius of
-    /// [`RouteParams`](crate::route::RouteParams) in it.
+    /// The visible terrain, including the own cell. Without it the robot stops in
+    /// [`Mode::Fault`](crate::robot::Mode::Fault). Any size is allowed; routes are searched within
+    /// the radius of [`RouteParams`](crate::route::RouteParams).
     pub window: Option<Window<'a>>,
 }
 
-/// For guidance laws that move by velocities, in the plane or in space.
+/// Input of guidance laws that move by velocities, in the plane or in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InPlane<'a, S> {
-    /// How fast the body can go where it is, m/s: rough land slows it down. With 0, or less, the robot is in
-    /// [`Mode::Fault`](crate::robot::Mode::Fault).
+    /// Speed limit of the body at its current place, m/s; rough terrain reduces it. At 0 or less
+    /// the robot is in [`Mode::Fault`](crate::robot::Mode::Fault).
     pub max_speed_mps: S,
-    /// What it sees that does not move. Walls of a terrain window come from [`grid_walls`](crate::obstacle::grid_walls).
+    /// Visible static obstacles. [`grid_walls`](crate::obstacle::grid_walls) derives walls from a
+    /// terrain window.
     pub obstacles: &'a [Obstacle<S>],
 }
 
-/// For guidance laws that plan on the grid and move by velocities.
+/// Input of guidance laws that plan on the grid and move by velocities.
 #[derive(Clone, Copy, Debug)]
 pub struct InCells<'a, S> {
     /// Own state on the grid, never busy.
     pub grid: OnGrid<'a>,
-    /// What the body can do and must avoid.
+    /// Speed limit and obstacles.
     pub plane: InPlane<'a, S>,
-    /// Where in its cell it is.
+    /// Position within its cell.
     pub in_cell: InCell<S>,
 }
 
-/// A place within a cell.
+/// A position within a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InCell<S> {
-    /// The place minus the cell's centre, metres.
+    /// The position minus the centre of the cell, metres.
     pub offset_m: Vec2<S>,
-    /// Side of a cell, metres; more than 0.
+    /// Side length of a cell, metres; above 0.
     pub cell_m: S,
 }
 
-/// For [`AnyGuidance`](super::AnyGuidance). One that is not what the law inside needs puts the robot into
-/// [`Mode::Fault`](crate::robot::Mode::Fault).
+/// Input of [`AnyGuidance`](super::AnyGuidance). Surroundings that the law inside cannot use put
+/// the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnySurroundings<'a, S> {
@@ -70,12 +72,13 @@ pub enum AnySurroundings<'a, S> {
     InCells(InCells<'a, S>),
 }
 
-/// What the agent itself takes from the input of its guidance law: for the beacon, and for the safety layer.
+/// The parts of the surroundings that the agent itself needs, for the beacon and the safety layer.
 pub trait Surroundings<S>: Copy + Debug {
-    /// The part on the grid, if there is one.
+    /// Returns the part on the grid, if any.
     fn on_grid(&self) -> Option<OnGrid<'_>>;
 
-    /// The part in the plane or in space; `None` for a robot that moves cell by cell, which has no safety layer.
+    /// Returns the part in the plane or in space; `None` for a robot that moves cell by cell, which
+    /// does not have a safety layer.
     fn in_plane(&self) -> Option<InPlane<'_, S>>;
 }
 
@@ -125,7 +128,7 @@ impl<S: Scalar> Surroundings<S> for AnySurroundings<'_, S> {
     }
 }
 
-/// A law of the plane does without the cells.
+/// Drops the cells, for a law of the plane.
 impl<'a, S> From<InCells<'a, S>> for InPlane<'a, S> {
     fn from(cells: InCells<'a, S>) -> Self {
         cells.plane

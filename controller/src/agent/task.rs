@@ -1,11 +1,12 @@
-//! Telling a robot where to go.
+//! Assigns goals to an agent.
 
 use super::{Agent, Goal, Guidance, Safety, Task, ToCells, ToWaypoints, Waypoint};
 use crate::grid::Cell;
 use crate::scalar::Scalar;
 use crate::wire::Wire;
 
-/// A task that means nothing to the guidance law: it goes to other things, or by other means. The robot does what it did before.
+/// The guidance law cannot perform the task: it has another kind of goal, or moves by other means.
+/// The previous task continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WrongTask;
@@ -19,8 +20,8 @@ impl core::fmt::Display for WrongTask {
 impl core::error::Error for WrongTask {}
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// Gives the robot a goal of its own on the grid, which a new place in the formation does not move (one that
-    /// comes as a [`GoalAssignment`](crate::wire::GoalAssignment) is the formation's and moves).
+    /// Sets a goal cell for this robot. It does not change with the robot's place in a formation,
+    /// unlike a goal received as a [`GoalAssignment`](crate::wire::GoalAssignment).
     pub const fn assign_goal(&mut self, goal: Cell)
     where
         G: Guidance<S, Destination = ToCells>,
@@ -29,7 +30,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.last.target = goal;
     }
 
-    /// Gives the robot a waypoint, number `index` of those that its guidance law has room for; whether it has.
+    /// Sets waypoint `index`. Returns whether the guidance law accepted it.
     pub fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool
     where
         G: Guidance<S, Destination = ToWaypoints>,
@@ -37,10 +38,10 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.guidance.assign_waypoint(index, waypoint)
     }
 
-    /// Gives the robot what it has to do, for a law that is known only at run time.
+    /// Assigns a task to a law that is chosen at run time.
     ///
     /// # Errors
-    /// [`WrongTask`] unless its guidance law has a use for all of it.
+    /// [`WrongTask`] if the guidance law cannot perform all of it.
     pub fn assign(&mut self, task: &Task) -> Result<(), WrongTask> {
         let is_of_use = match task {
             Task::Cell(goal) => {

@@ -39,7 +39,7 @@ fn formation_agent(id: u32) -> FormationAgent {
     FormationAgent::new(&config(id), guidance, Unguarded, Postcard)
 }
 
-/// Flat land around `at`, and what the radio delivered.
+/// Inputs with flat terrain around `at`.
 fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32, OnGrid<'a>> {
     let origin = at - Cell::new(5, 5);
     Inputs {
@@ -74,7 +74,7 @@ fn beacon_at(x: i16, y: i16) -> Beacon {
 }
 
 #[test]
-fn without_a_goal_it_is_idle_and_still_says_so() {
+fn a_robot_without_a_goal_is_idle_and_sends_beacons() {
     let out = route_agent(1).step(&inputs(&FLAT, Cell::new(5, 5), &[]), tick(0), &mut workspace());
     assert_eq!(out.command, Command::Hold);
     let [frame] = &sent(&out)[..] else { panic!("one frame") };
@@ -82,7 +82,7 @@ fn without_a_goal_it_is_idle_and_still_says_so() {
 }
 
 #[test]
-fn it_walks_to_its_goal_and_arrives() {
+fn a_robot_moves_to_its_goal_and_arrives() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let (mut at, goal) = (Cell::new(5, 5), Cell::new(12, 7));
     agent.assign_goal(goal);
@@ -98,7 +98,7 @@ fn it_walks_to_its_goal_and_arrives() {
 }
 
 #[test]
-fn while_it_crosses_a_cell_it_neither_decides_nor_changes_its_mode() {
+fn a_robot_that_crosses_a_cell_keeps_its_mode_and_does_not_decide() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(9, 5));
     let mut busy = inputs(&FLAT, Cell::new(9, 5), &[]);
@@ -111,7 +111,7 @@ fn while_it_crosses_a_cell_it_neither_decides_nor_changes_its_mode() {
 }
 
 #[test]
-fn missing_terrain_is_a_fault_and_heals() {
+fn a_robot_recovers_from_the_fault_of_missing_terrain() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(9, 5));
     let mut modes = Vec::new();
@@ -128,7 +128,7 @@ fn missing_terrain_is_a_fault_and_heals() {
 }
 
 #[test]
-fn walled_in_it_holds_and_reports_once() {
+fn an_enclosed_robot_holds_and_reports_once() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(50, 5));
     let mut cells = [BLOCKED; 121];
@@ -153,7 +153,7 @@ fn a_goal_in_a_wall_moves_to_the_nearest_free_cell() {
 }
 
 #[test]
-fn any_bytes_are_survived_and_counted() {
+fn any_received_bytes_are_tolerated_and_counted() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let mut rng = Rng::new(3);
     for n in 0..200 {
@@ -185,12 +185,11 @@ fn repeated_replayed_and_own_frames_are_refused() {
     let own = core::mem::take(&mut own);
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &own.concat()), tick(6), &mut ws);
     assert_eq!((out.received, out.rejected), (0, 6), "its own");
-    // A late beacon does not replace a newer one.
     assert_eq!(agent.neighbors()[0].cell, Cell::new(6, 3));
 }
 
 #[test]
-fn neighbours_come_go_and_are_pushed_out() {
+fn neighbours_are_found_lost_and_evicted() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     for id in 2..19 {
         let mut beacon = beacon_at(0, 0);
@@ -217,7 +216,7 @@ fn goals_are_assigned_by_packet_and_older_ones_ignored() {
 }
 
 #[test]
-fn a_commander_that_started_anew_is_obeyed_whatever_it_counts() {
+fn a_restarted_commander_is_obeyed_at_any_version() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     let mut target_after = |boot, version, x| {
         let goal = Message::Goal(GoalAssignment { to: RobotId(1), version, target: Cell::new(x, 5) });
@@ -249,7 +248,7 @@ fn stop(from: u32, to: u32, number: u8, kind: RequestKind) -> Message {
 }
 
 #[test]
-fn a_stop_stands_until_it_is_lifted_or_expires() {
+fn a_stop_holds_until_it_is_resumed_or_expires() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let mut mode_after = |inbox: &[u8], n| {
@@ -268,7 +267,7 @@ fn a_stop_stands_until_it_is_lifted_or_expires() {
 }
 
 #[test]
-fn stops_go_up_the_leader_chain_hop_by_hop() {
+fn stops_are_passed_up_the_leader_chain_hop_by_hop() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let leader = bytes(1, 0, 0, &[Message::Beacon(beacon_at(8, 5))]);
@@ -286,16 +285,16 @@ fn stops_go_up_the_leader_chain_hop_by_hop() {
 }
 
 #[test]
-fn who_falls_behind_asks_to_stop_and_later_to_resume() {
+fn a_robot_that_falls_behind_requests_a_stop_and_later_a_resume() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let mut asked = Vec::new();
-    // The leader runs away to the east, then waits while the follower comes near.
+    // The leader moves away to the east, then waits while the follower catches up.
     for (n, (leader_x, own_x)) in [(8, 5), (20, 5), (20, 16)].into_iter().enumerate() {
         let mut beacon = beacon_at(leader_x, 5);
         beacon.heading = Dir::East;
         let inbox = bytes(1, 0, n as u16, &[Message::Beacon(beacon)]);
-        // Far enough apart in time for the first request to be acknowledged or given up.
+        // The steps are far enough apart for the first request to be acknowledged or given up.
         let out = agent.step(&inputs(&FLAT, Cell::new(own_x, 5), &inbox), tick(20 * n as u32), &mut ws);
         asked.extend(sent(&out).into_iter().filter_map(|f| match f.message {
             Message::Request(request) => Some(request.kind),
@@ -306,7 +305,7 @@ fn who_falls_behind_asks_to_stop_and_later_to_resume() {
 }
 
 #[test]
-fn who_is_asked_to_redirect_chooses_another_direction_even_when_arrived() {
+fn a_redirected_robot_chooses_another_direction_even_when_arrived() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(9, 5));
     let first = |out: &Outputs<f32>| match &out.command {
@@ -327,10 +326,10 @@ fn who_is_asked_to_redirect_chooses_another_direction_even_when_arrived() {
 }
 
 #[test]
-fn who_is_blocked_for_long_asks_whoever_stands_there() {
+fn a_blocked_robot_sends_a_request_to_the_robot_in_its_way() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
-    // A corridor one cell wide, and somebody in it.
+    // A corridor one cell wide, and a robot in it.
     let mut cells = [BLOCKED; 121];
     cells[55..66].fill(1);
     let mut asked = None;
@@ -346,7 +345,7 @@ fn who_is_blocked_for_long_asks_whoever_stands_there() {
 }
 
 #[test]
-fn outboxes_hold_whole_frames_and_the_beacon_whatever_comes() {
+fn outboxes_hold_whole_frames_and_the_beacon_at_any_load() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     for n in 0..40_u16 {
@@ -380,7 +379,7 @@ fn equal_agents_give_equal_bytes() {
 }
 
 #[test]
-fn time_may_wrap() {
+fn the_clock_may_wrap() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let start = Instant::from_micros(u32::MAX - 2_500_000);

@@ -1,5 +1,5 @@
-//! What the guidance laws on the grid have in common: the last choice, who is in the way, walls at the
-//! goal.
+//! Functions shared by the guidance laws on the grid: the last choice, requests to robots in the
+//! way, and impassable goals.
 
 use super::OnGrid;
 use super::guidance::{Ask, BadInput, GuidanceInput};
@@ -13,19 +13,16 @@ use crate::wire::RequestKind;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Decisions after which whoever stands in the way is asked to choose another direction.
+/// Decisions after which a robot in the way is asked to choose another direction.
 pub(super) const PATIENCE: u8 = 4;
 
-/// What a robot remembers of its last decisions.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Travel {
-    /// Where it decided last.
     cell: Option<Cell>,
-    /// What it wanted most.
     choice: Dir,
-    /// Decisions in this cell that wanted to leave it.
+    /// Consecutive decisions to leave this cell.
     attempts: u8,
-    /// Somebody asked for another direction.
+    /// Another robot requested another direction.
     redirected: bool,
 }
 
@@ -34,40 +31,38 @@ impl Travel {
         Self { cell: None, choice: Dir::Stay, attempts: 0, redirected: false }
     }
 
-    /// What it wanted most at its last decision.
     pub(super) const fn choice(&self) -> Dir {
         self.choice
     }
 
-    /// The next choice must differ from the last one.
     pub(super) fn redirect(&mut self) {
         self.redirected = true;
     }
 
-    /// Whether the next choice answers a redirection; asks once.
+    /// Returns whether another robot requested another direction, and clears the request.
     pub(super) fn take_redirection(&mut self) -> bool {
         core::mem::take(&mut self.redirected)
     }
 
-    /// Whether it has wanted to leave this cell for so long that what stands there must be somebody whom nobody hears.
+    /// Whether it has tried to leave this cell for so long that a robot without contact must be in
+    /// the way.
     pub(super) const fn is_jammed(&self) -> bool {
         self.attempts > PATIENCE
     }
 
-    /// The weights without the last choice.
     pub(super) fn without_last(&self, weights: Weights) -> Weights {
         weights.without(self.choice)
     }
 
-    /// The moves in the order in which to try them, at most `alternatives` of them.
+    /// Returns at most `alternatives` moves in the order in which to try them.
     pub(super) fn order(weights: &Weights, sharpness: Sharpness, alternatives: usize, rng: &mut Rng) -> Vec<Dir, 8> {
         let mut moves = weighted_shuffle(weights, sharpness, rng);
         moves.truncate(alternatives);
         moves
     }
 
-    /// Takes note of what was chosen in `cell`, and returns the request to whoever has stood in the way for too long.
-    /// `idle`: moves since it was nearest to its target.
+    /// Stores the choice in `cell`. Returns a request to a robot that has been in the way for too
+    /// long. `idle`: moves since the robot was nearest to its target.
     pub(super) fn note<S>(&mut self, input: &GuidanceInput<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<Ask> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
@@ -75,11 +70,13 @@ impl Travel {
         self.choice = choice;
         let patience = |other: &Neighbor<S>| {
             if other.cell != cell {
-                // One that has arrived does not go by itself, and the robot may try other ways between its attempts.
+                // An arrived robot does not leave by itself, and this robot may have tried other
+                // routes between its attempts.
                 return if other.mode == Mode::Arrived && idle > PATIENCE { 0 } else { PATIENCE };
             }
-            // In the plane two may have come into one cell, and mostly get past each other. If not, the one with the
-            // smaller number asks first: if both made way at once, they would meet again.
+            // In the plane two robots can share a cell, and usually pass each other. Otherwise the
+            // robot with the smaller id asks first: if both made way at once, they would meet
+            // again.
             if input.id < other.id { 2 * PATIENCE } else { 3 * PATIENCE }
         };
         let wanted = cell + choice.offset();
@@ -92,15 +89,14 @@ impl Travel {
     }
 }
 
-/// Who was last heard in a cell.
 fn occupant<'a, S>(input: &GuidanceInput<'a, S>, cell: Cell) -> Option<&'a Neighbor<S>> {
     input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
 }
 
-/// The cell of a robot on the grid, and the land that it sees.
+/// Returns the own cell and the visible terrain.
 ///
 /// # Errors
-/// [`BadInput`] when it sees none, or the window does not show the cell.
+/// [`BadInput`] without visible terrain, or if the window does not contain the cell.
 pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadInput> {
     let cell = here.cell.cell;
     let window = here.window.ok_or(BadInput)?;
@@ -108,8 +104,9 @@ pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadIn
     is_in_sight.then_some((cell, window)).ok_or(BadInput)
 }
 
-/// `goal`, or when it is in sight and impassable the nearest passable cell in sight (then the
-/// smallest); the goal itself when there is none. O(cells) for an impassable goal, else O(1).
+/// Returns `goal`, or the nearest passable visible cell (the smallest of equals) if `goal` is
+/// visible and impassable; `goal` if no visible cell is passable. O(cells) for an impassable goal,
+/// otherwise O(1).
 pub(super) fn reachable_goal(window: &Window<'_>, goal: Cell) -> Cell {
     if window.get(goal) != Some(BLOCKED) {
         return goal;

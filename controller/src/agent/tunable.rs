@@ -1,4 +1,4 @@
-//! Where the [`Parameter`]s are in what laws and layers keep.
+//! Maps each [`Parameter`] to a field of a guidance law or a safety layer.
 
 use super::Parameter;
 use crate::cost::Gain;
@@ -12,20 +12,18 @@ use crate::push_out::PushOutParams;
 use crate::route::RouteParams;
 use crate::scalar::Scalar;
 
-/// Parameters, some of which can be tuned.
 pub(super) trait Tunable<S>: Copy {
-    /// What one is; `None` when there is no such one here.
+    /// Returns the value of a parameter, or `None` if the set does not have it.
     fn get(&self, parameter: Parameter) -> Option<S>;
 
-    /// Changes one; whether there is such one here. `value` is within [`Parameter::range`].
+    /// Changes a parameter. Returns whether the set has it. `value` is within [`Parameter::range`].
     fn set(&mut self, parameter: Parameter, value: S) -> bool;
 
-    /// Whether they go together.
     fn is_sound(&self) -> bool {
         true
     }
 
-    /// [`Self::set`], unless they do not go together then.
+    /// Changes a parameter unless the values would become inconsistent.
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         let mut tuned = *self;
         let takes = tuned.set(parameter, value) && tuned.is_sound();
@@ -36,7 +34,7 @@ pub(super) trait Tunable<S>: Copy {
     }
 }
 
-/// Parameters that are fields.
+/// Implements [`Tunable`] for parameters that are plain fields.
 macro_rules! fields {
     ($params:ident { $($parameter:ident => $($field:ident).+),* $(,)? } $($is_sound:ident)?) => {
         impl<S: Scalar> Tunable<S> for $params<S> {
@@ -124,7 +122,7 @@ impl<S: Scalar> Tunable<S> for BoidsParams<S> {
     }
 }
 
-/// A number that is kept in whole parts, `parts` of which are one. `None` when it is not below 2^16 of them.
+/// Converts a number to a whole number of `1 / parts`. `None` if that is 2^16 or more, or negative.
 fn whole<S: Scalar>(value: S, parts: i32) -> Option<u16> {
     let parts = (value * S::from_i32(parts) + S::HALF).floor_to_i32()?;
     u16::try_from(parts).ok()

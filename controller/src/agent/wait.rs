@@ -1,4 +1,4 @@
-//! What robots wait for, so that somebody can see it.
+//! The reasons why robots wait, for display to an operator.
 
 use super::safety::SafetyInput;
 use crate::geom::Vec3;
@@ -6,39 +6,42 @@ use crate::names::named;
 use crate::scalar::Scalar;
 
 named! {
-    /// What a robot that has somewhere to go and does not get on waits for ([`Outputs::wait`](super::Outputs)).
+    /// The reason why a robot with a goal does not advance ([`Outputs::wait`](super::Outputs)).
     ///
-    /// | it waits for | until |
+    /// | reason | ends when |
     /// | --- | --- |
-    /// | [`Formation`](Self::Formation) | they are there, at most [`patience`](crate::formation::FormationParams::patience) decisions |
-    /// | [`Request`](Self::Request) | it is told to resume, or the request is no longer valid |
-    /// | [`Way`](Self::Way) | the land in sight changes |
-    /// | [`Radio`](Self::Radio) | somebody speaks ([`Silence`](super::Silence)) |
-    /// | [`Turn`](Self::Turn) | its turn comes; one that is not taken passes on |
-    /// | [`Others`](Self::Others) | they get out of its way; robots lean to the right so that they do |
-    /// | [`Place`](Self::Place) | its place is free; it has arrived beside it |
+    /// | [`Formation`](Self::Formation) | the robots arrive, or after [`patience`] decisions |
+    /// | [`Request`](Self::Request) | a resume request arrives, or the request expires |
+    /// | [`Way`](Self::Way) | the visible terrain changes |
+    /// | [`Radio`](Self::Radio) | another robot is in contact ([`Silence`](super::Silence)) |
+    /// | [`Turn`](Self::Turn) | its turn comes; a turn that is not taken passes on |
+    /// | [`Others`](Self::Others) | the robots leave; robots lean to the right to pass each other |
+    /// | [`Place`](Self::Place) | its place is free; until then it has arrived beside it |
+    ///
+    /// [`patience`]: crate::formation::FormationParams::patience
     pub enum Wait {
-        /// Its leader or its followers are not there yet.
+        /// Its leader or its followers are not in their places yet.
         Formation = "formation",
-        /// Somebody asked it to stop.
+        /// Another robot asked it to stop.
         Request = "request",
-        /// Nothing but land or walls is in its way.
+        /// Terrain or walls block its way, and no robot does.
         Way = "way",
-        /// It does not know where others are: they are not heard.
+        /// It does not know where silent robots are.
         Radio = "radio",
-        /// At a door others go first.
+        /// Other robots go first through a door.
         Turn = "turn",
         /// Other robots are in its way.
         Others = "others",
-        /// Somebody stands on its goal.
+        /// Another robot occupies its goal.
         Place = "place",
     }
 }
 
-/// Thousandths of the top speed: who wishes less is as good as there.
+/// A desired speed below this counts as arrived, thousandths of the top speed.
 const SLOW: i32 = 100;
 
-/// Whether `velocity_mps` makes less than a quarter of the headway that the body could make by its wish.
+/// Returns whether `velocity_mps` gives less than a quarter of the progress that the body could
+/// make by its wish.
 pub(super) fn is_hindered<S: Scalar>(input: &SafetyInput<'_, S>, velocity_mps: Vec3<S>) -> bool {
     let SafetyInput { body, wish_mps: wish, .. } = input;
     let possible = body.reach(*wish).dot(*wish);

@@ -1,43 +1,44 @@
-//! Where a robot of the plane or of space is to go.
+//! Goals of robots in the plane or in space.
 
 use crate::geom::{Position, Vec3};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Waypoints that a robot has room for.
+/// Waypoints that a robot can store.
 pub const WAYPOINTS: usize = 4;
 
-/// Span after which a moving waypoint is taken note of.
+/// Longest extrapolation of a moving waypoint.
 const LONG: Duration = Duration::from_millis(600_000);
 
-/// A place to go to, which may move.
+/// A position to go to, which may move.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Waypoint<S> {
-    /// Where it was.
+    /// Position at the time `at`.
     pub position: Position,
-    /// Its velocity since, m/s.
+    /// Velocity since then, m/s.
     pub velocity_mps: Vec3<S>,
-    /// When it was there, own clock.
+    /// Time of the position, own clock.
     pub at: Instant,
 }
 
 impl<S: Scalar> Waypoint<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Waypoint<T> {
         Waypoint { position: self.position, velocity_mps: self.velocity_mps.cast(), at: self.at }
     }
 
-    /// One that stays where it is.
+    /// Creates a waypoint that does not move.
     #[must_use]
     pub const fn fixed(position: Position) -> Self {
         Self { position, velocity_mps: Vec3::ZERO, at: Instant::from_micros(0) }
     }
 
-    /// The way there from `from` at `now`, metres. Call it at least every half hour: what moves is taken note of
-    /// on the way, lest the clock run round (each time rounds to a millimetre).
+    /// Returns its offset from `from` at `now`, metres. Call it at least every half hour: it then
+    /// moves the stored position along, so that the 32-bit clock cannot wrap (each update rounds to
+    /// a millimetre).
     #[must_use]
     pub fn way(&mut self, from: Position, now: Instant) -> Vec3<S> {
         let span = now.since(self.at);

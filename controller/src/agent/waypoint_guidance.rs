@@ -1,4 +1,4 @@
-//! Straight to a waypoint, by others on the way.
+//! Straight lines through waypoints to a goal.
 
 use super::beside::{Beside, Claim};
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
@@ -9,36 +9,36 @@ use crate::scalar::Scalar;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Nearer than so many own radii, a waypoint on the way is passed: beside a robot that stands in it.
+/// An intermediate waypoint counts as passed within this distance, in own radii, so that a robot
+/// that occupies it does not block the way.
 const PASSED_RADII: i32 = 3;
 
-/// Straight to a waypoint, which may move; there it stays, and goes along with one that moves. If somebody else stands on
-/// the last one, it has arrived beside him.
+/// Moves straight to a waypoint, stays there, and follows a waypoint that moves. If another robot
+/// occupies the last one, it arrives beside that robot.
 ///
-/// It goes by at most [`WAYPOINTS`] waypoints in the order of their numbers. Number 0 begins a course (what was before is
-/// forgotten), the next number lengthens it, and one that is there already is moved. The last one is its goal.
+/// The course has at most [`WAYPOINTS`] waypoints, which are passed in the order of their indices.
+/// Index 0 starts a new course, the next free index extends it, and an existing index moves that
+/// waypoint. The last one is the goal.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
-    /// The one that it heads for.
     leg: u8,
     beside: Beside<S>,
-    /// How near is there, metres.
     tolerance_m: S,
-    /// Cruising speed, m/s; the body's own limit holds too.
     speed_mps: S,
 }
 
 impl<S: Scalar> WaypointGuidance<S> {
-    /// Without a waypoint yet. `tolerance_m`: how near counts as being there, at least some millimetres, since
-    /// waypoints are rounded to them; `speed_mps`: how fast it wants to go.
+    /// Creates the law without waypoints. `tolerance_m`: distance at which the robot counts as
+    /// arrived, at least some millimetres, because waypoints are rounded to millimetres.
+    /// `speed_mps`: cruising speed.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
         Self { course: Vec::new(), leg: 0, beside: Beside::NEW, tolerance_m, speed_mps }
     }
 
-    /// The way to the waypoint that it heads for, metres, and that one's velocity; goes on to the next one when it is
-    /// there. O([`WAYPOINTS`]).
+    /// Returns the offset of the current waypoint, metres, and its velocity. Advances to the next
+    /// one if the current one is passed. O([`WAYPOINTS`]).
     fn next<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
         let passed_m = self.tolerance_m.max(input.body.radius_m * S::from_i32(PASSED_RADII));
         let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));
@@ -55,14 +55,14 @@ impl<S: Scalar> WaypointGuidance<S> {
         Some((way, waypoint.velocity_mps))
     }
 
-    /// What [`Guidance::decide`] decides, whatever its robots tell each other.
+    /// Implements [`Guidance::decide`] for any payload.
     pub(super) fn head<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
         let (way, velocity_mps) = self.next(input).ok_or(BadInput)?;
         let is_last = usize::from(self.leg) + 1 >= self.course.len();
         let distance = way.norm();
         let speed = self.speed_mps.min(input.body.max_speed_mps);
-        // On the last step no farther than the waypoint.
+        // The last step goes no farther than the waypoint.
         let needed = distance.checked_div(input.body.step_s).unwrap_or(speed);
         let ahead = way.normalized().unwrap_or_default();
         let claim = match is_last && velocity_mps == Vec3::ZERO {
@@ -77,7 +77,7 @@ impl<S: Scalar> WaypointGuidance<S> {
         let is_beside = claim == Claim::IsBeside;
         let is_at_goal = is_last && distance <= self.tolerance_m || is_beside;
         Ok(Decision {
-            // Who lets another one go first goes nowhere himself, and is in no jam.
+            // A robot that lets another one go first does not head anywhere, so it is not in a jam.
             action: Action::Velocity {
                 wish_mps: velocity_mps + ahead * pace,
                 way_m: (!matches!(claim, Claim::Yields(_))).then_some(way),
@@ -85,7 +85,7 @@ impl<S: Scalar> WaypointGuidance<S> {
             status: Status {
                 is_at_goal,
                 waits_for: is_beside.then_some(Wait::Place),
-                // Who stood when it is there would lose a waypoint that moves.
+                // A robot that stopped at a moving waypoint would lose it.
                 makes_way: is_at_goal && velocity_mps != Vec3::ZERO,
                 ..Status::default()
             },

@@ -1,4 +1,4 @@
-//! What others may say of themselves and be believed.
+//! Plausibility limits on the values that other robots report.
 
 use super::Neighbor;
 use crate::geom::{Position, Vec3};
@@ -8,47 +8,56 @@ use crate::time::{Duration, Instant};
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// Robots whose places are in doubt at a time.
+/// Number of robots whose positions can be in doubt at a time.
 const SUSPECTS: usize = 4;
 
-/// Bounds on what a robot may say of itself. No honest robot meets them, so they cost nothing until somebody lies, or a
-/// sensor does.
+/// Limits on the values that a robot may report about itself. No honest robot reaches them, so they
+/// have no effect unless a robot lies or a sensor fails.
 ///
-/// | claim | what becomes of it |
+/// | reported value | effect |
 /// | --- | --- |
-/// | a radius above [`max_radius_m`](Self::max_radius_m) | it is taken for that |
-/// | a velocity above [`max_speed_mps`](Self::max_speed_mps) | it is shortened to that |
-/// | a place that it cannot have come to since it was heard | where robots keep clear of each other by velocities it may be a second robot of that number, and both places are kept clear of from then on; a jump from either, and any on the grid: the beacon is refused, and the robot is as good as silent: room is left for where it can be. Once it has said places for [`settle`](Self::settle) that it can have gone between, it is believed again |
-/// | a number above [`last`](Self::last) | the beacon is refused |
+/// | radius above [`max_radius_m`](Self::max_radius_m) | reduced to that radius |
+/// | speed above [`max_speed_mps`](Self::max_speed_mps) | velocity shortened to that speed |
+/// | id above [`last`](Self::last) | beacon refused |
+/// | unreachable position, robots avoid by velocities | a second robot with that id is assumed |
+/// | unreachable position from either of the two, or on the grid | beacon refused |
 ///
-/// A bound that is smaller than the truth lets a robot run into a larger or faster one: in doubt, leave it wide.
+/// A position is unreachable if the robot cannot have moved there since its last beacon. When a
+/// second robot is assumed, both positions are avoided from then on. A robot with refused beacons
+/// counts as silent, so the gap grows with the distance that it may have moved. Its beacons are
+/// accepted again once it has reported mutually reachable positions for [`settle`](Self::settle).
+///
+/// A limit below the true value lets a robot run into a larger or faster one. If in doubt, choose a
+/// wide limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Claims<S> {
     /// Largest radius of any robot, metres.
     pub max_radius_m: S,
-    /// Highest speed of any robot, m/s; [`Scalar::MAX`]: any, and places are not looked at.
+    /// Highest speed of any robot, m/s. With [`Scalar::MAX`], positions are not checked.
     pub max_speed_mps: S,
-    /// How far off two places of one robot may be besides, metres: errors of positioning, and what a packet that was held back adds.
+    /// Additional distance between two positions of one robot, metres: positioning errors, and
+    /// motion during the delay of a packet.
     pub slack_m: S,
-    /// For how long a robot that has jumped must say consistent places before it is believed. 0: at once. Longer: one that
-    /// was carried, or whose positioning has jumped, is unseen for longer where it is now; shorter: a liar moves about more freely.
+    /// How long a robot that has jumped must report consistent positions before they are accepted;
+    /// 0: at once. Longer: a robot that was carried, or whose positioning has jumped, stays unseen
+    /// at its true position for longer. Shorter: a lying robot can jump more often.
     pub settle: Duration,
-    /// The greatest number of any robot.
+    /// The greatest id of any robot.
     pub last: RobotId,
 }
 
-/// A claim beyond its bound.
+/// A reported value beyond its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Claim {
-    /// A number that no robot has.
+    /// An id that no robot has.
     Number,
-    /// A radius.
+    /// A radius above the limit.
     Radius,
-    /// A velocity.
+    /// A speed above the limit.
     Speed,
-    /// A place too far from the last one.
+    /// A position that is unreachable from the previous one.
     Jump,
 }
 
@@ -64,7 +73,7 @@ impl fmt::Display for Claim {
 }
 
 impl<S: Scalar> Claims<S> {
-    /// Everything is believed.
+    /// Accepts all values.
     pub const ANY: Self = Self {
         max_radius_m: S::MAX,
         max_speed_mps: S::MAX,
@@ -73,7 +82,7 @@ impl<S: Scalar> Claims<S> {
         last: RobotId(u32::MAX),
     };
 
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Claims<T> {
         Claims {
@@ -85,7 +94,8 @@ impl<S: Scalar> Claims<S> {
         }
     }
 
-    /// Cuts what a robot says of itself down to what is believed. Whether its radius and its speed were beyond.
+    /// Reduces the radius and the velocity of a report to the limits. Returns whether the radius
+    /// and whether the speed was above its limit.
     #[must_use]
     pub fn cut<P>(&self, said: &mut Neighbor<S, P>) -> (bool, bool) {
         let is_large = said.radius_m > self.max_radius_m;
@@ -99,13 +109,13 @@ impl<S: Scalar> Claims<S> {
         (is_large, is_fast)
     }
 
-    /// Whether a robot can have gone anywhere at any time.
+    /// Returns whether positions are not checked.
     #[must_use]
     pub fn believes_all_places(&self) -> bool {
         self.max_speed_mps >= S::MAX
     }
 
-    /// Whether a robot can have gone from one place to another in `time`.
+    /// Returns whether a robot can move from one position to another within `time`.
     #[must_use]
     pub fn can_go(&self, from: Position, to: Position, time: Duration) -> bool {
         if self.believes_all_places() {
@@ -120,13 +130,11 @@ fn is_longer<S: Scalar>(vector: Vec3<S>, length: S) -> bool {
     vector.length_key() > Vec3::new(length, S::ZERO, S::ZERO).length_key()
 }
 
-/// A robot whose places are in doubt.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Suspect {
     id: RobotId,
-    /// Where it says that it is.
     place: Position,
-    /// Since when it has said places that go together.
+    /// Start of the mutually reachable positions.
     since: Instant,
     heard: Instant,
 }
@@ -136,31 +144,34 @@ type Jumpers = heapless::Vec<Suspect, SUSPECTS, u8>;
 #[cfg(feature = "host")]
 type Jumpers = crate::list::Seldom<Suspect, SUSPECTS>;
 
-/// Who has jumped of late; 100 bytes, with the feature `host` those of who has.
+/// Robots that reported an unreachable position recently. 100 bytes; with the feature `host`, only
+/// the memory of its entries.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Suspects(Jumpers);
 
-/// What a jump is worth.
+/// The verdict on an unreachable position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
-    /// It has been where it says for long enough: it is believed.
+    /// The robot has reported consistent positions for long enough: accept it.
     Settled,
-    /// Not yet.
+    /// Not accepted yet.
     Stands,
-    /// Not yet, and it was not in doubt before.
+    /// Not accepted yet, and the first unreachable position of this robot.
     Begins,
 }
 
 impl Suspects {
-    /// Nobody.
+    /// Creates an empty list.
     #[must_use]
     pub const fn new() -> Self {
         Self(Jumpers::new())
     }
 
-    /// Judges a robot that says, at `at`, that it is where it cannot have come to. One whose last word is older than `longest` begins anew. O(1).
+    /// Judges a robot that reports, at time `at`, a position that it cannot have reached. A robot
+    /// whose last report is older than `longest` starts again. O(1).
     ///
-    /// When all places are taken it stays in doubt until somebody else is not heard for `longest`.
+    /// If all entries are in use, the robot stays in doubt until another one has been silent for
+    /// `longest`.
     pub fn judge<S: Scalar>(
         &mut self,
         id: RobotId,
@@ -181,7 +192,7 @@ impl Suspects {
                 suspect.since
             }
             None => {
-                // Who finds no room stays in doubt.
+                // A robot without an entry stays in doubt.
                 let _ = self.0.push(Suspect { id, place, since: at, heard: at });
                 at
             }
@@ -193,7 +204,7 @@ impl Suspects {
         if is_new { Doubt::Begins } else { Doubt::Stands }
     }
 
-    /// Forgets a robot whose places are believed again.
+    /// Removes a robot whose positions are accepted again.
     pub fn clear(&mut self, id: RobotId) {
         self.0.retain(|suspect| suspect.id != id);
     }

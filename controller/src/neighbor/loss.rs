@@ -1,53 +1,57 @@
-//! How long a neighbour's silence may last before it is more than bad luck.
+//! Estimates how long a neighbour may be silent before packet loss no longer explains it.
 
 use crate::time::Duration;
 use serde::{Deserialize, Serialize};
 
-/// Periods of silence that say nothing yet.
+/// Number of silent periods that is not yet evidence of a gap.
 const SHORT: u16 = 3;
-/// At this count all counts are halved, so that what is long past weighs little.
+/// All counts are halved at this count, so that old evidence loses weight.
 const MEMORY: u16 = 1 << 14;
-/// False alarms that a robot may raise in a minute, over all of its neighbours: one in 10,000 minutes; Q24.
+/// Accepted false alarms of a robot per minute, over all of its neighbours: one in 10,000 minutes;
+/// Q24.
 const FALSE_ALARMS: u64 = 1_677;
 const MINUTE_US: i32 = 60_000_000;
-/// The most periods of silence that are looked at one by one.
+/// Largest number of silent periods that are examined one by one.
 const MOST_PERIODS: i32 = 64;
 
-/// What the gaps in the others' sequence numbers tell of the radio.
+/// Estimate of the packet loss, from gaps in the neighbours' sequence numbers.
 ///
-/// How often more than three frames of one sender are lost in a row is counted, over all neighbours, and how long such gaps go on: like
-/// the bad state of E. N. Gilbert's channel ("Capacity of a burst-noise channel", Bell System Technical Journal 39, 1960) they
-/// end with the same chance at each frame. That chance is estimated as a hazard is: ends seen over frames lost; a neighbour
-/// that was given up counts with the frames lost until then and no end, so that a radio with long bad spells is
-/// known after the first one. Without evidence a gap is taken to begin at one frame in two and to end at one frame in two.
+/// A gap is a loss of more than three consecutive frames of one sender. The estimate counts, over
+/// all neighbours, how often gaps begin and how long they last. As in the bad state of E. N.
+/// Gilbert's channel ("Capacity of a burst-noise channel", Bell System Technical Journal 39, 1960),
+/// a gap ends with equal probability at each frame.
+///
+/// That probability is a hazard estimate: observed ends per lost frame. A neighbour that was given
+/// up contributes its lost frames and no end, so a radio with long outages is recognised after the
+/// first one. Without evidence, the probabilities that a gap begins and that it ends are each 1/2
+/// per frame.
 ///
 /// 8 bytes; constant work per frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LossEstimate {
-    /// Frames of theirs, heard or not.
+    /// Frames sent by neighbours, received or not.
     frames: u16,
     /// Gaps of more than [`SHORT`] frames.
     gaps: u16,
-    /// Those of them that ended.
     ended: u16,
-    /// Frames lost in them beyond [`SHORT`].
+    /// Frames lost in gaps, beyond the first [`SHORT`] of each.
     lost: u16,
 }
 
 impl LossEstimate {
-    /// Without evidence.
+    /// Creates an estimate without evidence.
     #[must_use]
     pub const fn new() -> Self {
         Self { frames: 0, gaps: 0, ended: 0, lost: 0 }
     }
 
-    /// Takes note of a frame that was heard after `missed` others of its sender were not.
+    /// Counts a received frame and the `missed` frames of its sender before it.
     pub fn heard(&mut self, missed: u16) {
         self.count(missed, 1);
     }
 
-    /// Takes note of a sender that was given up when `missed` frames of it had not come.
+    /// Counts a sender that was given up after `missed` frames did not arrive.
     pub fn gave_up(&mut self, missed: u16) {
         self.count(missed, 0);
     }
@@ -66,12 +70,13 @@ impl LossEstimate {
         }
     }
 
-    /// The longest silence that `neighbors` robots, who each speak once in a `period`, can still come back from: beyond it,
-    /// one that is well would be taken for lost less than once in 10,000 minutes. From four periods to `longest`; `longest`
-    /// too when 64 periods are not enough, which bounds the work.
+    /// Returns the silence beyond which a neighbour counts as lost.
+    ///
+    /// With `neighbors` robots that each send once per `period`, a working robot is mistaken for a
+    /// lost one less than once in 10,000 minutes. The result is between four periods and `longest`.
+    /// It is `longest` if 64 periods are not enough, which bounds the work.
     #[must_use]
     pub fn patience(&self, neighbors: usize, period: Duration, longest: Duration) -> Duration {
-        // Q16.
         let chance = |part: u16, whole: u16| {
             ((u32::from(part) + 1) << 16).checked_div(u32::from(whole) + 2).map_or(1 << 16, u64::from)
         };
@@ -79,7 +84,7 @@ impl LossEstimate {
         let goes_on = (1_u64 << 16).saturating_sub(ends);
         let per_minute = MINUTE_US.checked_div(period.as_micros()).map_or(0, i32::unsigned_abs);
         let neighbors = u16::try_from(neighbors).unwrap_or(u16::MAX);
-        // Gaps in a minute of at least so many periods, Q24.
+        // Expected gaps of at least this many periods in a minute, Q24.
         let mut alarms = (begins << 8).saturating_mul(per_minute.into()).saturating_mul(neighbors.into());
         for periods in i32::from(SHORT) + 1..=MOST_PERIODS {
             let silence = period.saturating_mul(periods);
@@ -100,7 +105,7 @@ mod tests {
     const PERIOD: Duration = Duration::from_millis(1_000);
     const LONGEST: Duration = Duration::from_millis(60_000);
 
-    /// A radio that loses frames in bursts, and what was learned of it.
+    /// A radio that loses frames in bursts.
     struct Radio {
         rng: Rng,
         begins: f64,
@@ -113,7 +118,6 @@ mod tests {
             Self { rng: Rng::keyed(seed, 0, 0, 0), begins, goes_on, is_lost: false }
         }
 
-        /// Whether the next frame is lost.
         fn loses(&mut self) -> bool {
             let chance = if self.is_lost { self.goes_on } else { self.begins };
             self.is_lost = f64::from(self.rng.next_u32()) < chance * f64::from(u32::MAX);
@@ -121,20 +125,21 @@ mod tests {
         }
     }
 
-    /// Gaps longer than the patience among frames of one neighbour, and the patience at the end, periods.
+    /// Returns the number of gaps above the patience among the frames of one neighbour, and the
+    /// final patience in periods.
     fn false_alarms(radio: &mut Radio, frames: u32, estimate: &mut LossEstimate) -> (u32, i32) {
         let (mut missed, mut alarms, mut patience) = (0, 0, LONGEST);
         let mut is_given_up = false;
         for _ in 0..frames {
             if radio.loses() {
                 missed += 1;
-                // Lost at the first step at which it is older than that.
+                // Lost in the first step in which its age exceeds the patience.
                 if !is_given_up && PERIOD.saturating_mul(missed) >= patience {
                     estimate.gave_up(u16::try_from(missed).unwrap());
                     (alarms, is_given_up) = (alarms + 1, true);
                 }
             } else {
-                // Who was given up is found anew, and nobody knows how many frames it had sent meanwhile.
+                // The number of frames that a lost sender sent meanwhile is unknown.
                 estimate.heard(if is_given_up { 0 } else { u16::try_from(missed).unwrap() });
                 (missed, is_given_up) = (0, false);
                 patience = estimate.patience(1, PERIOD, LONGEST);
@@ -154,11 +159,12 @@ mod tests {
     }
 
     #[test]
-    fn who_is_well_is_not_taken_for_lost() {
+    fn a_working_robot_is_not_taken_for_lost() {
         for (seed, (begins, goes_on)) in (0..).zip([(0.01, 0.01), (0.1, 0.1), (0.3, 0.3), (0.02, 0.6), (0.4, 0.4)]) {
             let mut radio = Radio::new(seed, begins, goes_on);
             let mut estimate = LossEstimate::new();
-            // A million frames, one a second: 16,700 robot-minutes with one neighbour; 1.7 alarms are meant.
+            // A million frames, one per second: 16,700 robot-minutes with one neighbour; the limit
+            // allows 1.7 alarms.
             let (alarms, patience) = false_alarms(&mut radio, 1_000_000, &mut estimate);
             assert!(alarms <= 8, "{alarms} alarms at {begins} {goes_on}, patience {patience}");
             assert!(patience < 60);
@@ -166,8 +172,9 @@ mod tests {
     }
 
     #[test]
-    fn a_radio_with_long_bad_spells_is_known_after_the_first_ones() {
-        // One frame in ten is lost by itself; once in 500 frames nothing comes for 30 periods or so.
+    fn long_outages_are_recognised_after_the_first_ones() {
+        // One frame in ten is lost independently; an outage of about 30 periods begins once in 500
+        // frames.
         let (mut thin, mut spells) = (Radio::new(1, 0.1, 0.1), Radio::new(2, 0.002, 1.0 - 1.0 / 30.0));
         let mut estimate = LossEstimate::new();
         let (mut missed, mut given_up) = (0_u16, 0);
@@ -185,12 +192,12 @@ mod tests {
             }
         }
         assert_eq!(estimate.patience(1, PERIOD, LONGEST), LONGEST);
-        // Some 190 spells, of which one in seven lasts for longer than the longest patience.
+        // About 190 outages, of which one in seven exceeds the longest patience.
         assert!(given_up < 50, "{given_up}");
     }
 
     #[test]
-    fn without_evidence_it_waits_and_never_beyond_the_longest() {
+    fn without_evidence_the_patience_is_long_but_bounded() {
         let estimate = LossEstimate::new();
         let longest = Duration::from_millis(30_000);
         let waits = estimate.patience(8, PERIOD, longest);

@@ -1,9 +1,10 @@
-//! What is known of other robots: a table on a fixed buffer.
+//! State of other robots: a neighbour table in a fixed buffer, silence and loss of neighbours,
+//! plausibility limits, tracking with sensors, and the gap to each neighbour.
 //!
-//! Read this first. Entries lie sorted by id, so that no result depends on the order in which
-//! packets arrived. The owner calls [`NeighborTable::expire`] at the start of every step: the
-//! 32-bit clock cannot tell a neighbour that has been silent for 71.6 minutes from a fresh one, and
-//! a table that is swept more often than that never holds one.
+//! Start with [`NeighborTable`]. Entries are sorted by id, so results do not depend on the order in
+//! which packets arrive. Call [`NeighborTable::expire`] at the start of each step: the 32-bit clock
+//! cannot distinguish a neighbour that has been silent for 71.6 minutes from a fresh one, and a
+//! table that expires entries more often never holds such a neighbour.
 
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
@@ -33,56 +34,61 @@ pub use tie::tie;
 pub use track::Track;
 pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 
-/// Thousandths of the distance to the farthest fresh robot from which on one that is lost has gone out of range.
+/// A lost robot counts as out of range from this distance on, thousandths of the distance to the
+/// farthest fresh robot.
 const LEAVES_FROM: i32 = 750;
 
-/// One robot as last heard; `P` is what its law tells, of size 0 unless it tells something.
+/// The last known state of one robot. `P` is the payload of its guidance law, of size 0 for laws
+/// without one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Neighbor<S, P = ()> {
-    /// Who it is.
+    /// Its id.
     pub id: RobotId,
-    /// When it was heard, own clock.
+    /// When the state was received, own clock.
     pub heard: Instant,
     /// When it is free to leave its cell, own clock (A. V. Kuznetsov 2017, KUZ, eq. 6).
     pub busy_until: Instant,
-    /// World position when heard.
+    /// World position at the time `heard`.
     pub position: Position,
-    /// World velocity when heard, metres per second.
+    /// World velocity at the time `heard`, m/s.
     pub velocity_mps: Vec3<S>,
     /// Radius of the ball around its body, metres.
     pub radius_m: S,
     /// The cell that it occupies.
     pub cell: Cell,
-    /// The cell that it is heading for.
+    /// The cell of its goal.
     pub target: Cell,
-    /// Its leader, or nobody.
+    /// Its leader, or [`RobotId::NOBODY`].
     pub leader: RobotId,
-    /// The move that it wants next.
+    /// The move that it intends next.
     pub heading: Dir,
     /// Its place in the formation, or its flock.
     pub slot: u8,
-    /// What it is doing.
+    /// The mode that it last reported.
     pub mode: Mode,
-    /// Silent for longer than [`Ages::expire_after`]: it is remembered, but what it did no longer counts.
+    /// It has been silent for longer than [`Ages::expire_after`]. Only its last state is
+    /// remembered; its intentions no longer count.
     pub is_lost: bool,
-    /// How far it is from the own body at least while it is silent, metres: what [`Room`] makes of it.
+    /// Lower bound of the gap to the own body while it is silent, metres; maintained by [`Room`].
     pub gap_m: S,
-    /// What its law told last, beside its beacons; the default until it has told something.
+    /// The last payload of its guidance law; the default until one arrives.
     pub payload: P,
 }
 
 impl<S: Scalar, P> Neighbor<S, P> {
-    /// Time since it was heard; `None` when that lies in the future, which means that more than
-    /// half the clock's range has passed.
+    /// Returns the time since its state was received, or `None` if that lies in the future, which
+    /// means that more than half of the clock's range has passed.
     #[must_use]
     pub fn age(&self, now: Instant) -> Option<Duration> {
         Some(now.since(self.heard)).filter(|age| *age >= Duration::ZERO)
     }
 
-    /// Where it is at `now` if it kept its velocity for at most `longest` since it was heard and
-    /// then stood, seen from `from`; metres. Bounding the age bounds the error: a robot that fell
-    /// silent does not run off the map. [`Ages::stale_after`] is a good bound.
+    /// Returns its offset from `from` at `now`, metres, if it kept its velocity for at most
+    /// `longest` after its state was received and then stopped.
+    ///
+    /// The bound keeps the extrapolation error of a silent robot bounded. [`Ages::stale_after`] is
+    /// a good value.
     #[must_use]
     pub fn offset_at(&self, from: Position, now: Instant, longest: Duration) -> Vec3<S> {
         let span = self.age(now).map_or(longest, |age| age.min(longest));
@@ -90,32 +96,32 @@ impl<S: Scalar, P> Neighbor<S, P> {
     }
 }
 
-/// How old news may be.
+/// Limits on the age of a neighbour's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ages {
-    /// Older than this is [`Knowledge::Stale`]: a few beacon periods. Too short: a lossy radio makes
-    /// everybody stale; too long: robots trust positions that are no longer true.
+    /// Age above which a neighbour is [`Knowledge::Stale`]: a few beacon periods. Shorter: a lossy
+    /// radio makes all neighbours stale. Longer: robots trust outdated positions.
     pub stale_after: Duration,
-    /// Older than this is lost: only where it was is remembered; at most half an hour, so that the clock's wrap is never
-    /// near.
+    /// Age above which a neighbour is lost and only its last position is remembered. At most half
+    /// an hour, so that the clock never wraps meanwhile.
     pub expire_after: Duration,
 }
 
-/// What is known of one robot.
+/// Knowledge about one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Knowledge<'a, S, P = ()> {
-    /// Heard a short while ago.
+    /// Its state is recent.
     Fresh(&'a Neighbor<S, P>),
-    /// Heard, but not lately.
+    /// Its state is older than [`Ages::stale_after`].
     Stale(&'a Neighbor<S, P>),
-    /// Never heard, forgotten, or pushed out.
+    /// It was never received, is lost or forgotten, or was evicted.
     Unknown,
 }
 
 impl<'a, S, P> Knowledge<'a, S, P> {
-    /// The neighbour if it is fresh.
+    /// Returns the neighbour if it is fresh.
     #[must_use]
     pub const fn fresh(self) -> Option<&'a Neighbor<S, P>> {
         match self {
@@ -124,7 +130,7 @@ impl<'a, S, P> Knowledge<'a, S, P> {
         }
     }
 
-    /// The neighbour, fresh or stale.
+    /// Returns the neighbour if it is fresh or stale.
     #[must_use]
     pub const fn known(self) -> Option<&'a Neighbor<S, P>> {
         match self {
@@ -134,18 +140,18 @@ impl<'a, S, P> Knowledge<'a, S, P> {
     }
 }
 
-/// What became of a neighbour that was put into the table.
+/// The result of [`NeighborTable::put`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "an eviction is news for the robot's owner"]
 pub enum Put {
-    /// It is new.
+    /// The robot was added.
     Inserted,
-    /// It replaced what was known of the same robot.
+    /// The previous state of the robot was replaced.
     Updated,
-    /// It is new, and this one had to go.
+    /// The robot was added, and this neighbour was removed.
     Evicted(RobotId),
-    /// The table is full of more important ones, or the newcomer is nobody.
+    /// All neighbours in the full table have precedence, or the id is [`RobotId::NOBODY`].
     Refused,
 }
 
@@ -154,43 +160,47 @@ type Entries<S, const N: usize, P> = heapless::Vec<Neighbor<S, P>, N, u16>;
 #[cfg(feature = "host")]
 type Entries<S, const N: usize, P> = crate::list::Seldom<Neighbor<S, P>, N>;
 
-/// The known robots, at most `N`, sorted by id; behind them the lost ones that are still remembered, by id too.
+/// At most `N` robots, sorted by id: first the known robots, then the lost ones that are
+/// remembered.
 ///
-/// Bytes: `N` times those of [`Neighbor`] (60 for `f32` and fixed point, and those of a payload) and 16 more; with the feature `host` those of the
-/// robots in it.
+/// Bytes: `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the payload), and
+/// 16 more. With the feature `host`, only the memory of the stored robots.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTable<S, const N: usize, P = ()> {
     entries: Entries<S, N, P>,
     ages: Ages,
-    /// The farthest that anybody was heard from while another one was lost, metres; 0: that never was.
+    /// Distance to the farthest fresh robot when another robot was lost, metres, maximum over time;
+    /// 0 if that never happened.
     range_m: S,
 }
 
 impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
-    /// An empty table.
+    /// Creates an empty table.
     #[must_use]
     pub const fn new(ages: Ages) -> Self {
         Self { entries: Entries::new(), ages, range_m: S::ZERO }
     }
 
-    /// The ages that it was built with.
+    /// Returns the age limits of the table.
     #[must_use]
     pub const fn ages(&self) -> Ages {
         self.ages
     }
 
-    /// Puts `newcomer` in, replacing what was known of the same robot. O(N).
+    /// Stores `newcomer`, replacing the previous state of that robot. O(N).
     ///
-    /// When the table is full, somebody has to go, though never a robot that `protect` names (the
-    /// leader, members of the formation's template) unless it is lost:
-    /// 1. the stalest of those older than [`Ages::expire_after`];
-    /// 2. else the one farthest from `own`, if the newcomer is nearer or protected;
-    /// 3. else the newcomer is refused.
+    /// A full table removes one robot. A robot for which `protect` returns true (the leader,
+    /// members of the formation's template) is removed only if it is lost. The candidates, in this
+    /// order:
+    /// 1. the robot with the oldest state, if older than [`Ages::expire_after`];
+    /// 2. the robot farthest from `own`, if the newcomer is nearer or protected;
+    /// 3. otherwise the newcomer is refused.
     ///
-    /// A [double](RobotId::double) only ever takes the place of another one, so that nobody crowds out robots by speaking in the
-    /// names of others. Ties go to the smaller id. Distances are taken at the extrapolated positions; an unknown
-    /// distance (NaN) is the largest. So the content after a burst of beacons does not depend on
-    /// their order (unless more than `N` of them are protected).
+    /// A [duplicate id](RobotId::double) only replaces another duplicate, so a sender that forges
+    /// ids cannot crowd out other robots. The smaller id wins a tie. Distances are taken at the
+    /// extrapolated positions, and an unknown distance (NaN) counts as the largest. Thus the
+    /// content after a burst of beacons does not depend on their order, unless more than `N`
+    /// senders are protected.
     pub fn put(
         &mut self,
         newcomer: Neighbor<S, P>,
@@ -203,7 +213,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
         let place = self.place(newcomer.id);
         if place.is_none() {
-            // Here is one of the lost again.
+            // The robot may be among the lost ones.
             self.entries.retain(|entry| entry.id != newcomer.id);
         }
         if let Some(entry) = place.and_then(|i| self.entries.get_mut(i)) {
@@ -215,20 +225,20 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             let Some(victim) = self.victim(&newcomer, own, now, protect) else {
                 return Put::Refused;
             };
-            // Whose loss was news already is no news again.
+            // The loss of a lost robot was already reported.
             if self.place(victim).is_some() {
                 answer = Put::Evicted(victim);
             }
             self.entries.retain(|entry| entry.id != victim);
         }
         if self.entries.push(newcomer).is_err() {
-            return Put::Refused; // Only a table without any room comes here.
+            return Put::Refused; // Reached only with a capacity of 0.
         }
         self.sort_last();
         answer
     }
 
-    /// Who must go so that `newcomer` can come in; `None`: nobody.
+    /// Returns the robot to remove for `newcomer`, or `None` if the newcomer must be refused.
     fn victim(
         &self,
         newcomer: &Neighbor<S, P>,
@@ -241,7 +251,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             entry.is_lost || !protect(entry.id) && (!is_double || entry.id.doubled().is_some())
         };
         let candidates = || self.entries.iter().filter(may_go);
-        // An age beyond half the clock's range is older than any that can be told.
+        // An age beyond half of the clock's range counts as the largest.
         let age = |entry: &Neighbor<S, P>| entry.age(now).unwrap_or(Duration::MAX);
         let stalest = candidates()
             .filter(|entry| !entry.is_lost && age(entry) > self.ages.expire_after)
@@ -258,15 +268,20 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         comes_in.then_some(farthest.1)
     }
 
-    /// Moves everybody older than `longest`, at most [`Ages::expire_after`], to the lost, reporting each in the order of ids,
-    /// and forgets whom it has not heard for longer than `remember`. O(N), and O(N) for each that is lost.
+    /// Moves neighbours silent for longer than `longest` (at most [`Ages::expire_after`]) to the
+    /// list of lost robots. Reports each in the order of ids, and forgets robots silent for longer
+    /// than `remember`. O(N), and O(N) for each robot that is lost.
     ///
-    /// One that would be three quarters as far from `own` as the farthest fresh one, or farther, had it gone on as it went
-    /// last, has gone out of range, as far as one can tell, and is not remembered; when nobody is fresh, one that would be
-    /// as far as anybody was heard from when others left, or farther; all are remembered if nobody has left before. Neither
-    /// is one of two with one number while the other one is fresh: one robot that was moved looks like two.
+    /// These robots are not remembered:
+    /// - A robot that left radio range. It counts as out of range if its extrapolated position is
+    ///   at least 3/4 as far from `own` as the farthest fresh robot. If no robot is fresh, it must
+    ///   be at least as far as any robot that was in contact while another one was lost. If that
+    ///   never happened, all robots are remembered.
+    /// - One of two robots with an identical id, while the other one is fresh: a robot that was
+    ///   moved looks like two robots.
     ///
-    /// Call it every step: see the head of this module.
+    /// Call it at the start of each step, so that the wrap of the 32-bit clock cannot make an old
+    /// entry look fresh.
     pub fn expire(
         &mut self,
         own: Position,
@@ -283,16 +298,18 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             self.entries.retain(|entry| entry.id != silent.id);
             let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));
             let farthest_m = fresh.map(distance).fold(S::ZERO, Scalar::max);
-            // Who hears nobody at all knows how far the radio reaches from those who left before, or takes it for dead.
+            // A robot without any contact either knows the radio range from earlier losses or
+            // assumes that its radio failed.
             let range_m = if farthest_m > S::ZERO { farthest_m * S::from_milli(LEAVES_FROM) } else { self.range_m };
             self.range_m = self.range_m.max(farthest_m);
-            // Of two with one number one is still there: it was moved, and taken for another one.
+            // The other robot with this id is fresh: it was moved, and was mistaken for a second
+            // robot.
             let is_moved = || {
                 let mut others = self.as_slice().iter();
                 others.any(|entry| entry.id.double() == silent.id.double() && is_within(entry, ages.stale_after))
             };
             if (range_m <= S::ZERO || distance(&silent) < range_m) && !is_moved() {
-                // Into the place that has just become free.
+                // Cannot fail: an entry was removed above.
                 let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
                 self.sort_last();
             }
@@ -300,7 +317,8 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         self.entries.retain(|entry| !entry.is_lost || is_within(entry, remember));
     }
 
-    /// Takes in what the law of robot `id` tells, if that robot is known; `None` is what makes no sense. O(log N).
+    /// Stores the payload of robot `id`, if that robot is known. An invalid payload (`None`) is
+    /// ignored. O(log N).
     pub fn tell(&mut self, id: RobotId, payload: Option<P>) {
         if let Some(payload) = payload
             && let Some(entry) = self.place(id).and_then(|i| self.entries.get_mut(i))
@@ -309,7 +327,8 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Forgets robot `id`, whom it does not remember as lost; whether it was known. O(N).
+    /// Removes the known robot `id` without remembering it as lost. Returns whether it was known.
+    /// O(N).
     pub fn forget(&mut self, id: RobotId) -> bool {
         let is_known = self.place(id).is_some();
         if is_known {
@@ -318,26 +337,26 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         is_known
     }
 
-    /// Has everybody, the lost too, at another place: on a torus, at the image nearest to oneself. O(N).
+    /// Moves all robots, including lost ones, to other positions; on a torus, to the image nearest
+    /// to the own robot. O(N).
     pub fn see_at(&mut self, place: impl Fn(Position) -> Position) {
         for entry in &mut self.entries {
             entry.position = place(entry.position);
         }
     }
 
-    /// Forgets how near the silent ones can be: to be called in a step in which nobody asks [`Room`]. O(N).
+    /// Resets the gap bounds of all robots. Call it in a step in which [`Room`] is not used. O(N).
     pub fn forget_gaps(&mut self) {
         for entry in &mut self.entries {
             entry.gap_m = S::ZERO;
         }
     }
 
-    /// Puts the last entry where it belongs.
     fn sort_last(&mut self) {
         sink_last(&mut self.entries, |before, after| (before.is_lost, before.id) > (after.is_lost, after.id));
     }
 
-    /// What is known of robot `id`. O(log N).
+    /// Returns the knowledge about robot `id`. O(log N).
     #[must_use]
     pub fn get(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, P> {
         match self.place(id).and_then(|i| self.entries.get(i)) {
@@ -350,7 +369,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         self.as_slice().binary_search_by_key(&id, |entry| entry.id).ok()
     }
 
-    /// How far an entry of this table can be trusted at `now`.
+    /// Returns how far an entry of this table can be trusted at `now`.
     #[must_use]
     pub fn judge<'a>(&self, entry: &'a Neighbor<S, P>, now: Instant) -> Knowledge<'a, S, P> {
         match entry.age(now) {
@@ -361,40 +380,39 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Everybody, in the order of ids; fresh and stale ones, if [`NeighborTable::expire`] is called
-    /// every step.
+    /// Iterates over the known robots in the order of ids. They are fresh or stale if
+    /// [`NeighborTable::expire`] is called in each step.
     pub fn iter(&self) -> core::slice::Iter<'_, Neighbor<S, P>> {
         self.as_slice().iter()
     }
 
-    /// Everybody, in the order of ids.
+    /// The known robots in the order of ids.
     #[must_use]
     pub fn as_slice(&self) -> &[Neighbor<S, P>] {
         self.entries.get(..self.count()).unwrap_or(&self.entries)
     }
 
-    /// The lost that are remembered, in the order of ids.
+    /// The lost robots that are remembered, in the order of ids.
     #[must_use]
     pub fn lost(&self) -> &[Neighbor<S, P>] {
         self.entries.get(self.count()..).unwrap_or_default()
     }
 
-    /// How many are known: the first ones of all entries.
+    /// Number of known robots, which precede the lost ones.
     fn count(&self) -> usize {
-        // Few robots have lost anybody: who is last tells.
         match self.entries.last() {
             Some(last) if last.is_lost => self.entries.partition_point(|entry| !entry.is_lost),
             _ => self.entries.len(),
         }
     }
 
-    /// How many are known.
+    /// Number of known robots.
     #[must_use]
     pub fn len(&self) -> usize {
         self.count()
     }
 
-    /// Whether nobody is known.
+    /// Whether no robot is known.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.as_slice().is_empty()
@@ -409,7 +427,7 @@ impl<'a, S: Scalar, const N: usize, P: Copy> IntoIterator for &'a NeighborTable<
     }
 }
 
-// Every byte counts 16 times per robot, and a simulated swarm has 100,000 of them.
+// Each robot stores 16 entries, and a simulated swarm has 100,000 robots.
 const _: () = assert!(size_of::<Neighbor<f32>>() == 60);
 #[cfg(not(feature = "host"))]
 const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 16);

@@ -1,4 +1,5 @@
-//! Who is near by right now, seen from oneself: what guidance and collision avoidance in the plane and in space work with.
+//! The nearest robots relative to the own one, as input of guidance and collision avoidance in the
+//! plane and in space.
 
 use super::{Ages, Neighbor};
 use crate::geom::{Position, Vec3};
@@ -9,55 +10,63 @@ use crate::time::{Duration, Instant};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// A robot near by, as it should be right now.
+/// A robot near by, extrapolated to the current step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Nearby<S> {
-    /// Who it is.
+    /// Its id.
     pub id: RobotId,
-    /// Its place minus the own one, metres.
+    /// Its position minus the own position, metres.
     pub offset_m: Vec3<S>,
-    /// Its velocity in the world, metres per second.
+    /// Its world velocity, m/s.
     pub velocity_mps: Vec3<S>,
-    /// Radius of the ball that it is in, metres.
+    /// Radius of the ball that contains it, metres.
     pub radius_m: S,
-    /// Whether it gives way too: fresh, and its agent steers it ([`Mode::gives_way`](crate::robot::Mode::gives_way)).
+    /// Whether it gives way: its state is fresh, and its agent steers it
+    /// ([`Mode::gives_way`](crate::robot::Mode::gives_way)).
     pub gives_way: bool,
-    /// What it said last that it is doing.
+    /// The mode that it last reported.
     pub mode: Mode,
-    /// Of another flock: one that flocks keeps off it, and takes no further notice.
+    /// It belongs to another flock. A flocking robot avoids it and otherwise ignores it.
     pub is_stranger: bool,
 }
 
-/// How the ball around a silent robot grows with the age of the news. By default it does not.
+/// How the ball around a silent robot grows with the age of its state. By default it does not grow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StalenessInflation<S> {
-    /// Speed at which the ball grows, m/s: the highest that others can have. Less is not safe when the radio is bad; 0: never.
+    /// Growth of the radius, m/s: the highest speed of any robot. A lower value is not safe with a
+    /// bad radio; 0: no growth.
     pub growth_mps: S,
-    /// How much the ball of one that stands grows at most, metres: how far off it may have come to stand. More closes places;
-    /// less hits who lies in the way.
+    /// Largest growth of the ball of a robot that is taken to stand, metres: how far away it may
+    /// have come to a stop. Larger: more places are blocked. Smaller: a robot may hit one that lies
+    /// in its way.
     pub max_m: S,
 }
 
 impl<S: Scalar> StalenessInflation<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> StalenessInflation<T> {
         StalenessInflation { growth_mps: cast(self.growth_mps), max_m: cast(self.max_m) }
     }
 }
 
-/// The `K` robots nearest to `own` at `now` (all when fewer), nearest first, ties by number; an
-/// unknown distance (NaN) comes last.
+/// Returns the `K` robots nearest to `own` at `now` (or all, if fewer), nearest first, ties by id.
+/// A robot at an unknown distance (NaN) comes last.
 ///
-/// A fresh one is where its velocity has taken it since it was heard. A stale one (older than
-/// [`Ages::stale_after`], not yet forgotten) stands where that ended; its ball grows as `inflation` says, at half of
-/// that speed (what it may do at worst is the business of [`Room`](super::Room)), but never over the own ball of
-/// `own_radius_m`, since old news alone is no collision; and it does not give way. One older than [`Ages::expire_after`] is not there any more.
-/// Who is not of `flock` ([`Neighbor::slot`]) is a stranger.
+/// | neighbour | position | radius | gives way |
+/// | --- | --- | --- | --- |
+/// | fresh | extrapolated by its velocity | as reported | depends on its mode |
+/// | stale | extrapolated by [`Ages::stale_after`], then at rest | grows | no |
+/// | older than [`Ages::expire_after`] | not included | | |
 ///
-/// O(N K); beside the answer 24 K bytes of stack (`f32`, pointers of 32 bits).
+/// The ball of a stale robot grows at half of the speed in `inflation`, because
+/// [`Room`](super::Room) covers its worst case. It never grows over the own ball of `own_radius_m`,
+/// since an outdated state alone is not a collision. A robot that is not of `flock`
+/// ([`Neighbor::slot`]) is a stranger.
+///
+/// O(N K); 24 K bytes of stack in addition to the result (`f32`, 32-bit pointers).
 #[must_use]
 pub fn nearest<S: Scalar, const K: usize>(
     known: &[Neighbor<S, impl Copy>],
@@ -75,7 +84,7 @@ pub fn nearest<S: Scalar, const K: usize>(
         }
         let offset_m = entry.offset_at(own, now, ages.stale_after);
         let key = offset_m.length_key();
-        // Entries come in the order of ids, so that the later of two equal keys stays behind.
+        // Entries come in the order of ids, so the larger id comes last among equal keys.
         if nearest.is_full() && nearest.last().is_some_and(|(farthest, ..)| *farthest > key) {
             nearest.pop();
         }
@@ -90,8 +99,8 @@ pub fn nearest<S: Scalar, const K: usize>(
     list::collect(nearest.iter().map(seen))
 }
 
-/// Adds robots that are lost ([`NeighborTable::lost`](super::NeighborTable::lost)) behind those that are not: balls that
-/// stand, as a stale one's does, for as long as they are remembered. Those that find no room come to nothing. O(lost).
+/// Appends lost robots ([`NeighborTable::lost`](super::NeighborTable::lost)) as stationary balls
+/// that grow like those of stale robots. Robots beyond the capacity are dropped. O(lost).
 pub fn add_lost<S: Scalar, const K: usize>(
     nearby: &mut Vec<Nearby<S>, K>,
     lost: &[Neighbor<S, impl Copy>],

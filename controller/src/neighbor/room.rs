@@ -1,4 +1,5 @@
-//! How much of a velocity a robot can have and still touch nobody, whatever became of the news.
+//! Limits a velocity so that the robot cannot touch another one, however old the states of its
+//! neighbours are.
 
 use super::{Neighbor, NeighborTable, StalenessInflation};
 use crate::body::Body;
@@ -11,67 +12,85 @@ use heapless::Vec;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 
-/// What is left between two bodies, millimetres: both places are told to a millimetre along each axis, and both robots may
-/// leave [`TOLERANCE_UM`].
+/// Gap that remains between two bodies, millimetres: both positions are rounded to a millimetre
+/// along each axis, and both robots may exceed their limit by [`TOLERANCE_UM`].
 const ROUNDING_MM: i32 = 3;
 /// Rounds in which a velocity is turned aside before it is shortened.
 const ROUNDS: u8 = 6;
-/// What the last round may leave, micrometres; part of the rounding.
+/// Excess that is accepted in the last round, micrometres; part of the rounding.
 const TOLERANCE_UM: i32 = 200;
 
-/// The room that a robot has among those that it knows.
+/// Limits a velocity by the gaps to the known robots.
 ///
-/// In a step a robot takes at most half of the gap to any other one, so that two which both do so cannot touch, however
-/// long a step is. (D. Zhou, Z. Wang, S. Bandyopadhyay, M. Schwager, "Fast, on-line collision avoidance for dynamic
-/// vehicles using buffered Voronoi cells", IEEE RA-L 2017, have the same as cells; here it limits what the safety layer
-/// has chosen.) One that was not heard can be anywhere in a ball that grows, and the gap is that to the ball:
+/// | neighbour | where it may be |
+/// | --- | --- |
+/// | up to date | at its extrapolated position |
+/// | silent for t beyond a step | in a ball that grows at [`growth_mps`] |
+/// | lost | in that ball, which grows by at most [`max_m`] |
 ///
-/// | the other one | its ball | own part of the gap |
-/// | --- | --- | --- |
-/// | is heard as ever | does not grow | half; all if it does not give way, less what it comes itself |
-/// | has been silent for t beyond a step | grows by [`growth_mps`](StalenessInflation::growth_mps) t, though its border comes nearer by at most half of the gap in a step, as the robot itself does; with inertia, about the course that it had, by half of the acceleration times t^2 if that is less | the same |
-/// | is lost, while at least half of all are fresh or the robot may be alone | the same, up to [`max_m`](StalenessInflation::max_m) | half |
+/// [`growth_mps`]: StalenessInflation::growth_mps
+/// [`max_m`]: StalenessInflation::max_m
 ///
-/// Whoever's own centre is inside of such a ball stands. So no two touch each other at any loss of packets and in any
-/// blackout, as long as nobody is faster than `growth_mps` and bodies do what they are told; one with inertia takes no
-/// more than it can brake within.
+/// In a step the robot takes at most half of the gap to a neighbour, or all of it if that neighbour
+/// does not give way, minus the neighbour's own approach.
+///
+/// *Why half:* two robots that both take at most half of the gap in a step cannot touch, however
+/// long the step is. (D. Zhou, Z. Wang, S. Bandyopadhyay, M. Schwager, "Fast, on-line collision
+/// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017, express this as
+/// cells; here it limits the velocity that the safety layer has chosen.)
+///
+/// *Silence:* a silent neighbour that gives way keeps to the same rule. Thus the border of its ball
+/// comes nearer by at most half of the gap per step.
+///
+/// *Inertia:* the ball of a body with inertia follows its last course and grows by half of its
+/// acceleration times t^2, if that is less. The own robot takes no more of a gap than it can brake
+/// within.
+///
+/// *Lost robots:* their balls stop growing at `max_m` only while at least half of all robots are
+/// fresh, or if [`may_be_alone`](Self::may_be_alone) is set.
+///
+/// A robot whose own centre lies inside such a ball stands still. No two robots touch at any packet
+/// loss and in any blackout, as long as no robot is faster than `growth_mps` and bodies follow
+/// their commands.
 #[derive(Clone, Copy, Debug)]
 pub struct Room<'a, S> {
     /// Own body.
     pub body: &'a Body<S>,
-    /// Own place.
+    /// Own position.
     pub own: Position,
-    /// Now.
+    /// Current time.
     pub now: Instant,
-    /// How old the latest news is when all is well: a step, or the radio's delay if that is longer. For so long others
-    /// are taken to keep their velocities, which is the truth for a step.
+    /// Age of the latest states in normal operation: a step, or the latency of the radio if that is
+    /// longer. Neighbours are taken to keep their velocities for this time, which is exact for one
+    /// step.
     pub news: Duration,
-    /// How far others may have come.
+    /// Growth of the balls around silent robots.
     pub inflation: StalenessInflation<S>,
-    /// Whether to go on when most are lost, as if they stood.
+    /// Whether to treat lost robots as stationary even when most robots are lost.
     pub may_be_alone: bool,
 }
 
-/// What one robot or obstacle leaves.
 #[derive(Clone, Copy)]
 struct Limit<S> {
-    /// The way there, of length 1.
+    /// Unit vector towards it.
     ahead: Vec3<S>,
-    /// The sine of how far off that way it may be.
+    /// Sine of the angle by which its direction may differ.
     slant: S,
-    /// How far to go there in a step, metres; less than 0, by the tolerance at most, where that was taken already.
+    /// Distance that may be covered towards it in this step, metres. Negative, by at most the
+    /// tolerance, if the gap is already used up.
     room_m: S,
 }
 
 impl<S: Scalar> Limit<S> {
-    /// How fast `velocity_mps` comes nearer, and the most that it may come nearer sideways besides, m/s.
+    /// Returns the closing speed of `velocity_mps`, and the largest additional closing speed due to
+    /// the uncertain direction, m/s.
     fn closing(&self, velocity_mps: Vec3<S>) -> (S, S) {
         let closing = velocity_mps.dot(self.ahead);
         let side = if self.slant > S::ZERO { (velocity_mps - self.ahead * closing).norm() } else { S::ZERO };
         (closing, side * self.slant)
     }
 
-    /// The most that `velocity_mps` comes nearer in `step_s`, metres.
+    /// The largest approach in `step_s` at `velocity_mps`, metres.
     fn taken(&self, velocity_mps: Vec3<S>, step_s: S) -> S {
         let (closing, side) = self.closing(velocity_mps);
         (closing + side) * step_s
@@ -79,10 +98,11 @@ impl<S: Scalar> Limit<S> {
 }
 
 impl<S: Scalar> Room<'_, S> {
-    /// What there is room for of `velocity_mps`, m/s: turned aside as far as that helps, along those of `obstacles` that it
-    /// is turned towards, then shortened. `None`: one that is silent can be right here, so stand.
+    /// Returns the part of `velocity_mps`, m/s, that the gaps allow. The velocity is first turned
+    /// aside, without running into `obstacles`, then shortened. Returns `None` if a silent robot
+    /// may be at the own position: the robot must stand still.
     ///
-    /// O(N + obstacles), and a root or two for each robot; 20 N bytes of stack (`f32`).
+    /// O(N + obstacles), with one or two square roots per robot; 20 N bytes of stack (`f32`).
     #[must_use]
     #[inline(never)]
     pub fn limit<const N: usize, P: Copy>(
@@ -100,7 +120,7 @@ impl<S: Scalar> Room<'_, S> {
         for other in &mut table.entries {
             let (limit, is_here) = self.limit_of(other, is_bad);
             is_hidden |= is_here;
-            // As many places as entries.
+            // Cannot fail: both have capacity N.
             let _ = limits.push(limit);
         }
         let step_s = self.body.step_s;
@@ -115,12 +135,12 @@ impl<S: Scalar> Room<'_, S> {
                     is_turned = true;
                 }
             }
-            // The next round would do as little.
+            // Another round would change nothing either.
             if !is_turned {
                 break;
             }
         }
-        // The safety layer has seen to them, unless the way is another one.
+        // The safety layer has considered obstacles for the original velocity only.
         if v != velocity_mps {
             for (point, distance) in obstacles.iter().filter_map(Obstacle::nearest_point) {
                 let ahead = point.normalized().unwrap_or(Vec3::ZERO);
@@ -143,7 +163,8 @@ impl<S: Scalar> Room<'_, S> {
         (!is_hidden).then_some(v)
     }
 
-    /// What a robot leaves, and whether it can be right here. Notes the least gap to it.
+    /// Returns the limit that a robot imposes, and whether it can be at the own position. Stores
+    /// the gap bound.
     fn limit_of<P>(&self, other: &mut Neighbor<S, P>, is_bad: bool) -> (Limit<S>, bool) {
         let Room { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
@@ -154,7 +175,8 @@ impl<S: Scalar> Room<'_, S> {
         if is_parked {
             grown = grown.min(inflation.max_m);
         }
-        // Up to here it went as it had said; with inertia it cannot leave that course at once, only a step's worth of it.
+        // Up to here the neighbour kept its reported velocity. With inertia it leaves that course
+        // gradually, so the course is extrapolated over its whole age.
         let most = body.max_acceleration_mps2;
         let swerve_mps = most * (silent_s + body.step_s);
         let swerves = !is_parked && swerve_mps * S::HALF < inflation.growth_mps;
@@ -166,7 +188,7 @@ impl<S: Scalar> Room<'_, S> {
             grown = swerve_mps * S::HALF * silent_s;
         }
         let mut gap = distance - body.radius_m - other.radius_m - S::from_milli(ROUNDING_MM) - grown;
-        // One that does not give way comes as it likes.
+        // A neighbour that does not give way need not keep to half of the gap.
         if silent > 0 && !is_parked && other.mode.gives_way() {
             gap = gap.max(other.gap_m);
         }
@@ -188,21 +210,21 @@ impl<S: Scalar> Room<'_, S> {
         (Limit { ahead, slant, room_m: room_m.max(-S::from_micro(TOLERANCE_UM)) }, silent > 0 && grown >= distance)
     }
 
-    /// The way in which a body like the own one comes to stand, metres; 0 without inertia.
+    /// Braking distance of a body like the own one, metres; 0 without inertia.
     fn way_to_stand(&self, speed_mps: S) -> S {
         let most = self.body.max_acceleration_mps2;
         let speed = speed_mps.max(S::ZERO);
         if most >= S::MAX { S::ZERO } else { (speed * speed * S::HALF).checked_div(most).unwrap_or(S::ZERO) }
     }
 
-    /// How far to go in a step so that the body can stand within `left`, metres, which shrinks at `growth_mps` until it
-    /// does.
+    /// Distance to cover in a step so that the body can stop within `left`, metres, which shrinks
+    /// at `growth_mps` until it stands.
     fn brakes(&self, left: S, growth_mps: S) -> S {
         let Body { step_s, max_acceleration_mps2: most, .. } = *self.body;
         if most >= S::MAX || left <= S::ZERO {
             return left;
         }
-        // v step + v^2 / 2 most + growth v / most = left.
+        // Solves v step + v^2 / 2 most + growth v / most = left.
         let lag = most * step_s + growth_mps;
         ((lag * lag + most * left * S::TWO).sqrt() - lag) * step_s
     }

@@ -1,4 +1,5 @@
-//! What eyes tell, how it is taken, and what became of it.
+//! Detections of other robots by sensors, the parameters of tracking them, and the counts of a
+//! step.
 
 use crate::geom::Vec3;
 use crate::robot::RobotId;
@@ -6,57 +7,65 @@ use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
 use serde::{Deserialize, Serialize};
 
-/// Another robot, as somebody's own sensors show it.
+/// A detection of another robot by the robot's own sensors.
 ///
-/// The place is relative to the own one, since that is what a camera or UWB measures and needs no frame in common: a robot that goes by
-/// odometry alone avoids whom it sees. What is heard besides is in the common frame, and merging both needs it. Motion capture
-/// tells places in it: subtract the own one.
+/// The position is relative to the own one: a camera or UWB measures it without a common frame, so
+/// a robot with odometry alone can avoid other robots. Beacons are in the common frame; merging
+/// them with detections requires it. Motion capture reports positions in the common frame; subtract
+/// the own position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sighting<S> {
-    /// Its place minus the own one when it was seen, metres, along the axes of the world (not of the body).
+    /// Its position minus the own position at the time of the detection, metres, along world axes
+    /// (not body axes).
     pub offset_m: Vec3<S>,
-    /// Standard deviation of that along each axis, metres; above 0. Less than 4 mm counts as 4 mm.
+    /// Standard deviation of the offset along each axis, metres; above 0. Values below 4 mm count
+    /// as 4 mm.
     pub deviation_m: S,
-    /// How long ago it was seen; 0 or more.
+    /// Time since the detection; 0 or more.
     pub age: Duration,
     /// Radius of the ball around its body, metres.
     pub radius_m: S,
-    /// Who it is, if the sensor can tell; `None`: somebody.
+    /// The id, if the sensor identifies the robot; `None` for an anonymous detection.
     pub id: Option<RobotId>,
-    /// Its world velocity and the standard deviation of that along each axis, m/s, if the sensor can tell.
+    /// Its world velocity and the standard deviation along each axis, m/s, if the sensor measures
+    /// it.
     pub velocity_mps: Option<(Vec3<S>, S)>,
 }
 
-/// How sightings become neighbours.
+/// Parameters of tracking.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TrackParams<S> {
-    /// Standard deviation of the others' accelerations, m/s^2. Larger: the estimate follows turns sooner and believes each single
-    /// sighting more; smaller: it is smoother, and late where somebody turns.
+    /// Standard deviation of the other robots' accelerations, m/s^2. Larger: the estimate follows
+    /// turns sooner and weights each detection more. Smaller: it is smoother and lags behind turns.
     pub acceleration_mps2: S,
-    /// Standard deviation of the velocity along each axis of somebody who has just come into sight, m/s: about what others can do.
+    /// Standard deviation of the velocity of a new track along each axis, m/s: about the speed of
+    /// other robots.
     pub speed_mps: S,
-    /// Standard deviation of the places that others say, metres: their positioning.
+    /// Standard deviation of the positions in beacons, metres: the positioning error of the sender.
     pub heard_m: S,
-    /// Standard deviation of the velocities that others say, m/s: how well their bodies do what they say.
+    /// Standard deviation of the velocities in beacons, m/s: how well a body follows its reported
+    /// velocity.
     pub heard_mps: S,
-    /// How many standard deviations from where it should be a sighting may be and still be of that robot (and, whatever this is, as far as
-    /// two bodies would overlap). Larger: two who pass
-    /// each other are taken for each other; smaller: one robot becomes two.
+    /// Largest distance between a detection and the predicted position of its track, in standard
+    /// deviations. A detection that would overlap the body of the track matches at any value.
+    /// Larger: two robots that pass each other are confused. Smaller: one robot becomes two.
     pub gate: S,
-    /// How many standard deviations of its place are added to the radius of one that is seen. Smaller: errors lead to overlaps; larger:
-    /// crowds stand still. (D. Hennes, D. Claes, W. Meeussen, K. Tuyls, "Multi-robot collision avoidance with localization
-    /// uncertainty", AAMAS 2012, section 3: bodies grow by the error of localization.)
+    /// Standard deviations of the position that are added to the radius of a tracked robot.
+    /// Smaller: errors lead to overlaps. Larger: crowds come to a stop. (D. Hennes, D. Claes, W.
+    /// Meeussen, K. Tuyls, "Multi-robot collision avoidance with localization uncertainty", AAMAS
+    /// 2012, section 3: bodies grow by the localization error.)
     pub margin: S,
-    /// After how long one that says nothing and is not seen any more is forgotten. It is behind something or out of sight, so its silence
-    /// is no sign that it is near. Longer: who comes out from behind others is known sooner, and places where somebody was are kept
-    /// clear for longer. With more than [`Ages::stale_after`](super::Ages::stale_after) it counts as fallen silent meanwhile.
+    /// Time after which a robot without beacons that is out of sight is forgotten. Such a robot is
+    /// occluded or out of view, so its silence does not mean that it is near. Longer: a robot that
+    /// reappears is known sooner, and its last position stays blocked for longer. Above
+    /// [`Ages::stale_after`](super::Ages::stale_after) it counts as silent meanwhile.
     pub forget: Duration,
 }
 
 impl<S: Scalar> TrackParams<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> TrackParams<T> {
         TrackParams {
@@ -71,24 +80,26 @@ impl<S: Scalar> TrackParams<S> {
     }
 }
 
-/// What became of the sightings of a step.
+/// Counts of the detections of a step by their result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sighted {
-    /// Of robots that were known.
+    /// Assigned to an existing track.
     pub known: u16,
-    /// Of robots that were not.
+    /// Started a new track.
     pub new: u16,
-    /// Of one robot a second time: of the same number, or in the place of one that was seen already.
+    /// Repeated detections of one robot: with an id already seen in this step, or inside the body
+    /// of a robot already seen.
     pub repeated: u16,
-    /// That cannot be: no numbers, a deviation of 0 or less, an age below 0, the own number, one that no robot has.
+    /// Invalid: a value that is not a number, a deviation of 0 or less, a negative age, the own id,
+    /// or an id that no robot can have.
     pub refused: u16,
-    /// For which there is no room.
+    /// Dropped because all detections or tracks of the fixed buffers are in use.
     pub no_room: u16,
 }
 
 impl<S: Scalar> Sighting<S> {
-    /// Whether it can be what robot `own` saw.
+    /// Returns whether this can be a detection by robot `own`.
     pub(super) fn is_sound(&self, own: RobotId) -> bool {
         let Self { offset_m, deviation_m, age, radius_m, id, velocity_mps } = self;
         let is_size = |x: S| x.is_finite() && x >= S::ZERO;

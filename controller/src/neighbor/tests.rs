@@ -9,7 +9,8 @@ fn at(micros: u32) -> Instant {
     Instant::from_micros(micros)
 }
 
-/// A robot that stands `x` metres east of the origin; nobody knows where it goes when `x` is not a number.
+/// A robot `x` metres east of the origin. If `x` is NaN, its velocity is NaN and its position
+/// unknown.
 fn standing(id: u32, x: f32, heard: Instant) -> Neighbor<f32> {
     let beacon = Beacon::default();
     let mut neighbor = Neighbor::from_beacon(RobotId(id), &beacon, heard);
@@ -24,7 +25,7 @@ fn place(x: f32, y: f32) -> Option<Position> {
     Position::ORIGIN.moved(Vec3::new(x, y, 0.0))
 }
 
-/// Who is near by, nearest first.
+/// The ids of the nearest robots, nearest first.
 fn nearest_ids<const N: usize, const K: usize>(table: &NeighborTable<f32, N>, own: Position) -> StdVec<u32> {
     let nearest = nearest::<f32, K>(table.as_slice(), 0, own, 0.0, at(0), &AGES, &INFLATION);
     nearest.iter().map(|near| near.id.0).collect()
@@ -46,7 +47,7 @@ fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> S
     lost
 }
 
-/// A table whose robots 1, 2, .. stand at 1 m, 2 m, ...
+/// A table whose robots 1, 2, ... are at 1 m, 2 m, ...
 fn full<const N: usize>(now: Instant) -> NeighborTable<f32, N> {
     let mut table = NeighborTable::new(AGES);
     for i in 1..=N as u32 {
@@ -71,7 +72,7 @@ fn table_of_one_keeps_the_nearer_of_two() {
 }
 
 #[test]
-fn nobody_is_refused() {
+fn the_id_of_no_robot_is_refused() {
     let mut table = NeighborTable::<f32, 4>::new(AGES);
     assert_eq!(put(&mut table, standing(0, 1.0, at(0)), at(0)), Put::Refused);
     assert_eq!(table.get(RobotId::NOBODY, at(0)), Knowledge::Unknown);
@@ -92,7 +93,7 @@ fn full_table_evicts_the_stalest_expired_one_even_for_a_far_newcomer() {
     let _ = put(&mut table, standing(2, 2.0, at(100)), at(100));
     let _ = put(&mut table, standing(4, 4.0, at(9_000_000)), at(9_000_000));
     let now = at(9_000_000);
-    // 1 and 3 are equally old: the larger id goes.
+    // Robots 1 and 3 are equally old: the larger id is removed.
     assert_eq!(put(&mut table, standing(8, 800.0, now), now), Put::Evicted(RobotId(3)));
     assert_eq!(put(&mut table, standing(9, 900.0, now), now), Put::Evicted(RobotId(1)));
     assert_eq!(put(&mut table, standing(7, 700.0, now), now), Put::Evicted(RobotId(2)));
@@ -103,7 +104,7 @@ fn full_table_evicts_the_stalest_expired_one_even_for_a_far_newcomer() {
 fn full_table_evicts_the_farthest_for_a_nearer_one_only() {
     let mut table = full::<4>(at(0));
     assert_eq!(put(&mut table, standing(9, 4.5, at(0)), at(0)), Put::Refused);
-    // Equally far: the smaller id stays.
+    // At equal distance the smaller id stays.
     assert_eq!(put(&mut table, standing(9, -4.0, at(0)), at(0)), Put::Refused);
     assert_eq!(put(&mut table, standing(9, -3.5, at(0)), at(0)), Put::Evicted(RobotId(4)));
     assert_eq!(ids(&table), [1, 2, 3, 9]);
@@ -122,7 +123,7 @@ fn protected_robots_stay_and_come_in() {
     let old = at(9_000_000);
     let far = |id| standing(id, 1000.0, old);
     let protect = |id: RobotId| id.0 >= 3;
-    // All are expired, yet the protected 3 stays; then nobody may go.
+    // All are expired, but the protected robot 3 stays; after that no robot can be removed.
     assert_eq!(table.put(far(4), Position::ORIGIN, old, protect), Put::Evicted(RobotId(2)));
     assert_eq!(table.put(far(5), Position::ORIGIN, old, protect), Put::Evicted(RobotId(1)));
     assert_eq!(table.put(far(6), Position::ORIGIN, old, protect), Put::Refused);
@@ -148,7 +149,7 @@ fn unknown_distance_is_the_largest() {
 }
 
 #[test]
-fn nearest_of_more_or_fewer_than_there_are() {
+fn nearest_returns_all_robots_if_there_are_fewer() {
     let table = full::<3>(at(0));
     assert!(nearest_ids::<3, 0>(&table, Position::ORIGIN).is_empty());
     let far_east = place(10.0, 0.0).unwrap();
@@ -156,7 +157,7 @@ fn nearest_of_more_or_fewer_than_there_are() {
 }
 
 #[test]
-fn a_silent_neighbour_widens_then_expires() {
+fn the_ball_of_a_silent_neighbour_grows_until_it_expires() {
     let mut robot = standing(1, 10.0, at(0));
     robot.velocity_mps.x = -2.0;
     robot.radius_m = 0.25;
@@ -167,17 +168,17 @@ fn a_silent_neighbour_widens_then_expires() {
     };
     assert_eq!(look(0, 0.5), Some((10.0, -2.0, 0.25, true)));
     assert_eq!(look(1_000, 0.5), Some((8.0, -2.0, 0.25, true)));
-    // Half a metre per second, but at most a metre, ...
+    // The growth is half a metre per second, at most a metre.
     assert_eq!(look(2_000, 0.5), Some((8.0, 0.0, 0.75, false)));
     assert_eq!(look(5_000, 0.5), Some((8.0, 0.0, 1.25, false)));
-    // ... and never over the own ball, even where they overlap already.
+    // The ball never grows over the own one, even if they already overlap.
     assert_eq!(look(5_000, 7.5), Some((8.0, 0.0, 0.5, false)));
     assert_eq!(look(5_000, 9.0), Some((8.0, 0.0, 0.25, false)));
     assert_eq!(look(5_001, 0.5), None);
 }
 
 #[test]
-fn who_is_in_fault_does_not_give_way() {
+fn a_robot_in_fault_does_not_give_way() {
     let mut robot = standing(1, 1.0, at(0));
     robot.mode = Mode::Fault;
     let seen = nearest::<_, 1>(&[robot], 0, Position::ORIGIN, 0.0, at(0), &AGES, &INFLATION);
@@ -197,7 +198,7 @@ fn knowledge_ages_from_fresh_to_stale_to_unknown() {
     assert!(matches!(get(5_000_000), Knowledge::Stale(_)));
     assert_eq!(get(5_000_001), Knowledge::Unknown);
     assert_eq!(get(i32::MAX), Knowledge::Unknown);
-    // Half the clock's range later the difference is negative.
+    // After half of the clock's range the difference is negative.
     assert_eq!(get(i32::MIN), Knowledge::Unknown);
     assert_eq!(table.get(RobotId(2), heard), Knowledge::Unknown);
 }
@@ -213,10 +214,10 @@ fn expiry_reports_each_lost_robot_once_in_order() {
 }
 
 #[test]
-fn the_lost_are_remembered_apart_until_they_are_heard_or_too_old() {
+fn lost_robots_are_remembered_until_they_are_received_or_too_old() {
     let mut table = full::<4>(at(0));
     let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
-    // Not fresh any more, so that it says nothing of the radio's range.
+    // Robot 2 is not fresh any more, so it does not determine the radio range.
     let remember = Duration::from_millis(20_000);
     let lost = |table: &NeighborTable<f32, 4>| table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>();
     let mut told = StdVec::new();
@@ -229,7 +230,8 @@ fn the_lost_are_remembered_apart_until_they_are_heard_or_too_old() {
     let now = at(6_000_000);
     assert_eq!(put(&mut table, standing(3, 3.0, now), now), Put::Inserted, "found again");
     assert_eq!((ids(&table), lost(&table)), ([2, 3].into(), [1, 4].into()));
-    // Full: the farthest goes, lost or not, and whose loss was told already is not told again.
+    // The table is full: the farthest robot is removed, even if lost. A reported loss is not
+    // reported again.
     assert_eq!(put(&mut table, standing(9, 1.5, now), now), Put::Inserted);
     assert_eq!((ids(&table), lost(&table)), ([2, 3, 9].into(), [1].into()));
     table.expire(Position::ORIGIN, at(20_000_001), (Duration::MAX, remember), |_| {});
@@ -237,7 +239,7 @@ fn the_lost_are_remembered_apart_until_they_are_heard_or_too_old() {
 }
 
 #[test]
-fn who_is_lost_beyond_all_that_are_heard_has_left_and_is_not_remembered() {
+fn a_robot_lost_beyond_all_fresh_ones_is_not_remembered() {
     let mut table = full::<4>(at(0));
     let now = at(5_000_001);
     let _ = put(&mut table, standing(3, 3.0, now), now);
@@ -247,9 +249,9 @@ fn who_is_lost_beyond_all_that_are_heard_has_left_and_is_not_remembered() {
     assert_eq!(table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>(), [1, 2]);
 }
 
-/// In a flock on its way, where somebody was last is in the middle of the others soon.
+/// A flock on its way soon reaches the last position of a robot that left it.
 #[test]
-fn who_drives_on_out_of_range_is_not_remembered_where_it_was() {
+fn a_robot_that_drives_out_of_range_is_not_remembered() {
     let mut table = NeighborTable::<f32, 4>::new(AGES);
     let moving = |id, x, now| Neighbor { velocity_mps: Vec3::new(0.3, 0.0, 0.0), ..standing(id, x, now) };
     for neighbor in [moving(1, 1.0, at(0)), moving(2, 2.0, at(0)), standing(4, 2.0, at(0))] {
@@ -264,9 +266,9 @@ fn who_drives_on_out_of_range_is_not_remembered_where_it_was() {
     assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 4]));
 }
 
-/// The last one: that the radio is not dead is known from those who left before.
+/// Earlier losses at the edge of the radio range prove that the radio works.
 #[test]
-fn the_last_one_to_drive_on_out_of_range_is_remembered_unless_others_left_before() {
+fn the_last_robot_out_of_range_is_remembered_unless_others_left_earlier() {
     let left = |others: &[(u32, f32)]| {
         let mut table = NeighborTable::<f32, 4>::new(AGES);
         for step in 0..200_u32 {
@@ -295,7 +297,7 @@ fn silence_beyond_half_the_clock_expires() {
 }
 
 #[test]
-fn position_runs_on_for_a_bounded_time() {
+fn position_is_extrapolated_for_a_bounded_time() {
     let mut neighbor = standing(1, 10.0, at(u32::MAX));
     neighbor.velocity_mps = Vec3::new(2.0, -1.0, 0.5);
     let longest = Duration::from_millis(1_500);
@@ -311,7 +313,7 @@ fn position_runs_on_for_a_bounded_time() {
 }
 
 #[test]
-fn beacon_becomes_metres_and_own_time() {
+fn a_beacon_is_converted_to_metres_and_the_own_clock() {
     let beacon = Beacon {
         time: at(123),
         position_mm: [1_500, -2_250, i32::MAX],
@@ -334,7 +336,7 @@ fn beacon_becomes_metres_and_own_time() {
     assert_eq!((n.heading, n.slot, n.mode), (Dir::North, 3, Mode::Cruise));
 }
 
-/// A robot per id, at small whole distances so that ties occur.
+/// One robot per id, at small whole distances so that ties occur.
 fn robots() -> impl Strategy<Value = StdVec<(u32, i8, i8)>> {
     proptest::collection::btree_map(1..60u32, (-4..4i8, -4..4i8), 0..40)
         .prop_map(|map| map.into_iter().map(|(id, (x, y))| (id, x, y)).collect())
@@ -350,7 +352,7 @@ fn fill(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool) -> Neighbor
     table
 }
 
-/// What the policy promises, by sorting everything.
+/// The expected content of the table, by sorting all robots.
 fn expected(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool, k: usize) -> StdVec<u32> {
     let mut sorted = robots.to_vec();
     sorted.sort_by_key(|&(id, x, y)| {
@@ -363,7 +365,7 @@ fn expected(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool, k: usiz
 
 proptest! {
     #[test]
-    fn content_is_the_nearest_whatever_the_order_of_arrival(
+    fn content_is_the_nearest_robots_in_any_order_of_arrival(
         (robots, shuffled) in robots().prop_flat_map(|r| (Just(r.clone()), Just(r).prop_shuffle())),
     ) {
         let protect = |id: RobotId| [3, 30, 50].contains(&id.0);
@@ -382,7 +384,7 @@ proptest! {
     }
 
     #[test]
-    fn any_numbers_keep_the_table_sorted_and_bounded(
+    fn any_input_keeps_the_table_sorted_and_bounded(
         news in proptest::collection::vec((any::<u32>(), any::<u32>(), any::<f32>()), 0..40),
         own in any::<f32>(),
     ) {

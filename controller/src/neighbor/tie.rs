@@ -1,4 +1,4 @@
-//! Which way to go when two robots are in the same place.
+//! The direction in which each of two robots at an identical position moves.
 
 use crate::geom::Vec2;
 use crate::rand::Rng;
@@ -7,10 +7,12 @@ use crate::scalar::Scalar;
 
 const PURPOSE: u32 = 0x7469_6573; // "ties"
 
-/// The way that robot `own` goes when `other` is in the very same place: a unit vector in the plane, the opposite
-/// one for the other robot, so that the pair comes apart without a word. Zero for a robot and itself.
+/// Returns the direction in which robot `own` moves if `other` is at exactly the same position: a
+/// unit vector in the plane. The other robot gets the opposite direction, so the two separate
+/// without communication. Zero if both ids are equal.
 ///
-/// Each pair has its own direction: several robots in one place do not end up in a line. Constant work.
+/// The direction depends on the pair, so several robots at one position do not form a line.
+/// Constant work.
 #[must_use]
 pub fn tie<S: Scalar>(own: RobotId, other: RobotId) -> Vec2<S> {
     const STEPS: i32 = 1 << 15;
@@ -30,7 +32,7 @@ mod tests {
     use crate::scalar::Q16;
 
     #[test]
-    fn the_two_of_a_pair_go_opposite_ways_and_pairs_differ() {
+    fn a_pair_separates_in_opposite_directions_that_differ_between_pairs() {
         let (a, b, c) = (RobotId(3), RobotId(9), RobotId(4));
         let way = tie::<f64>(a, b);
         assert!((way.norm() - 1.0).abs() < 1e-12);

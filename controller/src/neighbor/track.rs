@@ -1,4 +1,4 @@
-//! One neighbour that is seen: a Kalman filter.
+//! The track of one neighbour that sensors detect: a Kalman filter.
 
 use super::sighting::{Sighting, TrackParams};
 use crate::geom::{Position, Vec3};
@@ -7,27 +7,28 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Least variance of a measured place, micrometres squared times a million: (4 mm)^2. Places are whole millimetres, and
-/// fixed point has no smaller square.
+/// Smallest variance of a measured position, 10^-6 m^2: (4 mm)^2. Positions are whole millimetres,
+/// and fixed point has no smaller square.
 const LEAST_VARIANCE: i32 = 16;
 
-/// Where a neighbour is and how it goes, by all that was seen and heard of it.
+/// Estimate of the position and velocity of one neighbour, from detections and beacons.
 ///
-/// A Kalman filter for a velocity that is constant but for white noise of the acceleration (Y. Bar-Shalom, X. R. Li,
-/// T. Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 6.3.2: the discrete model). Errors are alike
-/// along all axes, so that one covariance of 2 x 2 serves all of them. A measurement that is older than the last one is
-/// brought up to that one's time first, and its error with it.
+/// A Kalman filter for constant velocity with white noise of the acceleration (Y. Bar-Shalom, X. R.
+/// Li, T. Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section
+/// 6.3.2: the discrete model). Errors are equal along all axes, so one 2 x 2 covariance serves all
+/// axes. A measurement older than the last one is first extrapolated to the time of the track,
+/// together with its error.
 ///
 /// 80 bytes (`f32`); constant work.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Track<S> {
-    /// Who it is, or a number that only the robot itself knows ([`RobotId::is_local`]).
+    /// Id, or a number that only the own robot knows ([`RobotId::is_local`]).
     pub id: RobotId,
-    /// When it was as below.
+    /// Time of the estimate.
     pub at: Instant,
     /// World position.
     pub position: Position,
-    /// What of the position is less than a millimetre, metres.
+    /// The part of the position below a millimetre, metres.
     rest_m: Vec3<S>,
     /// World velocity, m/s.
     pub velocity_mps: Vec3<S>,
@@ -39,11 +40,9 @@ pub struct Track<S> {
     pub velocity_variance: S,
     /// Radius of the ball around its body, metres.
     pub radius_m: S,
-    /// When it was seen last, if lately.
     pub(super) seen: Option<Instant>,
-    /// When it was heard last, if ever.
     pub(super) heard: Option<Instant>,
-    /// What the table says that is no news here.
+    /// The entry of the neighbour table that is already part of this estimate.
     pub(super) known: Option<(Instant, Position)>,
 }
 
@@ -56,7 +55,7 @@ fn seconds<S: Scalar>(span: Duration) -> S {
 }
 
 impl<S: Scalar> Track<S> {
-    /// Somebody at a place, who goes as he likes.
+    /// Starts a track at a position, with an unknown velocity.
     pub(super) fn new(id: RobotId, at: Instant, position: Position, deviation_m: S, params: &TrackParams<S>) -> Self {
         Self {
             id,
@@ -74,23 +73,23 @@ impl<S: Scalar> Track<S> {
         }
     }
 
-    /// The velocity of one that is new, and its standard deviation, m/s.
+    /// Sets the velocity of a new track and its standard deviation, m/s.
     pub(super) fn goes(&mut self, velocity_mps: Vec3<S>, deviation_mps: S) {
         (self.velocity_mps, self.velocity_variance) = (velocity_mps, variance(deviation_mps));
     }
 
-    /// The standard deviation of the position along each axis, metres.
+    /// Returns the standard deviation of the position along each axis, metres.
     #[must_use]
     pub fn deviation_m(&self) -> S {
         self.position_variance.sqrt()
     }
 
-    /// Where it is from `from` on at its time, metres.
+    /// Its offset from `from` at the time of the estimate, metres.
     pub(super) fn offset_m(&self, from: Position) -> Vec3<S> {
         self.position.since(from) + self.rest_m
     }
 
-    /// The same at a later time; at an earlier one as it is.
+    /// Returns the estimate at a later time; unchanged for an earlier time.
     #[must_use]
     pub(super) fn predicted(mut self, to: Instant, params: &TrackParams<S>) -> Self {
         let span = to.since(self.at);
@@ -116,14 +115,14 @@ impl<S: Scalar> Track<S> {
         }
     }
 
-    /// Takes in where it was seen, at `place`, at `at`.
+    /// Updates the estimate with a detection at `place` at time `at`.
     pub(super) fn see(&mut self, sighting: &Sighting<S>, place: Position, at: Instant, params: &TrackParams<S>) {
         let off = self.off(place, sighting.deviation_m, at, params);
         *self = self.predicted(at, params);
         if let Some((off_m, surprise)) = off
             && surprise > params.gate
         {
-            // It has turned as nobody expected: little of what was known of it holds.
+            // An unexpected turn: discard most of the previous estimate.
             self.position_variance += square(off_m);
             (self.covariance, self.velocity_variance) = (S::ZERO, self.velocity_variance.max(square(params.speed_mps)));
         }
@@ -138,7 +137,7 @@ impl<S: Scalar> Track<S> {
         self.seen = Some(self.seen.filter(|seen| at.is_before(*seen)).unwrap_or(at));
     }
 
-    /// Takes in what it has said: where it was at `at`, and how it went on from there.
+    /// Updates the estimate with a beacon: the position at `at`, and the velocity since then.
     pub(super) fn hear(&mut self, position: Position, velocity_mps: Vec3<S>, at: Instant, params: &TrackParams<S>) {
         *self = self.predicted(at, params);
         let late = seconds::<S>(self.at.since(at));
@@ -148,8 +147,8 @@ impl<S: Scalar> Track<S> {
         self.heard = Some(at);
     }
 
-    /// A measured place, `way_m` from `place`, of a variance in m^2: weighted by the inverse variances, its own and that
-    /// of what is known.
+    /// Updates with a measured position, `way_m` away from `place`, of a variance in m^2. The
+    /// measurement and the estimate are weighted by their inverse variances.
     fn correct_position(&mut self, place: Position, way_m: Vec3<S>, variance: S) {
         let known = self.position_variance;
         let gain = |of: S| of.checked_div(known + variance);
@@ -164,7 +163,6 @@ impl<S: Scalar> Track<S> {
         self.position_variance = known * left;
     }
 
-    /// A measured velocity of a variance in m^2/s^2.
     fn correct_velocity(&mut self, velocity_mps: Vec3<S>, variance: S) {
         let known = self.velocity_variance;
         let gain = |of: S| of.checked_div(known + variance);
@@ -179,8 +177,9 @@ impl<S: Scalar> Track<S> {
         self.velocity_variance = known * left;
     }
 
-    /// How well a measured place of a body of `radius_m` goes with it: the distance in standard deviations. `None`: it is
-    /// beyond the gate, and so far off that both have room beside each other.
+    /// Returns the distance, in standard deviations, between the estimate and a measured position
+    /// of a body of `radius_m`. `None` if it is beyond the gate and the two bodies would not
+    /// overlap.
     pub(super) fn fit(
         &self,
         place: Position,
@@ -193,10 +192,11 @@ impl<S: Scalar> Track<S> {
         (surprise <= params.gate || off_m < self.radius_m + radius_m).then_some(surprise)
     }
 
-    /// How far from where it should be a measured place is, metres and in standard deviations; `None`: nobody can say.
+    /// Distance between a measured position and the estimate, in metres and in standard deviations;
+    /// `None` if it cannot be computed.
     fn off(&self, place: Position, deviation_m: S, at: Instant, params: &TrackParams<S>) -> Option<(S, S)> {
         let then = self.predicted(at, params);
-        // Of a late one the track's way since then is not known better than its velocity.
+        // The displacement since a late measurement is only as certain as the velocity.
         let late = seconds::<S>(then.at.since(at));
         let spread = then.position_variance + square(late) * then.velocity_variance + variance(deviation_m);
         let off_m = (then.offset_m(place) - then.velocity_mps * late).norm();
@@ -204,7 +204,7 @@ impl<S: Scalar> Track<S> {
     }
 }
 
-/// The square of a standard deviation, not less than [`LEAST_VARIANCE`].
+/// The square of a standard deviation, at least [`LEAST_VARIANCE`].
 fn variance<S: Scalar>(deviation: S) -> S {
     square(deviation).max(S::from_micro(LEAST_VARIANCE))
 }

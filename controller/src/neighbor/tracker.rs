@@ -1,4 +1,7 @@
-//! Neighbours that are seen, not heard: by a camera, by UWB, by motion capture. Read [`Tracker`] first.
+//! Tracks robots that sensors detect (camera, UWB, motion capture) and merges these tracks with
+//! received beacons.
+//!
+//! Start with [`Tracker`].
 
 use super::sighting::{Sighted, Sighting, TrackParams};
 use super::track::Track;
@@ -15,49 +18,56 @@ use serde::{Deserialize, Serialize};
 #[cfg(test)]
 mod tests;
 
-/// Robots that a tracker follows: as many as an agent of default capacity knows.
+/// Number of tracks, equal to the neighbour capacity of a default agent.
 pub const TRACKS: usize = 16;
-/// Sightings of a step that are looked at; those beyond are counted as [`Sighted::no_room`].
+/// Detections of a step that are processed; further ones are counted in [`Sighted::no_room`].
 pub const SIGHTINGS: usize = 32;
 
-/// Where a robot that stands in no known cell is: in the corner of all maps.
+/// The cell of a robot in an unknown cell: the corner of all maps.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
-/// Follows those who are seen, and merges what is seen of them with what is heard.
+/// Assigns detections and beacons to tracks, and writes each track into the neighbour table.
 ///
-/// | what comes | it goes to |
+/// | input | assigned to the first of these that exists |
 /// | --- | --- |
-/// | a sighting with a number | the track of that number; else the nameless track that it fits best, which has this number from then on; else a new one |
-/// | one without | the track that it fits best, seen or heard, the best fits first and each track once in a step (greedy nearest neighbour: S. Blackman, R. Popoli, "Design and Analysis of Modern Tracking Systems", 1999, section 6.4); else, unless it lies within the body of one that was seen already, a new one |
-/// | a beacon | the track of that number, or a nameless one that it fits, or a new one |
+/// | detection with an id | the track with that id; the closest anonymous track; a new track |
+/// | detection without an id | the closest track; a new track |
+/// | beacon | the track with that id; the closest matching anonymous track; a new track |
 ///
-/// It fits within the gate, and beyond it where two bodies would overlap, for there are no two: that one has turned as nobody expected.
+/// - An anonymous track adopts the id of the detection or beacon that is assigned to it.
+/// - Detections without an id are assigned best pairs first, one detection per track and step
+///   (greedy nearest neighbour: S. Blackman, R. Popoli, "Design and Analysis of Modern Tracking
+///   Systems", 1999, section 6.4). One inside the body of a robot already detected in this step
+///   does not start a track.
+/// - A detection matches a track inside the gate. Outside the gate it still matches if the two
+///   bodies would overlap: two robots cannot be there, so it must be one robot after an unexpected
+///   turn.
 ///
-/// Each is weighted by its error, which grows with its age ([`Track`]). Who is seen is in the neighbour table as that makes it,
-/// fresh from when it was seen, its radius enlarged by [`margin`](TrackParams::margin) deviations; who is only heard is there as
-/// it said, untouched. Who is only seen has no leader and no cell, tells nothing, is of the own flock and taken to give way.
+/// Measurements are weighted by their error, which grows with their age ([`Track`]). A tracked
+/// neighbour has the fused position, the time of its last measurement, and a radius enlarged by
+/// [`margin`](TrackParams::margin) standard deviations. A neighbour known from beacons alone is
+/// stored unchanged. A neighbour known from detections alone has no leader, no cell and no payload;
+/// it counts as a member of the own flock that gives way.
 ///
-/// 16 tracks of 80 bytes (`f32`).
+/// Memory: 16 tracks of 80 bytes (`f32`).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tracker<S> {
     params: TrackParams<S>,
     tracks: Vec<Track<S>, TRACKS>,
-    /// Whose tracks had to make room in this step.
     displaced: Vec<Displaced, TRACKS>,
-    /// Nameless tracks so far, wraps.
+    /// Number of anonymous tracks so far; wraps.
     nameless: u16,
 }
 
-/// One that was seen and is followed no more, since others are nearer.
+/// A detected robot whose track was replaced by a nearer one.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Displaced {
     id: RobotId,
     heard: Option<Instant>,
-    /// [`Track::known`].
     known: Option<(Instant, Position)>,
 }
 
-/// A sighting with its place and time in the robot's world.
+/// A detection with its position and time in the world.
 struct Placed<'a, S> {
     sighting: &'a Sighting<S>,
     place: Position,
@@ -65,7 +75,6 @@ struct Placed<'a, S> {
 }
 
 impl<S: Scalar> Placed<'_, S> {
-    /// See [`Track::fit`].
     fn fit(&self, track: &Track<S>, params: &TrackParams<S>) -> Option<S> {
         let Sighting { deviation_m, radius_m, .. } = *self.sighting;
         track.fit(self.place, deviation_m, radius_m, self.at, params)
@@ -73,21 +82,22 @@ impl<S: Scalar> Placed<'_, S> {
 }
 
 impl<S: Scalar> Tracker<S> {
-    /// One that has seen nobody.
+    /// Creates a tracker without tracks.
     #[must_use]
     pub const fn new(params: TrackParams<S>) -> Self {
         Self { params, tracks: Vec::new(), displaced: Vec::new(), nameless: 0 }
     }
 
-    /// Those that it follows.
+    /// The current tracks.
     #[must_use]
     pub fn tracks(&self) -> &[Track<S>] {
         &self.tracks
     }
 
-    /// Takes in what robot `own`, who is at `position` and goes with `velocity_mps`, sees at `now`.
+    /// Processes the detections of robot `own`, at `position` with `velocity_mps`, at time `now`.
     ///
-    /// O(SIGHTINGS * TRACKS) predictions, and as often as there are tracks a look at all pairs; 3 KiB of stack (`f32`).
+    /// O(SIGHTINGS * TRACKS) predictions, then one pass over all pairs per track; 3 KiB of stack
+    /// (`f32`).
     pub fn see(
         &mut self,
         sightings: &[Sighting<S>],
@@ -116,7 +126,7 @@ impl<S: Scalar> Tracker<S> {
                 add(&mut count.repeated);
                 continue;
             }
-            // As many as there are sightings.
+            // Cannot fail: it has the capacity of `all`.
             let _ = named.push(id);
             let place = self.place_of(id, |track, params| placed.fit(track, params));
             match place.and_then(|place| self.tracks.get_mut(place)) {
@@ -132,7 +142,7 @@ impl<S: Scalar> Tracker<S> {
         count
     }
 
-    /// Sightings without numbers, the best fits first.
+    /// Assigns detections without an id, best pairs first.
     fn see_nameless(&mut self, all: &[Placed<'_, S>], own: Position, count: &mut Sighted) {
         let Self { params, tracks, .. } = self;
         let fits = all
@@ -181,7 +191,7 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// The track of a number: its own, or the nameless one that goes best with it by `fit`.
+    /// Returns the index of the track with that id, or of the closest anonymous track by `fit`.
     fn place_of(&self, id: RobotId, fit: impl Fn(&Track<S>, &TrackParams<S>) -> Option<S>) -> Option<usize> {
         self.tracks.iter().position(|track| track.id == id).or_else(|| {
             let nameless = self.tracks.iter().enumerate().filter(|(_, track)| track.id.is_local());
@@ -190,7 +200,6 @@ impl<S: Scalar> Tracker<S> {
         })
     }
 
-    /// Begins to follow somebody who was seen.
     fn begin(&mut self, id: RobotId, placed: &Placed<'_, S>, own: Position, count: &mut Sighted) {
         let &Placed { sighting, place, at } = placed;
         let mut track = Track::new(id, at, place, sighting.deviation_m, &self.params);
@@ -205,7 +214,8 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Adds a track; when there are too many, in the place of the farthest if it is nearer. Whether it is in.
+    /// Adds a track. If all are in use, it replaces the farthest one, if that one is farther.
+    /// Returns whether it was added.
     fn insert(&mut self, track: Track<S>, own: Position) -> bool {
         if self.tracks.is_full() {
             let key = |track: &Track<S>| (track.offset_m(own).length_key(), track.id);
@@ -214,7 +224,8 @@ impl<S: Scalar> Tracker<S> {
                 Some(farthest) if key(&track) < key(farthest) => {
                     if farthest.seen.is_some() && farthest.known.is_some() {
                         let Track { id, heard, known, .. } = *farthest;
-                        // At most those tracks that were there before the step.
+                        // Cannot fail: at most the tracks that existed before the step are
+                        // replaced.
                         let _ = self.displaced.push(Displaced { id, heard, known });
                     }
                     *farthest = track;
@@ -226,12 +237,12 @@ impl<S: Scalar> Tracker<S> {
         self.tracks.push(track).is_ok()
     }
 
-    /// Takes in what `table` has heard since the last step. O(N TRACKS).
+    /// Updates the tracks with beacons that arrived in `table` since the last step. O(N TRACKS).
     pub fn hear<const N: usize, P: Copy>(&mut self, table: &NeighborTable<S, N, P>, own: Position) {
         for entry in table.iter().filter(|entry| !entry.id.is_local()) {
             let news = Some((entry.heard, entry.position));
             if self.displaced.iter().any(|gone| gone.id == entry.id && gone.known == news) {
-                // Not heard, but what was seen of it.
+                // The entry is an earlier estimate of this tracker, not a beacon.
                 continue;
             }
             let params = self.params;
@@ -255,8 +266,11 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Stops following those who are neither seen any more nor in `table`, and drops there those who are neither followed by sight nor have been heard for
-    /// longer than [`Ages::expire_after`](super::Ages::expire_after): `gone` hears the numbers of the latter that were followed by sight. O(N TRACKS).
+    /// Removes outdated tracks and their table entries. O(N TRACKS).
+    ///
+    /// A track is removed if its robot is neither in sight nor in `table`. A detected robot whose
+    /// track ended is removed from `table` unless its last beacon is younger than
+    /// [`Ages::expire_after`](super::Ages::expire_after). `gone` receives the ids of these robots.
     pub fn forget<const N: usize, P: Copy>(
         &mut self,
         table: &mut NeighborTable<S, N, P>,
@@ -284,7 +298,8 @@ impl<S: Scalar> Tracker<S> {
             }
         }
         self.tracks.retain(|track| track.seen.is_some() || table.get(track.id, now).known().is_some());
-        // Who has a number now, or had to make room, is not there a second time without one.
+        // An anonymous robot that has an id now, or whose track was replaced, must not stay in the
+        // table under its old number.
         for n in (0..table.len()).rev() {
             let id = table.as_slice().get(n).map(|known| known.id).filter(|id| id.is_local());
             if let Some(id) = id.filter(|id| !self.tracks.iter().any(|track| track.id == *id))
@@ -295,8 +310,9 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Those who are seen as neighbours, each with what `table` knows of it otherwise, if anything; to be put there. The flock of those who say
-    /// nothing is `flock`. O(TRACKS log N).
+    /// Returns the detected robots as neighbours, to be stored in `table`. Fields that detections
+    /// do not determine are copied from `table`. A robot without beacons belongs to `flock`.
+    /// O(TRACKS log N).
     pub fn seen<const N: usize, P: Copy + Default>(
         &mut self,
         table: &NeighborTable<S, N, P>,
@@ -319,9 +335,9 @@ impl<S: Scalar> Tracker<S> {
         list::collect(seen)
     }
 
-    /// A number for somebody without one, which nobody else has now.
+    /// Returns an unused number for an anonymous track.
     fn new_number(&mut self) -> RobotId {
-        // One of so many is free.
+        // One more number than there are tracks: one is unused.
         for _ in 0..=TRACKS {
             self.nameless = self.nameless.wrapping_add(1);
             if !self.tracks.iter().any(|track| track.id == RobotId::local(self.nameless)) {
@@ -332,7 +348,7 @@ impl<S: Scalar> Tracker<S> {
     }
 }
 
-/// Somebody of whom nothing is known but where he is.
+/// A neighbour known from detections alone.
 fn stranger<S: Scalar, P: Default>(track: &Track<S>, flock: u8) -> Neighbor<S, P> {
     Neighbor {
         id: track.id,

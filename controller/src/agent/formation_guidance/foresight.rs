@@ -1,4 +1,4 @@
-//! Where the others will be when one's own next move is over.
+//! Predicts the cells of other robots at the end of the own next move.
 
 use super::{FormationGuidance, seen_at};
 use crate::agent::guidance::GuidanceInput;
@@ -12,14 +12,14 @@ use crate::template::Template;
 use crate::time::Duration;
 use heapless::Vec;
 
-/// Cells by which old news may be carried forward.
+/// Cells by which an outdated state may be extrapolated.
 const MAX_FORESIGHT: i16 = 3;
 
 impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
     FormationGuidance<CELLS, M, F, L, K>
 {
-    /// The others, each with the cell where it will be when one's own next move is over; of more than
-    /// 32 those of the template and the leader, then the smallest numbers.
+    /// Collects the other robots with their cells at the end of the own next move. Of more than 32
+    /// robots, those of the template and the leader come first, then the smallest ids.
     #[inline(never)]
     pub(super) fn seen<S>(
         &self,
@@ -36,7 +36,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
                 (is_top || concerns(other.id)) == wanted
             });
             for other in others {
-                // The rest has no room.
                 let _ = all.push(seen_at(other, self.foresee(input, window, other)));
             }
         }
@@ -58,8 +57,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         }
     }
 
-    /// Where a robot will be after the time of the next move if it goes on as it announced
-    /// (constant velocity on the land in sight). At most [`MAX_FORESIGHT`] cells.
+    /// Predicts the cell of a robot at the end of the next move, at constant velocity on the
+    /// visible terrain. At most [`MAX_FORESIGHT`] cells away.
     fn foresee<S>(&self, input: &GuidanceInput<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
         let mut cell = other.cell;
         if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
@@ -76,7 +75,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             let u = match window.get(next) {
                 Some(BLOCKED) => break,
                 Some(u) => u,
-                // Out of sight: as hard as where it was, or easy land.
+                // Beyond the window: the cost of its last cell, or easy terrain.
                 None => window.get(cell).unwrap_or(1),
             };
             cell = next;
@@ -89,8 +88,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         cell
     }
 
-    /// What oneself would do in another robot's place (KUZ section 7, item 1); `None` where its
-    /// surroundings are not in sight or it is not free to move.
+    /// The choice that this law would make in another robot's place (KUZ section 7, item 1); `None`
+    /// if its surroundings are not visible or it is not free to move.
     fn choice_of<S>(
         &self,
         input: &GuidanceInput<'_, S>,

@@ -1,5 +1,5 @@
-//! Travelling in formation in the plane: places are points that move with the top leader. The ways around what is
-//! closed are those of the grid.
+//! Moving in formation in the plane. Places are points that move with the top leader; routes around
+//! obstacles are those of the grid.
 
 use super::{FormationGuidance, comes_after};
 use crate::agent::beside::{Beside, Claim};
@@ -19,24 +19,24 @@ use crate::time::Duration;
 use crate::wire::{RequestKind, TemplateAssignment};
 use serde::{Deserialize, Serialize};
 
-/// [`FormationGuidance`] on a body that moves in the plane; see [`crate::formation::Drive`] for the law.
+/// [`FormationGuidance`] on a body that moves in the plane; [`crate::formation::Drive`] is the
+/// control law.
 ///
-/// Who leads, who is followed, who is asked and given up: all that is as on the grid, decided as often as
-/// [`CellFollower`] does. In each step besides, a follower goes for its place as a point, with its leader's velocity,
-/// and the top leader goes straight to its goal where the land in sight is even, at the pace of the slowest whom it
-/// hears. Where the straight way is closed or dear, both go by the cells.
+/// Leaders, requests and given-up robots are handled as on the grid, as often as [`CellFollower`]
+/// decides. In addition, in each step a follower heads for its place as a point, with the velocity
+/// of its leader. The top leader heads straight for its goal on even visible terrain, at the pace
+/// of the slowest robot in contact. Where the straight line is blocked or costly, both follow the
+/// cells.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
     beside: Beside<S>,
-    /// What it wished last as a leader, m/s.
+    /// The last desired velocity as a leader, m/s.
     wish_mps: Vec2<S>,
-    /// How long it has waited for others on end.
     waited: Duration,
     is_there: bool,
 }
 
-/// What a robot knows in a step of where it is and what it can do.
 struct Step<'a, S> {
     window: Window<'a>,
     cell: Cell,
@@ -46,17 +46,16 @@ struct Step<'a, S> {
 }
 
 impl<S: Scalar> Step<'_, S> {
-    /// A difference of cells in metres.
     fn metres(&self, cells: Cell) -> Vec2<S> {
         Vec2::new(S::from_i32(cells.x.into()) * self.cell_m, S::from_i32(cells.y.into()) * self.cell_m)
     }
 
-    /// The way to the middle of a cell, metres.
     fn to_middle(&self, cell: Cell) -> Vec2<S> {
         self.metres(cell - self.cell) - self.offset_m
     }
 
-    /// The way to the place so many cells off another robot, metres, if that has gone on as it last said.
+    /// The offset of the place that is `offset` cells away from another robot, metres, extrapolated
+    /// by its reported velocity.
     #[inline(never)]
     fn beside(&self, input: &GuidanceInput<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
         other.offset_at(input.state.position, input.now, input.ages.expire_after).xy() + self.metres(offset)
@@ -66,7 +65,8 @@ impl<S: Scalar> Step<'_, S> {
         is_straight(&self.window, (self.cell, self.offset_m, self.cell_m), way_m, is_good)
     }
 
-    /// Whether a follower can go straight: all is open, and nothing is dearer than twice where it is.
+    /// Whether a follower can go straight: all cells are passable, and none costs more than twice
+    /// the own cell.
     fn is_open(&self, way_m: Vec2<S>) -> bool {
         let own = self.window.get(self.cell).unwrap_or(BLOCKED);
         self.is_straight(way_m, &|cell| {
@@ -74,7 +74,7 @@ impl<S: Scalar> Step<'_, S> {
         })
     }
 
-    /// How fast the others can be where their places are, as far as that is in sight, m/s.
+    /// Top speed of other robots at their places, as far as these are visible, m/s.
     fn slowest_mps(&self, own_mps: S, entries: &[TemplateEntry]) -> S {
         let price = |cell: Cell| self.window.get(cell).filter(|&u| u != BLOCKED);
         let own = price(self.cell).unwrap_or(1);
@@ -82,8 +82,8 @@ impl<S: Scalar> Step<'_, S> {
         own_mps * S::from_ratio(own.into(), dearest.into())
     }
 
-    /// Whether a leader can go straight: no cell in sight is easier than those under its way and under the others'
-    /// places beside it.
+    /// Whether a leader can go straight: no visible cell is easier than the cells below its line
+    /// and below the places of the others along it.
     fn is_even(&self, way_m: Vec2<S>, entries: &[TemplateEntry]) -> bool {
         let least = self.window.cells().iter().copied().filter(|&u| u != BLOCKED).min();
         let is_dear = |cell: Cell| self.window.get(cell).is_some_and(|u| u != BLOCKED && Some(u) > least);
@@ -97,7 +97,8 @@ impl<S: Scalar> Step<'_, S> {
 impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize>
     FormationInPlane<S, CELLS, M, F, L>
 {
-    /// `law` in the plane, cruising at `speed_mps`. The body's own limit holds too, less a tenth for the top leader.
+    /// Runs `law` in the plane at a cruising speed of `speed_mps`. The speed limit of the body
+    /// holds too, minus a tenth for the top leader.
     #[must_use]
     pub fn new(mut law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
         law.is_rigid = true;
@@ -110,13 +111,14 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
     }
 
-    /// The law of the grid, for what it can tell of itself.
+    /// The wrapped law of the grid, for inspection.
     #[must_use]
     pub const fn inside(&self) -> &FormationGuidance<CELLS, M, F, L> {
         self.cells.inside()
     }
 
-    /// Whom the robot follows, and the way from its place to the own one, cells; `None`: it leads, or goes by itself.
+    /// Returns the leader and the own place relative to it, cells; `None` if this robot leads or
+    /// goes alone.
     fn leader<'a>(&self, input: &GuidanceInput<'a, S>, view: &Template<F>) -> Option<(&'a Neighbor<S>, Cell)> {
         let law = self.inside();
         let (id, offset) = law.top(input, view)?;
@@ -124,7 +126,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         input.neighbor(id).filter(|_| keeps_touch).map(|leader| (leader, offset))
     }
 
-    /// The pace and the way of a robot in each step, made of what it would do from cell to cell.
     #[inline(never)]
     fn refine(
         &mut self,
@@ -155,7 +156,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             is_straight = step.is_open(way_m);
             wish_mps = if is_straight { step.drive.follow(way_m, place_mps) } else { by_cells_mps.xy() };
             status.is_off_place = way_m.norm() > step.drive.halt_m();
-            // Who is ahead or aside lets the others go on.
+            // A robot that is ahead or aside does not hold up the others.
             if !step.drive.is_far_behind(way_m, place_mps) {
                 decision.asks.retain(|ask| ask.kind != RequestKind::Stop);
             }
@@ -187,8 +188,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         Ok(())
     }
 
-    /// Whether the robot is at its goal, `way_m` off, or beside it if somebody else stands there; who has to let
-    /// another one go there first wishes so.
+    /// Returns whether the robot is at its goal at offset `way_m`, or beside it if another robot
+    /// stands there. Adjusts the wish of a robot that must let another one go first.
     fn comes_to_rest(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -211,8 +212,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.is_there
     }
 
-    /// How far others are behind as far as this leader waits for them, metres: not longer than its patience lasts, and
-    /// not for anybody if it goes by itself.
+    /// How far the robots that this leader waits for are behind, metres. 0 when its patience is
+    /// exhausted, or if it goes alone.
     fn lag_to_wait_for(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -236,7 +237,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 }
 
-/// How far the last of those who follow is behind its place, metres. O(F log N).
+/// Deviation of the last follower behind its place, metres. O(F log N).
 fn lag_m<S: Scalar, const F: usize>(
     input: &GuidanceInput<'_, S>,
     view: &Template<F>,
@@ -290,7 +291,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
         if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_somebody() {
-            // It has fallen silent: whom to follow is decided now.
+            // The leader is silent: choose another one now.
             self.cells.decide_anew();
         }
         let mut decision = self.cells.decide(input, here, rng, workspace)?;

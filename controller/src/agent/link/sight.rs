@@ -1,4 +1,4 @@
-//! Those who are seen, among those who are heard.
+//! Merges detected robots into the neighbour table.
 
 use super::super::io::{Event, Outputs};
 use super::super::silence::Company;
@@ -11,11 +11,11 @@ use crate::time::Instant;
 use crate::wire::{Payload, SequenceWindow, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
-    /// Puts those who are seen among those who are known, each merged with what was heard of it. Behind the frames of a step. Those who are `needed`
-    /// stay in a full table.
+    /// Stores detected robots in the neighbour table, each merged with its beacons. Call it after
+    /// the frames of a step. A full table keeps the robots in `needed`.
     ///
-    /// Who has heard others and sees somebody is in company, though the radio be silent; who has never heard anybody goes
-    /// on when nobody is to be seen.
+    /// A detection counts as contact for a robot that has been in contact by radio before. A robot
+    /// that never was moves freely when no robot is in sight.
     pub(in super::super) fn see(
         &mut self,
         tracker: &mut Tracker<S>,
@@ -42,7 +42,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 report(out, Event::NeighborEvicted(evicted));
             }
             if matches!(put, Put::Inserted | Put::Evicted(_)) {
-                // Its frames will be told from repeated ones as those of one that was heard first; as many windows as entries.
+                // Frames of a detected robot pass the usual check for duplicates. There are as many
+                // windows as entries.
                 let _ = self.windows.push((id, SequenceWindow::new()));
                 report(out, Event::NeighborFound(id));
             }

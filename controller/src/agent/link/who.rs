@@ -1,4 +1,4 @@
-//! As whom a sender is known, and what of it is believed.
+//! Identifies the sender of a frame and checks the plausibility of its beacon.
 
 use super::super::double::{is_ahead, is_within, place};
 use super::super::io::{Event, Outputs};
@@ -11,8 +11,9 @@ use crate::time::Duration;
 use crate::wire::{Frame, Header, Payload, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
-    /// Whose frame it is: as whom its sender is known here, which is the number that it says unless two have it. `None` for an
-    /// own one that comes back, and for a beacon of a number or a place that is not believed.
+    /// Returns the id under which the sender of a frame is known: its own id, or
+    /// [`RobotId::double`] for the second robot with that id. `None` for an echo of an own frame,
+    /// and for a beacon with an implausible id or position.
     pub(super) fn known_as(
         &mut self,
         frame: &Frame,
@@ -43,13 +44,14 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.is_believed(id, header, place, listener, out).then_some(id)
     }
 
-    /// What is known of a robot, the lost left out.
+    /// Returns a known robot, not a lost one.
     fn known(&self, id: RobotId) -> Option<&Neighbor<S, P>> {
         let all = self.table.as_slice();
         all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at))
     }
 
-    /// How much time a robot has had since it was heard as `known`: by the clock, or by its sequence numbers if its news were held back.
+    /// The time since the last beacon of `known`: by the clock, or by its sequence numbers if its
+    /// packets were delayed.
     fn time_since(&self, known: &Neighbor<S, P>, header: Header, listener: &Listener<'_, S>) -> Duration {
         let window = self.windows.iter().find(|(id, _)| *id == known.id);
         let frames = window.map_or(0, |(_, window)| window.distance(header));
@@ -57,14 +59,14 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         counted.max(known.age(listener.heard_at).unwrap_or(Duration::ZERO))
     }
 
-    /// Whether a beacon is the second one's of two other robots with one number.
+    /// Whether a beacon comes from the second of two other robots with one id.
     fn is_double(&self, header: Header, place: Position, listener: &Listener<'_, S>, fastest_mps: S) -> bool {
         let at = listener.heard_at;
-        // Doubles are behind all others.
+        // Duplicate ids are the largest.
         let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.doubled().is_some());
         let double = if has_doubles { self.known(header.sender.double()) } else { None };
         match (self.known(header.sender), double) {
-            // Then it is the only one that is heard.
+            // Then it is the only robot in contact with that id.
             (None, _) => false,
             (Some(known), None) => !is_within(
                 self.image(place, known.position),
@@ -83,7 +85,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         }
     }
 
-    /// Whether the robot that is known as `id` can be at `place`, or has been there for long enough.
+    /// Whether robot `id` can be at `place`, or has reported consistent places for long enough.
     fn is_believed(
         &mut self,
         id: RobotId,
@@ -93,12 +95,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         out: &mut Outputs<S>,
     ) -> bool {
         let claims = listener.claims;
-        // Nobody is ever in doubt then.
+        // Then no robot is ever in doubt.
         if claims.believes_all_places() {
             return true;
         }
-        // A second one of a number is kept clear of from the first, as a double is, and so is the first one; where either goes from
-        // there is looked at.
+        // The first position of a second robot with one id is accepted, since both robots are
+        // avoided. Further positions of both are checked.
         let Some(known) = self.known(id) else {
             return true;
         };
@@ -116,7 +118,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         doubt == Doubt::Settled
     }
 
-    /// Cuts what a robot says of its size and speed down to what is believed. Of one that lies all the time, the first lie is news.
+    /// Reduces radius and speed of a report to the limits. An event is reported only for the first
+    /// of consecutive violations.
     pub(super) fn cut(&self, said: &mut Neighbor<S, P>, claims: &Claims<S>, out: &mut Outputs<S>) {
         let (is_large, is_fast) = claims.cut(said);
         if !is_large && !is_fast {

@@ -1,4 +1,4 @@
-//! Guidance laws of the grid on bodies that move in the plane.
+//! Tests of grid laws on bodies that move in the plane.
 
 use super::*;
 use crate::geom::Vec2;
@@ -6,7 +6,7 @@ use crate::wire::RequestKind::Redirect;
 
 const STEP: Duration = Duration::from_millis(100);
 
-/// Wishes to go north-east, and counts how often it is asked.
+/// Moves north-east and counts the calls.
 #[derive(Default)]
 struct Counting {
     decisions: u32,
@@ -59,10 +59,9 @@ impl Guidance<f32> for Counting {
     }
 }
 
-/// What a robot is told.
 type Told = (GuidanceInput<'static, f32>, InCells<'static, f32>);
 
-/// Looks like what it is: a body in a cell of 2 m, somewhat off its centre.
+/// A body in a cell of 2 m, at an offset from its centre.
 fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
     let input = GuidanceInput {
         land: None,
@@ -102,13 +101,13 @@ where
     law.decide(input, here, &mut Rng::new(1), &mut ())
 }
 
-/// What it wishes, and how often the law inside has been asked by then.
+/// Returns the decision, and the number of decisions of the law inside so far.
 fn ask(law: &mut CellFollower<f32, Counting>, told: &Told) -> (Decision<f32>, u32) {
     let decision = decide(law, told).expect("a decision");
     (decision, law.inside().decisions)
 }
 
-/// The velocity and the way.
+/// Returns the velocity and the way point.
 fn motion(decision: &Decision<f32>) -> (Vec3<f32>, Option<Vec3<f32>>) {
     match &decision.action {
         Action::Velocity { wish_mps, way_m } => (*wish_mps, *way_m),
@@ -117,7 +116,7 @@ fn motion(decision: &Decision<f32>) -> (Vec3<f32>, Option<Vec3<f32>>) {
 }
 
 #[test]
-fn it_decides_anew_in_another_cell_or_when_it_has_stood_for_the_time_to_cross_one() {
+fn the_law_decides_again_in_another_cell_or_after_the_time_to_cross_one() {
     let mut guidance = counting();
     let mut count = |cell, n| ask(&mut guidance, &told(cell, [0.0; 2], 1.0, n)).1;
     let (here, there) = (Cell::new(5, 5), Cell::new(6, 5));
@@ -130,14 +129,14 @@ fn it_decides_anew_in_another_cell_or_when_it_has_stood_for_the_time_to_cross_on
 }
 
 #[test]
-fn on_rough_land_it_decides_less_often() {
+fn on_rough_terrain_the_law_decides_less_often() {
     let mut guidance = counting();
     let mut count = |n| ask(&mut guidance, &told(Cell::new(5, 5), [0.0; 2], 0.25, n)).1;
     assert_eq!([0, 79, 80].map(&mut count), [1, 1, 2]);
 }
 
 #[test]
-fn it_asks_others_once_for_each_decision() {
+fn requests_are_sent_once_per_decision() {
     let mut guidance = counting();
     let mut asks = |n| {
         let (decision, _) = ask(&mut guidance, &told(Cell::new(5, 5), [0.0; 2], 1.0, n));
@@ -148,53 +147,52 @@ fn it_asks_others_once_for_each_decision() {
 }
 
 #[test]
-fn on_the_border_of_a_cell_it_does_not_change_its_mind() {
+fn the_law_does_not_decide_again_on_a_border() {
     let mut guidance = counting();
     let mut count = |cell, x| ask(&mut guidance, &told(cell, [x, 0.0], 1.0, 0)).1;
     let (here, there) = (Cell::new(5, 5), Cell::new(6, 5));
-    // Cells of 2 m: over the border and back, then 1.6 m from the middle.
+    // Cells of 2 m: over the border and back, then 1.6 m from the centre.
     let counts =
         [(here, 0.9), (there, -0.9), (here, 0.9), (there, -0.6), (there, -0.4)].map(|(cell, x)| count(cell, x));
     assert_eq!(counts, [1, 1, 1, 1, 2]);
-    // The same way back.
+    // The way back behaves alike.
     let counts = [(there, -0.9), (here, 0.9), (here, 0.4)].map(|(cell, x)| count(cell, x));
     assert_eq!(counts, [2, 2, 3]);
 }
 
 #[test]
-fn while_it_gets_on_it_does_not_decide_anew_in_the_same_cell() {
+fn the_law_does_not_decide_again_while_the_robot_advances_in_its_cell() {
     let mut guidance = counting();
     let mut count = |velocity: [f32; 2], n| {
         let mut told = told(Cell::new(5, 5), [0.0; 2], 1.0, n);
         told.0.body.velocity_mps = Vec3::new(velocity[0], velocity[1], 0.0);
         ask(&mut guidance, &told).1
     };
-    // To the north-east at more and at less than half of 1 m/s, and elsewhere.
+    // North-east at more and at less than half of 1 m/s, then in another direction.
     assert_eq!([(0.5, 0), (0.5, 25), (0.3, 26), (0.3, 45)].map(|(v, n)| count([v, v], n)), [1, 1, 2, 2]);
     assert_eq!(count([-0.9, 0.1], 50), 3);
 }
 
 #[test]
-fn it_goes_to_the_centre_of_the_next_cell() {
+fn the_robot_heads_for_the_centre_of_the_next_cell() {
     let mut guidance = counting();
     let (decision, _) = ask(&mut guidance, &told(Cell::new(5, 5), [0.5, -0.25], 9.0, 0));
-    // North-east: 2 m each way, less what it is off.
+    // North-east: 2 m along each axis, minus its offset.
     let (ahead, length) = ([1.5, 2.25], Vec2::new(1.5_f32, 2.25).norm());
     let (v, way_m) = motion(&decision);
     assert!((v.x - ahead[0] / length).abs() < 1e-6 && (v.y - ahead[1] / length).abs() < 1e-6);
-    // Its goal is elsewhere than where it goes now.
+    // The cell is not the goal of the robot.
     assert_eq!(way_m, None);
-    // The same place, seen from the next cell, of which it is not yet.
+    // The same position, given relative to the next cell, which the robot has not reached yet.
     let (beside, _) = ask(&mut guidance, &told(Cell::new(6, 5), [-0.75, -0.25], 9.0, 0));
     let (v, _) = motion(&beside);
     assert!((v.x / v.y - 0.75 / 2.25).abs() < 1e-6, "{v:?}");
-    // The centre is reached, not passed.
+    // The centre is not passed.
     let near = told(Cell::new(5, 5), [0.03, 0.04], 9.0, 0);
     let (v, _) = motion(&decide(&mut CellFollower::new(Stays, 1.0), &near).unwrap());
     assert!((v.x + 0.3).abs() < 1e-6 && (v.y + 0.4).abs() < 1e-6, "{v:?}");
 }
 
-/// Stays in its cell.
 struct Stays;
 
 impl Teamwork for Stays {}
@@ -217,7 +215,7 @@ impl Guidance<f32> for Stays {
 }
 
 #[test]
-fn it_passes_on_what_it_is_told() {
+fn teamwork_is_forwarded_to_the_law_inside() {
     let mut guidance = counting();
     let there = told(Cell::new(5, 5), [0.0; 2], 1.0, 0);
     assert_eq!(ask(&mut guidance, &there).1, 1);
@@ -237,7 +235,7 @@ fn it_passes_on_what_it_is_told() {
 }
 
 #[test]
-fn without_speed_or_in_a_cell_without_size_it_cannot_decide() {
+fn without_a_speed_or_a_cell_size_there_is_no_decision() {
     let at = |speed_mps| told(Cell::new(5, 5), [0.0; 2], speed_mps, 0);
     let mut flat = at(1.0);
     flat.1.in_cell.cell_m = 0.0;
@@ -246,9 +244,9 @@ fn without_speed_or_in_a_cell_without_size_it_cannot_decide() {
     }
 }
 
-/// A robot by the grid's routing on flat land of cells of 2 m, from cell to cell to its goal.
+/// A robot on flat terrain with cells of 2 m.
 #[test]
-fn it_walks_to_the_cell_of_its_goal() {
+fn a_robot_in_the_plane_moves_to_its_goal_cell() {
     let config = AgentConfig::new(RobotId(1), 0.2, STEP);
     let law = RouteGuidance::<CELLS, VISITS>::new(RouteParams::default());
     let law = CellFollower::new(law, 1.0);
@@ -275,7 +273,7 @@ fn it_walks_to_the_cell_of_its_goal() {
     }
     cells.dedup();
     assert_eq!(agent.mode(), Mode::Arrived);
-    // Seven cells, three of them aslant; a corner may be cut on the way.
+    // Seven cells, three of them diagonal; it may cut a corner.
     assert_eq!(cells.last(), Some(&Cell::new(12, 8)));
     assert!((8..=11).contains(&cells.len()), "{cells:?}");
     assert!(cells.windows(2).all(|pair| pair[0].chebyshev(pair[1]) == 1));

@@ -1,4 +1,4 @@
-//! What others say of themselves beyond what can be.
+//! Tests of implausible beacons.
 
 use super::plane::{Robot, STEP, body_at, one_step_late, orca, step_number, waypoint};
 use super::*;
@@ -46,10 +46,10 @@ fn where_is(robot: &Listener, id: u32) -> Option<i32> {
 }
 
 #[test]
-fn what_is_within_the_bounds_is_believed_word_for_word() {
+fn plausible_values_are_accepted_unchanged() {
     let mut robot = listener(CLAIMS);
     for n in 0..50_i32 {
-        // Two metres a second, to and fro, and a jump within the slack.
+        // Two metres per second, back and forth, and a jump within the slack.
         let x_mm = 5000 + 200 * (n % 20 - 10).abs() + if n == 33 { 700 } else { 0 };
         let said = beacon(x_mm, |beacon| (beacon.radius_mm, beacon.velocity_mmps) = (400, [2000, 0, 0]));
         let out = robot.step(step_number(n), &frame(20, n as u16, &said));
@@ -61,7 +61,7 @@ fn what_is_within_the_bounds_is_believed_word_for_word() {
 }
 
 #[test]
-fn a_radius_and_a_speed_beyond_are_cut_told_once_and_counted_each_time() {
+fn an_excessive_radius_or_speed_is_reduced_reported_once_and_always_counted() {
     let mut robot = listener(CLAIMS);
     let mut told = Vec::new();
     for n in 0..10 {
@@ -74,14 +74,14 @@ fn a_radius_and_a_speed_beyond_are_cut_told_once_and_counted_each_time() {
         assert!((known.velocity_mps.norm() - 2.0).abs() < 1e-3, "{:?}", known.velocity_mps);
     }
     assert_eq!(told, [(3, Claim::Radius), (3, Claim::Speed)]);
-    // Once it has been honest, a lie is news again.
+    // After a plausible beacon, a violation is reported again.
     let _ = robot.step(step_number(10), &frame(3, 10, &beacon(9000, |_| ())));
     let lie = beacon(9000, |beacon| beacon.radius_mm = 65_000);
     assert_eq!(claims(&robot.step(step_number(11), &frame(3, 11, &lie))), [(3, Claim::Radius)]);
 }
 
 #[test]
-fn numbers_that_no_robot_has_crowd_nobody_out() {
+fn ids_that_no_robot_has_evict_no_neighbour() {
     let mut robot = listener(CLAIMS);
     let truth: Vec<u8> = (1..=6).flat_map(|id| frame(id, 0, &beacon(5000 + 1000 * id as i32, |_| ()))).collect();
     let ghosts: Vec<u8> = (21..40).flat_map(|id| frame(id, 0, &beacon(3000 + 10 * id as i32, |_| ()))).collect();
@@ -92,9 +92,9 @@ fn numbers_that_no_robot_has_crowd_nobody_out() {
     assert_eq!(known, [1, 2, 3, 4, 5, 6]);
 }
 
-/// Somebody who knows the numbers of others fills the table with their doubles: they push each other out, and nobody else.
+/// A sender that forges known ids fills the table with duplicates, which replace only each other.
 #[test]
-fn doubles_crowd_nobody_out() {
+fn duplicate_ids_evict_no_neighbour() {
     let mut robot = listener(Claims::ANY);
     let truth = |n| (11..=18).flat_map(move |id| frame(id, n, &beacon(1000 * id as i32, |_| ()))).collect::<Vec<u8>>();
     let _ = robot.step(step_number(0), &truth(0));
@@ -104,10 +104,10 @@ fn doubles_crowd_nobody_out() {
     assert_eq!(known, [11, 12, 13, 14, 15, 16, 17, 18]);
 }
 
-/// The first jump may be a second robot of that number: it is kept clear of at once, and so is the place of before. What jumps
-/// from there is refused.
+/// The first jump may be a second robot with that id, so both positions are avoided at once. A jump
+/// from either of them is refused.
 #[test]
-fn who_jumps_again_is_as_good_as_silent_until_it_has_settled() {
+fn a_robot_that_jumps_again_is_refused_until_it_has_settled() {
     let mut robot = listener(CLAIMS);
     let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
     let out = robot.step(step_number(1), &frame(3, 1, &beacon(-7000, |_| ())));
@@ -127,7 +127,7 @@ fn who_jumps_again_is_as_good_as_silent_until_it_has_settled() {
 }
 
 #[test]
-fn who_jumps_all_the_time_is_never_believed() {
+fn a_robot_that_always_jumps_is_never_accepted() {
     let mut robot = listener(CLAIMS);
     let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
     let _ = robot.step(step_number(1), &frame(3, 1, &beacon(-9000, |_| ())));
@@ -139,9 +139,9 @@ fn who_jumps_all_the_time_is_never_believed() {
     }
 }
 
-/// Packets that were held back do not count as a jump: the sequence says how much time there was.
+/// The sequence number shows how much time passed since the last beacon.
 #[test]
-fn news_that_were_held_back_are_no_jump() {
+fn delayed_packets_do_not_count_as_a_jump() {
     let mut robot = listener(CLAIMS);
     let _ = robot.step(step_number(0), &frame(3, 0, &beacon(9000, |_| ())));
     let out = robot.step(step_number(1), &frame(3, 30, &beacon(11_500, |_| ())));
@@ -150,7 +150,7 @@ fn news_that_were_held_back_are_no_jump() {
 }
 
 #[test]
-fn without_bounds_everything_is_believed() {
+fn without_limits_all_values_are_accepted() {
     let mut robot = listener(Claims::ANY);
     let huge = beacon(80_000, |beacon| (beacon.radius_mm, beacon.velocity_mmps) = (65_000, [-30_000, 0, 0]));
     let out = robot.step(step_number(0), &frame((1 << 31) - 1, 0, &huge));

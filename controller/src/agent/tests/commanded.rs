@@ -1,4 +1,4 @@
-//! Robots that an operator takes over, and what can be tuned while they run.
+//! Tests of operator commands and of parameters tuned at run time.
 
 use super::plane::{RADIUS_MM, Robot, STEP, body_at, in_plane, length, orca, place, step_number, waypoint};
 use super::*;
@@ -18,7 +18,7 @@ fn east(millis: i32) -> Wish<f32> {
 }
 
 #[test]
-fn without_a_wish_nothing_differs() {
+fn without_a_command_behaviour_is_unchanged() {
     let mut plain = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
     let mut wrapped = robot([0.0; 2]);
     plain.agent.assign_waypoint(0, &place(2000, 500));
@@ -32,7 +32,7 @@ fn without_a_wish_nothing_differs() {
 }
 
 #[test]
-fn a_velocity_holds_until_its_time_is_over() {
+fn a_velocity_command_expires() {
     let mut robot = robot([0.0; 2]);
     robot.agent.guidance_mut().command(east(500)).unwrap();
     for n in 0..5 {
@@ -43,14 +43,14 @@ fn a_velocity_holds_until_its_time_is_over() {
     let _ = robot.step(step_number(5), &[]);
     assert_eq!((robot.velocity_mps, robot.agent.mode()), ([0.0; 2], Mode::Hold));
     assert_eq!(robot.agent.guidance().wish(), &Wish::Hold);
-    // The same wish said again counts anew, however late.
+    // A repeated command starts again, at any time.
     robot.agent.guidance_mut().command(east(500)).unwrap();
     let _ = robot.step(step_number(60), &[]);
     assert_eq!(robot.velocity_mps, [0.5, 0.0]);
 }
 
 #[test]
-fn a_velocity_beyond_the_body_is_cut_and_one_that_is_no_number_refused() {
+fn an_excessive_velocity_is_limited_and_a_non_finite_one_refused() {
     let mut robot = robot([0.0; 2]);
     let wish = |x: f32| Wish::Velocity { velocity_mps: Vec3::new(x, 0.0, 0.0), valid: Duration::MAX };
     robot.agent.guidance_mut().command(wish(7.0)).unwrap();
@@ -63,7 +63,7 @@ fn a_velocity_beyond_the_body_is_cut_and_one_that_is_no_number_refused() {
 }
 
 #[test]
-fn it_goes_where_the_operator_wants_and_then_its_own_way() {
+fn a_robot_follows_the_operator_and_then_its_own_law() {
     fn check<S: Scalar>() {
         let mut robot = robot::<S>([0.0; 2]);
         robot.agent.assign_waypoint(0, &place(-1000, 0));
@@ -89,7 +89,7 @@ fn it_goes_where_the_operator_wants_and_then_its_own_way() {
 }
 
 #[test]
-fn a_place_that_moves_is_followed_until_its_time_is_over() {
+fn a_moving_waypoint_is_followed_until_the_command_expires() {
     let mut robot = robot::<f32>([0.0; 2]);
     let mut moving = place(0, 0);
     moving.velocity_mps = Vec3::new(0.0, 0.5, 0.0);
@@ -106,7 +106,7 @@ fn a_place_that_moves_is_followed_until_its_time_is_over() {
 }
 
 #[test]
-fn who_is_off_stands_and_says_so_and_who_holds_gives_way() {
+fn a_released_robot_is_passive_and_a_holding_robot_gives_way() {
     let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
     let mut moved = [0.0; 2];
     for (moved, wish) in moved.iter_mut().zip([Wish::Off, Wish::Hold]) {
@@ -131,7 +131,7 @@ fn who_is_off_stands_and_says_so_and_who_holds_gives_way() {
 }
 
 #[test]
-fn a_stop_of_others_does_not_stop_the_operator() {
+fn a_stop_request_does_not_override_the_operator() {
     let mut robot = robot::<f32>([0.0; 2]);
     robot.agent.guidance_mut().command(east(5000)).unwrap();
     let stop = Message::Request(Request {
@@ -146,9 +146,8 @@ fn a_stop_of_others_does_not_stop_the_operator() {
     assert_eq!(robot.velocity_mps, [0.5, 0.0]);
 }
 
-/// On the grid.
 #[test]
-fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
+fn on_the_grid_a_cell_replaces_the_own_goal_and_velocities_are_refused() {
     type GridAgent = Agent<f32, Commanded<f32, RouteGuidance<CELLS, VISITS>>, NEIGHBORS>;
     let guidance = Commanded::new(RouteGuidance::new(RouteParams::default()), 0.0, 0.0);
     let mut agent = GridAgent::new(&config(1), guidance, Unguarded, Postcard);
@@ -166,7 +165,7 @@ fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
     agent.guidance_mut().command(Wish::Cell(Cell::new(5, 9))).unwrap();
     assert_eq!(heading(&mut agent, 1), Some(Dir::North));
     assert_eq!(agent.target(), Some(Cell::new(5, 9)));
-    // What it has no use for is an error, and changes nothing.
+    // An impossible command returns an error and changes nothing.
     let there = Wish::Waypoint { waypoint: place(1000, 0), valid: None };
     for wrong in [east(1000), there] {
         assert_eq!(agent.guidance_mut().command(wrong), Err(WrongTask));
@@ -177,7 +176,7 @@ fn cells_take_the_place_of_the_own_goal_and_velocities_are_refused() {
 }
 
 #[test]
-fn a_cell_is_refused_by_who_goes_to_places() {
+fn a_cell_is_refused_by_a_law_with_waypoints() {
     let mut robot = robot::<f32>([0.0; 2]);
     robot.agent.assign_waypoint(0, &place(1000, 0));
     let cell = Wish::Cell(Cell::new(3, 4));
@@ -186,9 +185,8 @@ fn a_cell_is_refused_by_who_goes_to_places() {
     assert_eq!(robot.agent.mode(), Mode::Cruise);
 }
 
-/// Switched off and on again by its pilot, one that has nothing to do is idle.
 #[test]
-fn out_of_passive_the_way_leads_through_idle() {
+fn the_passive_mode_is_left_through_idle() {
     for has_place in [false, true] {
         let mut robot = robot::<f32>([0.0; 2]);
         if has_place {
@@ -206,7 +204,7 @@ fn out_of_passive_the_way_leads_through_idle() {
 }
 
 #[test]
-fn parameters_are_what_was_set_and_nothing_out_of_range_is() {
+fn parameters_keep_their_values_and_reject_values_out_of_range() {
     let mut robot = robot::<f32>([0.0; 2]);
     let mut known = 0;
     for &(_, parameter) in Parameter::NAMES {
@@ -228,7 +226,7 @@ fn parameters_are_what_was_set_and_nothing_out_of_range_is() {
         }
     }
     assert_eq!(known, 10);
-    // On the grid there is no speed, and what is not there is not set.
+    // A law on the grid does not have a speed, and unknown parameters are not set.
     let mut other = route_agent(1);
     assert_eq!(other.parameter(Parameter::Speed), None);
     assert!(!other.set_parameter(Parameter::Speed, 1.0));
@@ -236,7 +234,7 @@ fn parameters_are_what_was_set_and_nothing_out_of_range_is() {
 }
 
 #[test]
-fn a_new_speed_and_beacon_period_hold_from_the_next_step() {
+fn a_new_speed_and_beacon_period_apply_from_the_next_step() {
     let mut robot = robot::<f32>([0.0; 2]);
     robot.agent.assign_waypoint(0, &place(9000, 0));
     let _ = robot.step(step_number(0), &[]);

@@ -1,4 +1,4 @@
-//! Two robots with one number: oneself and another one, or two others.
+//! Tests of two robots that use one id: the own one and another, or two others.
 
 use super::plane::{Robot, body_at, in_plane, one_step_late, orca, place, step_number, waypoint};
 use super::*;
@@ -26,7 +26,6 @@ fn is_double(event: &Event) -> bool {
     matches!(event, Event::DuplicateId(_))
 }
 
-/// Whom it knows of, by number.
 fn known(robot: &Walker) -> Vec<u32> {
     robot.agent.neighbors().iter().map(|other| other.id.0).collect()
 }
@@ -34,7 +33,7 @@ fn known(robot: &Walker) -> Vec<u32> {
 const DOUBLE: u32 = 7 | 1 << 31;
 
 #[test]
-fn numbers_of_doubles_are_nobodys() {
+fn duplicate_ids_are_distinct_from_real_ids() {
     assert_eq!(RobotId(7).double(), RobotId(DOUBLE));
     assert_eq!((RobotId(DOUBLE).doubled(), RobotId(7).doubled()), (Some(RobotId(7)), None));
     assert_eq!(
@@ -43,9 +42,9 @@ fn numbers_of_doubles_are_nobodys() {
     );
 }
 
-/// Whatever comes back, early or late, in whatever order and however often, and however the robot has moved meanwhile.
+/// Echoes arrive with any delay, in any order and repeatedly, while the robot moves.
 #[test]
-fn own_frames_that_come_back_are_nobody() {
+fn echoes_of_own_frames_are_not_another_robot() {
     let mut robot = walker(3, [0.0; 2], [60_000, 0]);
     let mut said = Vec::new();
     for n in 0..200_u16 {
@@ -58,7 +57,7 @@ fn own_frames_that_come_back_are_nobody() {
         assert!(!out.events.iter().any(is_double));
         said.push(out.outbox.to_vec());
     }
-    // After a restart it hears what it said in its last life.
+    // After a restart it receives its own frames from before.
     let mut robot = walker(4, robot.at_m, [60_000, 0]);
     for n in 0..20 {
         let out = robot.step(step_number(n), &said.concat());
@@ -66,7 +65,8 @@ fn own_frames_that_come_back_are_nobody() {
     }
 }
 
-/// Two walk towards each other, each hearing what the other one said in the step before; `late` steps apart.
+/// Two robots approach each other, each receiving the frames of the previous step. The second one
+/// starts `late` steps later.
 fn meet(boots: [u8; 2], late: i32) -> [usize; 2] {
     let mut robots = [walker(boots[0], [-4.0, 0.0], [4000, 0]), walker(boots[1], [4.0, 0.02], [-4000, 0])];
     let (mut said, mut noticed) = ([Vec::new(), Vec::new()], [0; 2]);
@@ -96,7 +96,7 @@ fn meet(boots: [u8; 2], late: i32) -> [usize; 2] {
 }
 
 #[test]
-fn two_of_one_number_hear_each_other_whoever_started_first_and_how_often() {
+fn two_robots_with_one_id_detect_each_other_in_any_order_of_starts() {
     for boots in [[0, 0], [0, 1], [1, 0], [250, 3], [3, 250]] {
         for late in [0, 1, 5, 15, 16, 30] {
             assert_eq!(meet(boots, late), [1, 1], "{boots:?} {late}");
@@ -105,7 +105,7 @@ fn two_of_one_number_hear_each_other_whoever_started_first_and_how_often() {
 }
 
 #[test]
-fn it_is_said_once_and_again_when_it_was_gone() {
+fn a_duplicate_id_is_reported_once_and_again_after_a_loss() {
     let mut robot = walker(0, [0.0; 2], [0, 0]);
     let mut noticed = Vec::new();
     for n in 0..150_u16 {
@@ -122,7 +122,7 @@ fn it_is_said_once_and_again_when_it_was_gone() {
 }
 
 #[test]
-fn the_own_double_stays_in_a_full_table_and_other_messages_of_the_own_number_are_nobodys() {
+fn the_own_duplicate_stays_in_a_full_table_and_its_orders_are_ignored() {
     let mut robot = walker(0, [0.0; 2], [0, 0]);
     let crowd = |n: u16| (1..=6).chain(8..=12).flat_map(move |id| frame(id, 0, n, &standing(1000 + 500 * id as i32)));
     for n in 0..5 {
@@ -136,15 +136,15 @@ fn the_own_double_stays_in_a_full_table_and_other_messages_of_the_own_number_are
     }
 }
 
-/// A third one, 4 m from each of two robots of number 5 that count alike, or a little apart.
+/// A third robot, 4 m from each of two robots with id 5 whose counters are equal or slightly apart.
 #[test]
-fn two_others_of_one_number_are_both_known_and_neither_takes_the_others_place() {
+fn two_other_robots_with_one_id_are_both_known_and_not_confused() {
     for (apart, boot) in [(0, 0), (1, 0), (5, 0), (40, 0), (0, 1)] {
         let mut robot = Robot::new(&in_plane(7), waypoint::<f32>(), orca(), [0.0; 2]);
         let mut noticed = Vec::new();
         for n in 0..60_u16 {
             let mut inbox = Vec::new();
-            // Each is not heard now and then.
+            // Frames of each are lost occasionally.
             if n % 5 != 3 {
                 inbox.extend(frame(5, 0, n, &standing(40_000)));
             }
@@ -163,9 +163,9 @@ fn two_others_of_one_number_are_both_known_and_neither_takes_the_others_place() 
 }
 
 proptest! {
-    /// One robot goes as it likes at up to 1 m/s; its frames are lost, repeated, held back and mixed up: it is never taken for two.
+    /// One robot moves freely at up to 1 m/s; its frames are lost, repeated, delayed and reordered.
     #[test]
-    fn one_robot_is_never_taken_for_two(
+    fn one_robot_is_never_mistaken_for_two(
         turns in proptest::collection::vec((any::<[i8; 2]>(), 0..40_usize, any::<bool>(), 0..3_usize), 1..150),
         latency in 0..3,
     ) {
@@ -177,7 +177,7 @@ proptest! {
             for (at, step) in at.iter_mut().zip(step) {
                 *at += step;
             }
-            // Told as it likes, too.
+            // Its reported velocity varies as well.
             let said = frame(5, 0, n as u16, &body_at(at, if x > 0 { [0, 0] } else { step.map(|v| v as i16 * 10) }, Mode::Cruise));
             if !is_lost {
                 let arrives = n + if delay < 30 { 0 } else { delay - 29 };
@@ -189,9 +189,10 @@ proptest! {
     }
 }
 
-/// A robot that is carried away looks like two at first; where it was is soon free.
+/// A robot that is carried away looks like two robots at first; its previous position soon becomes
+/// free.
 #[test]
-fn one_that_was_moved_is_one_again_and_not_remembered_where_it_was() {
+fn a_robot_that_was_moved_is_forgotten_at_its_previous_position() {
     let mut robot = Robot::new(&in_plane(7), waypoint::<f32>(), orca(), [0.0; 2]);
     for n in 0..100_u16 {
         let x_mm = if n < 20 { 2000 } else { -3000 };

@@ -1,4 +1,4 @@
-//! The chain of requests, leaders that come and go, orders in the middle of a run.
+//! Tests of the chain of requests, of leaders that are lost and found, and of orders during a run.
 
 use super::*;
 use crate::formation::Recovery;
@@ -9,8 +9,8 @@ fn goal(version: u8, x: i16) -> Message {
     Message::Goal(GoalAssignment { to: RobotId::NOBODY, version, target: Cell::new(x, 5) })
 }
 
-/// The parts of a template whose robot stands `behind` cells west of the top leader, robot 1, and
-/// has `others` more neighbours than the leader.
+/// The parts of a template for a robot `behind` cells west of the top leader, robot 1, with
+/// `others` neighbours besides the leader.
 fn parts(to: u32, version: u8, behind: i16, others: u32) -> Vec<Message> {
     let neighbors = std::iter::once((1, behind)).chain((20..20 + others).map(|id| (id, 9)));
     let entries: Vec<TemplateEntry> =
@@ -27,9 +27,9 @@ fn requests(out: &Outputs<f32>) -> Vec<Request> {
     requests.collect()
 }
 
-/// A leader waits for who falls behind, but not for who has failed, nor who has arrived: he will not come any nearer.
+/// A robot in fault or at its goal does not come nearer.
 #[test]
-fn who_has_failed_or_arrived_is_not_waited_for() {
+fn a_leader_does_not_wait_for_a_failed_or_arrived_robot() {
     for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise), (Mode::Arrived, Mode::Cruise)] {
         let (mut agent, mut ws) = (formation_agent(1), workspace());
         agent.assign_goal(Cell::new(60, 5));
@@ -43,9 +43,9 @@ fn who_has_failed_or_arrived_is_not_waited_for() {
     }
 }
 
-/// Nobody waits for ever for a robot that has no way, and when it goes on it does not wait again.
+/// After its patience is exhausted, the leader does not wait again.
 #[test]
-fn a_leader_goes_on_without_who_stays_behind_for_long() {
+fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let behind = Beacon { leader: RobotId(1), ..beacon_at(-5, 5) };
@@ -61,9 +61,9 @@ fn a_leader_goes_on_without_who_stays_behind_for_long() {
     assert!(held.iter().copied().eq(0..patience), "{held:?}");
 }
 
-/// A leader does not wait for somebody who leads himself, nor for his followers.
+/// A leader waits only for robots of its own leader chain.
 #[test]
-fn who_follows_somebody_else_is_not_waited_for() {
+fn a_leader_does_not_wait_for_a_robot_that_does_not_follow_it() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let alone = Beacon { leader: RobotId::NOBODY, ..beacon_at(-5, 5) };
@@ -74,9 +74,9 @@ fn who_follows_somebody_else_is_not_waited_for() {
     }
 }
 
-/// A template is complete however many copies of its parts one step hears.
+/// A template is complete even if one step receives several copies of its parts.
 #[test]
-fn a_template_arrives_whole_although_the_radio_repeats_its_parts() {
+fn a_template_is_assembled_from_repeated_parts() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
     let repeated: Vec<Message> = parts(2, 1, 6, 7).into_iter().flat_map(|part| [part.clone(), part]).collect();
     assert_eq!(repeated.len(), 8);
@@ -85,7 +85,7 @@ fn a_template_arrives_whole_although_the_radio_repeats_its_parts() {
     assert_eq!(agent.guidance.template().entries.len(), 8);
 }
 
-/// Goals are those of the formation: whoever gets another place in it gets another goal.
+/// The goal belongs to the formation, so another place in it means another goal.
 #[test]
 fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
     let target_after = |orders: &[&[Message]]| {
@@ -100,7 +100,7 @@ fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
     assert_eq!(target_after(&[&goal]), Some(Cell::new(57, 5)));
     assert_eq!(target_after(&[&goal, &parts]), Some(Cell::new(54, 5)));
     assert_eq!(target_after(&[&parts, &goal]), Some(Cell::new(54, 5)));
-    // A goal of its own is where its owner wants the robot, whatever its place.
+    // An own goal does not depend on the place in the formation.
     let (mut agent, mut ws) = (formation_agent(2), workspace());
     agent.assign_goal(Cell::new(40, 5));
     let inbox = bytes(99, 0, 0, &parts);
@@ -108,9 +108,9 @@ fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
     assert_eq!(agent.target(), Some(Cell::new(40, 5)));
 }
 
-/// The whole column is sent elsewhere by one packet to everybody, in the middle of its way.
+/// One packet sends the whole column elsewhere during its run.
 #[test]
-fn one_goal_for_everybody_turns_the_whole_formation() {
+fn one_goal_for_all_robots_turns_the_whole_formation() {
     let mut agents = [1, 2, 3].map(formation_agent);
     let mut cells = [11, 8, 5].map(|x| Cell::new(x, 5));
     let mut ws = workspace();
@@ -137,7 +137,7 @@ fn one_goal_for_everybody_turns_the_whole_formation() {
     assert!(agents.iter().all(|agent| agent.mode() == Mode::Arrived));
 }
 
-/// A column in which everything that robot 2 says between ticks 20 and 60 is lost.
+/// A column in which all frames of robot 2 between ticks 20 and 60 are lost.
 #[test]
 fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
@@ -157,9 +157,10 @@ fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     assert_eq!(leaders, [2, 0, 2]);
 }
 
-/// Beacons that make circles of leaders, follow themselves, or follow whom they lead.
+/// Beacons with cyclic leaders, with a robot as its own leader, or with a robot that follows its
+/// follower.
 #[test]
-fn leader_chains_that_lie_end() {
+fn cyclic_leader_chains_end() {
     for [second, first] in [[1, 2], [2, 1], [3, 3], [7, 7], [0, 0]] {
         let (mut agent, mut ws) = (formation_agent(3), workspace());
         agent.assign_goal(Cell::new(60, 5));
@@ -177,17 +178,17 @@ fn leader_chains_that_lie_end() {
     }
 }
 
-/// Robots 3, 2 and 1: the request of 3 reaches 1 although every second packet is lost, stands once,
-/// and goes when 3 falls silent for ever.
+/// Robots 3, 2 and 1: the request of robot 3 reaches robot 1 although every second packet is lost,
+/// takes effect once, and expires after robot 3 falls silent for good.
 #[test]
-fn a_stop_reaches_the_top_over_a_lossy_radio_and_dies_with_its_origin() {
+fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin() {
     let mut agents = [1, 2, 3].map(formation_agent);
     let mut ws = workspace();
     let mut air = [const { vec![] }; 3];
     let mut held = vec![];
     for n in 0..130_u32 {
         let heard = core::mem::take(&mut air);
-        // Robot 3 sticks in the mud while the others go on.
+        // Robot 3 is stuck while the others continue.
         let ahead = if n < 6 { 0 } else { 6 };
         let cells = [16 + ahead, 13 + ahead, 10].map(|x| Cell::new(x, 5));
         for (i, agent) in agents.iter_mut().enumerate() {
@@ -195,7 +196,7 @@ fn a_stop_reaches_the_top_over_a_lossy_radio_and_dies_with_its_origin() {
             let inbox: Vec<u8> = (0..3_usize)
                 .filter(|&from| Rng::keyed(5, from as u32, i as u32, n).below(2) == 0)
                 .filter(|&from| from != 2 || n < 60)
-                // Robots 1 and 3 do not hear each other.
+                // Robots 1 and 3 are out of each other's range.
                 .filter(|&from| from.abs_diff(i) == 1)
                 .flat_map(|from| heard[from].clone())
                 .collect();
@@ -208,12 +209,12 @@ fn a_stop_reaches_the_top_over_a_lossy_radio_and_dies_with_its_origin() {
     }
     let (first, last) = (held[0], *held.last().unwrap());
     assert!(first < 45, "{held:?}");
-    // Robot 3 falls silent at 60; what it asked last stands for 12 ticks and a few retries.
+    // Robot 3 falls silent at 60; its last request is valid for 12 ticks and some retries.
     assert!((50..105).contains(&last), "{held:?}");
 }
 
 #[test]
-fn a_stop_of_a_robot_that_started_anew_is_lifted() {
+fn a_stop_of_a_restarted_robot_is_cancelled() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let beacon = || Message::Beacon(beacon_at(2, 5));
@@ -223,14 +224,14 @@ fn a_stop_of_a_robot_that_started_anew_is_lifted() {
     let inbox = bytes(2, 1, 0, &[beacon()]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
     assert_eq!(agent.mode(), Mode::Cruise);
-    // Its numbers start anew as well.
+    // Its request numbers restart as well.
     let inbox = bytes(2, 1, 1, &[stop(2, 1, 0, RequestKind::Stop)]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(2), &mut ws);
     assert_eq!(agent.mode(), Mode::Hold);
 }
 
 #[test]
-fn a_redirection_is_followed_once_however_often_it_comes() {
+fn a_repeated_redirection_is_followed_once() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(5, 5));
     let mut moved = vec![];
@@ -244,9 +245,9 @@ fn a_redirection_is_followed_once_however_often_it_comes() {
     assert_eq!(moved, [true, false, false, false]);
 }
 
-/// A robot that slept for longer than half the clock's range.
+/// A robot that slept for longer than half of the clock's range.
 #[test]
-fn after_a_long_sleep_it_speaks_and_no_stop_stands() {
+fn after_a_long_sleep_a_robot_sends_and_no_stop_is_active() {
     for sleep in [60_u32, 36 * 60, 50 * 60, 70 * 60] {
         let (mut agent, mut ws) = (formation_agent(2), workspace());
         agent.assign_goal(Cell::new(60, 5));
@@ -260,7 +261,7 @@ fn after_a_long_sleep_it_speaks_and_no_stop_stands() {
         assert!(sent(&out).iter().any(is_beacon), "after {sleep} s");
         assert!(out.call_again.since(woken) <= Duration::from_micros(TICK));
         assert_eq!(agent.mode(), Mode::Cruise, "after {sleep} s");
-        // The old requests do not keep their places for another half hour.
+        // Old requests do not occupy their entries for another half hour.
         let mut late = vec![];
         for n in 1..10 {
             let now = woken + Duration::from_micros(n * TICK);
@@ -271,7 +272,7 @@ fn after_a_long_sleep_it_speaks_and_no_stop_stands() {
     }
 }
 
-/// A window that does not show the robot's own cell contradicts the cell.
+/// A window without the robot's own cell contradicts that cell.
 #[test]
 fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
     let one = |width, height, origin| {
@@ -291,9 +292,10 @@ fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
     assert_eq!(one(1, 1, Cell::new(5, 5)), Mode::Hold);
 }
 
-/// With `Recovery::Def` the top leader turns to who is off instead of standing, also when asked to.
+/// With `Recovery::Def` the top leader heads for a scattered follower instead of standing, even if
+/// asked to stop.
 #[test]
-fn a_leader_that_recovers_heads_for_who_is_off() {
+fn a_recovering_leader_heads_for_its_scattered_followers() {
     let go = |recovery| {
         let mut agent = formation_agent(1);
         let template = agent.guidance.template().clone();
@@ -311,14 +313,14 @@ fn a_leader_that_recovers_heads_for_who_is_off() {
     assert_eq!(go(Recovery::Def), west);
 }
 
-/// KUZ section 7, item 6: who stands where a missing neighbour should be is asked to go.
+/// KUZ section 7, item 6.
 #[test]
 fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let mut asked = vec![];
     for n in 0..5 {
-        // Robot 9 stands where robot 2 should be.
+        // Robot 9 is in the place of robot 2.
         let inbox = bytes(9, 0, n, &[Message::Beacon(beacon_at(2, 5))]);
         let at = Cell::new(5, 5);
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
@@ -329,9 +331,9 @@ fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
     assert_eq!(asked, [(3, RobotId(9), RequestKind::Redirect)]);
 }
 
-/// A template that names nobody: the leader itself follows a robot that is out of hearing.
+/// The template allows any robot as the leader, and the leader follows a robot out of range.
 #[test]
-fn anyone_may_lead_although_its_own_leader_is_not_heard() {
+fn a_robot_leads_although_its_own_leader_is_out_of_range() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
     let anyone = [TemplateEntry { offset: Cell::new(3, 0), id: RobotId::NOBODY, hops: 1 }];
     let order = TemplateAssignment::split(RobotId(3), 1, 2, Cell::new(-6, 0), &anyone);
@@ -350,13 +352,13 @@ fn anyone_may_lead_although_its_own_leader_is_not_heard() {
     assert_eq!(at.y, 5, "beside its leader, not to its own goal in the north");
 }
 
-/// A window larger than the search: the land is still priced for everybody.
+/// The window is larger than the search.
 #[test]
-fn the_whole_formation_s_land_counts_in_windows_of_any_size() {
+fn terrain_costs_of_the_whole_formation_count_in_any_window() {
     let first = |radius: i16| {
         let side = 2 * radius + 1;
         let at = Cell::new(0, 0);
-        // Mud from y = -2 down to -4 under robot 2's place, three cells south of the leader's.
+        // Mud from y = -2 down to -4 below robot 2's place, three cells south of the leader's.
         let cells: Vec<u8> = (-radius..=radius)
             .flat_map(|y| (-radius..=radius).map(move |x| (x, y)))
             .map(|(x, y)| if x > 0 && (-4..=-2).contains(&y) { 60 } else { 1 })

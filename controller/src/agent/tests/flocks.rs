@@ -1,4 +1,4 @@
-//! The flocks, each robot with its own agent, knowing of the others what packets say.
+//! Tests of the flocks, with one agent per robot and packets between them.
 
 use super::plane::{Robot, length, one_step_late, place, step_number};
 use super::*;
@@ -7,7 +7,7 @@ use crate::flock::goal::{GoalParams, Stage};
 use crate::flock::lattice::{Gain, LatticeParams};
 use core::ops::Range;
 
-/// Robots that all hear each other.
+/// Runs robots that all receive each other.
 fn run<G>(robots: &mut [Robot<f32, G, Unguarded>], steps: Range<i32>)
 where
     G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
@@ -29,9 +29,9 @@ fn distance([x, y]: [f64; 2], [other_x, other_y]: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn an_alpha_flock_takes_its_distance_and_follows_its_reference() {
+fn an_alpha_flock_keeps_its_distances_and_follows_its_reference() {
     let new = |id, at_m| {
-        // Gentle enough for ten decisions a second on news that is a tenth of a second old.
+        // Gentle enough for ten decisions per second with states that are 0.1 s old.
         let params =
             LatticeParams { alpha: Gain::critical(1.0), gamma: Gain::critical(0.5), ..LatticeParams::new(1.0) };
         let guidance = LatticeGuidance::new(params, true);
@@ -57,7 +57,7 @@ fn an_alpha_flock_takes_its_distance_and_follows_its_reference() {
 }
 
 #[test]
-fn an_alpha_flock_at_a_senseless_speed_stays_within_its_own() {
+fn an_alpha_flock_limits_an_absurd_speed() {
     let guidance = LatticeGuidance::new(LatticeParams::<f32>::new(1.0), true);
     let mut robot = Robot::new(&one_step_late(1), guidance, Unguarded, [0.0; 2]);
     robot.velocity_mps = [f64::MAX, 0.0];
@@ -71,7 +71,7 @@ fn an_alpha_flock_at_a_senseless_speed_stays_within_its_own() {
 }
 
 #[test]
-fn a_goal_flock_goes_to_the_middle_and_then_to_goals_of_its_own() {
+fn a_goal_flock_moves_to_the_centre_and_then_to_single_goals() {
     let new = |id, at_m| {
         let params = GoalParams::new(0.5, 1.0);
         let guidance = GoalFlockGuidance::new(params, 1.0, 7);
@@ -111,9 +111,8 @@ fn a_goal_flock_follows_goals_that_move() {
     let [robot] = &mut robots;
     let Stage::Goal(drawn) = robot.agent.guidance().stage() else { panic!("still at {:?}", robot.at_m) };
     let was_m = [2.0, -2.0][drawn];
-    // A minute.
     assert!(distance(robot.at_m, [10.0, was_m + 0.4 * 60.0]) <= 0.6, "{:?}", robot.at_m);
-    // Given anew, it stands.
+    // A waypoint without a velocity replaces the moving one.
     let index = u8::try_from(drawn).unwrap();
     assert!(robot.agent.assign_waypoint(index, &place(10_000, 0)));
     run(&mut robots, 600..1600);
@@ -121,7 +120,7 @@ fn a_goal_flock_follows_goals_that_move() {
 }
 
 #[test]
-fn boids_keep_their_speed_and_take_on_one_heading() {
+fn boids_keep_their_speed_and_align_their_headings() {
     let new = |id, at_m, velocity_mps| {
         let params = BoidsParams::new(0.3, 30.0, 0.05, 0.02);
         let guidance = BoidsGuidance::new(params, 0.5);
@@ -135,13 +134,13 @@ fn boids_keep_their_speed_and_take_on_one_heading() {
         let speed = distance(robot.velocity_mps, [0.0; 2]);
         assert!((speed - 0.5).abs() < 1e-3, "{speed}");
         let off = distance(robot.velocity_mps, robots[0].velocity_mps);
-        // Up to 127 degrees apart at first; they go on to sway about their common heading.
+        // Up to 127 degrees apart at first; they keep swaying about their common heading.
         assert!(off < 0.2, "{:?}", robot.velocity_mps);
     }
 }
 
 #[test]
-fn a_boid_that_stands_sets_out_in_a_direction_of_its_own() {
+fn a_stationary_boid_starts_in_a_random_direction() {
     let heading = |id, seed| {
         let params = BoidsParams::new(0.3, 30.0, 0.05, 0.02);
         let config = AgentConfig { seed, ..one_step_late(id) };
@@ -155,7 +154,7 @@ fn a_boid_that_stands_sets_out_in_a_direction_of_its_own() {
     assert_ne!(heading(1, 1), heading(1, 2));
 }
 
-/// Each says which flock it is of, and one that only robots of another flock are near gathers with none of them.
+/// Each robot sends its flock, and does not gather with robots of another one.
 #[test]
 fn goal_flocks_of_different_numbers_do_not_gather() {
     let parted = |other| {

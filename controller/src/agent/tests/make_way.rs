@@ -1,8 +1,8 @@
-//! Who stands in the way is asked to make way, and does, wherever there is room.
+//! Tests of robots that are asked to make way.
 
 use super::*;
 
-/// A corridor one cell wide, from west to east through the own window.
+/// A corridor one cell wide, from west to east through the window.
 fn corridor() -> [u8; 121] {
     let mut cells = [BLOCKED; 121];
     cells[55..66].fill(1);
@@ -16,7 +16,8 @@ fn request_of(out: &Outputs<f32>) -> Option<(RobotId, RequestKind)> {
     })
 }
 
-/// At which step robot 2, at one place after the other of `way` in a corridor, asks robot `other` at `place`.
+/// Returns the step in which robot 2, which moves along `way` in a corridor, asks robot `other` at
+/// `place` to redirect.
 fn asks(other: u32, place: Cell, mode: Mode, way: &[Cell]) -> Option<u16> {
     let (mut agent, mut ws) = (route_agent(2), workspace());
     agent.assign_goal(Cell::new(60, 5));
@@ -30,21 +31,21 @@ fn asks(other: u32, place: Cell, mode: Mode, way: &[Cell]) -> Option<u16> {
 }
 
 #[test]
-fn of_two_in_one_cell_the_smaller_number_asks_first() {
+fn of_two_robots_in_one_cell_the_smaller_id_asks_first() {
     let here = Cell::new(5, 5);
     assert_eq!(asks(3, here, Mode::Cruise, &[here]), Some(8));
     assert_eq!(asks(1, here, Mode::Cruise, &[here]), Some(12));
 }
 
 #[test]
-fn one_that_has_arrived_is_asked_by_one_that_comes_back_to_it_again_and_again() {
+fn an_arrived_robot_is_asked_by_a_robot_that_returns_repeatedly() {
     let dance = [Cell::new(5, 5), Cell::new(4, 5)];
     assert!(asks(1, Cell::new(6, 5), Mode::Arrived, &dance).is_some());
     assert_eq!(asks(1, Cell::new(6, 5), Mode::Cruise, &dance), None, "it will go by itself");
 }
 
 #[test]
-fn who_has_no_other_way_on_goes_back() {
+fn a_robot_without_another_route_moves_back() {
     let (mut agent, mut ws) = (route_agent(2), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let step = |agent: &mut RouteAgent, ws: &mut _, inbox: &[u8], n| match agent
@@ -61,9 +62,9 @@ fn who_has_no_other_way_on_goes_back() {
 }
 
 #[test]
-fn who_has_arrived_takes_one_free_cell_or_another_in_a_closed_room_too() {
+fn an_arrived_robot_makes_way_to_varying_cells() {
     let mut closed = corridor();
-    // Nothing leads out of what it sees.
+    // No exit leads out of the window.
     (closed[55], closed[65]) = (BLOCKED, BLOCKED);
     for cells in [corridor(), closed] {
         let mut first = Vec::new();

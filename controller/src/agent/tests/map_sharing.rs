@@ -1,4 +1,4 @@
-//! Robots that share maps, on the grid, hearing each other's bytes.
+//! Tests of robots on the grid that share maps.
 
 use super::*;
 use crate::agent::{CELLS, GridWorkspace, MAP_TILES, MapSharing, OnGrid, RouteGuidance, VISITS};
@@ -20,7 +20,7 @@ fn sharer(id: u32, maps: Option<MapParams>) -> Sharer {
     Agent::new(&config, law, Unguarded, Postcard)
 }
 
-/// A step on land that is known everywhere; the cell that it goes to, and what it says.
+/// Runs a step on known terrain. Returns the next cell and the bytes sent.
 fn step(
     agent: &mut Sharer,
     land: &dyn Fn(Cell) -> u8,
@@ -48,7 +48,7 @@ fn step(
 }
 
 #[test]
-fn who_does_not_share_says_nothing_and_is_as_the_law_inside() {
+fn without_sharing_the_law_inside_is_unchanged_and_sends_no_map() {
     let config = AgentConfig::new(RobotId(1), 0.0, TICK);
     let law = RouteGuidance::<CELLS, VISITS>::new(RouteParams::default());
     let plain = Agent::<f32, _, NEIGHBORS>::new(&config, law, Unguarded, Postcard);
@@ -61,7 +61,7 @@ fn who_does_not_share_says_nothing_and_is_as_the_law_inside() {
 }
 
 #[test]
-fn land_goes_behind_each_beacon_and_another_robot_knows_it() {
+fn a_map_patch_follows_each_beacon_and_is_stored_by_receivers() {
     let (mut one, mut two) = (sharer(1, Some(MapParams::default())), sharer(2, Some(MapParams::default())));
     one.assign_goal(Cell::new(50, 5));
     two.assign_goal(Cell::new(50, 5));
@@ -79,7 +79,8 @@ fn land_goes_behind_each_beacon_and_another_robot_knows_it() {
     assert_eq!(known.ticks_16(), Some(64));
 }
 
-/// Moves until the robot is at `goal` on open land with a wall in it, while `liar` speaks at every tick; `None`: never.
+/// Returns the moves to `goal` around a wall on open terrain, while `liar` sends in each tick;
+/// `None` if it is not reached.
 fn moves_among_lies(liar: &dyn Fn(Cell) -> [LandPatch; 3]) -> Option<u32> {
     let land = |cell: Cell| if cell.x == 20 && (-6..7).contains(&cell.y) { BLOCKED } else { 2 };
     let goal = Cell::new(40, 0);
@@ -104,16 +105,16 @@ fn moves_among_lies(liar: &dyn Fn(Cell) -> [LandPatch; 3]) -> Option<u32> {
 }
 
 #[test]
-fn a_liar_costs_time_and_walls_nobody_in() {
+fn false_maps_cost_time_but_do_not_trap_a_robot() {
     let nothing = LandPatch { corner: Cell::new(0, 0), tiles: [Tile::UNKNOWN; PATCH_TILES] };
     let honest = moves_among_lies(&|_| [nothing; 3]).expect("arrives");
-    // The worst price for all land around the robot, wherever it is, as if just seen.
+    // The highest cost for all terrain around the robot, as if just seen.
     let wall = |corner| LandPatch { corner, tiles: [Tile::new(u16::MAX); PATCH_TILES] };
     let among = moves_among_lies(&|cell| {
         let at = tile_of(cell);
         [Cell::new(-4, -6), Cell::new(-4, -2), Cell::new(-4, 2)].map(|corner| wall(at + corner))
     });
-    // All land ahead, and the best price for what lies behind.
+    // The highest cost for all terrain ahead, and the lowest for the terrain behind.
     let lure = moves_among_lies(&|cell| {
         let at = tile_of(cell);
         let behind = LandPatch { tiles: [Tile::new(0); PATCH_TILES], ..wall(at + Cell::new(-9, -2)) };

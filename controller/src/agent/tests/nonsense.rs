@@ -1,4 +1,4 @@
-//! Whatever a robot hears and sees, and whenever: it answers, briefly, and goes on.
+//! Tests of robots on the grid with arbitrary input at arbitrary times.
 
 use super::*;
 use crate::cost::Gain;
@@ -26,7 +26,7 @@ fn cell() -> impl Strategy<Value = Cell> {
     (coordinate(), coordinate()).prop_map(|(x, y)| Cell::new(x, y))
 }
 
-/// Any sound frame; most come from a few robots, concern this one, and name each other.
+/// Valid frames. Most come from few robots, concern this one and refer to each other.
 pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
     let few = || prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
     let sender = few().prop_filter("somebody sends it", |id| id.is_somebody());
@@ -51,7 +51,7 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
             Message::Waypoint(waypoint) => waypoint.to = to,
             Message::Key(key) => key.to = to,
             Message::KeyHeld(held) => held.to = to,
-            // Beside the robot, or anywhere.
+            // Near the robot, or anywhere.
             Message::Land(patch) if to == OWN => patch.corner = crate::land::tile_of(here),
             Message::Land(_) | Message::Payload(_) => {}
         }
@@ -60,7 +60,6 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
     })
 }
 
-/// One step's inputs.
 #[derive(Clone, Debug)]
 struct Step {
     now: Instant,
@@ -73,7 +72,7 @@ struct Step {
 }
 
 impl Step {
-    /// Whether the robot can decide with this.
+    /// Whether the robot can decide with this input.
     fn makes_sense(&self) -> bool {
         let land = self.land();
         land.is_some_and(|land| land.get(self.own.cell).is_some())
@@ -121,7 +120,7 @@ fn own() -> impl Strategy<Value = CellState> {
     (cell(), busy).prop_map(|(cell, busy)| CellState { cell, busy: Duration::from_micros(busy) })
 }
 
-/// Steps that follow each other by a tick, or by anything.
+/// Steps separated by a tick, or by any time.
 fn steps() -> impl Strategy<Value = Vec<Step>> {
     let later = prop_oneof![6 => Just(TICK as u32), 1 => any::<u32>()];
     let heard = (vec(frame(), 0..8), vec(any::<u8>(), 0..30));
@@ -191,7 +190,7 @@ fn template() -> impl Strategy<Value = Template<TEMPLATE>> {
     })
 }
 
-/// What holds after each step, whatever went in.
+/// Checks the invariants after each step.
 fn survives<G>(law: G, goal: Option<Cell>, steps: &[Step]) -> Result<(), TestCaseError>
 where
     G: for<'a> Guidance<f32, Input<'a> = OnGrid<'a>, Destination = ToCells, Workspace = GridWorkspace<CELLS>>,
@@ -223,7 +222,7 @@ where
         prop_assert!(out.outbox.last().is_none_or(|&last| last == 0));
         let count = usize::from(out.received) + usize::from(out.rejected);
         prop_assert_eq!(count, frames(&inbox).count());
-        // Neither now, which would keep the caller from sleeping, nor later than the next beacon.
+        // Not immediately, which would keep the caller awake, and not after the next beacon.
         let pause = out.call_again.since(step.now);
         prop_assert!(Duration::ZERO < pause && pause <= config.beacon_period, "{:?}", pause);
 
@@ -249,7 +248,7 @@ where
 
 proptest! {
     #[test]
-    fn a_robot_alone_survives_any_input(
+    fn a_single_robot_tolerates_any_input(
         route in route(), sharpness in sharpness(), follows: bool,
         goal in proptest::option::of(cell()), steps in steps(),
     ) {
@@ -259,7 +258,7 @@ proptest! {
     }
 
     #[test]
-    fn a_robot_in_formation_survives_any_input(
+    fn a_robot_in_formation_tolerates_any_input(
         route in route(), formation in formation(), sharpness in sharpness(), template in template(),
         goal in proptest::option::of(cell()), steps in steps(),
     ) {

@@ -1,4 +1,5 @@
-//! Whatever a robot in the plane hears and sees: its command is finite and within what its body can do.
+//! Tests of robots in the plane with arbitrary input: the command is finite and within the
+//! abilities of the body.
 
 use super::nonsense::{frame, noise_and_frames};
 use super::*;
@@ -17,7 +18,7 @@ use proptest::prelude::*;
 
 type Any = Agent<f32, AnyGuidance<f32, CELLS, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, 16>>;
 
-/// Numbers that sensors give, and all others.
+/// Values of real sensors, and any others.
 fn number() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![
         6 => -5.0..5.0_f32,
@@ -47,7 +48,7 @@ fn obstacle() -> impl Strategy<Value = Obstacle<f32>> {
     ]
 }
 
-/// Robots near by and wherever, and places to go to.
+/// Robots nearby or anywhere, and waypoints.
 fn near() -> impl Strategy<Value = (Header, Message)> {
     let header = (0..2_u8, 1..7_u32, 0..40_u16).prop_map(|(boot, sender, sequence)| Header {
         boot,
@@ -160,7 +161,7 @@ fn safety(which: u8, length: f32, growth_mps: f32) -> AnySafety<f32, 16> {
 
 proptest! {
     #[test]
-    fn a_robot_in_the_plane_survives_any_input(
+    fn a_robot_in_the_plane_tolerates_any_input(
         which: (u8, u8), size in prop_oneof![3 => (0.1..2.0_f32, 0.1..2.0_f32), 1 => (number(), number())],
         body in prop_oneof![3 => (0.0..0.5_f32, 0.1..9.0_f32), 1 => (number(), number())],
         tick_us in prop_oneof![4 => Just(100_000), 1 => Just(1), 1 => Just(i32::MAX / 32)],
@@ -173,7 +174,7 @@ proptest! {
         let mut agent = Any::new(&config, guidance(which.0, speed, length), safety(which.1, length, speed), Postcard);
         let there = (0, Waypoint::fixed(Position::from_mm([9000, 9000, 0])));
         let tasks = [Task::Cell(Cell::new(7, 7)), Task::Waypoints(heapless::Vec::from_array([there]))];
-        // Roaming boids have a use for neither.
+        // Boids accept neither task.
         prop_assert!(tasks.iter().filter(|task| agent.assign(task).is_ok()).count() <= 1);
         let mut ws = workspace();
         for step in &steps {
@@ -200,7 +201,7 @@ proptest! {
                 continue;
             };
             prop_assert!(v.is_finite(), "{v:?}");
-            // A body with inertia that is too fast for its land slows down as well as it can.
+            // A body with inertia above its speed limit slows down as fast as it can.
             let fast = step.velocity_mps;
             let has_inertia = max_acceleration_mps2 < f32::MAX && (max_acceleration_mps2 * body_step_s(tick)).is_finite() && fast.is_finite();
             let limit = step.max_speed_mps.max(0.0);

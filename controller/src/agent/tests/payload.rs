@@ -1,4 +1,4 @@
-//! What laws tell each other behind their beacons.
+//! Tests of the payloads that laws send after their beacons.
 
 use super::*;
 use crate::auth::Key;
@@ -9,7 +9,7 @@ use proptest::prelude::{any, prop_assert_eq, proptest};
 
 type Told = (u8, i16, f32);
 
-/// Stands, tells what it was made with, and remembers what others told.
+/// Stands still, sends a constant payload, and stores received ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 struct Teller {
     own: Told,
@@ -71,7 +71,7 @@ fn beacon() -> Message {
 }
 
 #[test]
-fn a_payload_goes_behind_each_beacon_and_neighbours_have_it_in_their_entry() {
+fn a_payload_follows_each_beacon_and_is_stored_with_the_neighbour() {
     let (mut one, mut two) = (teller(1, law(OWN), Postcard), teller(2, law((9, 0, 0.0)), Postcard));
     let out = step(&mut one, 0, &[]);
     let kinds: Vec<bool> = sent(&out).iter().map(|frame| frame.message == told(OWN)).collect();
@@ -82,7 +82,7 @@ fn a_payload_goes_behind_each_beacon_and_neighbours_have_it_in_their_entry() {
 }
 
 #[test]
-fn a_law_around_another_one_tells_what_the_one_inside_tells() {
+fn a_wrapper_sends_the_payload_of_the_law_inside() {
     let mut plain = teller(1, law(OWN), Postcard);
     let said = step(&mut plain, 0, &[]).outbox;
     let mut commanded = teller(1, Commanded::new(law(OWN), 1.0, 0.1), Postcard);
@@ -96,7 +96,7 @@ fn a_law_around_another_one_tells_what_the_one_inside_tells() {
 }
 
 #[test]
-fn what_was_told_stays_with_the_next_beacons_and_not_with_another_life() {
+fn a_payload_is_kept_between_beacons_and_discarded_after_a_restart() {
     let mut agent = teller(1, law(OWN), Postcard);
     let mut hear = |n, inbox: &[u8]| {
         let _ = step(&mut agent, n, inbox);
@@ -111,7 +111,7 @@ fn what_was_told_stays_with_the_next_beacons_and_not_with_another_life() {
 }
 
 #[test]
-fn bytes_that_are_no_value_of_the_type_change_nothing() {
+fn bytes_that_do_not_decode_change_nothing() {
     let mut agent = teller(1, law(OWN), Postcard);
     let _ = step(&mut agent, 0, &bytes(2, 0, 0, &[beacon(), told(OWN)]));
     let right = PayloadBytes::of(&OWN).unwrap();
@@ -124,7 +124,7 @@ fn bytes_that_are_no_value_of_the_type_change_nothing() {
 }
 
 #[test]
-fn with_a_key_a_forged_payload_is_not_believed() {
+fn with_a_key_a_forged_payload_is_refused() {
     let wire = |passphrase: &[u8]| Sealed::<4>::at_start(&Key::of_passphrase(passphrase), 0).unwrap();
     let mut one = teller(1, law(OWN), wire(b"swarm"));
     let (mut two, mut forger) = (teller(2, law(OWN), wire(b"swarm")), teller(1, law((1, 1, 1.0)), wire(b"guessed")));
@@ -135,7 +135,7 @@ fn with_a_key_a_forged_payload_is_not_believed() {
 }
 
 #[test]
-fn who_tells_nothing_has_no_byte_for_it_on_the_air_or_in_memory() {
+fn an_empty_payload_costs_no_byte_on_the_air_or_in_memory() {
     assert_eq!(size_of::<Neighbor<f32>>(), size_of::<Neighbor<f32, [u8; 0]>>());
     assert_eq!(size_of::<Neighbor<f32, [u8; 16]>>(), size_of::<Neighbor<f32>>() + 16);
     let mut agent = route_agent(1);
@@ -147,7 +147,7 @@ fn who_tells_nothing_has_no_byte_for_it_on_the_air_or_in_memory() {
 }
 
 #[test]
-fn a_value_that_is_too_long_is_not_said() {
+fn a_payload_that_is_too_long_is_not_sent() {
     assert_eq!(PayloadBytes::of(&[u32::MAX; 4]), None);
     assert_eq!(PayloadBytes::of(&[[u8::MAX; 16]]).unwrap().as_slice().len(), MAX_PAYLOAD);
     assert_eq!(PayloadBytes::new(&[0; MAX_PAYLOAD + 1]), None);
@@ -163,7 +163,7 @@ fn a_value_that_is_too_long_is_not_said() {
 
 proptest! {
     #[test]
-    fn any_bytes_are_a_value_or_none(bytes in proptest::collection::vec(any::<u8>(), 0..=MAX_PAYLOAD)) {
+    fn any_bytes_decode_to_a_value_or_to_none(bytes in proptest::collection::vec(any::<u8>(), 0..=MAX_PAYLOAD)) {
         let bytes = PayloadBytes::new(&bytes).unwrap();
         if let Some(value) = bytes.get::<Told>() {
             let again = PayloadBytes::of(&value).and_then(|bytes| bytes.get::<Told>()).unwrap();

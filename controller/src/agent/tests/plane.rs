@@ -1,4 +1,4 @@
-//! Agents that move in the plane: places, standing, what they know of each other, numbers of other kinds.
+//! Tests of agents in the plane: waypoints, stopping, neighbours and scalar types.
 
 mod places;
 
@@ -21,7 +21,7 @@ pub(super) fn in_plane<S: Scalar>(id: u32) -> AgentConfig<S> {
     AgentConfig { seed: 1, ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP) }
 }
 
-/// One who knows that what others say was said a step ago.
+/// A robot whose received states are one step old.
 pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
     AgentConfig { latency: STEP, ..in_plane(id) }
 }
@@ -43,7 +43,7 @@ pub(super) fn length([x, y]: [f64; 2]) -> f64 {
     Vec2::new(x, y).norm()
 }
 
-/// An agent with a body that does at once what it is told.
+/// An agent with a body that follows commands at once.
 pub(super) struct Robot<S: Scalar, G: Guidance<S>, A> {
     pub(super) agent: Agent<S, G, 8, A>,
     pub(super) at_m: [f64; 2],
@@ -58,7 +58,7 @@ where
         Self { agent: Agent::new(config, guidance, safety, Postcard), at_m, velocity_mps: [0.0; 2] }
     }
 
-    /// One step at 1 m/s at most.
+    /// Runs one step with a speed limit of 1 m/s.
     pub(super) fn step(&mut self, now: Instant, inbox: &[u8]) -> Outputs<S> {
         let number = |x: f64| S::from_f64(x).unwrap();
         let [vx, vy] = self.velocity_mps.map(number);
@@ -88,7 +88,7 @@ where
     }
 }
 
-/// Looks around, and goes nowhere.
+/// Stores the nearby robots and stands still.
 #[derive(Default)]
 struct Onlooker {
     seen: Vec<Nearby<f32>>,
@@ -122,7 +122,7 @@ impl Guidance<f32> for Onlooker {
     }
 }
 
-/// The beacon of a body of the same size.
+/// The beacon of a body of equal size.
 pub(super) fn body_at(position_mm: [i32; 2], velocity_mmps: [i16; 2], mode: Mode) -> Message {
     let ([x, y], [vx, vy]) = (position_mm, velocity_mmps);
     Message::Beacon(Beacon {
@@ -143,7 +143,7 @@ fn said<S: Scalar>(outputs: &Outputs<S>) -> Beacon {
 }
 
 #[test]
-fn without_a_place_it_is_idle_and_says_where_it_is() {
+fn a_robot_without_a_waypoint_is_idle_and_sends_its_position() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [3.25, -1.5]);
     let beacon = said(&robot.step(step_number(0), &[]));
     assert_eq!((beacon.mode, robot.agent.mode()), (Mode::Idle, Mode::Idle));
@@ -153,7 +153,7 @@ fn without_a_place_it_is_idle_and_says_where_it_is() {
 }
 
 #[test]
-fn it_goes_straight_to_its_place_and_stands_there() {
+fn a_robot_moves_straight_to_its_waypoint_and_stops_there() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
     assert!(robot.agent.assign_waypoint(0, &place(3000, 4000)));
     for n in 0..50 {
@@ -173,7 +173,7 @@ fn it_goes_straight_to_its_place_and_stands_there() {
 }
 
 #[test]
-fn with_a_place_that_moves_it_goes_on_without_losing_it() {
+fn a_robot_follows_a_moving_waypoint() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [1.0, 0.0]);
     let _ = robot.agent.assign_waypoint(0, &Waypoint { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..place(1000, 0) });
     for n in 0..100 {
@@ -187,7 +187,7 @@ fn with_a_place_that_moves_it_goes_on_without_losing_it() {
 }
 
 #[test]
-fn beacons_carry_what_it_does_from_now_on() {
+fn beacons_carry_the_next_velocity() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(-6000, 8000));
     let beacon = said(&robot.step(step_number(0), &[]));
@@ -195,7 +195,7 @@ fn beacons_carry_what_it_does_from_now_on() {
 }
 
 #[test]
-fn a_body_of_no_sensible_size_is_told_as_one_without_size() {
+fn an_invalid_radius_is_sent_as_zero() {
     for radius_m in [-1.0, f32::NAN, f32::NEG_INFINITY] {
         let config = AgentConfig { radius_m, ..in_plane(1) };
         let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
@@ -203,7 +203,7 @@ fn a_body_of_no_sensible_size_is_told_as_one_without_size() {
     }
 }
 
-/// Whether a robot that stands in `mode` gets out of the way of one that comes.
+/// Returns whether a stationary robot in `mode` evades an approaching one.
 fn evades(mode: Mode) -> bool {
     let guidance = Onlooker { is_broken: mode == Mode::Fault, ..Onlooker::default() };
     let coming = body_at([1000, 50], [-1000, 0], Mode::Cruise);
@@ -231,7 +231,7 @@ fn evades(mode: Mode) -> bool {
 }
 
 #[test]
-fn who_stands_gives_way_and_who_has_a_fault_does_nothing() {
+fn a_stationary_robot_gives_way_and_a_robot_in_fault_does_not() {
     let standing = [Mode::Idle, Mode::Arrived, Mode::Hold, Mode::Fault];
     assert_eq!(standing.map(evades), [true, true, true, false]);
 }
@@ -255,7 +255,7 @@ fn a_neighbour_that_does_not_give_way_gets_the_whole_correction() {
 }
 
 #[test]
-fn neighbours_are_where_they_are_now_though_news_takes_time() {
+fn neighbours_are_extrapolated_by_the_latency() {
     for (latency, x_m) in [(0, 5.0), (1, 4.9), (3, 4.7)] {
         let config = AgentConfig { latency: STEP.saturating_mul(latency), ..in_plane(1) };
         let mut robot = Robot::new(&config, Onlooker::default(), orca(), [0.0; 2]);
@@ -267,7 +267,7 @@ fn neighbours_are_where_they_are_now_though_news_takes_time() {
 }
 
 #[test]
-fn a_silent_neighbour_goes_on_then_stands_and_widens_then_is_forgotten() {
+fn a_silent_neighbour_is_extrapolated_then_grows_then_expires() {
     let mut robot = Robot::new(&in_plane(1), Onlooker::default(), orca(), [0.0; 2]);
     let inbox = bytes(2, 0, 0, &[body_at([5000, 0], [-1000, 0], Mode::Cruise)]);
     let mut sights = Vec::new();
@@ -276,7 +276,7 @@ fn a_silent_neighbour_goes_on_then_stands_and_widens_then_is_forgotten() {
         let _ = robot.step(step_number(n), inbox);
         sights.push(robot.agent.guidance().seen.first().copied());
     }
-    // Stale after 4 steps, forgotten after 30; the ball grows by 0.05 m a step, at most by 0.3 m.
+    // Stale after 4 steps, expired after 30; the ball grows by 0.05 m per step, at most by 0.3 m.
     for (n, x_m, radius_m, is_fresh) in [
         (0, 5.0, 0.2, true),
         (4, 4.6, 0.2, true),
@@ -293,7 +293,7 @@ fn a_silent_neighbour_goes_on_then_stands_and_widens_then_is_forgotten() {
     assert_eq!(sights[31], None);
 }
 
-/// Two robots that swap their places head on; where they are after each step.
+/// Two robots swap their places head on. Returns their positions after each step.
 fn swap<S: Scalar>() -> Vec<[[f64; 2]; 2]> {
     let mut one = Robot::new(&one_step_late(1), waypoint::<S>(), orca(), [-2.0, 0.0]);
     let mut two = Robot::new(&one_step_late(2), waypoint::<S>(), orca(), [2.0, 0.0]);
@@ -313,7 +313,7 @@ fn swap<S: Scalar>() -> Vec<[[f64; 2]; 2]> {
 }
 
 #[test]
-fn head_on_they_swap_places_alike_in_all_kinds_of_numbers() {
+fn robots_swap_places_alike_in_all_scalar_types() {
     let gap = |[one, two]: &[[f64; 2]; 2]| length([one[0] - two[0], one[1] - two[1]]) - 0.4;
     let (track, fine, fixed) = (swap::<f32>(), swap::<f64>(), swap::<Q16>());
     for (name, other, tolerance) in [("f64", &fine, 0.02), ("Q16", &fixed, 0.1)] {
@@ -330,7 +330,7 @@ fn head_on_they_swap_places_alike_in_all_kinds_of_numbers() {
 }
 
 #[test]
-fn a_wish_that_is_no_number_is_no_wish() {
+fn a_desired_velocity_of_nan_is_ignored() {
     struct Mad;
     impl Teamwork for Mad {}
     impl Guidance<f32> for Mad {
@@ -362,9 +362,9 @@ fn a_wish_that_is_no_number_is_no_wish() {
     assert_eq!(out.command, Command::Velocity(Vec3::ZERO));
 }
 
-/// Said by its owner or by the radio: it stays what it was, and gives way.
+/// The goal is set locally or by radio; the robot stays idle and gives way.
 #[test]
-fn a_goal_on_the_grid_changes_nothing_for_who_goes_to_places() {
+fn a_goal_on_the_grid_changes_nothing_for_a_law_with_waypoints() {
     let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
     let goal = Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: 1, target: Cell::new(3, 4) });
     let after_three = |is_told: bool, hears: &[Message]| {
@@ -384,9 +384,9 @@ fn a_goal_on_the_grid_changes_nothing_for_who_goes_to_places() {
     assert_eq!(after_three(false, &[crowding, goal]), idle);
 }
 
-/// Each guidance law that goes by velocities, with something to do on a body that cannot move.
+/// Each law that moves by velocities, with a goal, on a body that cannot move.
 #[test]
-fn without_a_speed_a_robot_is_in_fault_and_stands() {
+fn a_robot_without_a_speed_is_in_fault_and_stands() {
     use crate::flock::{boids::BoidsParams, goal::GoalParams, lattice::LatticeParams};
     fn check<G>(mut law: G)
     where
@@ -409,9 +409,9 @@ fn without_a_speed_a_robot_is_in_fault_and_stands() {
     check(BoidsGuidance::new(BoidsParams::new(0.3, 1.5, 0.05, 0.02), 0.5));
 }
 
-/// Where the law is chosen at run time, what it is told can be another one's input.
+/// A law chosen at run time can receive the input of another one.
 #[test]
-fn any_law_with_the_input_of_another_one_is_a_fault() {
+fn the_input_of_another_law_is_a_fault() {
     type Any = AnyGuidance<f32, CELLS, VISITS, TEMPLATE>;
     let route = || RouteGuidance::new(RouteParams::default());
     let plane = InPlane { max_speed_mps: 1.0, obstacles: &[] };

@@ -1,4 +1,5 @@
-//! The paper's formation (KUZ algorithm 2), branch by branch: a column of three, robot 1 in front, on flat land.
+//! Tests of the paper's formation (KUZ algorithm 2), branch by branch: a column of three on flat
+//! terrain, robot 1 in front.
 
 use super::*;
 use crate::formation::published::PublishedParams;
@@ -7,7 +8,7 @@ use crate::grid::UNIT;
 type Law = PublishedFormation<CELLS, VISITS, TEMPLATE>;
 type Published = Agent<f32, Law, NEIGHBORS>;
 
-/// r0: lost beyond four cells in all, kept again within one.
+/// r0: lost above four cells in total, kept again within one.
 fn agent(id: u32) -> Published {
     let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 1).unwrap();
@@ -18,7 +19,7 @@ fn agent(id: u32) -> Published {
     agent
 }
 
-/// A robot in its column's place number `id`, `off` cells east of it, that follows `leader`.
+/// The beacon of robot `id`, which follows `leader`, `off` cells east of its place.
 fn at(id: u32, off: i16, leader: u32) -> Beacon {
     let x = 50 - 3 * (id as i16 - 1) + off;
     Beacon { leader: RobotId(leader), target: Cell::new(90, 50), heading: Dir::East, ..beacon_at(x, 50) }
@@ -30,7 +31,7 @@ struct Told {
     mode: Mode,
 }
 
-/// One step of robot `id`, `off` cells east of its place, that hears these beacons and requests.
+/// Runs a step of robot `id`, `off` cells east of its place, with these received messages.
 fn step(agent: &mut Published, n: u16, id: u32, off: i16, heard: &[(u32, Message)]) -> Told {
     let numbered = (10 * n..).zip(heard);
     let inbox: Vec<u8> =
@@ -53,7 +54,7 @@ fn hears(beacons: &[(u32, Beacon)]) -> Vec<(u32, Message)> {
 }
 
 #[test]
-fn in_its_place_it_goes_its_own_shortest_way_and_asks_nobody() {
+fn a_robot_in_its_place_takes_its_shortest_route_and_sends_no_requests() {
     let mut two = agent(2);
     let told = step(&mut two, 0, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, 0, 2))]));
     assert_eq!((told.moves[0], told.mode), (Dir::East, Mode::Cruise));
@@ -68,19 +69,19 @@ fn the_leader_found_first_stays_the_leader() {
     assert_eq!(three.leader(), RobotId::NOBODY, "nobody was heard yet");
     let _ = step(&mut three, 1, 3, 0, &hears(&[(2, at(2, 0, 1))]));
     assert_eq!(three.leader(), RobotId(2));
-    // Out of eps it is not found any more, but line 4 chooses only at t = 0.
+    // Outside eps it is not found any more, but line 4 chooses the leader only at t = 0.
     let _ = step(&mut three, 2, 3, 0, &hears(&[(2, at(2, 20, 1))]));
     assert_eq!(three.leader(), RobotId(2));
 }
 
 #[test]
-fn who_is_too_far_behind_asks_its_leader_to_stop_and_heads_for_its_place_until_it_is_there() {
+fn a_robot_too_far_behind_requests_a_stop_and_heads_for_its_place() {
     let mut three = agent(3);
     let _ = step(&mut three, 0, 3, 0, &hears(&[(2, at(2, 0, 1))]));
     let told = step(&mut three, 1, 3, 0, &hears(&[(2, at(2, 7, 1))]));
     assert_eq!(told.asks, [(2, RequestKind::Stop)]);
     assert_eq!((told.moves[0], told.mode), (Dir::East, Mode::Forming));
-    // In between the place stays the target.
+    // Meanwhile the place stays the target.
     let told = step(&mut three, 2, 3, 5, &hears(&[(2, at(2, 7, 1))]));
     assert_eq!(told.mode, Mode::Forming);
     let told = step(&mut three, 3, 3, 7, &hears(&[(2, at(2, 7, 1))]));
@@ -89,10 +90,10 @@ fn who_is_too_far_behind_asks_its_leader_to_stop_and_heads_for_its_place_until_i
 }
 
 #[test]
-fn who_leads_and_sees_its_follower_far_off_heads_for_def_and_asks_its_own_leader() {
+fn a_leader_with_a_distant_follower_heads_for_def_and_requests_a_stop() {
     let mut two = agent(2);
     let _ = step(&mut two, 0, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, 0, 2))]));
-    // Robot 3 is eight cells behind: what all are off points west.
+    // Robot 3 is eight cells behind, so the sum of deviations points west.
     let told = step(&mut two, 1, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, -8, 2))]));
     assert_eq!((told.asks, told.mode), (vec![(1, RequestKind::Stop)], Mode::Forming));
     let told = step(&mut two, 2, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, -8, 2))]));
@@ -100,14 +101,14 @@ fn who_leads_and_sees_its_follower_far_off_heads_for_def_and_asks_its_own_leader
 }
 
 #[test]
-fn who_is_asked_to_stop_stands_and_passes_it_on_unless_its_own_sum_is_small() {
+fn a_stop_request_is_obeyed_and_passed_on_unless_the_own_sum_is_small() {
     let mut two = agent(2);
     let stop = || {
         let request =
             Request { to: RobotId(2), origin: RobotId(3), number: 0, kind: RequestKind::Stop, valid_ms: 30_000 };
         (3, Message::Request(request))
     };
-    // Three cells off in all: neither lost nor kept.
+    // Three cells off in total: neither lost nor kept.
     let off = || hears(&[(1, at(1, 0, 0)), (3, at(3, -2, 2))]);
     let _ = step(&mut two, 0, 2, 0, &off());
     let told = step(&mut two, 1, 2, 0, &[off(), vec![stop()]].concat());
@@ -118,7 +119,7 @@ fn who_is_asked_to_stop_stands_and_passes_it_on_unless_its_own_sum_is_small() {
 }
 
 #[test]
-fn who_is_asked_for_another_direction_excludes_its_last() {
+fn a_redirected_robot_excludes_its_last_direction() {
     let mut two = agent(2);
     let column = || hears(&[(1, at(1, 0, 0)), (3, at(3, 0, 2))]);
     let told = step(&mut two, 0, 2, 0, &column());

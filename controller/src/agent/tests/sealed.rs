@@ -1,4 +1,4 @@
-//! An agent that speaks [`Sealed`] frames among those who have the key, and those who do not.
+//! Tests of an agent with [`Sealed`] frames.
 
 use super::*;
 use crate::auth::Key;
@@ -22,7 +22,7 @@ fn said<W: Wire>(by: &mut W, sequence: u16, message: &Message) -> Vec<u8> {
 }
 
 #[test]
-fn only_fresh_frames_of_who_has_the_key_are_obeyed_and_the_others_are_counted() {
+fn only_fresh_authentic_frames_are_obeyed_and_all_others_are_counted() {
     let guidance = RouteGuidance::new(RouteParams::default());
     let mut agent = SealedAgent::new(&config(1), guidance, Unguarded, wire(b"swarm"));
     let mut friend = wire(b"swarm");
@@ -47,7 +47,7 @@ fn only_fresh_frames_of_who_has_the_key_are_obeyed_and_the_others_are_counted() 
     assert_eq!(target, Some(Cell::new(20, 5)));
     let (out, target) = hear(&said(&mut friend, 1, &goal(40)), 2);
     assert_eq!((out.received, target), (1, Some(Cell::new(40, 5))));
-    // What it says itself is heard by who has the key.
+    // Its own frames are accepted with the key.
     let mut listener = wire(b"swarm");
     let mut outbox = out.outbox.as_slice();
     let beacon = listener.next_frame(&mut outbox).unwrap();
@@ -56,7 +56,7 @@ fn only_fresh_frames_of_who_has_the_key_are_obeyed_and_the_others_are_counted() 
 }
 
 #[test]
-fn a_robot_that_has_no_counter_left_says_so_and_goes_on() {
+fn a_robot_with_an_exhausted_counter_reports_it_and_still_receives() {
     let guidance = RouteGuidance::new(RouteParams::default());
     let mut wire = wire(b"swarm");
     // 4095 wraps of the sequence: 268 million frames later.

@@ -1,4 +1,4 @@
-//! Agents from data are those that a program makes.
+//! Tests of agents that are created from data.
 
 use super::super::*;
 use crate::flock::goal::GoalParams;
@@ -59,7 +59,7 @@ fn setups() -> impl Iterator<Item = Setup> {
     })
 }
 
-/// Digests of an agent that hears one neighbour, step by step.
+/// Returns the digests of an agent with one neighbour after each step.
 fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
     let agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, 0>();
     let mut agent = agent.unwrap();
@@ -111,7 +111,7 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
 }
 
 #[test]
-fn what_went_over_a_link_makes_the_same_robot() {
+fn a_setup_sent_over_a_link_creates_an_identical_robot() {
     for setup in setups() {
         let bytes = {
             let mut buffer = [0; 512];
@@ -125,7 +125,7 @@ fn what_went_over_a_link_makes_the_same_robot() {
 }
 
 #[test]
-fn each_step_leaves_a_state_of_its_own() {
+fn each_step_leaves_a_distinct_state() {
     for setup in setups() {
         for digests in [lived::<f32>(&setup, 5), lived::<Q16>(&setup, 5)] {
             for (step, digest) in digests.iter().enumerate() {
@@ -136,7 +136,7 @@ fn each_step_leaves_a_state_of_its_own() {
 }
 
 #[test]
-fn the_whole_state_counts() {
+fn the_digest_covers_the_whole_state() {
     let base = setups().next().unwrap();
     let other = |change: &dyn Fn(&mut Setup)| {
         let mut setup = base.clone();
@@ -153,14 +153,14 @@ fn the_whole_state_counts() {
 }
 
 #[test]
-fn no_robot_speaks_a_format_that_its_type_has_not() {
+fn a_format_that_the_wire_type_lacks_is_refused() {
     let setup = Setup { format: Format::Mavlink, ..setups().next().unwrap() };
     let agent = setup.agent::<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, 0>();
     assert!(agent.is_none());
 }
 
 #[test]
-fn searches_need_the_room_that_they_say() {
+fn cells_returns_the_size_of_the_search() {
     let cells = |guidance: &GuidanceSetup| {
         let setup = Setup { guidance: guidance.clone(), ..setups().next().unwrap() };
         setup.cells()

@@ -1,4 +1,4 @@
-//! Robots with eyes.
+//! Tests of robots with sensors that detect other robots.
 
 use super::plane::{RADIUS_MM, Robot, STEP, body_at, in_plane, one_step_late, orca, place, step_number, waypoint};
 use super::*;
@@ -31,7 +31,7 @@ fn seer<S: Scalar>(id: u32, at_m: [f64; 2], goal: Waypoint<S>) -> Seer<S> {
     robot
 }
 
-/// Sees a body of its own size.
+/// Detects an anonymous body of equal size.
 fn look<S: Scalar>(robot: &mut Seer<S>, other_m: [f64; 2], now: Instant) -> crate::neighbor::Sighted {
     recognize(robot, None, other_m, now)
 }
@@ -75,14 +75,14 @@ fn pass_each_other<S: Scalar>() {
 }
 
 #[test]
-fn two_who_see_each_other_pass_without_a_word() {
+fn two_robots_that_detect_each_other_pass_without_radio() {
     pass_each_other::<f32>();
     pass_each_other::<f64>();
     pass_each_other::<crate::scalar::Q16>();
 }
 
 #[test]
-fn without_eyes_it_is_the_law_inside_to_the_bit() {
+fn without_sensors_the_law_inside_is_unchanged() {
     let plain = Robot::<f32, _, _>::new(&in_plane(1), waypoint(), orca(), [0.0; 2]);
     let law = NeighborTracking::new(waypoint(), None);
     let mut blind = Robot::<f32, _, _>::new(&in_plane(1), law, orca(), [0.0; 2]);
@@ -101,7 +101,7 @@ fn without_eyes_it_is_the_law_inside_to_the_bit() {
 }
 
 #[test]
-fn who_fell_silent_and_is_seen_is_company_and_whoever_is_neither_is_lost() {
+fn a_silent_robot_in_sight_is_in_contact_and_otherwise_lost() {
     let speak = |n: u32| {
         let header = Header { boot: 0, sender: RobotId(2), sequence: n as u16 };
         let mut bytes = heapless::Vec::<u8, 64>::new();
@@ -127,7 +127,7 @@ fn who_fell_silent_and_is_seen_is_company_and_whoever_is_neither_is_lost() {
 }
 
 #[test]
-fn frames_of_one_who_was_seen_first_are_told_from_repeated_ones() {
+fn repeated_frames_of_a_robot_detected_first_are_refused() {
     let mut robot = seer::<f32>(1, [0.0; 2], place(0, 0));
     let _ = recognize(&mut robot, Some(RobotId(2)), [3.0, 0.0], step_number(0));
     let _ = robot.step(step_number(0), &[]);

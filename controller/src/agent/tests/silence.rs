@@ -1,4 +1,5 @@
-//! Radios that lose packets or die, robots that fall silent: nobody touches anybody, and nobody stands for ever who need not.
+//! Tests of radios that lose packets or fail, and of silent robots: no robots touch, and no robot
+//! waits for ever without need.
 
 use super::plane::{Robot, STEP, in_plane, length, one_step_late, orca, place, step_number, waypoint};
 use super::*;
@@ -14,7 +15,7 @@ pub(super) fn safety<S: Scalar>() -> OrcaSafety<S, 16> {
     OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(200) })
 }
 
-/// Robots on a circle of 2 m, somewhat off their even places, each bound for the other side.
+/// Robots on a circle of 2 m at slightly uneven angles, each with a goal on the opposite side.
 fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
     let mover = |i: u32| {
         let mut rng = Rng::keyed(9, 9, seed, i);
@@ -27,7 +28,8 @@ fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
     (0..count).map(mover).collect()
 }
 
-/// Steps until all have arrived, at most `steps`; the least gap, and whether all arrived. `is_lost` says of each packet whether it is.
+/// Runs until all have arrived, at most `steps`. Returns the least gap and whether all arrived.
+/// `is_lost` drops packets.
 pub(super) fn run<S: Scalar>(
     robots: &mut [Mover<S>],
     steps: i32,
@@ -61,7 +63,7 @@ pub(super) fn run<S: Scalar>(
 }
 
 #[test]
-fn a_radio_that_dies_at_any_moment_for_any_time_lets_nobody_touch() {
+fn no_robots_touch_during_radio_outages() {
     fn check<S: Scalar>() {
         for (from, lasts) in [(8, 20), (16, 20), (24, 20), (12, 900), (20, 900)] {
             let mut robots = circle::<S>(6, from as u32);
@@ -76,7 +78,7 @@ fn a_radio_that_dies_at_any_moment_for_any_time_lets_nobody_touch() {
 }
 
 #[test]
-fn with_up_to_three_packets_of_ten_lost_nobody_touches() {
+fn no_robots_touch_at_up_to_30_percent_packet_loss() {
     fn check<S: Scalar>() {
         for loss in [1, 3] {
             for seed in 0..4 {
@@ -92,31 +94,31 @@ fn with_up_to_three_packets_of_ten_lost_nobody_touches() {
     check::<Q16>();
 }
 
-/// At 1 m/s and ten steps a second a step is half a radius.
+/// At 1 m/s and ten steps per second a step is half a radius.
 #[test]
-fn in_a_crowd_with_a_perfect_radio_nobody_touches_however_long_a_step_is() {
+fn no_robots_touch_in_a_crowd_with_long_steps() {
     for seed in 0..3 {
         let (least, have_arrived) = run(&mut circle::<f32>(10, seed), 900, |_, _, _| false);
         assert!(least > -1e-3 && have_arrived, "seed {seed}: {least} m");
     }
 }
 
-/// One that drives up to two seconds before its neighbour falls silent for good, in its way.
+/// Another robot approaches one that falls silent two seconds earlier and stays in the way.
 #[test]
-fn one_that_lies_dead_in_the_way_is_remembered_and_gone_round() {
+fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
     fn check<S: Scalar>() {
         let mover = |id, at_m: [f64; 2], to_mm: [i32; 2]| {
             let mut robot: Mover<S> = Robot::new(&one_step_late(id), waypoint(), safety(), at_m);
             let _ = robot.agent.assign_waypoint(0, &place(to_mm[0], to_mm[1]));
             robot
         };
-        // The third one keeps the first one's radio busy, off the way.
+        // The third robot keeps the first one in contact, away from its route.
         let mut robots = vec![
             mover(1, [-8.0, 0.02], [8000, 20]),
             mover(2, [0.0, 0.0], [0, 0]),
             mover(3, [-4.0, 7.0], [-4000, 7000]),
         ];
-        // The dead one is lost after 3 s; the mover is there after 8.
+        // The dead robot is lost after 3 s; the moving one is there after 8 s.
         let (least, have_arrived) = run(&mut robots, 400, |n, from, to| n >= 10 && (from == 1 || to == 1));
         assert!(least > 0.0 && have_arrived, "{least} m");
     }
@@ -124,7 +126,8 @@ fn one_that_lies_dead_in_the_way_is_remembered_and_gone_round() {
     check::<Q16>();
 }
 
-/// The speed after it has heard somebody far off (or nobody) and then nobody for six seconds, and whether it was told.
+/// Contact with a distant robot (or none), then six seconds of silence. Returns the speed, the
+/// mode, and whether the loss of contact was reported.
 fn left_alone(hears: bool, silence: Silence<f32>) -> (f64, Mode, bool) {
     let config = AgentConfig { silence, ..in_plane(1) };
     let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
@@ -139,7 +142,7 @@ fn left_alone(hears: bool, silence: Silence<f32>) -> (f64, Mode, bool) {
 }
 
 #[test]
-fn who_hears_nobody_any_more_stands_unless_it_may_be_alone() {
+fn a_robot_without_contact_stands_unless_it_may_be_alone() {
     let after = |alone_mps| Silence { remember: STEP.saturating_mul(50), alone_mps };
     assert_eq!(left_alone(true, Silence::DEFAULT), (1.0, Mode::Cruise, true), "a minute is not over");
     assert_eq!(left_alone(true, after(0.0)), (0.0, Mode::Hold, true));
@@ -151,7 +154,7 @@ fn who_hears_nobody_any_more_stands_unless_it_may_be_alone() {
 }
 
 #[test]
-fn who_stands_alone_goes_on_when_somebody_speaks() {
+fn a_robot_continues_when_contact_is_restored() {
     let silence = Silence { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
     let mut robot = Robot::new(&AgentConfig { silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));

@@ -1,4 +1,4 @@
-//! What robots wait for, and that they say so; places that are taken.
+//! Tests of reported waits and of occupied goals.
 
 use super::plane::{Robot, STEP, body_at, in_plane, length, one_step_late, orca, place, step_number, waypoint};
 use super::silence::{Mover, run, safety};
@@ -9,7 +9,7 @@ use crate::rand::Rng;
 use crate::scalar::Q16;
 use proptest::prelude::*;
 
-/// The waits of a robot that goes 10 m east, step by step, with others that say the same in each step.
+/// Returns the waits of a robot that moves 10 m east while the others repeat their messages.
 fn waits(others: &[Message], steps: u16) -> Vec<Option<Wait>> {
     let mut robot = Robot::new(&in_plane(9), waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(10_000, 0));
@@ -22,15 +22,15 @@ fn waits(others: &[Message], steps: u16) -> Vec<Option<Wait>> {
 }
 
 #[test]
-fn who_gets_on_waits_for_nothing() {
+fn an_advancing_robot_reports_no_wait() {
     assert!(waits(&[], 20).iter().all(Option::is_none));
     let beside = body_at([2000, 900], [0, 0], Mode::Idle);
     assert!(waits(&[beside], 60).iter().all(Option::is_none));
 }
 
 #[test]
-fn others_in_the_way_are_waited_for() {
-    // A row without a gap that does not give way.
+fn robots_in_the_way_are_reported() {
+    // A row without gaps that does not give way.
     let row: Vec<_> = (-3..=3).map(|i| body_at([1000, i * 420], [0, 0], Mode::Fault)).collect();
     let waits = waits(&row, 40);
     assert_eq!(waits[0], None);
@@ -38,7 +38,7 @@ fn others_in_the_way_are_waited_for() {
 }
 
 #[test]
-fn who_hears_nobody_any_more_waits_for_news() {
+fn a_robot_without_contact_waits_for_the_radio() {
     let silence = Silence { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
     let mut robot = Robot::new(&AgentConfig { silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
@@ -50,8 +50,8 @@ fn who_hears_nobody_any_more_waits_for_news() {
 }
 
 #[test]
-fn a_wall_alone_is_no_one_else_s_fault_and_a_door_is_a_turn() {
-    // A robot at the door of a room, which others leave: in their sight 1 m wide, and 40 m of wall.
+fn a_wall_is_reported_as_the_way_and_a_door_as_a_turn() {
+    // A robot at a door, 1 m wide, in a wall of 40 m; another one comes out.
     let door = |half: f32| {
         let wall = |from: f32, to: f32| Obstacle::Wall([Vec2::new(1.5, from), Vec2::new(1.5, to)]);
         [wall(-20.0, -half), wall(half, 20.0)]
@@ -76,7 +76,7 @@ fn a_wall_alone_is_no_one_else_s_fault_and_a_door_is_a_turn() {
     assert_eq!(last(&door(5.0), &[]), None);
 }
 
-/// A wall seen from `x_m` farther east.
+/// The wall relative to a point `x_m` farther east.
 fn moved(wall: &Obstacle<f32>, x_m: f32) -> Obstacle<f32> {
     match wall {
         Obstacle::Wall(ends) => Obstacle::Wall(ends.map(|end| end + Vec2::new(x_m, 0.0))),
@@ -85,7 +85,7 @@ fn moved(wall: &Obstacle<f32>, x_m: f32) -> Obstacle<f32> {
 }
 
 #[test]
-fn on_the_grid_who_has_not_moved_waits_for_others_and_who_is_told_to_stop_says_so() {
+fn on_the_grid_blocked_moves_and_stop_requests_are_reported() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let mut step =
@@ -101,7 +101,7 @@ fn on_the_grid_who_has_not_moved_waits_for_others_and_who_is_told_to_stop_says_s
 }
 
 #[test]
-fn a_place_where_somebody_is_parked_is_arrived_at_beside_him_until_it_is_free() {
+fn a_robot_arrives_beside_its_occupied_goal_until_it_is_free() {
     for mode in [Mode::Idle, Mode::Arrived, Mode::Fault, Mode::Passive] {
         let mut robot = Robot::new(&in_plane(9), waypoint::<f32>(), orca(), [0.0; 2]);
         let _ = robot.agent.assign_waypoint(0, &place(2000, 0));
@@ -120,7 +120,7 @@ fn a_place_where_somebody_is_parked_is_arrived_at_beside_him_until_it_is_free() 
 }
 
 #[test]
-fn who_leaves_makes_place_for_who_stands_beside() {
+fn a_robot_beside_its_goal_takes_it_when_it_becomes_free() {
     let mover = |id, at_m: [f64; 2]| {
         let mut robot: Mover<f32> = Robot::new(&one_step_late(id), waypoint(), safety(), at_m);
         let _ = robot.agent.assign_waypoint(0, &place(0, 0));
@@ -140,9 +140,10 @@ fn who_leaves_makes_place_for_who_stands_beside() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Up to six robots, one place or places closer than a body: all have arrived, one of them there, and nobody touches.
+    /// Up to six robots have one goal, or goals closer together than a body: all arrive, one of
+    /// them at the goal.
     #[test]
-    fn those_who_want_one_place_settle_it(
+    fn robots_with_one_goal_settle_around_it(
         angles in prop::collection::vec(0.0..1.0, 2..6),
         apart_mm in 0..150_i32,
         loss in prop::sample::select(vec![0_u32, 0, 20]),
@@ -153,7 +154,7 @@ proptest! {
                 let angle = (f64::from(i) + 0.5 * off) / count * core::f64::consts::TAU;
                 let at_m = [2.5 * libm::cos(angle), 2.5 * libm::sin(angle)];
                 let mut robot = Robot::new(&one_step_late(i + 1), waypoint(), safety(), at_m);
-                // Each on the far side of the middle.
+                // Each goal is beyond the centre.
                 let goal = at_m.map(|x| (-x / 2.5 * f64::from(apart_mm)) as i32);
                 let _ = robot.agent.assign_waypoint(0, &place(goal[0], goal[1]));
                 robot

@@ -1,9 +1,9 @@
-//! Whatever robots say to each other reaches the law inside of others.
+//! Tests that wrappers forward all functions of [`Teamwork`] to the law inside.
 
 use super::*;
 use crate::land::{LandPatch, PATCH_TILES};
 
-/// Remembers what it was told.
+/// Stores the calls.
 #[derive(Default)]
 struct Listener {
     redirected: bool,
@@ -64,21 +64,21 @@ fn passes_land_on<L: Teamwork>(law: &mut L, inside: impl Fn(&L) -> &Listener) {
 }
 
 #[test]
-fn a_law_that_an_operator_may_take_over_hears_all() {
+fn the_operator_wrapper_forwards_all() {
     let mut law = Commanded::new(Listener::default(), 1.0_f32, 0.1);
     passes_orders_on(&mut law, Commanded::inside);
     passes_land_on(&mut law, Commanded::inside);
 }
 
 #[test]
-fn a_law_that_is_told_of_any_surroundings_hears_all() {
+fn the_wrapper_for_any_surroundings_forwards_all() {
     let mut law = AnyWorld(Listener::default());
     passes_orders_on(&mut law, |law| &law.0);
     passes_land_on(&mut law, |law| &law.0);
 }
 
 #[test]
-fn a_law_with_a_map_hears_all_but_what_is_for_the_map() {
+fn the_map_wrapper_forwards_all_but_map_patches() {
     let mut law = MapSharing::<_, 0>::new(Listener::default(), None);
     passes_orders_on(&mut law, MapSharing::inside);
     law.hear_land(&LandPatch::from_bytes(Cell::new(0, 0), [0; PATCH_TILES]));
@@ -86,7 +86,7 @@ fn a_law_with_a_map_hears_all_but_what_is_for_the_map() {
 }
 
 #[test]
-fn a_law_of_a_robot_with_eyes_hears_all() {
+fn the_tracking_wrapper_forwards_all() {
     let mut law = NeighborTracking::<f32, _>::new(Listener::default(), None);
     passes_orders_on(&mut law, NeighborTracking::inside);
     passes_land_on(&mut law, NeighborTracking::inside);

@@ -14,7 +14,7 @@ fn moment(step: i32) -> Instant {
     Instant::from_micros(1) + STEP.saturating_mul(step)
 }
 
-/// A robot of at most 1 m/s, what it knows of others, and what it has just begun to do.
+/// A robot of at most 1 m/s with its neighbour table.
 struct Mover<S> {
     table: NeighborTable<S, 4>,
     body: Body<S>,
@@ -45,7 +45,7 @@ impl<S: Scalar> Mover<S> {
         Neighbor { position: self.position(), velocity_mps, radius_m, ..heard }
     }
 
-    /// What it does of a wish, with what it heard of the step before.
+    /// Limits a wish, with the beacons received in the previous step.
     fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
         let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
         let (own, now) = (self.position(), moment(step));
@@ -62,7 +62,8 @@ impl<S: Scalar> Mover<S> {
     }
 }
 
-/// The least gap among robots that wish anything, while packets are lost as `is_lost` says of step, sender and receiver.
+/// Returns the least gap among robots with any wishes, while `is_lost` drops packets by step,
+/// sender and receiver.
 fn least_gap<S: Scalar>(
     mut movers: StdVec<Mover<S>>,
     steps: i32,
@@ -91,7 +92,7 @@ fn least_gap<S: Scalar>(
     least
 }
 
-/// Anything up to twice the highest speed, the same for three steps, mostly towards the middle.
+/// Any wish up to twice the highest speed, constant for three steps, mostly towards the middle.
 fn wishes(seed: u32, size: f64, movers: usize) -> impl Fn(i32, usize) -> Vec3<f64> {
     move |step, robot| {
         let mut rng = Rng::keyed(7, seed, robot as u32, (step / 3) as u32);
@@ -113,9 +114,10 @@ fn lossy(seed: u32, percent: u32) -> impl FnMut(i32, usize, usize) -> bool {
 }
 
 proptest! {
-    /// Nearly all packets are another matter: one that is heard by others only is lost, and taken to stand.
+    /// Losses between 60 % and 100 % are excluded: a robot that only other robots receive is lost,
+    /// and taken to stand.
     #[test]
-    fn whatever_they_wish_and_whatever_is_lost_nobody_touches(
+    fn no_robots_touch_at_any_wishes_and_losses(
         seed in any::<u32>(), percent in prop_oneof![0..=60_u32, Just(100)], movers in 2..5_usize, radius_m in 0.25..1.5_f64, height in 0..2_u8,
     ) {
         let wish = || wishes(seed, height.into(), movers);
@@ -125,7 +127,7 @@ proptest! {
         prop_assert!(gap > -1e-3, "fixed: {}", gap);
     }
 
-    /// Head on: whoever heads elsewhere cannot turn at once.
+    /// The robots drive head on, since a body with inertia cannot turn at once.
     #[test]
     fn bodies_with_inertia_brake_for_each_other_at_any_loss(
         seed in any::<u32>(), percent in 0..101_u32, most in 0.3..4.0_f64, apart_m in 0.4..6.0_f64,
@@ -136,14 +138,14 @@ proptest! {
         };
         let movers = std::vec![Mover::new(1, [apart_m, 0.0, 0.0], most), Mover::<f32>::new(2, [0.0; 3], most)];
         let gap = least_gap(movers, 150, wish, lossy(seed, percent));
-        // One case of some thousands has 3 mm.
+        // One case in some thousands exceeds it by 3 mm.
         prop_assert!(gap > -5e-3, "{}", gap);
     }
 }
 
-/// It takes a wall as it comes when somebody is in the way: the way aside is no way through.
+/// The way aside leads into the wall.
 #[test]
-fn who_is_turned_aside_is_not_turned_into_a_wall() {
+fn a_robot_turned_aside_is_not_turned_into_a_wall() {
     use crate::geom::Vec2;
     let other = Mover::<f32>::new(2, [0.25, 0.25, 0.0], f64::MAX);
     let mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);
@@ -160,9 +162,9 @@ fn who_is_turned_aside_is_not_turned_into_a_wall() {
     assert!((0.0..=0.0101).contains(&(-beside.y * 0.1)), "{beside:?}");
 }
 
-/// Step by step it would be in the wall: what is left between bodies is not given twice.
+/// The remaining gap between bodies must not be granted again in each step.
 #[test]
-fn who_is_held_at_a_wall_and_pressed_does_not_creep_into_it() {
+fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
     use crate::geom::Vec2;
     let other = Mover::<f32>::new(2, [0.25, 0.25, 0.0], f64::MAX);
     let mut mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);

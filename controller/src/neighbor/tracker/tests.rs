@@ -1,4 +1,4 @@
-//! Sightings and tracks: association, errors, bounds, nonsense.
+//! Tests of assignment, errors, capacities and invalid detections.
 
 use super::*;
 use crate::neighbor::Ages;
@@ -29,7 +29,7 @@ fn at(step: i32) -> Instant {
     Instant::from_micros(0) + STEP.saturating_mul(step)
 }
 
-/// Somebody at (x, y), metres, seen with a deviation of 5 cm.
+/// A detection at (x, y), metres, with a deviation of 5 cm.
 fn sighting<S: Scalar>(x: f64, y: f64) -> Sighting<S> {
     let s = |x: f64| S::from_f64(x).unwrap();
     Sighting {
@@ -50,14 +50,14 @@ fn see<S: Scalar>(tracker: &mut Tracker<S>, sightings: &[Sighting<S>], step: i32
     tracker.see(sightings, OWN, Position::ORIGIN, Vec3::ZERO, at(step))
 }
 
-/// A beacon of robot `id` at (x, y), metres, at rest, that is heard in `step`.
+/// A beacon of robot `id` at rest at (x, y), metres, received in `step`.
 fn heard<S: Scalar>(id: u32, x: f64, y: f64, step: i32) -> Neighbor<S> {
     let position = Position::from_metres([x, y, 0.0]).unwrap();
     let track = Track::new(RobotId(id), at(step), position, S::ONE, &params());
     Neighbor { velocity_mps: Vec3::ZERO, radius_m: S::from_milli(150), ..stranger(&track, 0) }
 }
 
-/// What an agent does with both in a step.
+/// Merges tracks and table as an agent does in a step.
 fn merge<S: Scalar>(tracker: &mut Tracker<S>, table: &mut Table<S>, step: i32) -> std::vec::Vec<RobotId> {
     let mut gone = std::vec::Vec::new();
     tracker.hear(table, Position::ORIGIN);
@@ -75,7 +75,7 @@ fn ids<S: Scalar>(tracker: &Tracker<S>) -> std::vec::Vec<RobotId> {
 fn goes_with_even_speed<S: Scalar>() -> (f64, f64) {
     let mut tracker = Tracker::<S>::new(params());
     let mut rng = Rng::keyed(7, 0, 0, 0);
-    // The sum of twelve even draws is nearly normal, of deviation 1.
+    // The sum of twelve uniform draws is nearly normal, with deviation 1.
     let mut error = || (0..12).map(|_| f64::from(rng.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0;
     let mut off = (0.0_f64, 0.0_f64);
     for step in 0..200 {
@@ -98,7 +98,7 @@ fn goes_with_even_speed<S: Scalar>() -> (f64, f64) {
 }
 
 #[test]
-fn places_come_out_better_than_they_were_seen_and_velocities_come_out_at_all() {
+fn estimates_are_more_accurate_than_single_detections() {
     for (place_m, velocity_mps) in
         [goes_with_even_speed::<f64>(), goes_with_even_speed::<f32>(), goes_with_even_speed::<Q16>()]
     {
@@ -107,7 +107,7 @@ fn places_come_out_better_than_they_were_seen_and_velocities_come_out_at_all() {
 }
 
 #[test]
-fn two_who_stand_apart_keep_their_tracks_whatever_order_they_are_seen_in() {
+fn two_robots_apart_keep_their_tracks_in_any_order_of_detections() {
     let mut tracker = Tracker::<f32>::new(params());
     let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(2.0, 0.0)], 0);
     let before = ids(&tracker);
@@ -121,7 +121,7 @@ fn two_who_stand_apart_keep_their_tracks_whatever_order_they_are_seen_in() {
 }
 
 #[test]
-fn one_that_jumps_beyond_the_gate_is_somebody_else() {
+fn a_jump_beyond_the_gate_starts_a_new_track() {
     let mut tracker = Tracker::<f32>::new(params());
     for step in 0..10 {
         let _ = see(&mut tracker, &[sighting(1.0, 0.0)], step);
@@ -131,21 +131,21 @@ fn one_that_jumps_beyond_the_gate_is_somebody_else() {
 }
 
 #[test]
-fn a_number_once_and_a_body_once() {
+fn each_id_and_each_body_has_one_track() {
     let mut tracker = Tracker::<f32>::new(params());
     let seen = see(&mut tracker, &[named(7, 1.0, 0.0), named(7, 1.0, 0.1)], 0);
     assert_eq!(seen, Sighted { new: 1, repeated: 1, ..Sighted::default() });
-    // Two cameras: the one fits the track, the other lies within the body.
+    // Two cameras: one detection matches the track, the other lies within the body.
     let seen = see(&mut tracker, &[sighting(1.0, 0.0), sighting(1.02, 0.0)], 1);
     assert_eq!(seen, Sighted { known: 1, repeated: 1, ..Sighted::default() });
-    // UWB with a number and a camera without one are of one robot.
+    // A UWB detection with an id and a camera detection without one belong to one robot.
     let seen = see(&mut tracker, &[sighting(1.0, 0.0), named(7, 1.0, 0.0)], 2);
     assert_eq!(seen, Sighted { known: 2, ..Sighted::default() });
     assert_eq!(ids(&tracker), [RobotId(7)]);
 }
 
 #[test]
-fn who_is_seen_without_a_number_gets_the_one_that_is_seen_or_heard_later() {
+fn an_anonymous_track_adopts_an_id_that_arrives_later() {
     let mut tracker = Tracker::<f32>::new(params());
     let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(3.0, 0.0)], 0);
     assert_eq!(see(&mut tracker, &[named(9, 1.0, 0.0), sighting(3.0, 0.0)], 1).known, 2);
@@ -157,7 +157,7 @@ fn who_is_seen_without_a_number_gets_the_one_that_is_seen_or_heard_later() {
 }
 
 #[test]
-fn who_gets_a_number_is_not_in_the_table_a_second_time_without_one() {
+fn a_track_that_adopts_an_id_leaves_no_anonymous_entry() {
     let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
     let _ = see(&mut tracker, &[sighting(1.0, 0.0), sighting(3.0, 0.0)], 0);
     assert_eq!(merge(&mut tracker, &mut table, 0), []);
@@ -170,7 +170,7 @@ fn who_gets_a_number_is_not_in_the_table_a_second_time_without_one() {
 }
 
 #[test]
-fn who_is_only_heard_is_in_the_table_as_he_said() {
+fn a_robot_known_from_beacons_alone_is_stored_unchanged() {
     let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
     let said = heard(4, 3.0, 0.0, 1);
     let _ = table.put(said, Position::ORIGIN, at(1), |_| false);
@@ -179,12 +179,12 @@ fn who_is_only_heard_is_in_the_table_as_he_said() {
 }
 
 #[test]
-fn what_is_seen_of_one_who_was_heard_long_ago_counts_more_than_what_he_said() {
+fn a_detection_outweighs_an_old_beacon() {
     let (mut tracker, mut table) = (Tracker::<f64>::new(params()), Table::new(AGES));
     let said = heard(4, 1.0, 0.0, 0);
     let _ = table.put(said, Position::ORIGIN, at(0), |_| false);
     let _ = merge(&mut tracker, &mut table, 0);
-    // He was at 1 m to 2 mm; now he is seen at 1.2 m, 5 cm off.
+    // The beacon gives 1 m with an error of 2 mm, the detection 1.2 m with an error of 5 cm.
     let place_m = |table: &Table<f64>| f64::from(table.as_slice()[0].position.mm[0]) / 1000.0;
     let mut soon = (tracker.clone(), table.clone());
     let _ = see(&mut soon.0, &[named(4, 1.2, 0.0)], 1);
@@ -198,7 +198,7 @@ fn what_is_seen_of_one_who_was_heard_long_ago_counts_more_than_what_he_said() {
 }
 
 #[test]
-fn who_says_nothing_is_forgotten_when_out_of_sight_and_not_remembered_as_lost() {
+fn a_robot_without_beacons_out_of_sight_is_forgotten_and_not_lost() {
     let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
     let _ = see(&mut tracker, &[sighting(1.0, 0.0), named(5, 2.0, 0.0)], 0);
     for step in 0..=4 {
@@ -210,7 +210,7 @@ fn who_says_nothing_is_forgotten_when_out_of_sight_and_not_remembered_as_lost() 
 }
 
 #[test]
-fn who_has_spoken_lately_is_silent_when_out_of_sight_and_stays() {
+fn a_robot_with_a_recent_beacon_stays_when_out_of_sight() {
     let (mut tracker, mut table) = (Tracker::<f32>::new(params()), Table::new(AGES));
     let _ = table.put(heard(4, 1.0, 0.0, 0), Position::ORIGIN, at(0), |_| false);
     let _ = see(&mut tracker, &[named(4, 1.0, 0.0)], 0);
@@ -220,7 +220,7 @@ fn who_has_spoken_lately_is_silent_when_out_of_sight_and_stays() {
 }
 
 #[test]
-fn seventeen_have_room_for_the_sixteen_nearest() {
+fn of_seventeen_robots_the_sixteen_nearest_are_tracked() {
     let mut tracker = Tracker::<f32>::new(params());
     let crowd: std::vec::Vec<_> = (0..17).map(|n| sighting(17.0 - f64::from(n), 0.0)).collect();
     assert_eq!(see(&mut tracker, &crowd, 0), Sighted { new: 17, ..Sighted::default() });
@@ -232,7 +232,7 @@ fn seventeen_have_room_for_the_sixteen_nearest() {
 }
 
 #[test]
-fn nonsense_is_counted_and_leaves_no_trace() {
+fn invalid_detections_are_counted_and_change_nothing() {
     let mut tracker = Tracker::<f32>::new(params());
     let good = sighting::<f32>(1.0, 0.0);
     let bad = [
@@ -255,7 +255,7 @@ fn nonsense_is_counted_and_leaves_no_trace() {
 }
 
 #[test]
-fn a_late_sighting_tells_less_than_a_prompt_one() {
+fn a_late_detection_has_less_weight_than_a_prompt_one() {
     let variance = |age_ms: i32| {
         let mut tracker = Tracker::<f64>::new(params());
         let _ = see(&mut tracker, &[sighting(1.0, 0.0)], 10);
@@ -270,7 +270,7 @@ fn a_late_sighting_tells_less_than_a_prompt_one() {
 
 proptest! {
     #[test]
-    fn what_is_merged_is_never_worse_than_either(
+    fn a_merged_estimate_is_at_least_as_accurate_as_each_input(
         known in 0.005_f64..1.0, seen in 0.005_f64..1.0, heard_m in 0.005_f64..1.0, off in -0.1_f64..0.1,
     ) {
         let params = TrackParams { heard_m, ..params::<f64>() };
@@ -281,13 +281,13 @@ proptest! {
         prop_assert!(track.deviation_m() <= both * (1.0 + 1e-12));
         track.hear(place, Vec3::ZERO, at(0), &params);
         prop_assert!(track.deviation_m() <= both.min(heard_m) * (1.0 + 1e-12));
-        // And lies between what it was made of.
+        // The result lies between its inputs.
         let x = track.offset_m(Position::ORIGIN).x;
         prop_assert!(x * off.signum() >= -1e-9 && x.abs() <= off.abs() + 1e-3);
     }
 
     #[test]
-    fn whatever_is_seen_tracks_are_bounded_and_their_numbers_are_their_own(
+    fn any_detections_keep_tracks_bounded_and_ids_unique(
         steps in proptest::collection::vec(
             proptest::collection::vec((0_u32..6, any::<i16>(), any::<i16>(), 0_i32..400_000, -50_i16..3000), 0..40), 1..12,
         ),

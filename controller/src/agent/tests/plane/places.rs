@@ -1,8 +1,8 @@
-//! Places that come by packet, and that move.
+//! Tests of waypoints that are sent by packet, and of waypoints that move.
 
 use super::*;
 
-/// "Go to `x_mm`", with nothing but a version to tell it from others.
+/// An order to go to `x_mm`.
 fn order(to: u32, version: u8, index: u8, x_mm: i32) -> Message {
     Message::Waypoint(WaypointAssignment {
         to: RobotId(to),
@@ -14,7 +14,7 @@ fn order(to: u32, version: u8, index: u8, x_mm: i32) -> Message {
 }
 
 #[test]
-fn places_come_by_packet_and_older_ones_are_ignored() {
+fn waypoints_are_assigned_by_packet_and_older_ones_ignored() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
     let (east, west) = (50_000, -50_000);
     let mut n = 0;
@@ -35,7 +35,7 @@ fn places_come_by_packet_and_older_ones_are_ignored() {
 }
 
 #[test]
-fn a_place_that_found_no_room_is_taken_when_it_comes_again() {
+fn a_rejected_waypoint_is_accepted_when_it_is_repeated() {
     let guidance = || {
         let params = crate::flock::goal::GoalParams::new(0.6, 1.0);
         GoalFlockGuidance::<f32>::new(params, 1.0, 1)
@@ -50,7 +50,7 @@ fn a_place_that_found_no_room_is_taken_when_it_comes_again() {
         })
     };
     let (first, second) = (goal(0, [40_000, 0, 0]), goal(1, [0, 40_000, 0]));
-    // The radio lost the first goal at first.
+    // The first goal was lost at first.
     let mut robot = Robot::new(&in_plane(1), guidance(), Unguarded, [0.0; 2]);
     for (n, message) in [second.clone(), first, second].into_iter().enumerate() {
         let _ = robot.step(step_number(n as i32), &bytes(99, 0, n as u16, &[message]));
@@ -60,11 +60,11 @@ fn a_place_that_found_no_room_is_taken_when_it_comes_again() {
 }
 
 #[test]
-fn a_place_moves_on_however_often_the_clock_runs_round() {
+fn a_waypoint_moves_across_wraps_of_the_clock() {
     fn check<S: Scalar>(tolerance: f64) {
         let velocity_mps = Vec3::new(S::from_milli(-50), S::from_milli(125), S::ZERO);
         let mut place = Waypoint { velocity_mps, ..place::<S>(1000, 2000) };
-        // Four hours: the clock runs round three times, through half its range six times.
+        // Four hours: the clock wraps three times, and passes half of its range six times.
         for minute in 0..240 {
             let now = (0..minute).fold(step_number(0), |now, _| now + Duration::from_millis(60_000));
             let way = place.way(Position::from_mm([1000, 0, 0]), now);
@@ -75,12 +75,12 @@ fn a_place_moves_on_however_often_the_clock_runs_round() {
     }
     check::<f32>(0.02);
     check::<f64>(0.02);
-    // 1/8 is exact in Q16, 0.05 is off by up to 8e-6.
+    // 1/8 is exact in Q16; 0.05 has an error of up to 8e-6.
     check::<Q16>(0.15);
 }
 
 #[test]
-fn a_place_that_will_be_there_in_a_moment_is_on_its_way() {
+fn a_waypoint_with_a_future_time_is_extrapolated_backwards() {
     let mut place = Waypoint { velocity_mps: Vec3::new(1.0, 0.0, 0.0), at: step_number(10), ..place::<f32>(0, 0) };
     for n in 0..20 {
         let way = place.way(Position::ORIGIN, step_number(n));
@@ -89,7 +89,7 @@ fn a_place_that_will_be_there_in_a_moment_is_on_its_way() {
 }
 
 #[test]
-fn a_course_is_gone_by_one_waypoint_after_the_other_and_a_new_one_takes_its_place() {
+fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
     let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
     let course = [(5_000, 0), (5_000, 5_000), (0, 5_000)];
     for (index, (x_mm, y_mm)) in (0..).zip(course) {
@@ -108,9 +108,10 @@ fn a_course_is_gone_by_one_waypoint_after_the_other_and_a_new_one_takes_its_plac
             arrived.push(n);
         }
     }
-    // By the first two beside one who might stand in them, three own radii off, to the last one exactly.
+    // It passes the first two within three own radii, as if a robot occupied them, and reaches the
+    // last one exactly.
     assert!(nearest_m[0] < 0.6 && nearest_m[1] < 0.6 && nearest_m[2] < 0.01, "{nearest_m:?}");
-    // 15 m less two corners, at 1 m/s: it did not take any of the others for its goal.
+    // 15 m minus two corners, at 1 m/s: it did not stop at an intermediate waypoint.
     assert!((130..150).contains(&arrived[0]) && arrived.len() > 40, "{:?}", arrived.first());
     assert!(robot.agent.assign_waypoint(0, &place(0, 0)));
     for n in 200..300 {
