@@ -1,7 +1,8 @@
-//! Robots of a scenario as firmware, on emulated microcontrollers or boards, in lockstep with the rest: what `staya hil` does, for Staya's
-//! own guidance laws ([`run`]) and for one that is the caller's ([`Own`]).
+//! Hardware in the loop: robots of a scenario run as firmware on emulated microcontrollers or
+//! boards, in lockstep with the others. Use [`run`] for Staya's guidance laws and [`Own`] for your
+//! own law.
 //!
-//! A whole program for a law of one's own, which takes the arguments of `staya hil`:
+//! A complete program for your own law, with the arguments of `staya hil`:
 //!
 //! ```no_run
 //! # use serde::{Deserialize, Serialize};
@@ -28,7 +29,7 @@
 //! }
 //! ```
 //!
-//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. docs/own.md has all of it.
+//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. See docs/own.md.
 
 pub mod cli;
 mod command;

@@ -1,4 +1,5 @@
-// What is seen: a map from above, or for flights a camera that orbits. Pixels are CSS pixels from the top left corner.
+// The camera: a map from above, or an orbit in space. Pixels are CSS pixels from the top left
+// corner.
 
 const FIELD_OF_VIEW = 0.8;
 const FOCUS = 1 / Math.tan(FIELD_OF_VIEW / 2);
@@ -16,7 +17,7 @@ export class Camera {
     this.distance = 10;
     this.extent = 1;
     this.matrix = new Float32Array(16);
-    // Raised with each change, for layers that redraw only then.
+    // Incremented by each change, so that layers redraw only then.
     this.version = 0;
   }
 
@@ -67,7 +68,7 @@ export class Camera {
       Math.cos(this.pitch),
       Math.sin(this.pitch),
     ];
-    // Right, up and back, of the camera.
+    // Right, up and back vectors of the camera.
     const r = [cosYaw, sinYaw, 0];
     const u = [sinPitch * -sinYaw, sinPitch * cosYaw, cosPitch];
     const b = [cosPitch * sinYaw, -cosPitch * cosYaw, sinPitch];

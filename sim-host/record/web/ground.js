@@ -1,5 +1,5 @@
-// What is below the bodies: land, grid, solids, and what the selected robot reckons that cells of its window cost; on a
-// canvas that is drawn anew only when they or the camera change.
+// The ground: map, grid, obstacles, and the route costs in the selected robot's window. The canvas
+// is redrawn only when they or the camera change.
 
 import { fromBase64 } from "staya/frame.js";
 
@@ -8,7 +8,7 @@ const FINEST = 8;
 const CRISP_PIXELS = 5;
 const SHADE = 0.55;
 const COST_PIXELS = 30;
-// From cheap to dear, told apart by anybody and on any ground.
+// From low to high cost, in colours for all kinds of colour vision.
 const COSTS = [
   [68, 1, 84],
   [59, 82, 139],
@@ -159,7 +159,7 @@ export class Ground {
       const at = Math.max(0, Math.min(height - 1, y)) * width + Math.max(0, Math.min(width - 1, x));
       return cells[at] === 0 ? 1.35 : (cells[at] - 1) / span;
     };
-    // Levels between the middles of cells, rounded so that cells show as gentle terraces.
+    // Heights between cell centres, rounded to gentle terraces.
     const smooth = (t) => t * t * (3 - 2 * t);
     const surface = (x, y) => {
       const cx = Math.floor(x),

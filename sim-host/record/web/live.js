@@ -1,4 +1,4 @@
-// The connection to a running view; it comes back by itself.
+// The connection to a running view, which reconnects by itself.
 
 import { fromBase64, parseFrame } from "staya/frame.js";
 
@@ -12,7 +12,7 @@ export class Live {
     this.listener = listener;
     this.retry = FIRST_RETRY_MS;
     this.socket = null;
-    // Of this connection.
+    // Frames received in this connection.
     this.frames = 0;
   }
 
@@ -72,7 +72,7 @@ export class Live {
           break;
       }
     } catch (error) {
-      this.listener.onMessage("error", `A message of the server cannot be read: ${error.message}.`);
+      this.listener.onMessage("error", `A message of the server is invalid: ${error.message}. Reload the page.`);
     }
   }
 

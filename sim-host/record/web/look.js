@@ -1,4 +1,4 @@
-// Colours and layers: what style.css says, in the forms that canvases and WebGL take.
+// Colours and layers from style.css, in the formats of canvas and WebGL.
 
 import { rgb } from "staya/ground.js";
 
@@ -81,7 +81,7 @@ function chosenTheme() {
   try {
     return known(document.cookie.match(`${THEME}=(\\w+)`)?.[1]) ?? known(localStorage.getItem(THEME));
   } catch {
-    // Somebody does not want anything to be remembered.
+    // Storage is disabled in the browser.
     return undefined;
   }
 }
@@ -91,7 +91,7 @@ function rememberTheme(theme) {
     document.cookie = `${THEME}=${theme}; path=/; max-age=31536000; samesite=strict`;
     localStorage.setItem(THEME, theme);
   } catch {
-    // As above.
+    // Storage is disabled in the browser.
   }
 }
 
@@ -102,7 +102,8 @@ export class Look {
     this.colourBy = "mode";
     this.trails = 0;
     this.palette = new Float32Array(64);
-    // Set for each picture, as there is room: CSS pixels, and seconds of way that an arrow shows.
+    // Updated for each frame by the zoom: CSS pixels, and the seconds of travel that an arrow
+    // shows.
     this.leastRadius = 4;
     this.targetSize = 6;
     this.velocitySeconds = 1;

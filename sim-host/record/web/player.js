@@ -1,12 +1,13 @@
-// Plays a recording: takes the page's orders and answers as a server would.
+// Plays a recording: handles the page's orders and answers like a server.
 
 import { Recording } from "staya/recording.js";
 import { fromBase64 } from "staya/frame.js";
 
-// Recordings up to this many bytes are read through once for the plots; of longer ones only what is played is plotted.
+// Recordings up to this size in bytes are read completely for the plots; of larger ones only played
+// parts are plotted.
 const READ_THROUGH = 1 << 30;
 const STATE_EVERY_MS = 500;
-// A recording starts with as many ticks a second at least.
+// Initial playback speed, ticks per second at least.
 const LEAST_TICKS = 10;
 const FASTEST_S = 8;
 
@@ -32,7 +33,7 @@ export class Player {
       this.speed = Math.max(1, 10 ** Math.round(Math.log10(LEAST_TICKS * tickS)));
     } catch (error) {
       this.listener.onFailed(
-        `The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`,
+        `The recording in this page cannot be read: ${error.message}. Make the page again with "staya page".`,
       );
       return;
     }
@@ -131,7 +132,7 @@ export class Player {
       return;
     }
     const tickS = this.shownScene.tick_s;
-    // As fast as it goes: every frame, but all of them within a few seconds.
+    // Without a speed limit the whole recording plays in a few seconds, with all frames.
     const rate = this.speed === null ? (this.recording.last - this.recording.first) / FASTEST_S : this.speed / tickS;
     this.time = (this.time ?? this.tick) + passed * rate;
     const ahead = this.speed === null ? Math.max(this.next, Math.floor(this.time)) : Math.floor(this.time);
@@ -159,7 +160,7 @@ export class Player {
         }
       }
     } catch {
-      // Playing comes to the damaged block and says so.
+      // Playback reports the damaged block when it reaches it.
     }
   }
 

@@ -1,4 +1,5 @@
-// A recording as a file: an index of its blocks, which are unpacked when they are needed (PROTOCOL.md, "Recordings").
+// A recording as a file: an index of blocks, which are uncompressed on demand (PROTOCOL.md,
+// "Recordings").
 
 import { parseFrame } from "staya/frame.js";
 
@@ -9,7 +10,7 @@ const BLOCK_HEADER = 13;
 const SCENE = 1,
   FRAMES = 2,
   ORDERS = 3;
-// Unpacked blocks that are kept, in bytes.
+// Cache of uncompressed blocks, bytes.
 const KEPT = 96 << 20;
 
 const text = new TextDecoder();
@@ -94,7 +95,7 @@ export class Recording {
   /** Reads the index; throws with the reason when `bytes` are no recording. */
   static async open(bytes) {
     if (bytes.length < FILE_HEADER || text.decode(bytes.subarray(0, 8)) !== MAGIC) {
-      throw new Error("this is no recording (STAYAREC)");
+      throw new Error("not a recording (STAYAREC)");
     }
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     const version = view.getUint32(8, true);
@@ -127,7 +128,7 @@ export class Recording {
   constructor() {
     this.frames = [];
     this.ordersBlock = null;
-    // Why there is no more, where the file has been damaged.
+    // Why the recording ends early, if the file is damaged.
     this.damage = null;
     this.kept = new Map();
     this.scenes = new Map();

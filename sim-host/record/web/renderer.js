@@ -1,5 +1,5 @@
-// WebGL2: bodies, velocities, targets, lines and trails, each kind in one call. A frame's bytes go to the GPU as they
-// came, once, as words of a texture.
+// WebGL2: bodies, velocities, goals, lines and trails, one draw call for each kind. The bytes of a
+// frame are uploaded once, unchanged, as a texture.
 
 import { BODIES, LINES, TARGETS, TRAILS, VELOCITIES } from "staya/shaders.js";
 import { Trails } from "staya/trails.js";
@@ -79,7 +79,7 @@ export class Renderer {
     this.robots = 0;
     this.bodies = new Float32Array(0);
     this.balls = [];
-    // Without a GPU each vertex counts.
+    // Without a GPU every vertex matters.
     const named = gl.getExtension("WEBGL_debug_renderer_info");
     this.software =
       Boolean(named) &&
@@ -124,7 +124,7 @@ export class Renderer {
     this.headingsOf = null;
     this.statics.store(bodies);
     this.trails.reset();
-    // Balls are drawn as bodies are, from a frame of their own.
+    // Balls are drawn like bodies, from a frame of their own.
     const n = balls.length,
       padded = (n + 3) >> 2;
     const words = new Uint32Array(3 * n + 2 * padded);
@@ -164,7 +164,7 @@ export class Renderer {
     gl.depthMask(true);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl[camera.space ? "enable" : "disable"](gl.DEPTH_TEST);
-    // What is thin and soft at its edges hides nothing behind it.
+    // Thin items with soft edges hide nothing behind them.
     gl.depthMask(false);
     const frame = motion.current;
     if (!frame) return;

@@ -1,4 +1,5 @@
-// The velocities that a robot may choose among, drawn as the papers on ORCA do: half-planes, the wish, the choice.
+// The velocities permitted to a robot, drawn as in papers on ORCA: half-planes, preferred velocity,
+// chosen velocity.
 
 const CORNERS = 96;
 
@@ -37,7 +38,7 @@ export function drawVelocities(canvas, orca, velocity, colours) {
     if (close) context.closePath();
   };
 
-  // Forbidden sides, one over the other.
+  // Forbidden half-planes.
   const frame = [
     [-reach, -reach],
     [reach, -reach],

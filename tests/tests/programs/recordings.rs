@@ -159,6 +159,6 @@ fn errors_name_the_file_the_byte_and_the_remedy() {
     assert!(missing.contains("none.rec") && missing.contains("check the name"), "{missing}");
     fs::write(&file, "a text").expect("write");
     let text = refusal(&["page", &file, "--out", &page]);
-    assert!(text.contains("byte 0: this is no recording"), "{text}");
+    assert!(text.contains("byte 0: not a recording"), "{text}");
     assert!(!PathBuf::from(page).exists());
 }

@@ -261,7 +261,9 @@ fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
     let (status, kind, text) = match (request, file) {
         (_, Some(file)) => ("200 OK", file.kind, file.text.as_str()),
         (Request::File(_), None) => ("404 Not Found", "text/plain", "File not found.\n"),
-        (Request::Live(_), _) => ("503 Service Unavailable", "text/plain", "Too many pages are connected. Close one and reload.\n"),
+        (Request::Live(_), _) => {
+            ("503 Service Unavailable", "text/plain", "Too many pages are connected. Close one and reload.\n")
+        }
         (Request::Refused(Refused::Method), _) => ("405 Method Not Allowed", "text/plain", "Use GET.\n"),
         (Request::Refused(Refused::Forbidden), _) => {
             let text = "Open the address that the program printed, with its token.\n";

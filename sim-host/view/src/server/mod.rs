@@ -171,8 +171,8 @@ impl Server {
         }
     }
 
-    /// Whether it serves pages; if not, something in its thread went wrong, and never will again.
-    # Whether the server thread runs. It never restarts.
+    /// Whether the server thread runs. It never restarts.
+    #[must_use]
     pub fn is_alive(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
