@@ -57,7 +57,7 @@ pub const PROGRAMS: [Program; 5] = [
         name: "staya-voxel",
         package: "staya-fvm",
         commands: &[
-            ("orca", "Draw what ORCA forbids two robots, and measure the table that it can be looked up in"),
+            ("orca", "Draw the velocities that ORCA forbids two robots, and measure its lookup tables"),
             ("voxel", "Make, draw and measure functional voxel models: functions as tables for a microcontroller"),
         ],
     },

@@ -1,5 +1,5 @@
-//! The velocity obstacle of two robots (Tolok et al., FVM): how far half-planes from voxel templates are off the exact
-//! ones, and [`pictures`] of what the paper draws.
+//! The velocity obstacle of two robots (Tolok et al., FVM): errors of half-planes from voxel
+//! templates, and [`pictures`] as in the paper.
 
 pub mod pictures;
 mod view;
@@ -15,63 +15,62 @@ use staya_stats::{mean, quantile};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// Pairs of robots to compare on, from a seed: radii of 0.1 to 0.5 m, centres within 5 m and not overlapping, speeds
-/// up to 1.5 m/s (all uniform, places and velocities in discs), a horizon of 2 s, the whole correction.
+/// Random pairs of robots: radii of 0.1 to 0.5 m, centres within 5 m without overlap, speeds up to
+/// 1.5 m/s (all uniform, positions and velocities in discs), a horizon of 2 s, the whole
+/// correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// Number of pairs.
     pub pairs: u32,
-    /// Equal seeds give equal pairs.
+    /// Seed; equal seeds give equal pairs.
     pub seed: u64,
 }
 
-/// Errors of one kind.
+/// Statistics of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// Over all pairs.
+    /// Mean.
     pub mean: f64,
-    /// What 99 of 100 pairs do not exceed.
+    /// 99th percentile.
     pub p99: f64,
-    /// The greatest.
+    /// Maximum.
     pub max: f64,
 }
 
-/// One size of the template against the analytic form.
+/// Errors of one template size against the formula.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Size {
-    /// The type's name.
+    /// Name of the type.
     pub name: &'static str,
-    /// Bytes in flash.
+    /// Size in flash, bytes.
     pub bytes: usize,
     /// Nodes: sines of the half angle, and directions.
     pub nodes: [usize; 2],
     /// Angles between normals, degrees.
     pub angle_deg: Errors,
-    /// Differences of the demanded changes of velocity, in (R_A + R_B) / tau.
+    /// Differences of the required changes of velocity, in (R_A + R_B) / tau.
     pub distance: Errors,
 }
 
-/// How far templates are off.
+/// Errors of all template sizes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// Pairs compared.
+    /// Number of pairs.
     pub pairs: u32,
-    /// Their seed.
+    /// Seed of the pairs.
     pub seed: u64,
-    /// The smallest template first.
+    /// Templates, the smallest first.
     pub sizes: Vec<Size>,
 }
 
-/// A vector in the plane.
 type V = Vec2<f64>;
 
-/// Purpose of random numbers.
 const PAIRS: u32 = 0x0045_0201;
 
 const PARAMS: Params<f64> = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
 
 impl Sample {
-    /// The pairs: own velocity and neighbour.
+    /// Own velocity and neighbour of each pair.
     fn draw(&self) -> Vec<(Vec2<f64>, MovingBall<V>)> {
         (0..self.pairs)
             .map(|pair| {
@@ -95,7 +94,7 @@ impl Sample {
             .collect()
     }
 
-    /// Compares each size with the analytic form.
+    /// Compares each template size with the formula.
     #[must_use]
     pub fn report(&self) -> Report {
         let pairs = self.draw();
@@ -146,7 +145,6 @@ impl Errors {
     }
 }
 
-/// The table for people.
 impl fmt::Display for Report {
     fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -177,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn larger_templates_err_less_on_average_and_equal_seeds_say_the_same() {
+    fn larger_templates_have_smaller_mean_errors_and_equal_seeds_equal_reports() {
         let sample = Sample { pairs: 2000, seed: 1 };
         let report = sample.report();
         assert_eq!(report, sample.report());
