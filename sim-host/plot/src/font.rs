@@ -1,4 +1,4 @@
-//! Letters for machines without fonts: Noto Sans (SIL Open Font License) as outlines.
+//! Text for computers without fonts: Noto Sans (SIL Open Font License) as outlines.
 
 use std::sync::LazyLock;
 use tiny_skia::{Path, PathBuilder};
@@ -26,7 +26,8 @@ fn advance(face: &Face<'_>, letter: char) -> u16 {
     face.glyph_hor_advance(glyph).unwrap_or(0)
 }
 
-/// The outline of a line of text that starts at the origin, y down, baseline at 0; `None` if nothing is to be seen.
+/// The outline of a line of text from the origin, y down, baseline at 0; `None` if nothing is
+/// visible.
 #[must_use]
 pub fn outline(text: &str, size: f64, bold: bool) -> Option<Path> {
     let face = &FACES[usize::from(bold)];
@@ -40,7 +41,7 @@ pub fn outline(text: &str, size: f64, bold: bool) -> Option<Path> {
     pen.path.finish()
 }
 
-/// Moves a glyph in font units, y up, to its place in the line.
+/// Moves a glyph from font units, y up, to its place in the line.
 struct Pen {
     path: PathBuilder,
     scale: f32,
@@ -79,7 +80,8 @@ impl OutlineBuilder for Pen {
     }
 }
 
-/// Shrinks a text (to 70 % at most), then shortens it, until it fits into `room`; text and size to use.
+/// Shrinks a text (to at least 70 %), then shortens it, until it fits into `room`. Returns text and
+/// size.
 #[must_use]
 pub fn fit(text: &str, size: f64, bold: bool, room: f64) -> (String, f64) {
     let full = width(text, size, bold);

@@ -1,14 +1,14 @@
-//! Whom a rank talks to, and how much.
+//! Communication of a rank with traffic counters.
 
 use super::exchange::{Exchange, RankError, Traffic, decode, encode};
 use super::ground::Talk;
 use super::region::Region;
 
-/// What connects a rank, and where the others are.
+/// The connection of a rank, and the regions of all ranks.
 pub(super) struct Wire<'a> {
     pub(super) exchange: &'a mut dyn Exchange,
     pub(super) regions: Vec<Region>,
-    /// Those whose robots can be near enough.
+    /// Ranks whose robots may be near enough.
     neighbors: Vec<usize>,
     pub(super) traffic: Traffic,
 }
@@ -27,7 +27,7 @@ impl<'a> Wire<'a> {
         Ok(self.exchange.gather(own)?)
     }
 
-    /// Who is beside this rank, by a relation that both see alike.
+    /// Selects the neighbours by a symmetric relation.
     pub(super) fn choose(&mut self, is_beside: impl Fn(&Region, &Region) -> bool) {
         let own = self.rank();
         let others = (0..self.regions.len()).filter(|&rank| rank != own);
@@ -42,7 +42,7 @@ impl<'a> Wire<'a> {
         Ok(self.neighbors.iter().copied().zip(heard).collect())
     }
 
-    /// Rank 0 hears what all have; the others hear nothing.
+    /// Sends to rank 0, which returns all messages; other ranks return none.
     pub(super) fn gather_first(&mut self, own: Vec<u8>) -> Result<Vec<Vec<u8>>, RankError> {
         if self.rank() > 0 {
             self.traffic.recorded += own.len() as u64;
