@@ -1,4 +1,4 @@
-"""The page of `staya view` in Chromium: what it shows is what runs, and what is done in it is done to the robots."""
+"""The page of `staya view` in Chromium: it shows the run, and its actions reach the robots."""
 
 import http.server
 import json
@@ -21,12 +21,12 @@ def tick(page) -> int:
 
 
 def on_page(page, place: list[float]) -> list[float]:
-    """Where a place of the world is on the page, pixels."""
+    """Position of a point of the world on the page, pixels."""
     return page.evaluate("([x, y, z]) => staya.project(x, y, z ?? 0)", place)[:2]
 
 
 def place_of(page, index: int) -> list[float]:
-    """Where a robot is, metres."""
+    """Position of a robot, metres."""
     return page.evaluate("index => Array.from(staya.place(index))", index)
 
 
@@ -48,7 +48,7 @@ def play_to_the_end(page):
 
 
 def summary(*arguments) -> dict:
-    """What a run without a page says of itself."""
+    """Summary of a run without a page."""
     said = subprocess.run([STAYA, "run", *arguments, "--json", "-q"], cwd=ROOT, capture_output=True, check=True)
     return json.loads(said.stdout)
 
@@ -76,7 +76,7 @@ def test_it_moves_and_its_figures_are_those_of_the_run(view, look, tmp_path):
 def test_a_selected_robot_tells_what_it_knows(view, look):
     page = look(view(SWAP).url)
     until(lambda: tick(page) > 70, what="ticks")
-    # All sixteen are near enough to each other by then to be heard.
+    # All sixteen robots are in radio range of each other by then.
     seek(page, 70)
     select(page, 4)
     robot = until(lambda: (robot := page.evaluate("staya.robot")) and robot["tick"] == 70 and robot, what="its tick")
@@ -115,7 +115,7 @@ def test_a_slider_changes_a_parameter_in_the_controllers(view, look):
     panel.locator("label.slider", has=page.get_by_text("horizon", exact=True)).locator("input").press("End")
     page.locator("#step").click()
     until(lambda: page.evaluate("staya.robot.parameters.horizon_s") == greatest, what="the change")
-    # Nobody was singled out.
+    # The change was for all robots.
     select(page, 9)
     assert page.evaluate("staya.robot.parameters.horizon_s") == greatest
 
@@ -159,7 +159,7 @@ def test_strangers_get_nothing(view):
 
 @pytest.fixture
 def elsewhere():
-    """The address of a page of another origin."""
+    """URL of a page of another origin."""
 
     class Empty(http.server.BaseHTTPRequestHandler):
         def do_GET(self):
@@ -201,7 +201,7 @@ def test_recordings_play_from_a_server_and_from_one_file(view, look, tmp_path):
     subprocess.run(run, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     subprocess.run([STAYA, "page", recording, "--out", page_file, "-q"], check=True, stdout=subprocess.DEVNULL)
     assert page_file.stat().st_size < 1_000_000
-    # The file comes from the disk, and would complain if it asked the network for anything.
+    # The page comes from a file and would log an error if it used the network.
     for url, options in [(view(recording, "--paused").url, {}), (page_file.as_uri(), {"offline": True})]:
         page = look(url, **options)
         assert page.evaluate("staya.scene.mode") == "recording"

@@ -1,4 +1,4 @@
-"""Behaviours by themselves: ORCA, routes, flocks; what they refuse."""
+"""Single behaviours: ORCA, routes, flocks, and their argument errors."""
 
 import numpy as np
 import pytest
@@ -68,8 +68,8 @@ def test_numbers_of_any_kind_and_order_do():
         ({"step_s": 0}, "step_s is 0.0; give more than 0"),
         ({"horizon_s": -1}, "horizon_s is -1.0; give more than 0"),
         ({"share": 2}, "share is 2.0; give 0 or more, up to 1"),
-        ({"walls": [[0, 0, 1]]}, r"walls has the shape \(1, 3\); give an array of shape \(m, 4\): from x, y to x, y"),
-        ({"discs": "round"}, "discs is no array of numbers"),
+        ({"walls": [[0, 0, 1]]}, r"walls has the shape \(1, 3\); give an array of shape \(m, 4\): x, y to x, y"),
+        ({"discs": "round"}, "discs is not an array of numbers"),
         ({"goals": np.full((4, 2), np.nan)}, r"goals\[0, 0\] is nan"),
     ],
 )
@@ -90,7 +90,7 @@ def test_routes_go_round_walls_and_say_who_arrived():
     assert (np.abs(np.diff(first, axis=0)).max(axis=1) == 1).all() and land[first[:, 1], first[:, 0]].all()
     assert first[:, 1].min() <= 1 and routes.ticks[0] >= 22
     assert routes.paths[1].tolist() == [[0, 0]] and routes.ticks[1] == 0
-    # Seven cells to the east, round the three that are dear.
+    # Seven cells to the east, around the three slow ones.
     assert 7 <= routes.ticks[2] < 11
     land[:, 10] = 0
     assert not staya.route(land, [[2, 9]], [[18, 9]]).arrived[0]
@@ -101,7 +101,7 @@ def test_routes_go_round_walls_and_say_who_arrived():
     [
         ({"land": np.ones(5)}, r"land has the shape \(5,\) and the type float64; give whole numbers"),
         ({"land": [[1, 300]]}, r"land\[0, 1\] is 300; give 0 \(a wall\) to 255"),
-        ({"starts": [[9, 0]]}, r"starts\[0\] is \(9, 0\), off the land; give x below 3 and y below 2"),
+        ({"starts": [[9, 0]]}, r"starts\[0\] is \(9, 0\), off the map; give x below 3 and y below 2"),
         ({"goals": [[2, 1]]}, r"goals\[0\] is \(2, 1\), in a wall"),
         ({"goals": [[0, 0], [1, 1]]}, r"goals has the shape \(2, 2\) and .* of shape \(1, 2\)"),
         ({"radius": 17}, "radius is 17; give 1 to 16"),

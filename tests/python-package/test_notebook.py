@@ -1,4 +1,5 @@
-"""The notebook of the documentation runs, says what it promises, and is kept without outputs."""
+"""The notebook of the documentation runs, prints the documented results, and is stored without
+outputs."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Environments: the checkers of Gymnasium and PettingZoo, and what they do not check."""
+"""Environments: the checkers of Gymnasium and PettingZoo, and tests beyond them."""
 
 import warnings
 
@@ -81,7 +81,7 @@ def test_robots_leave_when_they_are_done(scenario):
     assert env.agents == ["robot_1", "robot_2", "robot_3", "robot_4"]
     left = []
     while env.agents:
-        # The first one hurries.
+        # Only the first robot moves.
         actions = {agent: to_goals(seen[agent]) * (1.0 if agent == "robot_1" else 0.5) for agent in env.agents}
         seen, rewards, terminated, truncated, _ = env.step(actions)
         left += [agent for agent, is_done in terminated.items() if is_done]

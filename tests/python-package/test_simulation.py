@@ -1,4 +1,4 @@
-"""Runs: the hashes of the command, arrays, orders, faults, results, errors."""
+"""Runs: trace hashes, arrays, orders, faults, results, errors."""
 
 import os
 import signal
@@ -141,7 +141,7 @@ def test_own_guidance_goes_behind_the_robots_safety(scenario):
     assert np.linalg.norm(sim.goals - sim.positions, axis=1).max() < 0.2
     assert result.summary["collisions"] == 0 < result.summary["packets"]["delivered"]
     assert len(result.series["tick"]) == 801
-    with pytest.raises(ValueError, match="which no scenario can say"):
+    with pytest.raises(ValueError, match="cannot be saved in a scenario"):
         sim.save("nowhere.toml")
 
 
@@ -170,9 +170,9 @@ def test_wrong_wishes_name_the_place(scenario):
     sim.wish(np.full((16, 2), 1e300))
     with pytest.raises(ValueError, match="mask has the shape"):
         sim.wish(np.zeros((16, 2)), mask=[True])
-    with pytest.raises(ValueError, match="velocities is no array of numbers"):
+    with pytest.raises(ValueError, match="velocities is not an array of numbers"):
         sim.wish([["a", "b"]] * 16)
-    with pytest.raises(ValueError, match=r"robot 1 goes from cell to cell .* \[plane\]"):
+    with pytest.raises(ValueError, match=r"robot 1 moves from cell to cell .* \[plane\]"):
         staya.Simulation(scenario("six-robots")).wish(np.zeros((6, 2)))
 
 

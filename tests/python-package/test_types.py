@@ -1,4 +1,4 @@
-"""The types of the compiled module are what it is."""
+"""The type stubs match the compiled module."""
 
 import subprocess
 import sys

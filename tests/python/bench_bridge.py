@@ -1,10 +1,11 @@
-"""Messages a second through `staya bridge`, beside a vehicle on pymavlink that does the same: PINGs that come in by UDP are read and answered.
+"""Compares `staya bridge` with a vehicle on pymavlink: both answer PINGs by UDP.
 
     STAYA=target/release/staya python tests/python/bench_bridge.py
 
-The same client, which neither reads nor makes messages, asks both, with so many PINGs on their way at a time. What counts is the processor time
-that a process takes for a PING in and one out, the system's calls included: the client's own speed and other programs play little part in it. Ends with an error when the bridge does not
-do it at least GOAL times as fast, and its own part at least OWN_GOAL times.
+One client with prepared messages queries both, with a fixed number of PINGs in transit. The measure
+is the processor time of the server for one PING and its answer, system calls included, which hardly
+depends on the client and on other programs. Fails if the bridge is not at least GOAL times as fast,
+and without system calls at least OWN_GOAL times.
 """
 
 import os
@@ -19,7 +20,7 @@ os.environ["MAVLINK20"] = "1"
 from pymavlink.dialects.v20 import common  # noqa: E402
 
 GOAL = 1.5
-# The system's calls are the same for both.
+# System calls cost the same for both.
 OWN_GOAL = 5.0
 WINDOW = 64
 ROOT = Path(__file__).resolve().parents[2]
@@ -49,20 +50,20 @@ def answer(port):
 
 
 def processor_seconds(pid):
-    """A process's own time, and that of the system for it, with all threads."""
+    """Processor time of a process and of the system on its behalf, all threads."""
     fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     return [int(field) / os.sysconf("SC_CLK_TCK") for field in fields[11:13]]
 
 
 def measure(process, port, count):
-    """Seconds and processor seconds that `count` PINGs take."""
+    """Seconds and processor seconds for `count` PINGs."""
     mav = common.MAVLink(None, srcSystem=255, srcComponent=190)
     pings = [common.MAVLink_ping_message(1, number, 0, 0).pack(mav) for number in range(256)]
     client = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     client.connect(("127.0.0.1", port))
     client.settimeout(0.5)
     ping_id = bytes([4, 0, 0])
-    # Until it is there.
+    # Waits for the server.
     deadline = time.monotonic() + 20
     while True:
         try:
@@ -81,7 +82,7 @@ def measure(process, port, count):
             client.send(pings[sent % 256])
             sent += 1
         try:
-            # What the vehicle says by itself does not count.
+            # Telemetry does not count.
             answered += client.recv(2048)[7:10] == ping_id
         except TimeoutError:
             lost = sent - answered

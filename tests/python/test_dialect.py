@@ -1,4 +1,5 @@
-"""The dialect: our cut of the public messages is what the public one has, and what Rust says Python understands, and the other way round."""
+"""The dialect: its public messages equal the public dialect's, and Rust and Python understand each
+other's frames."""
 
 from pathlib import Path
 
@@ -30,7 +31,7 @@ def test_public_messages_are_those_of_the_public_dialect(dialect, file, count):
         assert message.crc_extra == public.crc_extra, message.name
         assert ours.message_lengths[message.id] == public.unpacker.size, message.name
         assert [field.name for field in message.fields] == public.fieldnames, message.name
-        # Extension fields are not in the sum.
+        # Extension fields are not part of the checksum.
         assert [field.type for field in message.fields] == public.fieldtypes, message.name
 
 

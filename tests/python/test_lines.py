@@ -1,4 +1,4 @@
-"""What every test here stands on: the program starts, and the dialect is there."""
+"""Preconditions of all tests here: the program starts, and the dialect is installed."""
 
 
 def test_program_says_what_it_is(staya):

@@ -1,4 +1,5 @@
-"""MCAP files of `staya run --mcap`, read by the format's own Python package and by protobuf with the schemas in the file."""
+"""MCAP files of `staya run --mcap`, read by the official Python package and by protobuf with the
+schemas in the file."""
 
 import csv
 import json
@@ -17,7 +18,7 @@ from mcap.reader import NonSeekingReader, make_reader
 ROOT = Path(__file__).resolve().parents[2]
 STAYA = os.environ.get("STAYA", ROOT / "target/debug/staya")
 
-# Numbers and types of fields in Foxglove's own .proto files; what is in a file must be the same.
+# Numbers and types of fields in Foxglove's .proto files, which the file must equal.
 FOXGLOVE = {
     "SceneUpdate": {"deletions": 1, "entities": 2},
     "SceneEntity": {"timestamp": 1, "frame_id": 2, "id": 3, "lifetime": 4, "frame_locked": 5, "metadata": 6, "spheres": 9, "cylinders": 10, "lines": 11},
@@ -32,7 +33,7 @@ FOXGLOVE = {
 
 
 def run(tmp_path, scenario, *arguments):
-    """Runs a scenario; gives the MCAP file and the lines of trace.csv."""
+    """Runs a scenario. Returns the MCAP file and the lines of trace.csv."""
     file, out = tmp_path / "run.mcap", tmp_path / "out"
     command = [STAYA, "run", ROOT / "scenarios" / scenario, "--quiet", "--out", out, "--mcap", file, *arguments]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=120)
@@ -41,7 +42,8 @@ def run(tmp_path, scenario, *arguments):
 
 
 def nose(turn):
-    """Where a body's own x axis points, which a turn without a change of length has taken there, level from side to side."""
+    """Direction of a body's x axis after its rotation, which must not change lengths or roll the
+    body."""
     x, y, z, w = turn.x, turn.y, turn.z, turn.w
     assert x**2 + y**2 + z**2 + w**2 == pytest.approx(1.0)
     side = 2 * (y * z + x * w)
@@ -50,13 +52,13 @@ def nose(turn):
 
 
 def direction(velocity):
-    """Of length 1; east for what stands."""
+    """Normalised; east for a stationary body."""
     speed = math.hypot(*velocity)
     return [value / speed for value in velocity] if speed > 0 else [1.0, 0.0, 0.0]
 
 
 def decoder(schema):
-    """What reads the messages of a schema, by nothing but what the file says."""
+    """A decoder for the messages of a schema that uses only the file."""
     if schema.encoding == "jsonschema":
         validator = jsonschema.Draft202012Validator(json.loads(schema.data))
 
@@ -158,7 +160,7 @@ def test_a_file_that_is_cut_off_is_read_up_to_there(tmp_path):
     cut.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
     found = []
     with open(cut, "rb") as stream, pytest.raises((McapError, EOFError)):
-        # In the order of the file: to sort them, the reader would have to come to the end.
+        # In file order: sorting would need the end of the file.
         for message in messages(NonSeekingReader(stream), log_time_order=False):
             found.append(message)
     assert len(whole) / 3 < len(found) < len(whole)

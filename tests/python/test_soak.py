@@ -1,11 +1,11 @@
-"""What `soak.py` judges by: that it can say no."""
+"""The checks of `soak.py` can fail."""
 
 import pytest
 import soak
 
 
 def of(*samples):
-    """A process with such samples: bytes, threads, files, seconds of waiting."""
+    """A process with given samples: bytes, threads, files, seconds of waiting."""
     process = object.__new__(soak.Process)
     process.name = "it"
     process.samples = [

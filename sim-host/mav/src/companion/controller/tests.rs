@@ -22,7 +22,7 @@ fn at(x: f64, y: f64) -> Body {
 
 #[test]
 fn the_controller_heads_for_its_goal_and_sends_beacons() {
-    let mut controller = brains(1).remove(0);
+    let mut controller = controllers(1).remove(0);
     let mut body = at(0.0, 0.0);
     for step in 0..50 {
         let out = controller.step(&body, true, &[], TICK * step);
@@ -39,7 +39,7 @@ fn the_controller_heads_for_its_goal_and_sends_beacons() {
 
 #[test]
 fn an_uncontrolled_vehicle_is_passive_and_gets_no_command() {
-    let mut controller = brains(1).remove(0);
+    let mut controller = controllers(1).remove(0);
     let _ = controller.step(&at(0.0, 0.0), true, &[], Duration::ZERO);
     let out = controller.step(&at(1.0, 0.0), false, &[], TICK);
     assert!(!out.outbox.is_empty(), "beacons continue");
@@ -74,7 +74,7 @@ fn a_lagging_vehicle_does_not_overshoot_its_tolerance() {
 fn least_distance(error_m: f64) -> f64 {
     let mut controllers = controllers(2);
     let mut second = controllers.remove(1);
-    let mut first = brains.remove(0);
+    let mut first = controllers.remove(0);
     let (stands, mut moves) = (Body { error_m, ..at(25.0, 0.1) }, at(10.0, 0.0));
     let mut least = f64::INFINITY;
     for step in 0..400 {

@@ -51,7 +51,7 @@ impl State {
             Self::Grounded => "waits: on the ground or climbing",
             Self::Stopped => "position stale: stopped",
             Self::Distrusted => "position not trusted: stopped",
-            Self::Steering => "steers",
+            Self::Steering => "companion has control",
         }
     }
 

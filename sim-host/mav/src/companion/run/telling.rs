@@ -55,7 +55,7 @@ impl Companions<'_> {
             let link = &mut self.links[index];
             if trouble != link.trouble {
                 let line = match &trouble {
-                    Some(error) => format!("staya: {}: no connection ({error}); retrying every second", link.name),
+                    Some(error) => format!("staya: {}: no connection: {error}; retrying every second", link.name),
                     None => format!("staya: {}: connected", link.name),
                 };
                 link.trouble = trouble;

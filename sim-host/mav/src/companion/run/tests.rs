@@ -369,7 +369,7 @@ fn a_dry_run_prints_velocities_and_texts() {
     let shown = world.shown.iter().filter(|line| line.contains("robot 1: "));
     let shown: Vec<_> = shown.map(|line| line.split_once("robot 1: ").expect("a line of robot 1").1).collect();
     assert!(shown.contains(&"COMMAND_LONG SET_MESSAGE_INTERVAL GLOBAL_POSITION_INT 10.0 Hz"), "{shown:?}");
-    assert!(shown.contains(&"STATUSTEXT \"staya: steers\""), "{shown:?}");
+    assert!(shown.contains(&"STATUSTEXT \"staya: companion has control\""), "{shown:?}");
     let velocities: Vec<_> = shown.iter().filter(|line| line.contains(" m/s north, ")).collect();
     assert!((2..=3).contains(&velocities.len()), "one per second: {shown:?}");
     assert!(velocities.iter().any(|line| !line.contains(" 0.00 m/s north, 0.00 m/s east")), "{velocities:?}");
