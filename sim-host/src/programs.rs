@@ -25,6 +25,7 @@ pub struct Program {
 /// The program for live pages and MCAP.
 pub const VIEW: &Program = &PROGRAMS[1];
 
+/// All programs beside `staya`.
 pub const PROGRAMS: [Program; 5] = [
     Program {
         name: "staya-lab",

@@ -53,7 +53,7 @@ def summary(*arguments) -> dict:
     return json.loads(said.stdout)
 
 
-def test_it_moves_and_its_figures_are_those_of_the_run(view, look, tmp_path):
+def test_the_page_shows_the_summary_of_the_run(view, look, tmp_path):
     page = look(view(SIX, "--paused").url)
     before = page.screenshot()
     assert tick(page) == 0
@@ -73,7 +73,7 @@ def test_it_moves_and_its_figures_are_those_of_the_run(view, look, tmp_path):
     assert shown["arrived"] == run["arrived"]
 
 
-def test_a_selected_robot_tells_what_it_knows(view, look):
+def test_a_selected_robot_shows_its_knowledge(view, look):
     page = look(view(SWAP).url)
     until(lambda: tick(page) > 70, what="ticks")
     # All sixteen robots are in radio range of each other by then.
@@ -84,7 +84,7 @@ def test_a_selected_robot_tells_what_it_knows(view, look):
     assert page.get_by_text("Robot 5", exact=True).first.is_visible()
 
 
-def test_a_robot_arrives_where_its_goal_was_dragged(view, look):
+def test_a_robot_arrives_at_its_dragged_goal(view, look):
     page = look(view(SWAP, "--paused").url)
     select(page, 4)
     was, wanted = page.evaluate("Array.from(staya.target(4))"), [2.7, 0.5, 0]
@@ -120,7 +120,7 @@ def test_a_slider_changes_a_parameter_in_the_controllers(view, look):
     assert page.evaluate("staya.robot.parameters.horizon_s") == greatest
 
 
-def test_what_is_done_by_the_page_is_saved_and_done_again(view, look, tmp_path):
+def test_actions_of_the_page_are_saved_and_repeated(view, look, tmp_path):
     page = look(view(SWAP, "--paused").url)
     for order in [
         {"kind": "goal", "robot": 0, "place_m": [3, 3, 0]},
@@ -138,7 +138,7 @@ def test_what_is_done_by_the_page_is_saved_and_done_again(view, look, tmp_path):
     assert summary(str(saved), "--out", str(tmp_path / "out"))["trace_hash"] == end
 
 
-def test_strangers_get_nothing(view):
+def test_requests_without_the_token_are_refused(view):
     url = view(SIX, "--paused").url
     host = url.split("/?")[0]
     for request in [
@@ -176,7 +176,7 @@ def elsewhere():
         server.shutdown()
 
 
-def test_only_its_own_page_gets_a_socket(browser, view, elsewhere):
+def test_only_the_own_page_gets_a_socket(browser, view, elsewhere):
     url = view(SIX, "--paused").url
     live = url.replace("http://", "ws://").replace("/?", "/live?")
     wrong = re.sub("token=.*", "token=" + 32 * "0", live)
@@ -212,7 +212,7 @@ def test_recordings_play_from_a_server_and_from_one_file(view, look, tmp_path):
         assert page.screenshot() != before
 
 
-def test_it_fits_a_phone_in_light_and_dark(view, look):
+def test_the_page_fits_a_phone_in_light_and_dark(view, look):
     url = view(SWAP, "--paused").url
     pictures = []
     for scheme in ["light", "dark"]:

@@ -31,7 +31,7 @@ def middle(page, x: float, y: float) -> list[float]:
     return page.evaluate("([x, y]) => staya.project(x, y)", [x, y])
 
 
-def test_a_page_looks_on_and_says_when_it_is_over(watched, look):
+def test_a_live_page_shows_the_run_and_its_end(watched, look):
     url = watched("bridge", "scenarios/bridge.toml", "--mavlink", "udpout:127.0.0.1:9", "--seconds", "6", "-q")
     page = look(url)
     assert page.evaluate("staya.scene.mode") == "watch"
@@ -45,7 +45,7 @@ def test_a_page_looks_on_and_says_when_it_is_over(watched, look):
     assert "last picture" in page.locator("#banner").inner_text()
 
 
-def test_the_theme_that_was_chosen_is_there_the_next_time_on_any_port(browser):
+def test_the_chosen_theme_is_kept_on_any_port(browser):
     context = browser.new_context(color_scheme="light")
     themes = []
     for _ in range(2):

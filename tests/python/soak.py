@@ -125,7 +125,7 @@ class Judge:
                   f"{growth / 1024:+.0f} KiB in the second half, {GROWTH // 1024} at most; {most / mib:.1f} MiB at most, {last['bytes'] / mib:.1f} at the end")
         peaks = [max(sample[of] for sample in process.samples) for of in ("threads", "files")]
         is_same = all(first[of] == last[of] for of in ("threads", "files"))
-        self.says(process.name, "threads and descriptors are as before", is_same,
+        self.says(process.name, "threads and descriptors are unchanged", is_same,
                   f"{first['threads']} and {first['files']}, at most {peaks[0]} and {peaks[1]}, then {last['threads']} and {last['files']}")
 
     def deadlines(self, process, missed, ticks, tick_s, slowest_s):
@@ -239,20 +239,20 @@ class Flood:
         judge.says(self.name, "what was sent came in, or the system dropped it", sent == crowd["frames_in"] + dropped["crowd"],
                    f"{sent} frames, {flood['sent'] / flood['seconds']:.0f} a second of one peer: {crowd['frames_in']} in, {dropped['crowd']} dropped by the system")
         accounts(judge, self.name, report)
-        judge.says(self.name, "who behaves is answered", station["answered"] == station["requests"] > 0,
+        judge.says(self.name, "well-behaved clients are answered", station["answered"] == station["requests"] > 0,
                    f"{station['answered']} of {station['requests']} requests in {station['tries']} tries, {waits(station)}")
         answers, seconds = sum(report["commands"].values()), report["wall_seconds"]
-        judge.says(self.name, "who floods gets no more answers than a peer may have", answers <= 2 * (1000 + 1000 * seconds),
+        judge.says(self.name, "a flooding client gets at most a peer's answers", answers <= 2 * (1000 + 1000 * seconds),
                    f"{answers} commands answered, {answers / seconds:.0f} a second")
         # The checksum of unknown messages is unknown, so a frame that looks like one counts as
         # ignored.
-        judge.says(self.name, "junk is counted to the byte", junk["bytes"] == noise["junk_bytes"] + noise["bytes_in"] + dropped["junk"] * junk["size"],
+        judge.says(self.name, "every byte of junk is counted", junk["bytes"] == noise["junk_bytes"] + noise["bytes_in"] + dropped["junk"] * junk["size"],
                    f"{junk['bytes']} bytes from 200 ports: {noise['junk_bytes']} junk, {noise['frames_in']} frames that nobody knows, {dropped['junk']} datagrams dropped")
         cut, opened = self.found["cut"], self.found["half_open"]["opened"]
-        judge.says(self.name, "a link that was cut comes back", cut["heard"] >= cut["links"] - 1 > 0,
+        judge.says(self.name, "a cut link reconnects", cut["heard"] >= cut["links"] - 1 > 0,
                    f"{cut['heard']} of {cut['links']} times, among {opened} half-open connections, {waits(cut)}")
         judge.deadlines(process, report["deadlines_missed"], report["ticks"], TICK_S[BRIDGE], report["slowest_seconds"])
-        judge.says(self.name, "nobody touched anybody", report["collisions"] == 0, f"{report['collisions']} overlaps")
+        judge.says(self.name, "no bodies overlapped", report["collisions"] == 0, f"{report['collisions']} overlaps")
         judge.memory(process)
 
 
@@ -282,12 +282,12 @@ class Key:
         report = process.end(0)
         station, sent, refused = self.found["station"], self.found["impostors"], report["refused"]
         accounts(judge, self.name, report)
-        judge.says(self.name, "who has the key is answered", station["answered"] == station["requests"] > 0,
+        judge.says(self.name, "clients with the key are answered", station["answered"] == station["requests"] > 0,
                    f"{station['answered']} of {station['requests']} requests, {waits(station)}")
         # Frames dropped by the system or a full queue are of unknown kind.
         lost = dropped + report["lines"][0]["lost_in"] + report["frames_waiting"]
         short = sum(abs(sent[kind] - refused[kind]) for kind in ("unsigned", "forged", "replayed", "ahead"))
-        judge.says(self.name, "each refusal is counted by its reason", short <= lost and report["frames_refused"] > 0,
+        judge.says(self.name, "each rejection is counted by its reason", short <= lost and report["frames_refused"] > 0,
                    ", ".join(f"{refused[kind]} of {sent[kind]} {kind}" for kind in ("unsigned", "forged", "replayed", "ahead")) + f"; {lost} lost before")
         judge.deadlines(process, report["deadlines_missed"], report["ticks"], TICK_S[BRIDGE], report["slowest_seconds"])
         judge.memory(process)
@@ -374,12 +374,12 @@ class Companion:
         setpoints = [len(vehicle.setpoints) for vehicle in self.vehicles]
         vehicles = report["vehicles"]
         told = {of: sum(vehicle[of] for vehicle in vehicles) for of in ("setpoints", "hand_overs", "restarts", "stops", "packets_refused")}
-        judge.says(self.name, "all are steered to the end", min(setpoints) > 0 and all(vehicle["setpoints"] > 0 for vehicle in vehicles),
+        judge.says(self.name, "all vehicles are controlled to the end", min(setpoints) > 0 and all(vehicle["setpoints"] > 0 for vehicle in vehicles),
                    f"{told['setpoints']} setpoints, {sum(setpoints)} of them arrived; {told['hand_overs']} hand-overs, {told['restarts']} restarts, {told['stops']} stops")
         judge.says(self.name, "it hands over when a pilot takes a vehicle", told["hand_overs"] >= self.trouble["taken"] > 0,
                    f"{self.trouble['taken']} taken by pilots, {self.trouble['restarts']} restarted, {self.trouble['cuts']} links cut")
-        judge.says(self.name, "nobody touched anybody", self.fleet.least_gap > 0, f"{self.fleet.least_gap:.2f} m at least between bodies")
-        judge.says(self.name, "its last word is to stand", stood < stand() == len(self.vehicles), f"{stand()} of {len(self.vehicles)} vehicles, {stood} before the end")
+        judge.says(self.name, "no bodies overlapped", self.fleet.least_gap > 0, f"{self.fleet.least_gap:.2f} m at least between bodies")
+        judge.says(self.name, "the last setpoint is zero", stood < stand() == len(self.vehicles), f"{stand()} of {len(self.vehicles)} vehicles, {stood} before the end")
         [noise] = report["links"]
         sent = self.found["junk"]["bytes"]
         is_counted = noise["junk_bytes"] + noise["bytes_in"] >= sent > 0 and noise["junk_bytes"] > sent // 2

@@ -32,7 +32,7 @@ def bridge(staya, free_port):
         one.close()
 
 
-def test_every_robot_is_a_vehicle_that_says_where_and_how_it_is(bridge):
+def test_every_robot_is_a_vehicle_with_telemetry(bridge):
     ten = bridge()
     beats = {}
     while len(beats) < 10:
@@ -93,7 +93,7 @@ def test_parameters_are_listed_set_limited_and_have_an_effect(bridge):
         assert abs(fastest[system] - limit) < 0.05, fastest
 
 
-def test_goto_velocity_and_what_ends_it(bridge):
+def test_goto_and_velocity_setpoints_and_their_end(bridge):
     ten = bridge()
     # Setpoints count in GUIDED only.
     ten.set_local(1, POSITION, (-5, 0, 0))
@@ -119,7 +119,7 @@ def test_goto_velocity_and_what_ends_it(bridge):
     ten.mode(1, AUTO)
 
 
-def test_what_cannot_be_is_refused_in_the_right_way(bridge):
+def test_impossible_commands_get_the_right_result(bridge):
     ten = bridge()
     for command, params, result in [
         (400, (NAN,), DENIED),
@@ -152,7 +152,7 @@ def test_what_cannot_be_is_refused_in_the_right_way(bridge):
                                    "unsupported": 6, "unsupported frame": 1}
 
 
-def test_commands_reach_whom_they_are_for(bridge):
+def test_commands_reach_their_target_only(bridge):
     ten = bridge()
     assert ten.command(3, 400, 0) == ACCEPTED
     armed = {}
@@ -173,7 +173,7 @@ def test_commands_reach_whom_they_are_for(bridge):
     assert answers == set(range(1, 11))
 
 
-def test_rates_are_those_that_were_asked_for(bridge):
+def test_streams_have_the_requested_rates(bridge):
     ten = bridge()
     ten.link.port.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
 
@@ -238,7 +238,7 @@ def upload(one, system, items):
         one.sink.mission_item_int_send(system, 1, **items[asked.seq])
 
 
-def test_missions_go_up_come_down_and_are_gone_through(bridge):
+def test_missions_are_uploaded_downloaded_and_flown(bridge):
     ten = bridge()
     # Item 0 is home, as in ArduPilot.
     items = [mission_item(0, 0, 0), mission_item(1, 5, 8), mission_item(2, 5, 12)]
@@ -265,7 +265,7 @@ def test_missions_go_up_come_down_and_are_gone_through(bridge):
     ten.position(5, lambda at: at.vy < -0.3)
 
 
-def test_orca_keeps_two_apart_that_are_sent_to_the_same_place(bridge):
+def test_orca_separates_two_robots_with_one_goal(bridge):
     ten = bridge()
     for system in (1, 5):
         ten.mode(system, GUIDED)
@@ -357,7 +357,7 @@ def test_the_formation_changes_while_it_runs(bridge, tmp_path):
     stands_like(wedge)
 
 
-def test_places_of_the_dialect_are_the_robots_own_goals(bridge):
+def test_goals_of_the_dialect_set_the_robots_goals(bridge):
     ten = bridge()
     ten.sink.staya_place_send(-2000, 4000, 0, 0, 0, 0, 0, 1, 6, 1, 0)
     ten.arrives(6, 4, -2)
@@ -387,7 +387,7 @@ def test_takeoff_goto_and_landing_in_space(bridge):
     assert four.next("EXTENDED_SYS_STATE", 1).landed_state == 1
 
 
-def test_only_who_has_the_key_is_heard(bridge, tmp_path, staya, free_port):
+def test_only_clients_with_the_key_are_accepted(bridge, tmp_path, staya, free_port):
     key = bytes(range(32))
     file = tmp_path / "key"
     file.write_text(key.hex())
@@ -437,7 +437,7 @@ def test_a_hundred_vehicles_at_ten_positions_a_second_lose_nothing(bridge):
     print(f"{figures['lines'][0]['bytes_out_per_s'] / 1000:.0f} kB/s")
 
 
-def test_a_run_that_nobody_commands_is_the_run_without_a_bridge(staya, free_port, tmp_path):
+def test_a_run_without_commands_equals_a_run_without_a_bridge(staya, free_port, tmp_path):
     for scenario in ["swap-circle", "six-robots"]:
         path, ticks = f"scenarios/{scenario}.toml", 60
         line = f"udpout:127.0.0.1:{free_port()}"
@@ -449,7 +449,7 @@ def test_a_run_that_nobody_commands_is_the_run_without_a_bridge(staya, free_port
         assert figures["ticks"] == ticks
 
 
-def test_ticks_that_come_late_are_counted(staya, free_port):
+def test_late_ticks_are_counted(staya, free_port):
     # Ticks of 50 microseconds for a hundred robots.
     line = f"udpout:127.0.0.1:{free_port()}"
     hasty = staya("bridge", "scenarios/bridge-100.toml", "--mavlink", line, "--ticks", 50, "--speed", 1000, "--json", "--quiet")
@@ -473,13 +473,13 @@ def test_a_log_has_all_frames_both_ways(bridge, tmp_path):
     assert sum(senders.values()) == figures["frames_out"] and len(senders) == 10
 
 
-def test_more_robots_than_vehicles_can_be_are_an_error(staya, free_port):
+def test_too_many_robots_are_an_error(staya, free_port):
     process = staya("bridge", "scenarios/scale-small.toml", "--mavlink", f"udpout:127.0.0.1:{free_port()}")
     assert process.wait() == 1
     assert "1 to 254" in process.output()
 
 
-def test_clients_over_tcp_and_two_lines_see_the_same(staya, free_port):
+def test_clients_on_two_links_receive_the_same(staya, free_port):
     ports = [free_port(), free_port()]
     process = staya("bridge", TEN, "--mavlink", f"tcpin:127.0.0.1:{ports[0]}", "--mavlink", f"udpin:127.0.0.1:{ports[1]}", "--quiet")
     tcp = mavutil.mavlink_connection(f"tcp:127.0.0.1:{ports[0]}", source_system=254, retries=20)

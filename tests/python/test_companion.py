@@ -32,7 +32,7 @@ def one(tmp_path, free_port, staya):
 
 
 @pytest.mark.parametrize("kind", ["rover", "copter", "px4"])
-def test_goes_to_its_goal_in_a_mode_that_the_pilot_chose(one, kind):
+def test_a_vehicle_reaches_its_goal_in_the_pilots_mode(one, kind):
     vehicle, fleet, start = one(kind, armed=True, airborne=kind != "rover")
     with fleet:
         process = start()
@@ -60,7 +60,7 @@ def test_goes_to_its_goal_in_a_mode_that_the_pilot_chose(one, kind):
 
 
 @pytest.mark.parametrize("kind", ["rover", "copter", "px4"])
-def test_asks_arms_and_takes_off_if_it_is_told_to(one, kind):
+def test_the_entry_requests_the_mode_arms_and_takes_off(one, kind):
     rules = 'entry = "once"\narm = true' + ("\ntakeoff = true\naltitude_m = 3" if kind != "rover" else "")
     vehicle, fleet, start = one(kind, rules, goal=(2.0, 0.0), position_after=1.5)
     with fleet:
@@ -77,7 +77,7 @@ def test_asks_arms_and_takes_off_if_it_is_told_to(one, kind):
         ends_well(process)
 
 
-def test_the_pilots_takeoff_is_left_alone(one):
+def test_the_pilots_takeoff_is_not_interrupted(one):
     vehicle, fleet, start = one("copter", goal=(4.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start()
@@ -91,7 +91,7 @@ def test_the_pilots_takeoff_is_left_alone(one):
         ends_well(process)
 
 
-def test_a_late_position_is_waited_for(one):
+def test_the_companion_waits_for_a_late_position(one):
     vehicle, fleet, start = one(position_after=4.0, mode=GUIDED, armed=True)
     with fleet:
         process = start()
@@ -103,7 +103,7 @@ def test_a_late_position_is_waited_for(one):
         ends_well(process)
 
 
-def test_stale_telemetry_stops_and_fresh_telemetry_goes_on(one):
+def test_stale_telemetry_stops_and_fresh_telemetry_resumes(one):
     vehicle, fleet, start = one(goal=(30.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start()
@@ -124,7 +124,7 @@ def test_stale_telemetry_stops_and_fresh_telemetry_goes_on(one):
 
 
 @pytest.mark.parametrize("kind", ["rover", "px4"])
-def test_a_vehicle_whose_gps_is_lost_stands_and_goes_on_after_a_while(one, kind):
+def test_a_vehicle_without_gps_stops_and_resumes_later(one, kind):
     # PX4 leaves OFFBOARD without setpoints.
     mode = GUIDED if kind == "rover" else PILOT
     vehicle, fleet, start = one(kind, 'entry = "once"', goal=(60.0, 0.0), mode=mode, armed=True, airborne=kind == "px4")
@@ -161,7 +161,7 @@ def test_a_lost_link_ends_setpoints_and_the_vehicle_stops(one):
 
 @pytest.mark.parametrize("kind", ["rover", "px4"])
 @pytest.mark.parametrize("entry", ["wait", "once"])
-def test_the_pilot_takes_over_and_nothing_is_taken_back(one, kind, entry):
+def test_the_pilot_takes_over_permanently(one, kind, entry):
     vehicle, fleet, start = one(
         kind, f'entry = "{entry}"', goal=(60.0, 0.0), armed=True, airborne=kind == "px4", mode=PILOT if entry == "once" else GUIDED
     )
@@ -187,7 +187,7 @@ def test_the_pilot_takes_over_and_nothing_is_taken_back(one, kind, entry):
         ends_well(process)
 
 
-def test_a_lost_ground_station_is_a_hand_over_too(one):
+def test_a_lost_ground_station_counts_as_a_hand_over(one):
     vehicle, fleet, start = one(goal=(60.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start()
@@ -201,7 +201,7 @@ def test_a_lost_ground_station_is_a_hand_over_too(one):
         ends_well(process)
 
 
-def test_a_restarted_autopilot_is_the_pilots(one):
+def test_a_restarted_autopilot_belongs_to_the_pilot(one):
     vehicle, fleet, start = one(rules='entry = "once"\narm = true', goal=(60.0, 0.0))
     with fleet:
         process = start()
@@ -247,7 +247,7 @@ def test_links_that_lose_delay_and_damage_frames(one):
     assert report["interrupted"] and report["vehicles"][0]["restarts"] == 0
 
 
-def test_a_link_over_tcp_that_breaks_is_made_anew(tmp_path, free_port, staya):
+def test_a_broken_tcp_link_reconnects(tmp_path, free_port, staya):
     port = free_port()
     write_scenario(tmp_path, [((0.0, 0.0), (40.0, 0.0))])
     config = write_config(tmp_path, [port], "rover")
@@ -263,7 +263,7 @@ def test_a_link_over_tcp_that_breaks_is_made_anew(tmp_path, free_port, staya):
         ends_well(process)
 
 
-def test_a_connection_that_is_refused_is_told(tmp_path, free_port, staya):
+def test_a_refused_connection_is_reported(tmp_path, free_port, staya):
     port = free_port()
     write_scenario(tmp_path, [((0.0, 0.0), (40.0, 0.0))])
     config = write_config(tmp_path, [port], "rover")
@@ -288,7 +288,7 @@ def test_a_wrong_origin_moves_nothing(tmp_path, free_port, staya):
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux's /proc")
-def test_waiting_costs_little(one):
+def test_waiting_needs_little_processor_time(one):
     vehicle, fleet, start = one(armed=True)
     with fleet:
         process = start()
@@ -339,7 +339,7 @@ def test_log_is_read_by_pymavlink(one, tmp_path, dialect):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs Linux's /dev/full")
-def test_a_full_disk_does_not_end_steering(one):
+def test_a_full_disk_does_not_end_control(one):
     vehicle, fleet, start = one(goal=(40.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start("--tlog", "/dev/full")
@@ -354,7 +354,7 @@ def test_a_full_disk_does_not_end_steering(one):
     assert "what is there is not all" in output
 
 
-def test_signed_links_take_the_right_key_and_no_other(one, tmp_path):
+def test_signed_links_accept_the_right_key_only(one, tmp_path):
     key = bytes(range(32))
     file = tmp_path / "link.key"
     file.write_text(key.hex() + "\n")

@@ -58,7 +58,7 @@ class Lan:
 
 # Each second until they are side by side.
 @pytest.mark.parametrize("after_s", [1.0, 2.0, 3.0, 4.0])
-def test_two_that_hear_each_other_no_more_stand_before_they_touch(tmp_path, free_port, staya, after_s):
+def test_two_vehicles_without_contact_stop_before_they_touch(tmp_path, free_port, staya, after_s):
     robots = [((0.0, 0.0), (WAY, 0.0)), ((WAY, 0.1), (0.0, 0.1))]
     write_scenario(tmp_path, robots, speed=SPEED)
     ports = [free_port(), free_port()]

@@ -39,7 +39,7 @@ def test_six_cross_and_keep_their_distance(tmp_path, free_port, staya, faults):
 
 
 @pytest.mark.parametrize("way", ["multicast", "peers", "tunnel"])
-def test_companions_in_two_processes_hear_each_other(tmp_path, free_port, staya, way):
+def test_companions_in_two_processes_exchange_beacons(tmp_path, free_port, staya, way):
     robots = [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))]
     write_scenario(tmp_path, robots)
     ports, lan = [free_port(), free_port()], [free_port(), free_port()]
@@ -84,7 +84,7 @@ def two_that_meet(tmp_path, free_port, staya, keys, packets):
 
 
 @pytest.mark.parametrize("packets", ["postcard", "mavlink"])
-def test_sealed_packets_are_heard_by_who_has_the_key(tmp_path, free_port, staya, packets):
+def test_encrypted_packets_are_accepted_with_the_key(tmp_path, free_port, staya, packets):
     for report in two_that_meet(tmp_path, free_port, staya, ["one for all", "one for all"], packets):
         assert report["neighbors"] == 1 and report["packets_heard"] > 10 and report["packets_refused"] == 0, report
 
@@ -96,7 +96,7 @@ def test_packets_without_the_right_key_are_refused(tmp_path, free_port, staya, k
     assert first["neighbors"] == 0 and first["packets_heard"] == 0 and first["packets_refused"] > 10, first
 
 
-def test_the_others_go_around_one_that_its_pilot_has_taken(tmp_path, free_port, staya):
+def test_vehicles_avoid_one_under_its_pilots_control(tmp_path, free_port, staya):
     robots = [((0.0, 0.0), (10.0, 0.0)), ((5.0, 0.1), (5.0, 8.0))]
     write_scenario(tmp_path, robots)
     port = free_port()

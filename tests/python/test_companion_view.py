@@ -24,7 +24,7 @@ def places(frame: bytes) -> list[tuple[float, float]]:
     return list(zip(x, y))
 
 
-def test_it_shows_vehicles_and_who_is_heard_and_dead_pages_cost_nothing(tmp_path, free_port, staya):
+def test_the_page_shows_vehicles_and_dead_pages_cost_nothing(tmp_path, free_port, staya):
     write_scenario(tmp_path, ROBOTS)
     ports, lan = [free_port(), free_port()], [free_port(), free_port()]
     vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", ports[i]), ROBOTS[i][0], mode=GUIDED, armed=True) for i in range(2)]

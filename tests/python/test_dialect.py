@@ -22,7 +22,7 @@ def value(text):
 
 
 @pytest.mark.parametrize("file, count", [("common.xml", 48), ("ardupilotmega.xml", 1)])
-def test_public_messages_are_those_of_the_public_dialect(dialect, file, count):
+def test_public_messages_equal_the_public_dialects(dialect, file, count):
     ours = mavparse.MAVXML(str(MESSAGES / file), wire_protocol_version=mavparse.PROTOCOL_2_0)
     assert len(ours.message) >= count
     for message in ours.message:
@@ -36,7 +36,7 @@ def test_public_messages_are_those_of_the_public_dialect(dialect, file, count):
 
 
 @pytest.mark.parametrize("name, frame, fields", rust_frames())
-def test_frames_of_rust_are_understood_by_python_and_made_again(dialect, name, frame, fields):
+def test_frames_of_rust_round_trip_through_python(dialect, name, frame, fields):
     frame = bytes.fromhex(frame)
     receiver = dialect.MAVLink(None)
     (message,) = receiver.parse_buffer(frame)
@@ -52,7 +52,7 @@ def test_frames_of_rust_are_understood_by_python_and_made_again(dialect, name, f
     assert again.pack(sender) == frame
 
 
-def test_every_message_of_the_dialect_is_there(dialect):
+def test_every_message_of_the_dialect_exists(dialect):
     own = {message.msgname for message in dialect.mavlink_map.values() if message.msgname.startswith("STAYA_")}
     assert own == {name for name, _, _ in rust_frames()}
 

@@ -73,7 +73,7 @@ def of(messages, kind):
 
 
 @pytest.mark.parametrize("name, kind, system, until", [("rovers-crossing", "rover", 1, 27.0), ("rovers-crossing", "rover", 4, 27.0), ("copter-crossing", "copter", 1, 60.0)])
-def test_a_fake_says_what_ardupilot_said_to_the_same_companion(name, kind, system, until):
+def test_a_fake_answers_like_ardupilot(name, kind, system, until):
     real = list(recorded(name, system, until))
     fake = answers(kind, system, real, until)
 
@@ -105,7 +105,7 @@ def test_a_fake_says_what_ardupilot_said_to_the_same_companion(name, kind, syste
 
 
 @pytest.mark.parametrize("name, system", [("rovers-gps-lost", 3), ("rovers-crossing", 2)])
-def test_a_fake_says_of_its_health_what_ardupilot_says(name, system):
+def test_a_fake_reports_health_like_ardupilot(name, system):
     """Health messages, in good condition and without GPS."""
     gps_and_ahrs = 1 << 5 | 1 << 21
 

@@ -102,7 +102,7 @@ def of_topic(found, topic):
 
 
 @pytest.mark.parametrize("scenario", ["six-robots.toml", "twenty-discs.toml", "mixed.toml", "downwash.toml"])
-def test_messages_are_as_many_as_moments_and_say_what_the_trace_says(tmp_path, scenario):
+def test_messages_match_the_trace(tmp_path, scenario):
     file, trace = run(tmp_path, scenario, "--ticks", "60")
     found = read_all(file)
     ticks = sorted({int(line["tick"]) for line in trace})
@@ -139,7 +139,7 @@ def test_messages_are_as_many_as_moments_and_say_what_the_trace_says(tmp_path, s
         assert [(field.name, field.type) for field in land.fields] == [("ticks", 1)]
 
 
-def test_schemas_are_foxgloves(tmp_path):
+def test_schemas_equal_foxgloves(tmp_path):
     file, _ = run(tmp_path, "figure-5.toml", "--ticks", "2")
     with open(file, "rb") as stream:
         schemas = make_reader(stream).get_summary().schemas.values()
@@ -153,7 +153,7 @@ def test_schemas_are_foxgloves(tmp_path):
         assert {field.name: field.number for field in types[name].field} == fields
 
 
-def test_a_file_that_is_cut_off_is_read_up_to_there(tmp_path):
+def test_a_truncated_file_is_readable_up_to_its_end(tmp_path):
     file, _ = run(tmp_path, "twenty-discs.toml")
     whole = read_all(file)
     cut = tmp_path / "cut.mcap"
@@ -167,7 +167,7 @@ def test_a_file_that_is_cut_off_is_read_up_to_there(tmp_path):
     assert [(topic, time) for topic, time, _ in found] == [(topic, time) for topic, time, _ in whole[: len(found)]]
 
 
-def test_every_nth_moment_and_the_last_one(tmp_path):
+def test_every_nth_moment_and_the_last_one_are_written(tmp_path):
     file, trace = run(tmp_path, "figure-5.toml", "--ticks", "25", "--record-every", "10")
     ticks = [figures["tick"] for _, figures in of_topic(read_all(file), "/figures")]
     last = int(trace[-1]["tick"])

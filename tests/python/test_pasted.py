@@ -47,7 +47,7 @@ def test_pasted_python_runs(arguments, script, staya, run, free_port, tmp_path):
         assert "mission item 2: unsupported command 82" in pasted.output()
 
 
-def test_a_wedge_is_sent_and_taken(staya, free_port):
+def test_a_wedge_is_sent_and_confirmed(staya, free_port):
     port = free_port()
     staya("bridge", "scenarios/six-robots.toml", "--speed", 20, "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
     sent = staya("formation", "wedge", "--to", f"udpout:127.0.0.1:{port}", "--goal", "60,40")
@@ -58,7 +58,7 @@ def test_a_wedge_is_sent_and_taken(staya, free_port):
     assert sent.wait() == 0, sent.output()
 
 
-def test_a_swarm_without_a_formation_says_so(staya, free_port):
+def test_a_swarm_without_a_formation_refuses(staya, free_port):
     port = free_port()
     staya("bridge", "scenarios/bridge.toml", "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
     sent = staya("formation", "line", "--to", f"udpout:127.0.0.1:{port}")
@@ -66,7 +66,7 @@ def test_a_swarm_without_a_formation_says_so(staya, free_port):
     assert "not in a formation" in sent.output(), sent.output()
 
 
-def test_nobody_there_and_no_such_shape_are_errors(staya, free_port):
+def test_an_absent_swarm_and_an_unknown_shape_are_errors(staya, free_port):
     port = free_port()
     sent = staya("formation", "line", "--to", f"udpout:127.0.0.1:{port}", "--wait", 1)
     assert sent.wait() == 1 and "no robot found" in sent.output(), sent.output()
@@ -74,7 +74,7 @@ def test_nobody_there_and_no_such_shape_are_errors(staya, free_port):
     assert sent.wait() == 1 and "line, column, wedge, grid, circle" in sent.output(), sent.output()
 
 
-def test_some_robots_become_a_formation_of_their_own(staya, free_port):
+def test_some_robots_form_a_separate_formation(staya, free_port):
     port = free_port()
     staya("bridge", "scenarios/six-robots.toml", "--speed", 20, "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
     to = ("--to", f"udpout:127.0.0.1:{port}")

@@ -33,7 +33,7 @@ def heard(mav, frame):
     return [message.get_type() for message in messages if message.get_type() != "BAD_DATA"]
 
 
-def test_pymavlink_signs_these_very_frames():
+def test_pymavlink_signs_the_same_frames():
     mav = codec(KEY)
     messages = {
         "heartbeat": common.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3),

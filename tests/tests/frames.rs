@@ -1,4 +1,5 @@
-//! One MAVLink frame of each of the swarm's messages, for other implementations: `tests/python/test_dialect.py` reads the golden file.
+//! A MAVLink frame of each of the swarm's messages, for other implementations:
+//! `tests/python/test_dialect.py` reads the golden file.
 
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::land::LandPatch;
@@ -14,7 +15,7 @@ use std::fmt::Write as _;
 
 const TO: RobotId = RobotId(254);
 
-/// Name, message, and its fields as the dialect has them.
+/// Name, message, and its fields in the dialect.
 fn messages() -> [(&'static str, Message, &'static str); 10] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {

@@ -221,6 +221,7 @@ impl Sheet {
         Self { has_legend: true, ..self }
     }
 
+    /// Draws all snapshots as one picture.
     #[must_use]
     pub fn draw(&self) -> Canvas {
         let most = |sides: &mut dyn Iterator<Item = f64>| sides.fold(0.0, f64::max);

@@ -19,7 +19,7 @@ def heights(simulation, companion, until):
     return min(found), max(found)
 
 
-def test_copters_cross_at_the_height_to_which_their_pilots_took_off(fly, free_port):
+def test_copters_cross_at_their_pilots_takeoff_height(fly, free_port):
     def waits(text):
         return text.replace('entry = "once"\narm = true\ntakeoff = true\naltitude_m = 10\n', 'entry = "wait"\n')
 

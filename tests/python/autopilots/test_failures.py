@@ -74,7 +74,7 @@ def test_an_autopilot_that_restarts_waits_for_its_pilot(fly, free_port):
         assert report["vehicles"][ONE - 1]["restarts"] == 1
 
 
-def test_a_vehicle_without_gps_stands_and_says_so(fly, free_port):
+def test_a_vehicle_without_gps_stops_and_reports_it(fly, free_port):
     with fly.vehicles("rover", STARTS, free_port) as simulation:
         companion = fly.companion(fly.example("six-rovers-crossing.toml"))
         begun = moving(simulation, time.time())
@@ -98,7 +98,7 @@ def test_a_vehicle_without_gps_stands_and_says_so(fly, free_port):
         assert rolled is not None and abs(one.truth[-1].east - rolled[0]) < 2.0
 
 
-def test_a_vehicle_with_a_second_receiver_goes_on_when_its_first_fails(fly, free_port):
+def test_a_vehicle_with_a_second_receiver_continues_when_the_first_fails(fly, free_port):
     second = "SIM_GPS2_ENABLE 1\nGPS2_TYPE 1\nGPS_AUTO_SWITCH 1\n"
     with fly.vehicles("rover", [(0.0, 0.0)], free_port, parameters=second) as simulation:
         one = simulation[1]
@@ -135,7 +135,7 @@ def test_others_keep_clear_of_a_vehicle_whose_companion_dies(fly, free_port):
         least(simulation, begun)
 
 
-def test_a_companion_that_pauses_goes_on(fly, free_port):
+def test_a_companion_continues_after_a_pause(fly, free_port):
     """The companion of one vehicle pauses, in its own process; the others keep clear of it."""
     with fly.vehicles("rover", STARTS, free_port) as simulation:
         companions = in_two_processes(fly, free_port)
@@ -150,7 +150,7 @@ def test_a_companion_that_pauses_goes_on(fly, free_port):
         assert paused < 0.3
 
 
-def test_vehicles_without_anybody_roll_out_and_go_on_afterwards(fly, free_port):
+def test_vehicles_without_a_controller_stop_and_continue_later(fly, free_port):
     """A single process for all is stopped for 5 s. For 3 of these, no controller separates the
     vehicles, so distances are not judged."""
     with fly.vehicles("rover", STARTS, free_port) as simulation:

@@ -52,7 +52,7 @@ def test_signed_links_need_the_right_key(fly, free_port, right):
         assert not any(m.get_srcComponent() == 1 for _, m in companion.messages()), "what was not believed is in the log"
 
 
-def test_a_companion_says_that_tcp_is_refused_and_goes_on_when_it_is_not(fly, free_port):
+def test_a_refused_tcp_link_is_reported_and_retried(fly, free_port):
     """The link is TCP, as in the examples. A relay starts after the companion and forwards bytes to
     the vehicle's port."""
     with fly.vehicles("rover", STARTS[:1], free_port) as simulation:

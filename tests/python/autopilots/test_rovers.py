@@ -52,7 +52,7 @@ def test_two_rovers_head_on_pass_each_other(fly, free_port, model):
 
 
 @pytest.mark.parametrize("model", ["rover-skid", "rover"])
-def test_rovers_that_stand_keep_their_heading(fly, free_port, model):
+def test_stationary_rovers_keep_their_heading(fly, free_port, model):
     """Includes rovers that turn on the spot: ArduRover interprets a zero velocity as north."""
     extra = ["rover-skid.parm"] if model == "rover-skid" else []
     starts, goals = [(0.0, 0.0), (14.0, 0.0)], [(14.0, -6.0), (0.0, -6.0)]
