@@ -57,7 +57,6 @@ pub fn main() -> ExitCode {
     staya_console::exit("staya", ended)
 }
 
-/// `staya help [COMMAND]`.
 fn help(command: Option<&str>) -> ExitCode {
     let ended = match command.and_then(programs::of) {
         Some(program) => {

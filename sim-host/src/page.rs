@@ -70,7 +70,6 @@ impl PageArgs {
     }
 }
 
-/// Runs a scenario and records it in memory.
 fn recorded(scenario: &Scenario, every: u32, stop: &Stop, global: &Global) -> Result<Vec<u8>> {
     let mut recorder = RunRecorder::new(Vec::new(), Path::new(&scenario.name), scenario, every)?;
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);

@@ -114,7 +114,6 @@ fn become_it(mut command: std::process::Command) -> Result<Ended> {
     std::process::exit(status.code().unwrap_or(1));
 }
 
-/// Path of the program.
 fn find(program: &Program) -> Result<PathBuf> {
     let file = format!("{}{}", program.name, env::consts::EXE_SUFFIX);
     let own = env::current_exe().context("cannot find the path of this program")?;

@@ -39,7 +39,6 @@ fn assert_unchanged(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]]
     }
 }
 
-/// Asserts that all robots arrive without collisions.
 fn assert_clear(text: &str, robots: usize) {
     for seed in 1..9 {
         let outcome = outcome(text, seed);

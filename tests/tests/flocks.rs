@@ -139,13 +139,11 @@ fn a_settled_flock_stays_connected() {
     }
 }
 
-/// A scenario with another seed.
 fn seeded(name: &str, seed: u64) -> Scenario {
     let path = root().join("scenarios").join(format!("{name}.toml"));
     Scenario::load(&path, &Overrides { seed: Some(seed), ticks: None }).expect("sound")
 }
 
-/// Positions, metres, and velocities, m/s.
 fn motions(robots: &[RobotRow]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
     robots.iter().map(|robot| (robot.motion.position_m, robot.motion.velocity_mps)).unzip()
 }

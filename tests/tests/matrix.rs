@@ -11,12 +11,9 @@ use staya_sim::scenario::{Overrides, Scenario, ScenarioError};
 use staya_tests::run;
 use std::path::Path;
 
-/// Robots per swarm.
 const ROBOTS: usize = 6;
 const RADIUS_M: f64 = 0.2;
-/// Highest speed, m/s.
 const FASTEST_MPS: f64 = 1.0;
-/// Spacing of the alpha flock, metres.
 const SPACING_M: f64 = 1.0;
 
 const RADIOS: [(&str, &str); 3] = [("perfect", ""), ("lossy", "loss = 0.3"), ("dead", "loss = 1")];
@@ -87,7 +84,6 @@ fn is_refused(guidance: GuidanceKind, layer: Layer) -> bool {
     (guidance, layer) == (GuidanceKind::Waypoint, (SafetyKind::PushOut, Model::Tangential))
 }
 
-/// Result of a combination.
 #[derive(Debug)]
 struct Verdict {
     arrived: usize,

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 /// Largest deviation from an optimal length, percent. sqrt 2 as 99/70 deviates by 0.005 %.
 const TOLERANCE_PERCENT: f64 = 0.1;
 
-/// Path of the query file `name` in `tests/data/movingai`.
 fn benchmark(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/movingai").join(name)
 }

@@ -107,7 +107,6 @@ pub fn shuffle(word: &str) -> Result<Sharpness, String> {
     })
 }
 
-/// Border cells of a window that can end a route.
 fn exit() -> impl TypedValueParser<Value = ExitRule> {
     one_of(&[
         (ExitRule::Best, "Any border cell, by path cost and distance to the target (eq. 10)"),

@@ -55,7 +55,6 @@ impl Stop {
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
-    /// Time of the last line, without a terminal.
     lines: Option<Instant>,
 }
 
@@ -103,7 +102,6 @@ impl Progress {
     }
 }
 
-/// The message with a separating space, or nothing.
 fn spaced(message: &str) -> String {
     match message {
         "" => String::new(),

@@ -241,7 +241,6 @@ impl DrawArgs {
     }
 }
 
-/// Output of `evaluate --json`.
 #[derive(Debug, Serialize)]
 struct Evaluated {
     value: f32,

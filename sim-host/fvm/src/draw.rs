@@ -27,7 +27,6 @@ pub enum DrawError {
     Write(PathBuf, String),
 }
 
-/// Names of the components.
 const NAMES: [&[&str]; 2] = [
     &["cos alpha", "cos beta", "cos gamma", "cos delta"],
     &["cos alpha", "cos beta", "cos gamma", "cos epsilon", "cos delta"],
@@ -127,7 +126,6 @@ struct Sheet<'a> {
     nodes: [u16; 2],
     fields: &'a [Field<'a>],
     names: &'a [&'a str],
-    /// All components of a node.
     node: &'a dyn Fn(u16, u16) -> Option<Vec<f64>>,
 }
 

@@ -16,9 +16,7 @@ use std::f64::consts::TAU;
 const RADIUS_M: f32 = 0.12;
 const SPEED_MPS: f32 = 0.8;
 const STEP_S: f32 = 0.05;
-/// Sensing range for walls.
 const SIGHT_M: f32 = 1.5;
-/// Distance at which a goal counts as reached.
 const ARRIVED_M: f32 = 0.1;
 const PURPOSE: u32 = u32::from_be_bytes(*b"swap");
 

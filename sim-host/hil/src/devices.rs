@@ -107,7 +107,6 @@ impl OnDevices {
         self.log.entries().trouble.get_or_insert(trouble);
     }
 
-    /// Starts the devices on the first call.
     fn begin(&mut self) {
         let Some(options) = self.options.take() else {
             return;

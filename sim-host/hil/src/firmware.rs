@@ -10,17 +10,14 @@ use std::time::Instant;
 /// Environment variable with the same meaning as `--firmware`.
 const VARIABLE: &str = "STAYA_FIRMWARE";
 
-/// The firmware that emulated devices need.
 pub(crate) struct Program {
     /// Name of the host program. Installed firmware is in `share/NAME/firmware`.
     pub(crate) name: &'static str,
     /// Expected name and version inside the firmware.
     pub(crate) says: String,
-    /// Source of the firmware.
     pub(crate) made: Made,
 }
 
-/// Source of a firmware.
 pub(crate) enum Made {
     /// Staya's repository, `hil/firmware`.
     InRepository,
@@ -85,7 +82,6 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
     }
 }
 
-/// The first missing ELF file.
 fn lacking(parts: &[Part], folder: &Path) -> Option<PathBuf> {
     parts.iter().map(|part| part.elf(folder)).find(|elf| !elf.is_file())
 }
@@ -98,7 +94,6 @@ fn checked(parts: &[Part], folder: PathBuf, program: &Program) -> Result<PathBuf
     Ok(folder)
 }
 
-/// What to do without firmware.
 fn remedy(parts: &[Part], program: &Program) -> String {
     let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
     let names = names.join(" ");

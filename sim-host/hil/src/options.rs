@@ -53,7 +53,6 @@ fn probability(text: &str) -> Result<f64, String> {
 }
 
 impl DeviceArgs {
-    /// Assigns robots to devices.
     pub(crate) fn plan(&self, scenario: &Scenario) -> Result<DevicePlan> {
         let count = self.devices.map_or(self.kinds.len(), |n| n as usize);
         let robots = scenario.robots.len();
@@ -98,7 +97,6 @@ impl DeviceArgs {
     }
 }
 
-/// The emulated parts of a plan, without duplicates.
 pub(crate) fn emulated_parts(plan: &DevicePlan) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for (_, device) in &plan.devices {

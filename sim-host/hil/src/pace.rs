@@ -4,13 +4,11 @@ use serde::Serialize;
 use staya_console::Stop;
 use std::time::{Duration, Instant};
 
-/// Delays of a run in real time.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct RealTime {
     pub(crate) tick_seconds: f64,
     /// Ticks that were not finished when the next one was due.
     pub(crate) deadlines_missed: u32,
-    /// Longest time for a tick, seconds.
     pub(crate) slowest_seconds: f64,
 }
 

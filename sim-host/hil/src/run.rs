@@ -57,7 +57,6 @@ pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: 
     drive(&Ours, scenario, devices, page, global)
 }
 
-/// The guidance laws of a run, here and on devices.
 pub(crate) trait Swarm {
     fn program(&self) -> Program;
 
@@ -145,7 +144,6 @@ pub(crate) fn drive(
     }
 }
 
-/// Observers of the run.
 struct Watched<'a> {
     devices: &'a DeviceArgs,
     page: &'a WatchArgs,

@@ -15,7 +15,6 @@ pub(crate) struct Summary {
     pub(crate) sim_seconds: f64,
     /// Real time of the run, with the start of the devices.
     pub(crate) wall_seconds: f64,
-    /// Whether Ctrl-C ended the run.
     pub(crate) interrupted: bool,
     pub(crate) arrived: usize,
     pub(crate) collisions: u64,
@@ -23,7 +22,6 @@ pub(crate) struct Summary {
     pub(crate) trace_hash: String,
     /// Trace hash of the scenario with all robots in this process; null if the run ended early.
     pub(crate) trace_hash_without_devices: Option<String>,
-    /// With `--real-time`.
     pub(crate) real_time: Option<RealTime>,
     /// Error that ended the run.
     pub(crate) trouble: Option<String>,

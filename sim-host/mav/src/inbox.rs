@@ -91,7 +91,6 @@ impl Inbox {
         }
     }
 
-    /// Number of queued frames.
     pub(super) fn len(&self) -> u64 {
         self.lock().queues.values().map(|queue| queue.len() as u64).sum()
     }
@@ -111,7 +110,6 @@ impl Inbox {
     }
 }
 
-/// Cost of one answer.
 fn one() -> Duration {
     Duration::from_secs(1) / ANSWERS_PER_S
 }

@@ -11,7 +11,6 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Largest number of connections to a listening port.
 pub(super) const CONNECTIONS: usize = 32;
 /// A connection without a valid frame for this time is closed.
 const IDLE: Duration = Duration::from_secs(60);
@@ -19,9 +18,7 @@ const IDLE: Duration = Duration::from_secs(60);
 const YIELD: Duration = Duration::from_secs(5);
 /// Send queue per peer, frames.
 const QUEUE: usize = 1024;
-/// Interval of reconnects.
 const RETRY: Duration = Duration::from_secs(1);
-/// Timeout of a write.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Timeout of one read or write of a serial port.
 const PAUSE: Duration = Duration::from_millis(500);
@@ -29,7 +26,6 @@ const PAUSE: Duration = Duration::from_millis(500);
 type Threads = Vec<JoinHandle<()>>;
 type Opened = io::Result<(Box<dyn Outgoing>, Threads)>;
 
-/// The connected peers.
 #[derive(Clone, Default)]
 struct Peers(Arc<Mutex<HashMap<Peer, Connected>>>);
 
@@ -38,7 +34,6 @@ struct Connected {
     /// Time of the last valid frame, or of the connection.
     heard: Instant,
     is_believed: bool,
-    /// The socket to shut down.
     socket: Option<TcpStream>,
 }
 
@@ -64,7 +59,6 @@ impl Peers {
         frames
     }
 
-    /// Closes idle connections.
     fn end_idle(&self, now: Instant) {
         self.with(|peers| {
             let idle = |peer: &Connected| now.saturating_duration_since(peer.heard) >= IDLE;
@@ -283,7 +277,6 @@ fn write_all(mut write: impl Write, frames: &Receiver<Vec<u8>>, shared: &Shared)
     }
 }
 
-/// Whether the error is only a timeout or an interruption.
 fn is_nothing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

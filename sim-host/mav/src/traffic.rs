@@ -39,7 +39,6 @@ pub(super) struct SharedCounts {
     junk_bytes: AtomicU64,
     lost_in: AtomicU64,
     lost_out: AtomicU64,
-    /// Why the last connection attempt failed.
     trouble: Mutex<Option<String>>,
 }
 
@@ -127,9 +126,7 @@ impl Shared {
 
 /// The sending side of one kind of link.
 pub(super) trait Outgoing: Send + Sync {
-    /// Sends to all peers.
     fn send(&self, frame: &[u8]);
-    /// Sends to one peer.
     fn send_to(&self, peer: Peer, frame: &[u8]);
     /// Marks a peer as known after a valid frame.
     fn believe(&self, peer: Peer);

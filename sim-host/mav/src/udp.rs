@@ -12,7 +12,6 @@ use std::time::{Duration, Instant};
 
 /// A peer without a valid frame for this time is dropped. Ground stations send at 1 Hz.
 const FORGET: Duration = Duration::from_secs(20);
-/// Largest number of peers of a listening port.
 pub(super) const PEERS: usize = 16;
 /// A peer that was silent for this time can be replaced by a new one.
 const YIELD: Duration = Duration::from_secs(5);

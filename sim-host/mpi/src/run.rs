@@ -50,7 +50,6 @@ pub struct RunArgs {
     no_trace: bool,
 }
 
-/// Traffic of a rank.
 #[derive(Debug, Serialize)]
 struct Sent {
     rank: usize,
@@ -139,7 +138,6 @@ impl RunArgs {
         }
     }
 
-    /// Runs the scenario on any rank.
     fn simulate(
         &self,
         scenario: &Scenario,
@@ -245,7 +243,6 @@ fn busy_seconds() -> Option<f64> {
     Some(times.sum::<Option<f64>>()? / 1e9)
 }
 
-/// The traffic as a table, bytes per tick and rank.
 fn table(sent: &[Sent]) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let ticks = sent.first().map_or(1, |sent| sent.traffic.ticks.max(1)) as f64;

@@ -1,6 +1,5 @@
 //! The files of each kind of project.
 
-/// Path in a project, and template.
 pub(crate) type File = (&'static str, &'static str);
 
 macro_rules! files {
@@ -9,16 +8,13 @@ macro_rules! files {
     };
 }
 
-/// A microcontroller supported by projects.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Part {
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
-    /// Rust target.
     pub(crate) target: &'static str,
     /// Whether an emulator of this part can run the law.
     pub(crate) is_emulated: bool,
-    /// Files of a Rust project for this part.
     pub(crate) rust: &'static [File],
     /// The repository's lock file with the versions of its firmware's dependencies; `None` if the
     /// template has its own.
@@ -27,7 +23,6 @@ pub(crate) struct Part {
     pub(crate) c: &'static [File],
 }
 
-/// All parts, the default first.
 pub(crate) static PARTS: [Part; 4] = [
     Part {
         name: "stm32f405",
@@ -99,7 +94,6 @@ pub(crate) static PARTS: [Part; 4] = [
     },
 ];
 
-/// Files of every Rust project.
 pub(crate) const RUST: &[File] = files! {
     ".github/workflows/ci.yml" = "rust/ci.yml",
     ".gitignore" = "rust/gitignore",
@@ -115,7 +109,6 @@ pub(crate) const RUST: &[File] = files! {
     "tests/swarm.rs" = "rust/tests/swarm.rs",
 };
 
-/// Files of every C project.
 pub(crate) const C: &[File] = files! {
     ".github/workflows/ci.yml" = "c/ci.yml",
     ".gitignore" = "c/gitignore",
@@ -130,7 +123,6 @@ pub(crate) const C: &[File] = files! {
     "tests/swarm.c" = "c/tests/swarm.c",
 };
 
-/// Files of a Python project.
 pub(crate) const PYTHON: &[File] = files! {
     ".github/workflows/ci.yml" = "python/ci.yml",
     ".gitignore" = "python/gitignore",

@@ -93,12 +93,10 @@ fn list() -> String {
 /// Names used inside a project, or not allowed for crates.
 const TAKEN: [&str; 12] =
     ["alloc", "core", "firmware", "hil", "numpy", "proc-macro", "pytest", "serde", "std", "target", "test", "tests"];
-/// Lower-case keywords of Rust and Python.
 const KEYWORDS: &str = "abstract and as assert async await become box break class const continue crate def del do dyn elif else enum \
     except extern false final finally fn for from gen global if impl import in is lambda let loop macro match mod move mut nonlocal not \
     or override pass priv pub raise ref return self static struct super trait true try type typeof union unsafe unsized use virtual \
     where while with yield";
-/// Longest name, characters.
 const LONGEST: usize = 40;
 
 /// The project's name, which must be valid for cargo, C and Python.
@@ -118,7 +116,6 @@ fn name(folder: &Path) -> Result<&str> {
     Ok(name)
 }
 
-/// The files of a project.
 fn files(kind: Kind, part: &Part) -> Result<Vec<File>> {
     let files = match kind {
         Kind::Rust => [RUST, part.rust].concat(),
@@ -172,7 +169,6 @@ fn write_file(path: &Path, text: &str) -> std::io::Result<()> {
     fs::write(path, text)
 }
 
-/// The next steps for the user.
 fn next(folder: &Path, kind: Kind, part: &Part) -> String {
     let folder = folder.display();
     let rest = match kind {

@@ -90,7 +90,7 @@ fn project_names_must_be_valid_package_names() {
     }
     for taken in ["match", "test", "staya-sim", "class", "serde"] {
         let error = name(Path::new(taken)).expect_err(taken).to_string();
-        assert!(error.contains("taken"), "{error}");
+        assert!(error.contains("reserved"), "{error}");
     }
 }
 

@@ -133,10 +133,10 @@ pub enum Shape {
     Image {
         /// Left, top, width, height.
         area: [f64; 4],
-        /// What it shows.
+        /// Content.
         pixels: Pixels,
     },
-    /// What follows is seen only within left, top, width, height; `None`: everywhere.
+    /// Clips later shapes to left, top, width, height; `None` ends the clipping.
     Clip(Option<[f64; 4]>),
 }
 

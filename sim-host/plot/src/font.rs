@@ -7,7 +7,6 @@ use ttf_parser::{Face, OutlineBuilder};
 /// Height of capital letters and digits as a share of the font size.
 pub const CAPITAL: f64 = 0.714;
 
-/// Regular and bold.
 static FACES: LazyLock<[Face<'static>; 2]> = LazyLock::new(|| {
     [notosans::REGULAR_TTF, notosans::BOLD_TTF]
         .map(|bytes| Face::parse(bytes, 0).expect("a font that is compiled in and tested"))
@@ -128,7 +127,7 @@ mod tests {
     #[test]
     fn long_text_is_shrunk_then_shortened() {
         assert_eq!(fit("abc", 10.0, false, 100.0), ("abc".into(), 10.0));
-        let long = "a title that goes on";
+        let long = "a title that is too long";
         let room = width(long, 10.0, true) * 0.8;
         let (text, size) = fit(long, 10.0, true, room);
         assert_eq!(text, long);

@@ -11,11 +11,8 @@ const PAD: f64 = 14.0;
 const TITLE: f64 = 15.0;
 const LABEL: f64 = 12.5;
 const SMALL: f64 = 11.5;
-/// Width of the scale.
 const BAR: f64 = 16.0;
-/// Shades of the scale.
 const SHADES: u32 = 64;
-/// Gap between squares and scale.
 const GAP: f64 = 18.0;
 
 /// A heat map.

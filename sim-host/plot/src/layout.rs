@@ -12,11 +12,8 @@ const TITLE: f64 = 15.0;
 const HEADLINE: f64 = 18.0;
 const LABEL: f64 = 12.5;
 const SMALL: f64 = 11.5;
-/// Margin around everything.
 const PAD: f64 = 14.0;
-/// Height of a legend row.
 const ROW: f64 = 19.0;
-/// Width of the sample of line or mark in the legend.
 const SAMPLE: f64 = 24.0;
 /// SVG readers' sans-serif fonts are wider than the measured one by up to this factor.
 pub const OTHER_FONTS: f64 = 1.15;
@@ -84,7 +81,6 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     series::draw(&looks, &axes, canvas, plot);
 }
 
-/// Grid, ticks, numbers and labels of both axes.
 fn frame(chart: &Chart, axes: &Axes, canvas: &mut Canvas, plot: [f64; 4], x_label_y: f64, y_label_x: f64) {
     let [left, top, width, height] = plot;
     let (right, bottom) = (left + width, top + height);

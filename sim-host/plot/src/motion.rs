@@ -10,11 +10,8 @@ use staya_sim::world::plane::Solid;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Number of moments in the picture.
 const MOMENTS: usize = 4;
-/// Largest number of robots with paths.
 const MOST_TRAILS: usize = 100;
-/// Points of a path.
 const TRAIL_POINTS: usize = 400;
 /// Obstacles larger than this multiple of the robots' extent are clipped.
 const LARGE: f64 = 2.0;

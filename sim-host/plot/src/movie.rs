@@ -20,9 +20,7 @@ use std::path::Path;
 const MOST_PER_SECOND: u32 = 20;
 /// Duration of the last frame, hundredths of a second.
 const LAST: u16 = 200;
-/// Largest number of robots with paths.
 const MOST_WAYS: usize = 60;
-/// Largest number of robots with individual colours.
 const NAMED: usize = 12;
 /// Margin around all paths, as a fraction of the longer side.
 const MARGIN: f64 = 0.07;
@@ -132,7 +130,6 @@ fn cut(before: Option<&[u8]>, now: &[u8], width: usize, [left, top, wide, high]:
     .collect()
 }
 
-/// Transformation from metres to pixels.
 #[derive(Clone, Debug)]
 struct View {
     low_m: [f64; 2],
@@ -144,7 +141,6 @@ struct View {
 }
 
 impl View {
-    /// Fits the paths and goals of all robots.
     fn new(scenario: &Scenario, frames: &[Frame], width: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let places = frames.iter().flat_map(|frame| &frame.samples).map(|sample| sample.position_m);
@@ -187,7 +183,6 @@ impl View {
         [x.clamp(-1e5, 1e5), (self.size[1] - y).clamp(-1e5, 1e5)]
     }
 
-    /// The static content.
     fn ground(&self, scenario: &Scenario, history: &History) -> Canvas {
         let mut canvas = Canvas::new(self.size[0], self.size[1], &scenario.name);
         canvas.rectangle([0.0, 0.0, self.size[0], self.size[1]], Some(WHITE), None);
@@ -217,7 +212,6 @@ impl View {
         canvas
     }
 
-    /// The visible part of the map.
     fn land(&self, terrain: &Terrain, canvas: &mut Canvas) {
         let sides = [terrain.width(), terrain.height()].map(f64::from);
         let seen_m = self.size.map(|side| side / self.scale);
@@ -238,7 +232,6 @@ impl View {
         canvas.shapes.push(Shape::Image { area: [left, bottom - high, wide, high], pixels: map::pixels(&part) });
     }
 
-    /// The moving content at one moment.
     fn moving(&self, scenario: &Scenario, frame: &Frame) -> Canvas {
         let mut canvas = Canvas::new(self.size[0], self.size[1], "");
         if !scenario.formations.is_empty() {
@@ -284,7 +277,6 @@ fn colour_of(scenario: &Scenario, index: usize) -> Colour {
     }
 }
 
-/// Goals in the plane, with robot indices.
 fn goals(scenario: &Scenario) -> Vec<(usize, [f64; 2])> {
     let starts = scenario.plane.iter().flat_map(|setup| setup.starts.iter().enumerate());
     let places = starts.flat_map(|(index, start)| start.places.iter().map(move |place| (index, place.position_m)));

@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 
 /// Curves with more points get a running mean.
 const NOISY: usize = 150;
-/// Points of a running mean.
 const MEANS: usize = 100;
 
 /// Draws the pictures of a run into `out_dir`, which is created if needed, each as SVG and PNG.
@@ -91,7 +90,6 @@ fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     (!known.is_empty()).then(|| sum.map(|value| value / count))
 }
 
-/// Packets per second by result.
 pub(super) fn packets(history: &History) -> Panels {
     let series = history.series();
     let clock = Clock::new(series);

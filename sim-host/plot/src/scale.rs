@@ -91,7 +91,6 @@ impl Axes {
     }
 }
 
-/// Smallest and largest finite values.
 struct Extent {
     x: Option<[f64; 2]>,
     y: Option<[f64; 2]>,

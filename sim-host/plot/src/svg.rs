@@ -110,7 +110,6 @@ fn element(out: &mut String, text: &Text) -> std::fmt::Result {
     writeln!(out, ">{}</text>", Escaped(&text.text))
 }
 
-/// Style attributes of lines and areas.
 struct Paint(Option<Stroke>, Option<Colour>);
 
 impl Display for Paint {

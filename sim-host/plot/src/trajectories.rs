@@ -13,7 +13,6 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io;
 
-/// Largest number of robots named in the legend.
 const NAMED: usize = 12;
 /// Above this number of robots the picture shows the visits of each cell instead of paths and
 /// formation.
@@ -24,11 +23,8 @@ const MAX_ENDS: usize = 2000;
 const MAX_POINTS: usize = 60_000;
 /// Largest side of a map, in cells, that is always shown completely.
 const SMALL_MAP: f64 = 100.0;
-/// Number of moments at which the formation is shown.
 const MOMENTS: usize = 8;
-/// Margin around the map.
 const PAD: f64 = 16.0;
-/// Smallest width, for title and legend.
 const MIN_WIDTH: f64 = 460.0;
 const SMALL: f64 = 11.5;
 const ROW: f64 = 19.0;
@@ -101,10 +97,8 @@ pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u
     Ok(canvas)
 }
 
-/// Colour of changing cells.
 const CHANGING: Colour = colour::PALETTE[1].with_alpha(110);
 
-/// The south-west corner of a cell.
 fn corner_m(terrain: &Terrain, cell: Cell) -> [f64; 2] {
     let [x, y] = terrain.origin_m;
     [x + f64::from(cell.x) * terrain.cell_m, y + f64::from(cell.y) * terrain.cell_m]
@@ -279,7 +273,6 @@ fn draw_lines(canvas: &mut Canvas, lines: Vec<Vec<Point>>, lane: f64) {
     }
 }
 
-/// Starts and targets of a large swarm as small dots.
 fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
     let mut starts = ways.values().filter_map(|way| way.positions_m.first());
     let mut targets = ways.values().filter_map(|way| way.target_m.as_ref());
@@ -292,7 +285,6 @@ fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>
     }
 }
 
-/// Colours of starts and targets in a large swarm.
 const CROWD_ENDS: [(Colour, &str); 2] = [(colour::PALETTE[2], "starts"), (colour::PALETTE[1], "targets")];
 
 /// Starts as rings, targets as crosses.

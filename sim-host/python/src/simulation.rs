@@ -73,7 +73,6 @@ impl Inner {
         Ok(())
     }
 
-    /// Does one tick.
     fn advance(&mut self) -> PyResult<()> {
         let began = Instant::now();
         self.command()?;
@@ -86,7 +85,6 @@ impl Inner {
         self.record()
     }
 
-    /// Records the present moment, if recording is on.
     fn record(&mut self) -> PyResult<()> {
         let (Some(recorder), engine) = (&mut self.recorder, &self.engine) else {
             return Ok(());
@@ -98,7 +96,6 @@ impl Inner {
         done.map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
 
-    /// Whether `staya run` would end here.
     fn is_over(&self) -> bool {
         self.engine.is_over() || self.tick >= self.scenario.ticks
     }
@@ -144,8 +141,9 @@ impl Run {
                 true => text.to_owned(),
                 false => with_settings(text, &path, &settings).map_err(|e| scenario_error(&e))?,
             };
-            let engine = operated(&scenario)
-                .map_err(|error| ScenarioError::new_err(format!("the robots cannot be placed: {error}; change their starts")))?;
+            let engine = operated(&scenario).map_err(|error| {
+                ScenarioError::new_err(format!("the robots cannot be placed: {error}; change their starts"))
+            })?;
             let recorder =
                 record.map(|every| RunRecorder::new(Vec::new(), Path::new(&scenario.name), &scenario, every));
             let recorder = recorder.transpose().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
@@ -165,7 +163,6 @@ impl Run {
         })
     }
 
-    /// Does `ticks` ticks without the interpreter lock.
     fn step(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
         let mut left = ticks;
         self.in_slices(py, |inner| {
@@ -177,7 +174,6 @@ impl Run {
         })
     }
 
-    /// Runs to the end or to tick `until`.
     fn run(&self, py: Python<'_>, until: Option<u32>) -> PyResult<()> {
         self.in_slices(py, |inner| {
             let goes_on = !inner.is_over() && until.is_none_or(|until| inner.tick < until);
@@ -205,49 +201,41 @@ impl Run {
         trace.columns(py)
     }
 
-    /// Number of ticks done.
     #[getter]
     fn tick(&self, py: Python<'_>) -> u32 {
         self.lock(py).tick
     }
 
-    /// Number of ticks after which the run ends.
     #[getter]
     fn ticks(&self, py: Python<'_>) -> u32 {
         self.lock(py).scenario.ticks
     }
 
-    /// Length of a tick, seconds.
     #[getter]
     fn tick_s(&self, py: Python<'_>) -> f64 {
         self.lock(py).scenario.tick_s()
     }
 
-    /// Name of the scenario.
     #[getter]
     fn name(&self, py: Python<'_>) -> String {
         self.lock(py).scenario.name.clone()
     }
 
-    /// Seed of all random numbers.
     #[getter]
     fn seed(&self, py: Python<'_>) -> u64 {
         self.lock(py).scenario.seed
     }
 
-    /// Whether recording is on.
     #[getter]
     fn records(&self, py: Python<'_>) -> bool {
         self.lock(py).recorder.is_some()
     }
 
-    /// Whether `staya run` would end here.
     #[getter]
     fn is_over(&self, py: Python<'_>) -> bool {
         self.lock(py).is_over()
     }
 
-    /// Trace hash so far, 16 hex digits.
     #[getter]
     fn trace_hash(&self, py: Python<'_>) -> String {
         let mut hash = 0;
@@ -255,7 +243,6 @@ impl Run {
         format!("{hash:016x}")
     }
 
-    /// Robot numbers, rising.
     fn ids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.scenario.robots.iter().map(|robot| robot.id.0))
@@ -269,37 +256,31 @@ impl Run {
         Some(rows(py, groups.map(|group| [group.radius_m, group.abilities.max_speed_mps])))
     }
 
-    /// Positions, metres.
     fn positions<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let inner = self.lock(py);
         rows(py, inner.robots().map(|index| inner.engine.observation(index).motion.position_m))
     }
 
-    /// Velocities, m/s.
     fn velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let inner = self.lock(py);
         rows(py, inner.robots().map(|index| inner.engine.observation(index).motion.velocity_mps))
     }
 
-    /// Goals, metres; NaN for none.
     fn goals<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let inner = self.lock(py);
         rows(py, inner.robots().map(|index| inner.engine.goal_m(index).unwrap_or([f64::NAN; 3])))
     }
 
-    /// Modes by number.
     fn modes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).status.mode as u8))
     }
 
-    /// Whether each robot's computer runs.
     fn is_up<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).is_up))
     }
 
-    /// Number of neighbours of each robot.
     fn neighbors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).neighbors as u32))
@@ -327,7 +308,6 @@ impl Run {
         told
     }
 
-    /// Whether velocities were ever commanded.
     #[getter]
     fn has_wishes(&self, py: Python<'_>) -> bool {
         !self.lock(py).wishes.is_empty()
@@ -350,7 +330,6 @@ impl Run {
         Ok(())
     }
 
-    /// Summary so far, as JSON.
     fn summary(&self, py: Python<'_>) -> PyResult<String> {
         serde_json::to_string(&self.lock(py).summary()).map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
@@ -368,7 +347,6 @@ impl Run {
         Ok(with_interventions(&text, tick_us, &inner.done))
     }
 
-    /// The recording so far as one HTML page.
     fn page(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let inner = self.lock(py);
         let Some(recorder) = inner.recorder.clone() else {

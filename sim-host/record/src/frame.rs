@@ -12,7 +12,6 @@ pub const MAGIC: [u8; 4] = *b"STF1";
 pub const NOBODY: u32 = u32::MAX;
 /// Wait number of a robot that does not wait.
 pub const NO_WAIT: u8 = u8::MAX;
-/// `Mode::Passive`, the mode of intruders.
 const PASSIVE: u8 = 6;
 const HEAD: usize = 32;
 const HAS_Z: u32 = 1;

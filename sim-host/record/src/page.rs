@@ -48,7 +48,6 @@ pub fn with_recording(recording: &[u8]) -> Result<String, PageError> {
     assemble(index, &inside(FILES, recording))
 }
 
-/// The replacement of each placeholder.
 type Parts = [(&'static str, String); 4];
 
 /// The replacements for a page in one file.
@@ -102,7 +101,6 @@ pub fn served() -> Result<Vec<File>, PageError> {
     Ok(std::iter::once(page).chain(others).collect())
 }
 
-/// Replaces the placeholders.
 fn assemble(index: &str, parts: &Parts) -> Result<String, PageError> {
     let (mut page, mut rest) = (String::new(), index);
     while let Some((before, mark, behind)) = next_mark(rest) {

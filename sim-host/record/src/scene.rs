@@ -377,7 +377,6 @@ fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
     ([west, south, east, north], if is_in_space(scenario) { heights } else { [0.0; 2] })
 }
 
-/// A box in metres.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
     low: [f64; 3],

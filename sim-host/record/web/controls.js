@@ -7,7 +7,7 @@ const NARROW = "(max-width: 720px)";
 
 const element = (id) => document.getElementById(id);
 
-/** Seconds of a run, for people. */
+/** Formats seconds of a run. */
 export function duration(seconds) {
   if (seconds < 100) return `${seconds.toFixed(1)} s`;
   const whole = Math.floor(seconds);
@@ -177,7 +177,7 @@ export class Controls {
     timeline.style.setProperty("--known", share(Math.max(state.last, scene.mode === "recording" ? 0 : frame.tick)));
   }
 
-  /** Shows on the time line when something was ordered. */
+  /** Marks the orders on the timeline. */
   mark(orders) {
     const { first, last } = this.app.state;
     element("marks").replaceChildren(
@@ -224,7 +224,7 @@ export class Controls {
     this.app.announce(`Speed ${select.options[next].text}`);
   }
 
-  /** On a narrow screen panels are closed until there is a robot to tell about. */
+  /** On narrow screens panels stay closed until a robot is selected. */
   showPanels() {
     if (matchMedia(NARROW).matches && element("app").classList.contains("side-closed")) this.toggleSide();
   }
@@ -307,7 +307,7 @@ export class Controls {
     event.preventDefault();
   }
 
-  /** What colours and signs mean; numbers of robots are filled in by `counts`. */
+  /** Builds the legend; `counts` fills in the numbers of robots. */
   legend() {
     const { app } = this,
       { scene, look } = app;

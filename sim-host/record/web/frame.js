@@ -8,7 +8,7 @@ export const NOBODY = 0xffffffff;
 
 const text = new TextDecoder();
 
-/** `buffer` has to start with the frame; throws with the reason when it is none. */
+/** Parses a frame at the start of `buffer`; throws an error with the reason if it is invalid. */
 export function parseFrame(buffer) {
   const head = new DataView(buffer);
   if (buffer.byteLength < HEADER || head.getUint32(0, true) !== MAGIC) throw new Error("not a frame (STF1); reload the page");
@@ -54,7 +54,7 @@ export function parseFrame(buffer) {
   return frame;
 }
 
-/** The bytes that standard base64 stands for. */
+/** Decodes standard base64. */
 export function fromBase64(encoded) {
   if (Uint8Array.fromBase64) return Uint8Array.fromBase64(encoded);
   const binary = atob(encoded);

@@ -17,7 +17,7 @@ const COSTS = [
   [253, 231, 37],
 ];
 
-/** Round steps of about `pixels`: 1, 2 or 5 times a power of ten metres. */
+/** A round step up to `metres`: 1, 2 or 5 times a power of ten. */
 export function niceStep(metres) {
   const power = 10 ** Math.floor(Math.log10(metres));
   const factor = metres / power;
@@ -48,14 +48,14 @@ export class Ground {
     this.version++;
   }
 
-  /** A robot's window, with `costs` as they came; null without one. */
+  /** Sets the route window of the selected robot, with its encoded `costs`; null for none. */
   setWindow(window) {
     if (!window && !this.window) return;
     this.window = window && { ...window, costs: new Float32Array(fromBase64(window.costs).buffer) };
     this.version++;
   }
 
-  /** After `cells` of the land changed around this one. */
+  /** Repaints the surroundings of a changed cell. */
   cellChanged(cx, cy) {
     if (this.image) this.paint(cx - 2, cy - 2, cx + 3, cy + 3);
     this.version++;
@@ -111,7 +111,7 @@ export class Ground {
     context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1);
   }
 
-  /** Blocked cells with sharp edges, a run of them at a time. */
+  /** Draws blocked cells with sharp edges, one run at a time. */
   drawWalls(camera) {
     const {
       context,
@@ -138,7 +138,7 @@ export class Ground {
     context.fill();
   }
 
-  /** Colours the image of some cells. */
+  /** Paints the image of some cells. */
   paint(x0, y0, x1, y1) {
     const {
       land: { width, height, cells, classes },

@@ -66,7 +66,7 @@ function vector(hex, alpha = 1) {
   return new Float32Array([...rgb(hex).map((part) => (part / 255) * alpha), alpha]);
 }
 
-/** `#rrggbb` as bytes of a vertex attribute. */
+/** `#rrggbb` as the bytes of a vertex attribute. */
 export function packed(hex, alpha = 1) {
   const [r, g, b] = rgb(hex);
   return ((Math.round(alpha * 255) << 24) | (b << 16) | (g << 8) | r) >>> 0;
@@ -74,8 +74,8 @@ export function packed(hex, alpha = 1) {
 
 const THEME = "staya-theme";
 
-/** The theme that the user chose last, or undefined. A view has another port each time, and ports have storages of their own but no
-    cookies of their own; files have storage only. */
+/** The last chosen theme, or undefined. Views have changing ports, and storage is separate for each port while cookies
+    are not; files have storage only. */
 function chosenTheme() {
   const known = (theme) => (["dark", "light"].includes(theme) ? theme : undefined);
   try {
@@ -133,7 +133,7 @@ export class Look {
     return this.layers.targets && !this.crowded;
   }
 
-  /** After the theme, the words or what colours mean changed. */
+  /** Reads the colours again after a change of the theme, the words or the meaning of colours. */
   read() {
     document.documentElement.dataset.theme = this.dark ? "dark" : "light";
     const style = getComputedStyle(document.documentElement);

@@ -121,7 +121,7 @@ class App {
     this.dirty = true;
   }
 
-  /** The tick at the end of the time line. */
+  /** The tick at the end of the timeline. */
   get horizon() {
     const { state, scene } = this;
     if (!state || !scene) return 1;
@@ -136,7 +136,7 @@ class App {
     this.plots.add(frame.tick, frame.figures);
   }
 
-  /** What is for the plots alone. */
+  /** Passes figures to the plots. */
   onFigures(tick, figures) {
     this.plots.add(tick, figures);
   }
@@ -240,7 +240,7 @@ class App {
     return this.scene.robots.id[index] ?? index;
   }
 
-  /** The body that is seen nearest to these pixels, if it is near enough; robots only. */
+  /** The robot nearest to a pixel, if it is near enough. */
   pick(px, py, reach = 14) {
     const { motion, camera } = this,
       { current } = motion;
@@ -268,7 +268,7 @@ class App {
     return best;
   }
 
-  /** Where body `i` is going; null when it has no goal. */
+  /** The goal of body `i`; null for none. */
   targetOf(i) {
     const frame = this.motion.current;
     if (!frame?.tx || i >= frame.n || Number.isNaN(frame.tx[i])) return null;

@@ -19,7 +19,7 @@ export class Motion {
     this.headings = new Float32Array(0);
   }
 
-  /** A frame that comes before the last one was drawn replaces it. */
+  /** Replaces a frame that was not drawn yet. */
   offer(frame) {
     this.pending = frame;
   }
@@ -48,7 +48,7 @@ export class Motion {
     return news;
   }
 
-  /** Whether bodies still move on although no frame has come. */
+  /** Whether bodies still move without a new frame. */
   get moving() {
     return this.mix < 1;
   }
@@ -68,7 +68,7 @@ export class Motion {
     }
   }
 
-  /** Where body `i` is drawn; into `out`. */
+  /** Writes the displayed position of body `i` to `out`. */
   place(i, out) {
     const { previous: a, current: b, mix } = this;
     out[0] = a.x[i] + (b.x[i] - a.x[i]) * mix;
@@ -77,7 +77,7 @@ export class Motion {
     return out;
   }
 
-  /** The simulated time that is drawn. */
+  /** The displayed simulated time. */
   get time() {
     const { previous: a, current: b, mix } = this;
     return b ? a.time + (b.time - a.time) * mix : 0;

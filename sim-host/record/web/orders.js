@@ -74,7 +74,7 @@ export class Orders {
     this.showRadio();
   }
 
-  /** Metres; null where nothing is too far. */
+  /** Metres; null for no limit. */
   range() {
     return number("radio-range") >= 1 ? null : Number((this.farthest * number("radio-range") ** 2).toPrecision(3));
   }
@@ -122,7 +122,7 @@ export class Orders {
     return label;
   }
 
-  /** Whether sliders are about the selected robot alone. */
+  /** Whether the sliders apply to the selected robot only. */
   get only() {
     return this.app.selected !== null && element("only-selected").checked;
   }

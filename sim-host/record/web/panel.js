@@ -6,7 +6,7 @@ import { metres } from "staya/view.js";
 const MOST_NEIGHBORS = 32;
 const REBOOT_S = 2;
 
-/** An element with a class and children; strings become text. */
+/** Creates an element with a class and children; strings become text. */
 function make(tag, className, ...children) {
   const made = document.createElement(tag);
   if (className) made.className = className;

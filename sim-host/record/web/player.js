@@ -71,7 +71,7 @@ export class Player {
     this.listener.onState({ type: "state", paused, speed, tick, first, last, clients: 1, at_end: tick >= last });
   }
 
-  /** Shows `tick` as soon as its block is there; of several asked for meanwhile only the last. */
+  /** Shows `tick` once its block is unpacked. Of several requests only the last counts. */
   seek(tick) {
     this.wanted = Math.max(this.recording.first, Math.min(this.recording.last, Math.round(tick)));
     this.time = null;
@@ -108,7 +108,7 @@ export class Player {
     this.tell(frame);
   }
 
-  /** What a recording knows of the selected robot. */
+  /** Sends the recorded data of the selected robot. */
   tell(frame) {
     const index = this.selected;
     if (index === null || index >= frame.n) return;
@@ -146,7 +146,7 @@ export class Player {
     }
   }
 
-  /** Fills the plots from the first frame to the last, a block at a time. */
+  /** Fills the plots from the whole recording, one block at a time. */
   async readThrough() {
     if (this.recording.size > READ_THROUGH) return;
     const count = this.recording.frames.length;

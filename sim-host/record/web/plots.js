@@ -75,7 +75,7 @@ export class Plots {
     });
   }
 
-  /** Forgets what came after `tick`: the run goes on otherwise from there. */
+  /** Drops samples after `tick`, from which the run continues differently. */
   forgetAfter(tick) {
     const keep = Math.floor(tick / this.spacing) + 1;
     if (this.samples.length > keep) {

@@ -110,7 +110,7 @@ export class Pointer {
     this.sketch(at);
   }
 
-  /** What a press begins. */
+  /** Starts the action of a press. */
   begin(event, at) {
     const { app } = this;
     const robot = app.pick(at[0], at[1]);
@@ -136,7 +136,7 @@ export class Pointer {
     return { kind: app.camera.space && !event.shiftKey && !still ? "orbit" : "pan", click: event.button === 0 };
   }
 
-  /** A goal that can be dragged here. */
+  /** A draggable goal at a pixel. */
   handle(at) {
     const { app } = this;
     const near = (place) => {
@@ -188,7 +188,7 @@ export class Pointer {
     camera.zoom(span(at) / span(before), (at[0] + other[0]) / 2, (at[1] + other[1]) / 2);
   }
 
-  /** Shows what letting go here would do; painting is done at once. */
+  /** Previews the action; painting takes effect at once. */
   sketch(at) {
     const { app, drag } = this;
     const place = app.camera.unproject(at[0], at[1], drag.heights?.[2] ?? 0);
@@ -296,7 +296,7 @@ export class Pointer {
     }
   }
 
-  /** One corner more, or the end of the polygon. */
+  /** Adds a corner or closes the polygon. */
   corner(place, at) {
     const { corners } = this;
     const near = (corner, pixels) => {
@@ -307,7 +307,7 @@ export class Pointer {
     else if (place && !near(corners.at(-1), LEAST_WALL_PIXELS)) corners.push(place);
   }
 
-  /** Makes an obstacle of the corners so far. */
+  /** Creates an obstacle from the corners. */
   close() {
     const { app, corners } = this;
     if (corners.length >= 3) {

@@ -36,7 +36,7 @@ class Program {
   }
 }
 
-/** Numbers in rows of texels, as many rows as they need. */
+/** Numbers in rows of texels. */
 class Table {
   constructor(gl, internal, format, type, channels, width) {
     Object.assign(this, { gl, internal, format, type, channels, width, rows: 0 });
@@ -62,7 +62,7 @@ class Table {
 }
 
 export class Renderer {
-  /** Null where there is no WebGL2. */
+  /** Creates a renderer; null without WebGL2. */
   static on(canvas) {
     const gl = canvas.getContext("webgl2", {
       alpha: true,
@@ -117,7 +117,7 @@ export class Renderer {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** `bodies`: radius and group of each robot, then of the intruders; `balls`: solids in space, [x, y, z, radius]. */
+  /** `bodies`: radius and group of each robot, then of the intruders; `balls`: obstacles in space, [x, y, z, radius]. */
   setBodies(robots, bodies, balls) {
     Object.assign(this, { robots, bodies, balls });
     this.held = [null, null];
@@ -146,7 +146,7 @@ export class Renderer {
     this.canvas.height = Math.round(height * ratio);
   }
 
-  /** The table that has `frame`; if none has it, it goes to the one that does not have `keep`. */
+  /** The table with `frame`; if there is none, the one without `keep` is refilled. */
   tableOf(frame, keep) {
     let slot = this.held.indexOf(frame);
     if (slot < 0) {
@@ -228,7 +228,7 @@ export class Renderer {
     return program;
   }
 
-  /** For programs that read frames. */
+  /** Starts a program that reads frames. */
   beginBodies(program, scene) {
     const { gl } = this,
       { uniforms } = this.begin(program, scene);
@@ -299,7 +299,7 @@ export class Renderer {
   }
 }
 
-/** Straight lines, refilled for each picture; colours are 0xAABBGGRR. */
+/** Straight lines, filled for each picture; colours are 0xAABBGGRR. */
 export class Lines {
   constructor() {
     this.floats = new Float32Array(64 * LINE_WORDS);

@@ -19,7 +19,7 @@ export class Trails {
     this.valid = 0;
   }
 
-  /** Notes where bodies are drawn now. `seconds` is how long trails last. Whether there is something to draw. */
+  /** Records the displayed positions; trails last `seconds`. Returns whether there is something to draw. */
   record(motion, bodies, seconds) {
     const { gl } = this;
     const slots = Math.min(SNAPSHOTS, Math.floor(this.most / Math.max(bodies, 1)));

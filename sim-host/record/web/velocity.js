@@ -3,7 +3,7 @@
 
 const CORNERS = 96;
 
-/** What of a convex polygon is on the allowed side. */
+/** The part of a convex polygon on the permitted side. */
 function clipped(polygon, { point, normal }) {
   const side = ([x, y]) => (x - point[0]) * normal[0] + (y - point[1]) * normal[1];
   const kept = [];

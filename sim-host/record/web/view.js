@@ -34,7 +34,7 @@ export class View {
     this.canvas.height = Math.round(height * ratio);
   }
 
-  /** Makes signs small, and leaves out some, where robots would be hidden by them. */
+  /** Shrinks or hides marks that would cover robots. */
   suit(look) {
     const { app } = this,
       { camera, scene } = app;
@@ -116,7 +116,7 @@ export class View {
     }
   }
 
-  /** The ground, what stands on it, and how high bodies are above it. */
+  /** Draws the ground, obstacles, and the heights of bodies above it. */
   spaceLines(frame) {
     const { app, below } = this;
     const { scene, motion, look } = app;
@@ -203,7 +203,7 @@ export class View {
     context.fillText(text, x, y);
   }
 
-  /** Numbers where there is room for them. */
+  /** Draws numbers where there is room. */
   drawNumbers(frame, at) {
     const { app } = this;
     const { width, height } = app.camera;
@@ -231,7 +231,7 @@ export class View {
     }
   }
 
-  /** Where the selected robot takes the others to be. */
+  /** Draws the selected robot's estimates of other positions. */
   drawGhosts() {
     const { app, context } = this;
     const { css } = app.look;
@@ -276,7 +276,7 @@ export class View {
     }
   }
 
-  /** Goals of flocks, as flags with their numbers. */
+  /** Draws the goals of flocks as numbered flags. */
   drawGoals(frame) {
     const { app, context } = this;
     (frame.figures.goals ?? []).forEach((goal, i) => {
@@ -369,7 +369,7 @@ export class View {
   }
 }
 
-/** A length with a unit that suits it. */
+/** A length with a suitable unit. */
 export function metres(length) {
   if (length >= 1000) return `${+(length / 1000).toPrecision(3)} km`;
   if (length >= 1) return `${+length.toPrecision(3)} m`;

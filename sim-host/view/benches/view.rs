@@ -19,13 +19,11 @@ use tungstenite::Message;
 
 /// Number of robots, and the smallest acceptable number of frames per second.
 const GOALS: [(u32, f64); 3] = [(1000, 60.0), (10_000, 60.0), (100_000, 20.0)];
-/// Duration of one measurement.
 const SPAN: Duration = Duration::from_secs(4);
 
 struct Measured {
     /// Frames per second that the client read.
     read_per_s: f64,
-    /// Bytes of frames per second.
     bytes_per_s: f64,
     /// Time that one frame costs the run, seconds.
     cost_s: f64,
@@ -51,7 +49,6 @@ fn main() -> ExitCode {
     if is_met { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// A flock in a square.
 fn scenario(robots: u32) -> Result<Scenario, Box<dyn Error>> {
     let side_m = f64::from(robots).sqrt() * 1.5;
     let text = format!(

@@ -71,7 +71,6 @@ impl Page {
     }
 }
 
-/// The address of the page, for `--json`.
 #[derive(Debug, Serialize)]
 struct Served<'a> {
     url: &'a str,

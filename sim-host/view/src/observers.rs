@@ -63,7 +63,6 @@ impl Observer for Mcap {
     }
 }
 
-/// A live page of the run.
 struct Page(Watcher);
 
 impl Observer for Page {

@@ -12,7 +12,6 @@ use std::time::{Duration, Instant};
 
 /// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
-/// Interval of state messages.
 const STATE: Duration = Duration::from_millis(500);
 /// Rows of figures sent to a new page.
 const ROWS: u32 = 2000;
@@ -44,7 +43,6 @@ pub struct Playback {
     first: u32,
     last: u32,
     tick: u32,
-    /// The scene last sent to the pages.
     scene: String,
     rows: Option<String>,
     pace: Pace,
@@ -199,7 +197,6 @@ impl Playback {
         server.say(None, state.to_string());
     }
 
-    /// Figures over the whole recording.
     fn rows(&mut self) -> Result<Option<String>, RecordingError> {
         let every = ((self.last - self.first) / ROWS).max(1);
         let mut rows = Vec::new();

@@ -23,7 +23,6 @@ use std::time::{Duration, Instant};
 const FRAME: Duration = Duration::from_millis(16);
 /// Page messages handled per poll; faster pages are disconnected by the server.
 const WORDS: usize = 64;
-/// Longest message of a read-only page, bytes.
 const LONGEST: usize = 256;
 
 /// A request of a read-only page; others are ignored.
@@ -43,7 +42,6 @@ enum Wanted {
     Other,
 }
 
-/// The details that a page has selected.
 #[derive(Clone, Copy, Debug, Default)]
 struct Looks {
     robot: Option<usize>,
@@ -99,7 +97,6 @@ pub trait Insight {
     }
 }
 
-/// No details.
 impl Insight for () {}
 
 /// Shows a run to pages.
@@ -225,7 +222,6 @@ impl Watcher {
         }
     }
 
-    /// All details of one robot at the last frame.
     fn robot(&self, index: usize, insight: &dyn Insight) -> String {
         let frame = &self.frame;
         let About { known, device, facts } = insight.about(index);

@@ -15,7 +15,6 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
-/// Number of open connections.
 const CROWD: usize = 200;
 
 /// Connections that misbehave in one of seven ways, close and reopen.

@@ -17,7 +17,6 @@ fn scenario(name: &str) -> String {
     folder.join(name).to_str().expect("a path in UTF-8").to_owned()
 }
 
-/// The maps included with Staya.
 const MAPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../maps/");
 
 fn folder() -> (tempfile::TempDir, String) {

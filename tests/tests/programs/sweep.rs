@@ -15,7 +15,6 @@ const PLAN: &str = "name = 'p'\nscenario = 'swap.toml'\nseeds = 4\nmeasures = ['
     [axes]\nradio.loss = [0, 0.2, 0.4, 0.6]\nradio.delay_ms = [0, 50]\n";
 const RUNS: usize = 32;
 
-/// A folder with the plan.
 struct Folder(TempDir);
 
 impl Folder {
@@ -49,7 +48,6 @@ impl Folder {
         text(&stderr)
     }
 
-    /// The merged results as bytes.
     fn results(&self, out: &str) -> Vec<Vec<u8>> {
         let out = self.path(out);
         let mut pictures: Vec<_> =
@@ -62,7 +60,6 @@ impl Folder {
         files.map(|file| fs::read(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))).collect()
     }
 
-    /// Number of complete rows in the file of a shard.
     fn rows(&self, file: &str) -> usize {
         let bytes = fs::read(self.path(file)).unwrap_or_default();
         bytes.iter().filter(|&&byte| byte == b'\n').count().saturating_sub(1)

@@ -99,7 +99,6 @@ impl TableArgs {
     }
 }
 
-/// Output of `draw --json`.
 #[derive(Debug, Serialize)]
 struct Drawn {
     /// Smallest change of the relative velocity that avoids a collision, m/s; negative if it is
@@ -183,7 +182,7 @@ mod tests {
     #[test]
     fn invalid_usage_is_an_error_with_a_remedy() {
         let message = |words: &[&str]| read(words).unwrap_err();
-        assert!(message(&["draw", "--place-a", "1"]).contains("like 1.5,-2"));
+        assert!(message(&["draw", "--place-a", "1"]).contains("such as 1.5,-2"));
         assert!(message(&["draw", "--radii", "1,x"]).contains("`x` is not a number"));
         assert!(message(&["table", "--pairs", "0"]).contains("1..=10000000"));
     }

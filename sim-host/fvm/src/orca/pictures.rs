@@ -52,7 +52,6 @@ impl Default for Scene {
 pub struct Drawing {
     obstacle: VelocityObstacle<f64>,
     neighbor: MovingBall<V>,
-    /// Velocity of A.
     own: V,
     relative: V,
     params: Params<f64>,
@@ -116,7 +115,6 @@ impl Drawing {
         Ok(files)
     }
 
-    /// A view of disc, origin and velocities, with a part of the cone.
     fn view(&self, left: f64, top: f64, side: f64) -> View {
         let (tip, radius) = self.obstacle.disc();
         let unit = V::new(1.0, 1.0) * radius;
@@ -131,7 +129,6 @@ impl Drawing {
         View { corner: (low + high) * 0.5 - V::new(extent, extent) * 0.5, side: extent, area: [left, top, side] }
     }
 
-    /// A view of the disc and its surroundings.
     fn near(&self, left: f64, top: f64) -> View {
         let (tip, radius) = self.obstacle.disc();
         let middle = tip + self.obstacle.ahead() * (0.5 * radius);
@@ -165,7 +162,6 @@ impl Drawing {
         canvas
     }
 
-    /// Legs, disc, perpendiculars.
     fn outline(&self, canvas: &mut Canvas, view: &View) {
         let (tip, radius) = self.obstacle.disc();
         let far = 3.0 * view.side + tip.norm();

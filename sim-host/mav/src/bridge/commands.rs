@@ -19,7 +19,6 @@ use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 use staya_mavlink::mavlink_core::MessageData as _;
 
-/// Highest goal above the ground, metres.
 const HIGHEST_M: f32 = 1000.0;
 
 /// A slower vehicle counts as stationary, m/s.
@@ -317,7 +316,6 @@ impl Vehicle {
         if is_low && is_above_ground { Ok(place_m) } else { Err(MAV_RESULT_DENIED) }
     }
 
-    /// East, north, up of a mission item, metres.
     pub(super) fn item_place(&self, item: &super::mission::Item) -> Option<[f64; 3]> {
         self.item_place_of(Spot { frame: item.frame, x: item.x, y: item.y, z: item.z })
     }
@@ -376,7 +374,6 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Continues the mission at item `seq`.
     pub(super) fn set_current_item(&mut self, seq: u16, out: &mut Out) -> Result<(), Refusal> {
         if !self.mission.set_current(seq.max(1)) || seq >= self.mission.len() {
             return Err(MAV_RESULT_DENIED);

@@ -15,7 +15,6 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// A setpoint in metres east, north, up.
 #[derive(Clone, Copy, Debug)]
 struct Setpoint {
     place_m: Option<[f64; 3]>,

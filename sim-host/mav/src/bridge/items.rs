@@ -143,7 +143,6 @@ impl Vehicle {
         }
     }
 
-    /// Stores one uploaded item.
     pub(super) fn take_item(&mut self, from: Sender, seq: u16, item: Item, out: &mut Out) -> MavMessage {
         let mut mission = core::mem::take(&mut self.mission);
         let now_us = self.now_us;

@@ -120,7 +120,6 @@ impl Item {
     }
 }
 
-/// An upload in progress.
 #[derive(Clone, Debug, PartialEq)]
 struct Upload {
     from: Sender,

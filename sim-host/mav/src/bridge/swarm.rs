@@ -26,7 +26,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Largest system id of a vehicle.
 const LAST_SYSTEM: u32 = 254;
 /// Longest wait before due messages are checked.
 const GLANCE: Duration = Duration::from_millis(4);
@@ -87,7 +86,6 @@ pub type Onlooker<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow
 pub struct Swarm {
     engine: Box<dyn Operated>,
     vehicles: Vec<Vehicle>,
-    /// Boot counter of each computer.
     boots: Vec<u8>,
     /// Next sequence number of each vehicle; wraps.
     sequences: Vec<u8>,
@@ -337,7 +335,6 @@ impl Swarm {
         self.options.signing.as_ref().is_some_and(|signing| signing.left() < RESERVE)
     }
 
-    /// Simulates one tick and shows the result to the vehicles.
     fn tick(&mut self) -> Result<(), BridgeError> {
         self.engine.advance();
         self.ticks += 1;
@@ -415,7 +412,6 @@ impl Swarm {
         Ok(answers)
     }
 
-    /// Closes the links, then adds up the statistics.
     fn report(mut self) -> BridgeReport {
         let wall_seconds = self.began.elapsed().as_secs_f64();
         self.lines.close();

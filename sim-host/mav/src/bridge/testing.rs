@@ -78,7 +78,6 @@ impl Bench {
         }
     }
 
-    /// Delivers a message and stores the output.
     pub(super) fn give(&mut self, message: MavMessage) -> &Out {
         self.out = Out::default();
         let now_us = self.vehicle.now_us;
@@ -86,7 +85,6 @@ impl Bench {
         &self.out
     }
 
-    /// Sends a COMMAND_LONG and returns its result.
     pub(super) fn command(&mut self, command: u16, params: [f32; 7]) -> u8 {
         let [param1, param2, param3, param4, param5, param6, param7] = params;
         self.give(MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
@@ -105,7 +103,6 @@ impl Bench {
         self.result()
     }
 
-    /// Sends a COMMAND_INT and returns its result.
     pub(super) fn command_int(&mut self, command: COMMAND_INT_DATA) -> u8 {
         self.give(MavMessage::COMMAND_INT(COMMAND_INT_DATA { target_system: 7, target_component: 1, ..command }));
         self.result()
@@ -123,7 +120,6 @@ impl Bench {
         acks[0]
     }
 
-    /// Advances by one tick.
     pub(super) fn tick(&mut self, change: impl FnOnce(&mut Sample)) -> &Out {
         self.sample.time_us += 100_000;
         change(&mut self.sample);
@@ -133,7 +129,6 @@ impl Bench {
         &self.out
     }
 
-    /// The last goal sent to the controller.
     pub(super) fn wish(&self) -> Option<Wish<f32>> {
         let mut actions = self.out.actions.iter().rev();
         actions.find_map(|action| match action {

@@ -78,7 +78,6 @@ pub struct Vehicle {
     pub(super) now_us: u64,
 }
 
-/// Topic of a text.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     /// Not limited in rate.
@@ -310,7 +309,6 @@ impl Vehicle {
         }
     }
 
-    /// Handles missions and the dialect's orders.
     fn receive_goals(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
         let now_us = self.now_us;
         let answer = match message {
@@ -368,7 +366,6 @@ impl Vehicle {
         is_mine && is_addressed && is_here
     }
 
-    /// Time since the onboard computer started, simulated microseconds.
     pub(super) const fn uptime_us(&self) -> u64 {
         self.sample.time_us.saturating_sub(self.started_us)
     }
@@ -384,7 +381,6 @@ impl Vehicle {
         self.parameters.get(tolerance).unwrap_or(0.0)
     }
 
-    /// Changes the mode and starts it.
     pub(super) fn enter(&mut self, mode: FlightMode, out: &mut Out) {
         if mode != self.mode {
             let text = format!("mode {}", mode.name(self.model.flies));
@@ -395,7 +391,6 @@ impl Vehicle {
         self.begin(out);
     }
 
-    /// Starts the present mode.
     pub(super) fn begin(&mut self, out: &mut Out) {
         let [x, y, z] = self.sample.position_m;
         let wish = match self.mode {

@@ -77,7 +77,7 @@ struct AirTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct RulesTable {
-    /// Who selects GUIDED or OFFBOARD: `"wait"` (the pilot; the default) or `"once"` (the
+    /// Selection of GUIDED or OFFBOARD: `"wait"` (the pilot; the default) or `"once"` (the
     /// companion, once after its start).
     entry: Entry,
     /// With `"once"`: also arm. Default: false.

@@ -47,11 +47,8 @@ pub struct Controller<W> {
     brake: Option<Brake>,
     max_acceleration_mps2: f64,
     lag_s: f64,
-    /// Radius of its own body, metres.
     radius_m: f64,
-    /// The last command, while the vehicle is controlled.
     commanded_mps: Option<[f64; 3]>,
-    /// Time and position of the last step.
     stepped: Option<(Instant, Position, [f64; 3])>,
 }
 

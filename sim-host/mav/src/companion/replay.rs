@@ -13,7 +13,6 @@ use std::time::Duration;
 
 /// System id of the recording ground station.
 const STATION: u8 = 250;
-/// Interval of polls.
 const STEP: Duration = Duration::from_millis(10);
 
 /// Length of the frame at the start of `bytes`, by its header.

@@ -9,7 +9,6 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
 
-/// Interval of checks of the file.
 const LOOK: Duration = Duration::from_secs(1);
 
 /// A step of a key change.

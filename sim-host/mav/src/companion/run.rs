@@ -39,7 +39,6 @@ const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
 /// Ground stations are warned when only this number of signing timestamps is left.
 const FEW_TIMESTAMPS: u64 = 1000;
-/// Interval of connection checks.
 const LOOK: Duration = Duration::from_secs(1);
 /// Smallest age limit of positions in a dry run.
 const SELDOM: Duration = Duration::from_secs(3);
@@ -77,7 +76,6 @@ pub enum RunError {
     Output(io::Error),
 }
 
-/// A link to autopilots.
 struct Link {
     name: String,
     /// Last reported reason for a missing connection.
@@ -468,7 +466,6 @@ impl<'a> Companions<'a> {
         self.log(&frame);
     }
 
-    /// Tells all controlled vehicles to stop.
     fn say_farewell(&mut self) {
         self.has_said_farewell = true;
         let (times, pause) = FAREWELLS;

@@ -133,7 +133,6 @@ impl Station<'_> {
         }
     }
 
-    /// Handles received frames for a short time.
     fn listen(&mut self) {
         self.greet();
         let until = Instant::now() + GLANCE;

@@ -62,7 +62,6 @@ impl Cut {
         }
     }
 
-    /// The rank whose block contains a position.
     pub(super) fn rank(&self, at_m: [f64; 2]) -> usize {
         match self {
             Self::Rank(rank) => *rank,

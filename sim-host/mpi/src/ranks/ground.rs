@@ -13,7 +13,6 @@ use staya_sim::world::scouts::Scouts;
 
 /// Communication while bodies move.
 pub trait Talk {
-    /// Sum of the numbers of all ranks.
     fn sum(&mut self, own: u64) -> Result<u64, RankError>;
 
     /// Sends a message to each neighbour. Returns their messages with their ranks.
@@ -22,7 +21,6 @@ pub trait Talk {
 
 /// A world of which this rank has some bodies. Everything except bodies is identical on all ranks.
 pub trait Part: Ground {
-    /// Keeps only the bodies of these robots, in this order.
     fn keep(&mut self, here: &[u32]);
 
     /// Adds a body for a robot from another rank behind the existing ones; restoring the world's
@@ -60,7 +58,6 @@ pub trait Part: Ground {
     /// Replaces the clearance statistics. Returns the previous ones; nothing on a grid.
     fn replace_clearance(&mut self, clearance: Clearance) -> Clearance;
 
-    /// Whether a cell contains a body.
     fn is_taken(&self, cell: Cell) -> bool;
 
     /// Position of a body for [`Part::keeping_of`], cells; `None` if there is no formation.

@@ -19,16 +19,12 @@ pub(super) struct Sums {
     pub(super) packets: PacketCounts,
     pub(super) hash: u64,
     pub(super) gap_m: Option<f64>,
-    /// Cost of its tick.
     pub(super) load: f64,
-    /// Whether the rank requests the end of the run.
     pub(super) stops: bool,
-    /// Whether the rank requests a checkpoint.
     pub(super) saves: bool,
 }
 
 impl Sums {
-    /// Sum over ranks.
     pub(super) fn of(all: &[Self]) -> Self {
         all.iter().fold(Self::default(), |sum, one| Self {
             arrived: sum.arrived + one.arrived,

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use staya_sim::world::border::CellBounds;
 
-/// A rectangle, metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bounds {
     low_m: [f64; 2],
@@ -17,7 +16,6 @@ pub(super) struct Bounds {
 pub(super) struct Region {
     /// A rectangle around the robots, then a point for each other radio or body.
     parts: Vec<Bounds>,
-    /// The cells occupied by bodies.
     pub(super) cells: Option<CellBounds>,
 }
 

@@ -51,7 +51,6 @@ pub struct Ended {
     pub traffic: Vec<Traffic>,
 }
 
-/// Number of positions for the first division of the world.
 const SAMPLES: usize = 1 << 16;
 /// Cost of a reception, as a fraction of a step.
 const RECEPTION: f64 = 0.1;
@@ -331,7 +330,6 @@ where
         Ok(self.engine.ground.keeping_of(&places, counts))
     }
 
-    /// Positions of the robots at the start of the next tick.
     pub(super) fn places(&self) -> impl Iterator<Item = ([f64; 2], Cell)> + Clone + '_ {
         let engine = &self.engine;
         (0..engine.here.len()).map(|index| {
@@ -355,7 +353,6 @@ where
         Ok(())
     }
 
-    /// Counts collisions across borders.
     fn collide(&mut self) -> Result<(), RankError> {
         let (ground, tick) = (&self.engine.ground, self.engine.tick);
         self.wire.choose(|one, other| ground.touches(one, other));
@@ -385,7 +382,6 @@ where
         Ok(Sums::of(&all))
     }
 
-    /// Whether rank 0 requests a checkpoint now.
     fn is_save_due(&mut self) -> bool {
         let is_due = self.wire.rank() == 0
             && match self.sharing.checkpoints {
@@ -401,7 +397,6 @@ where
         is_due
     }
 
-    /// Calls `watch` on rank 0.
     fn watch(&mut self, row: &TickRow, sums: &Sums, watch: &mut Watch<'_>) -> Result<(), RankError> {
         let rows = if self.sharing.records { self.rows()? } else { Vec::new() };
         let saved = if sums.saves { self.save()? } else { None };
@@ -434,7 +429,6 @@ where
         Ok(rows.map(|(number, row)| row.with_error(ground.formation_error(number) as f32)).collect())
     }
 
-    /// Adds up the results.
     fn end(mut self) -> Result<Ended, RankError> {
         let engine = &self.engine;
         let times = engine.here.iter().copied().zip(engine.arrivals.times().iter().copied());

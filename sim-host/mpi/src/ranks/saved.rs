@@ -14,7 +14,6 @@ use staya_sim::radio::Counts;
 use staya_sim::record::PacketCounts;
 use staya_sim::world::plane::Clearance;
 
-/// The whole run as bytes.
 pub(super) struct Saved(Vec<u8>);
 
 impl Saves for Saved {
@@ -24,7 +23,6 @@ impl Saves for Saved {
     }
 }
 
-/// A rank's part of a checkpoint.
 #[derive(Serialize, Deserialize)]
 struct Share {
     part: Part,
@@ -77,7 +75,6 @@ where
     G: HostLaw + State,
     A: Safety<f32> + Send + State,
 {
-    /// Saves the whole run on rank 0.
     pub(super) fn save(&mut self) -> Result<Option<Saved>, RankError> {
         let engine = &self.engine;
         let robots = engine.here.iter().enumerate().map(|(index, &number)| {

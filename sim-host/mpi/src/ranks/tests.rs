@@ -50,7 +50,6 @@ fn load(name: &str, ticks: u32) -> Scenario {
     Scenario::load(&path, &Overrides { seed: None, ticks: Some(ticks) }).expect("a scenario")
 }
 
-/// Asserts that a run on ranks has the results of a run on one process.
 fn compare(name: &str, scenario: &Scenario, ranks: &[usize]) {
     let alone = simulate(scenario, |_, _| ControlFlow::Continue(())).expect("room");
     for &ranks in ranks.iter().filter(|&&ranks| ranks <= scenario.robots.len()) {

@@ -4,7 +4,6 @@ use super::exchange::{Exchange, RankError, Traffic, decode, encode};
 use super::ground::Talk;
 use super::region::Region;
 
-/// The connection of a rank, and the regions of all ranks.
 pub(super) struct Wire<'a> {
     pub(super) exchange: &'a mut dyn Exchange,
     pub(super) regions: Vec<Region>,
@@ -34,7 +33,6 @@ impl<'a> Wire<'a> {
         self.neighbors = others.filter(|&rank| is_beside(&self.regions[own], &self.regions[rank])).collect();
     }
 
-    /// Exchanges a message with each neighbour.
     pub(super) fn halo(&mut self, message: impl Fn(&Region) -> Vec<u8>) -> Result<Vec<(usize, Vec<u8>)>, RankError> {
         let out: Vec<_> = self.neighbors.iter().map(|&rank| (rank, message(&self.regions[rank]))).collect();
         self.traffic.halo += out.iter().map(|(_, bytes)| bytes.len() as u64).sum::<u64>();

@@ -7,7 +7,6 @@ use crate::{font, layout};
 
 const SMALL: f64 = 11.5;
 const ROW: f64 = 19.0;
-/// Width of a mark.
 const MARK: f64 = 24.0;
 const PAD: f64 = 14.0;
 

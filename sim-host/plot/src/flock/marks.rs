@@ -16,9 +16,7 @@ const GOAL: Colour = Colour::hex(0xd5_5e_00);
 const LEAST_RADIUS: f64 = 2.6;
 /// Length of the fastest robot's arrow outside of its disc.
 const ARROW: f64 = 11.0;
-/// Half the length of a dart.
 const DART: f64 = 4.2;
-/// Half the length of a dart in a large swarm.
 const SMALL_DART: f64 = 2.2;
 
 pub fn draw(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
@@ -176,7 +174,6 @@ pub fn arrow([x, y]: Point, [dx, dy]: Point, length: f64) -> [Vec<Point>; 2] {
     [vec![[x, y], tip], vec![barb(1.0), tip, barb(-1.0)]]
 }
 
-/// A triangle with a notch at its back.
 fn dart([x, y]: Point, [dx, dy]: Point, half: f64) -> Vec<Point> {
     let corner = |ahead: f64, left: f64| [x + half * (ahead * dx + left * dy), y + half * (ahead * dy - left * dx)];
     vec![corner(1.2, 0.0), corner(-0.9, 0.65), corner(-0.5, 0.0), corner(-0.9, -0.65)]

@@ -12,7 +12,6 @@ use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, Reference
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::robot::RobotId;
 
-/// Smallest number of robots per thread.
 const BATCH: usize = 64;
 
 /// Accelerations of an alpha flock, m/s^2 (R. Olfati-Saber 2006). `gains` are alpha, beta and

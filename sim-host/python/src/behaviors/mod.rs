@@ -13,14 +13,12 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::{Mode, RobotId};
 use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 
-/// Robots as rows of arrays, m and m/s.
 pub(super) struct Robots<'a> {
     pub positions_m: &'a [[f64; 3]],
     pub velocities_mps: &'a [[f64; 3]],
     pub radii_m: &'a [f64],
 }
 
-/// Obstacles in the plane as rows of arrays.
 pub(super) struct Obstacles<'a> {
     /// From (x, y) to (x, y).
     pub walls_m: &'a [[f64; 4]],
@@ -28,7 +26,6 @@ pub(super) struct Obstacles<'a> {
     pub discs_m: &'a [[f64; 3]],
 }
 
-/// Neighbour search.
 pub(super) struct Neighborhood<'a> {
     robots: Robots<'a>,
     range_m: f64,

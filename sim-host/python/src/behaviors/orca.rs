@@ -13,7 +13,6 @@ use std::sync::{Mutex, PoisonError};
 
 /// Separates the random numbers that break ties from others.
 const RANDOM: u32 = u32::from_be_bytes(*b"pyth");
-/// Smallest number of robots per thread.
 const BATCH: usize = 32;
 
 /// Collision avoidance of many robots, with the memory of each between steps.

@@ -24,7 +24,6 @@ struct Block {
     raw: u32,
     packed: u32,
     crc: u32,
-    /// Tick of its first frame.
     tick: u32,
     /// Index of the block with the scene of its frames.
     scene: usize,

@@ -29,7 +29,6 @@ fn read(bytes: &[u8]) -> Result<Reader<Cursor<&[u8]>>, RecordingError> {
     Reader::new(Cursor::new(bytes), Path::new("a.rec"))
 }
 
-/// Reads all scenes and frames.
 fn all(bytes: &[u8]) -> Result<Vec<FrameData>, RecordingError> {
     let mut reader = read(bytes)?;
     reader.scene_text()?;

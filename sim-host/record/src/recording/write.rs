@@ -39,7 +39,6 @@ pub struct Writer<W: Sink> {
     path: PathBuf,
     /// Bytes of complete blocks in the file.
     written: u64,
-    /// Frames of the current block.
     raw: Vec<u8>,
     /// The previous frame, for the XOR.
     before: Vec<u8>,

@@ -122,7 +122,6 @@ pub fn bodies(scene: &Scene, frame: &FrameData, at_ns: u64) -> Vec<u8> {
     update.0
 }
 
-/// Lines of one colour and thickness.
 fn lines(out: &mut Bytes, colour: [f64; 4], thickness: f64, pairs: impl Iterator<Item = [[f64; 3]; 2]>) {
     out.message(11, |out| {
         out.int(1, 2);

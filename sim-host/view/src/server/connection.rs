@@ -12,7 +12,6 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, Utf8Bytes, WebSocket};
 
-/// Longest message from a page, bytes.
 const LONGEST_MESSAGE: usize = 64 << 10;
 /// Texts queued for a page that does not read; more close it.
 const UNREAD: usize = 512;
@@ -22,7 +21,6 @@ const MOST_BYTES: usize = 256 << 20;
 /// Frames in transit to a page that confirms them.
 const AHEAD: u64 = 3;
 
-/// Result of handling an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
     /// The connection continues.
@@ -49,7 +47,6 @@ struct Live {
     frame: Option<Bytes>,
     /// Whether data wait in the WebSocket's buffer.
     is_behind: bool,
-    /// Number of frames sent.
     sent: u64,
     /// Number of frames that the page confirmed; `None` if it confirms none.
     seen: Option<u64>,
@@ -139,7 +136,6 @@ impl Connection {
         }
     }
 
-    /// Upgrades to a WebSocket.
     fn upgrade(&mut self, key: &str) -> Outcome {
         let Some(Stream::Plain(mut stream)) = self.stream.take() else {
             return Outcome::Ended;

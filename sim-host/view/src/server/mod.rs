@@ -24,9 +24,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tungstenite::{Bytes, Utf8Bytes};
 
-/// Largest number of connections.
 const CONNECTIONS: usize = 256;
-/// Largest number of pages.
 const PAGES: usize = 32;
 /// Queue of page messages for the run.
 const UNHEARD: usize = 1024;
@@ -227,14 +225,12 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// 128 random bits in hexadecimal digits.
 fn random_hex() -> io::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// The state of the server thread.
 struct Pages {
     poll: Poll,
     listener: TcpListener,

@@ -6,12 +6,9 @@
 
 use std::net::{IpAddr, SocketAddr};
 
-/// Longest request, bytes.
 pub(super) const LONGEST: usize = 8192;
-/// Largest number of headers.
 const HEADERS: usize = 64;
 
-/// A parsed request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Request {
     /// Incomplete.
@@ -24,7 +21,6 @@ pub(super) enum Request {
     Refused(Refused),
 }
 
-/// Why a request is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refused {
     /// Not valid HTTP.
@@ -35,7 +31,6 @@ pub(super) enum Refused {
     Method,
 }
 
-/// The rules that authorise requests.
 #[derive(Clone, Debug)]
 pub(super) struct Rules {
     /// The address that the server listens on.

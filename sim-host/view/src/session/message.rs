@@ -15,7 +15,6 @@ use staya_sim::radio::Reception;
 use staya_sim::scenario::{Intervention, Scenario};
 use staya_sim::world::plane::Shape;
 
-/// Largest number of links in one message.
 const LINKS: usize = 20_000;
 
 /// A request of a page, see `PROTOCOL.md`.
@@ -107,7 +106,6 @@ pub(super) fn saved(name: &str, text: &str) -> String {
     json!({ "type": "saved", "name": format!("{name}-by-hand.toml"), "text": text }).to_string()
 }
 
-/// Text of an event.
 pub(super) fn event(event: &Event) -> String {
     match event {
         Event::ModeChanged { from, to } => format!("{from:?} → {to:?}").to_lowercase(),
@@ -210,7 +208,6 @@ impl Session {
         json!({ "type": "links", "tick": self.tick, "pairs": BASE64_STANDARD.encode(pairs) }).to_string()
     }
 
-    /// All details of one robot.
     pub(super) fn robot(&self, index: usize) -> String {
         let observation = self.engine.observation(index);
         let Inspection { known, land, choice, parameters, sent_bytes, heard_bytes } = self.engine.inspect(index);

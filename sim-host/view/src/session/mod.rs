@@ -25,11 +25,9 @@ use std::time::{Duration, Instant};
 
 /// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
-/// Interval of state messages.
 const STATE: Duration = Duration::from_millis(500);
 /// Shortest interval of scenes of a changing map.
 const SCENE: Duration = Duration::from_millis(250);
-/// Stored events per robot.
 const EVENTS: usize = 20;
 /// Rows of figures sent to a new page.
 const ROWS: usize = 2000;
@@ -45,7 +43,6 @@ pub enum SessionError {
     Misplaced(#[from] Misplaced),
 }
 
-/// The details that a page has selected.
 #[derive(Clone, Copy, Debug, Default)]
 struct Looks {
     robot: Option<usize>,
@@ -58,7 +55,6 @@ pub struct Session {
     path: PathBuf,
     scenario: Scenario,
     engine: Box<dyn Operated>,
-    /// Ticks done by the engine.
     tick: u32,
     framer: Framer,
     frame: FrameData,
@@ -66,7 +62,6 @@ pub struct Session {
     memory: Memory,
     /// Interventions of pages by tick.
     done: Vec<(u32, Intervention)>,
-    /// Recent events of each robot.
     events: HashMap<usize, VecDeque<(u32, String)>>,
     pace: Pace,
     /// Tick up to which the engine repeats the run after a seek.
@@ -75,7 +70,6 @@ pub struct Session {
     deferred: VecDeque<(Client, Wanted)>,
     /// Whether any robot ever had a distance to go. If not, only the last tick ends the run.
     has_work: bool,
-    /// Whether the end of the run was reported.
     is_over: bool,
     pages: BTreeMap<Client, Looks>,
     is_new: bool,
@@ -212,7 +206,6 @@ impl Session {
         }
     }
 
-    /// Repeats a tick after a seek.
     fn repeat(&mut self, goal: u32, server: &Server) {
         for (_, what) in self.done.iter().filter(|(tick, _)| *tick == self.tick) {
             // It was valid the first time.
@@ -408,7 +401,6 @@ impl Session {
         }
     }
 
-    /// Replaces the run for all pages.
     fn replace(
         &mut self,
         text: String,
@@ -423,7 +415,6 @@ impl Session {
         Ok(())
     }
 
-    /// The last tick with a stored frame.
     fn last_tick(&self) -> u32 {
         self.memory.last().map_or(self.tick, |last| last.max(self.tick))
     }

@@ -58,7 +58,7 @@ impl Running {
     /// The next message for which `is` returns a value.
     fn until<T>(&mut self, mut is: impl FnMut(Result<Value, FrameData>) -> Option<T>) -> T {
         loop {
-            let found = match self.page.read().expect("it goes on") {
+            let found = match self.page.read().expect("a message") {
                 Message::Text(text) => is(Ok(serde_json::from_str(&text).expect("JSON"))),
                 Message::Binary(bytes) => {
                     let frame = FrameData::decode(&bytes).expect("a frame");

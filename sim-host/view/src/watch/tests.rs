@@ -58,7 +58,7 @@ fn open(watcher: &mut Watcher) -> Page {
 
 fn text(page: &mut Page, kind: &str) -> Value {
     loop {
-        if let Message::Text(text) = page.read().expect("it goes on") {
+        if let Message::Text(text) = page.read().expect("a message") {
             let value: Value = serde_json::from_str(&text).expect("JSON");
             if value["type"] == kind {
                 return value;
@@ -134,7 +134,7 @@ fn without_a_page_no_row_is_read() {
     let scenario = scenario();
     let mut watcher = watcher(&scenario);
     let outcome = simulate(&scenario, |moment, _| {
-        let mut robots = std::iter::from_fn(|| -> Option<RobotRow> { panic!("nobody looks") });
+        let mut robots = std::iter::from_fn(|| -> Option<RobotRow> { panic!("no page is open") });
         watcher.tick(moment, &mut robots);
         ControlFlow::Continue(())
     });

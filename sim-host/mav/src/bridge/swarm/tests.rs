@@ -99,7 +99,6 @@ fn arm(system: u8) -> MavMessage {
 /// Runs the swarm in parallel with a test and returns its report.
 fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
     let is_over = AtomicBool::new(false);
-    /// Ends the swarm even if the test panics.
     struct Ends<'a>(&'a AtomicBool);
     impl Drop for Ends<'_> {
         fn drop(&mut self) {

@@ -15,7 +15,6 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Interval between two copies.
 const EVERY: Duration = Duration::from_millis(50);
 /// A robot counts as heard now if its last beacon is at most this old, seconds.
 const NOW_S: f64 = 1.0;
@@ -148,7 +147,6 @@ impl Swarm<'_> {
         self.vehicles.iter().find(|seen| seen.index == index)
     }
 
-    /// The most recent beacon of a robot.
     fn heard(&self, id: u32) -> Option<&Known> {
         let known = self.vehicles.iter().flat_map(|seen| &seen.known).filter(|known| known.id.0 == id);
         known.min_by(|a, b| a.age_s.total_cmp(&b.age_s))

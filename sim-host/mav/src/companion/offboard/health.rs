@@ -67,7 +67,7 @@ fn is_well(flags: u16, bad: u16, innovations: [f32; 2]) -> bool {
 }
 
 impl Health {
-    /// Handles a message. Returns a problem that is new.
+    /// Handles a message. Returns the problem that it starts, if any.
     pub fn hear(&mut self, message: &MavMessage, now: Duration) -> Option<Doubt> {
         let (doubt, is_bad) = match message {
             MavMessage::GPS_RAW_INT(gps) => (Doubt::Gps, self.has_lost_fix(0, gps.fix_type, now)),

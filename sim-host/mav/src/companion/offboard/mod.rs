@@ -138,7 +138,6 @@ struct Beat {
     is_armed: bool,
 }
 
-/// A request of the entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ask {
     Mode,
@@ -184,7 +183,6 @@ pub struct OffboardStateMachine {
     /// Velocity of `LOCAL_POSITION_NED`, which is finer, with its time.
     velocity: Option<(Duration, [f64; 3])>,
     landed: Option<u8>,
-    /// Whether the companion may still request the mode.
     may_enter: bool,
     /// Whether the mode is not a permission until it has been left.
     must_be_left: bool,
@@ -382,7 +380,6 @@ impl OffboardStateMachine {
         self.settle(now);
     }
 
-    /// Ends the requests of the entry.
     fn end_entry(&mut self, event: Option<Event>) {
         if self.may_enter {
             self.events.extend(event);

@@ -21,7 +21,6 @@ pub const SET_MESSAGE_INTERVAL: u16 = 511;
 const VELOCITY_ONLY: u16 = 0xDC7;
 /// As `VELOCITY_ONLY`, with the yaw rate in use.
 const VELOCITY_AND_YAW_RATE: u16 = 0x5C7;
-/// `MAV_FRAME_LOCAL_NED`.
 const LOCAL_NED: u8 = 1;
 
 /// Heartbeat of an active onboard controller.

@@ -10,7 +10,6 @@ const LOOK: Duration = Duration::from_secs(3);
 const HEALTH_LOOKS: u8 = 3;
 /// Time for which PX4 receives setpoints before the mode is requested.
 const STREAM: Duration = Duration::from_secs(1);
-/// Interval of retries of one request.
 const RETRY: Duration = Duration::from_secs(2);
 /// Retries of one request: two minutes, since autopilots refuse arming and modes long after their
 /// first position.

@@ -10,10 +10,8 @@ use std::time::{Duration, Instant};
 
 /// Time, links, the network between companions, a log and a terminal.
 pub trait Machine {
-    /// Time since the start.
     fn now(&self) -> Duration;
 
-    /// Sleeps.
     fn pause(&mut self, time: Duration);
 
     /// The next frame of any link, waiting for at most `wait`.
@@ -25,10 +23,8 @@ pub trait Machine {
     /// Marks `peer` on link `line` as authenticated, so that it may receive frames.
     fn believe(&mut self, line: usize, peer: Peer);
 
-    /// Traffic counters of link `line`.
     fn counts(&self, line: usize) -> Counts;
 
-    /// Why link `line` is not connected.
     fn trouble(&self, line: usize) -> Option<String>;
 
     /// Passes packets of companions in other processes to `heard`.

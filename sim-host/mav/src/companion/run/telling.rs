@@ -15,13 +15,11 @@ use std::time::Duration;
 const SHOWN: Duration = Duration::from_secs(1);
 
 impl Companions<'_> {
-    /// Reports an event of a vehicle on standard error.
     pub(super) fn tell(&mut self, index: usize, what: &str) {
         let (at, robot) = (self.now().as_secs_f64(), self.vehicles[index].setup.robot.0);
         self.say(&format!("{at:9.3} robot {robot}: {what}"));
     }
 
-    /// Reports an event on standard error.
     pub(super) fn say(&mut self, line: &str) {
         if !self.options.quiet {
             // A closed standard error must not stop the companion.

@@ -48,7 +48,6 @@ struct World {
     rovers: Vec<Rover>,
     frames: VecDeque<Received>,
     failing: Option<(Call, Failure)>,
-    /// Number of calls of the failing kind.
     calls: usize,
     logged: usize,
     lines: Vec<String>,

@@ -145,7 +145,7 @@ fn a_parameter_is_set_within_limits_and_always_reported() {
         let out = bench.give(param_set("SPEED_MPS", bad));
         assert_eq!(told(out), 0.5, "unchanged");
         assert!(out.actions.is_empty());
-        assert_eq!(bench.texts(), ["SPEED_MPS: 0 to 2"]);
+        assert_eq!(bench.texts(), ["SPEED_MPS: give 0 to 2"]);
     }
     assert!(bench.give(param_set("NO_SUCH", 1.0)).actions.is_empty());
     assert_eq!(bench.texts(), ["unknown parameter"]);
