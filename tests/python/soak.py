@@ -199,7 +199,7 @@ def accounts(judge, part, report):
     lost = sum(line["lost_in"] for line in report["lines"])
     parts = [report[of] for of in ("frames_heard", "frames_ignored", "frames_refused", "frames_waiting")]
     judge.says(part, "every frame that came in is counted once", came == sum(parts) + lost,
-               "{} in: {} heard, {} for nobody, {} refused, {} waiting, {} lost".format(came, *parts, lost))
+               "{} in: {} handled, {} ignored, {} rejected, {} queued, {} lost".format(came, *parts, lost))
 
 
 def waits(found):
@@ -247,7 +247,7 @@ class Flood:
         # The checksum of unknown messages is unknown, so a frame that looks like one counts as
         # ignored.
         judge.says(self.name, "every byte of junk is counted", junk["bytes"] == noise["junk_bytes"] + noise["bytes_in"] + dropped["junk"] * junk["size"],
-                   f"{junk['bytes']} bytes from 200 ports: {noise['junk_bytes']} junk, {noise['frames_in']} frames that nobody knows, {dropped['junk']} datagrams dropped")
+                   f"{junk['bytes']} bytes from 200 ports: {noise['junk_bytes']} junk, {noise['frames_in']} unknown frames, {dropped['junk']} datagrams dropped")
         cut, opened = self.found["cut"], self.found["half_open"]["opened"]
         judge.says(self.name, "a cut link reconnects", cut["heard"] >= cut["links"] - 1 > 0,
                    f"{cut['heard']} of {cut['links']} times, among {opened} half-open connections, {waits(cut)}")
@@ -383,7 +383,7 @@ class Companion:
         [noise] = report["links"]
         sent = self.found["junk"]["bytes"]
         is_counted = noise["junk_bytes"] + noise["bytes_in"] >= sent > 0 and noise["junk_bytes"] > sent // 2
-        judge.says(self.name, "junk is counted", is_counted, f"{sent} bytes, {noise['junk_bytes']} counted with what the links damaged")
+        judge.says(self.name, "junk is counted", is_counted, f"{sent} bytes, {noise['junk_bytes']} counted including frames damaged by the links")
         judge.memory(process)
 
 

@@ -54,7 +54,6 @@ impl Log {
         entries.loads.get(at).map(|(_, load)| *load)
     }
 
-    /// Statistics of all devices after the run.
     #[must_use]
     pub fn statistics(&self) -> Vec<Statistics> {
         self.entries().statistics.clone()
@@ -79,7 +78,6 @@ pub struct OnDevices {
 }
 
 impl OnDevices {
-    /// Creates the devices of a plan, and the log of their results.
     #[must_use]
     pub fn new(plan: DevicePlan, options: Options, law: Box<dyn Fn(usize) -> Vec<u8> + Send>) -> (Self, Log) {
         let (log, count) = (Log::default(), plan.devices.len());

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// Why a link cannot be opened.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot open {endpoint}: {source}")]
+#[error("cannot open {endpoint}: {source}; give another address or port, or end the program that uses it")]
 pub struct OpenError {
     /// The link.
     pub endpoint: Endpoint,

@@ -22,7 +22,7 @@ pub struct Tlog {
 
 /// A log cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write the log {}: {source}", .path.display())]
+#[error("cannot write the log {}: {source}; {}", .path.display(), staya_sim::file::write_remedy(.source))]
 pub struct TlogError {
     /// Path.
     pub path: PathBuf,

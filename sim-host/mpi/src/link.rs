@@ -16,7 +16,6 @@ use std::time::{Duration, Instant};
 /// signal.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// A request to MPI.
 pub enum Call {
     Gather(Vec<u8>),
     Swap(Vec<(usize, Vec<u8>)>, Vec<usize>),
@@ -96,7 +95,6 @@ impl Exchange for Link {
 }
 
 impl Server {
-    /// Serves requests until the run ends.
     pub fn serve(self) {
         while let Ok(call) = self.calls.recv() {
             let answer = match call {

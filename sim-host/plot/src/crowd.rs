@@ -42,7 +42,6 @@ impl Density {
         Self { raster, entered }
     }
 
-    /// The largest count.
     pub fn most(&self) -> u32 {
         self.entered.iter().copied().max().unwrap_or(0)
     }

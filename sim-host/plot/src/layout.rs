@@ -18,18 +18,15 @@ const SAMPLE: f64 = 24.0;
 /// SVG readers' sans-serif fonts are wider than the measured one by up to this factor.
 pub const OTHER_FONTS: f64 = 1.15;
 
-/// Height of the headline above several charts.
 pub fn headline_height(title: &str) -> f64 {
     if title.is_empty() { 0.0 } else { PAD + HEADLINE * 1.3 }
 }
 
-/// Draws the headline above several charts.
 pub fn headline(canvas: &mut Canvas, title: &str, width: f64) {
     let baseline = PAD + HEADLINE;
     heading(canvas, title, HEADLINE, [PAD, baseline], width - 2.0 * PAD);
 }
 
-/// Draws a bold title that fits into `room`.
 pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: f64) {
     let (title, size) = font::fit(title, size, true, room / OTHER_FONTS);
     canvas.text(Text { bold: true, ..Text::new(at, size, Anchor::Start, title) });

@@ -9,12 +9,9 @@ const MARK: f64 = 3.4;
 /// Horizontal distance between series with intervals, so that error bars at the same x do not
 /// overlap.
 const DODGE: f64 = 4.0;
-/// A series with its colour and mark.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
-    /// The series.
     pub series: &'a Series,
-    /// Its colour.
     pub colour: Colour,
     /// Index of its mark: circle, square, triangle, diamond.
     pub mark: usize,
@@ -51,19 +48,16 @@ pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
 }
 
 impl Look<'_> {
-    /// The line of a line series.
     pub fn stroke(&self) -> Stroke {
         let stroke = Stroke::new(self.colour, 1.8);
         if self.series.dashed { stroke.dashed(6.0, 4.0) } else { stroke }
     }
 
-    /// The line between marks.
     pub fn joint(&self) -> Stroke {
         let stroke = Stroke::new(self.colour, 1.3);
         if self.series.dashed { stroke.dashed(5.0, 3.5) } else { stroke }
     }
 
-    /// The lines of error bars.
     pub fn whiskers(&self) -> Stroke {
         Stroke::new(self.colour, 1.2)
     }
@@ -73,7 +67,6 @@ impl Look<'_> {
         self.colour.with_alpha(90)
     }
 
-    /// Draws the mark.
     pub fn mark(&self, canvas: &mut Canvas, [x, y]: Point) {
         let edge = Some(Stroke::new(WHITE, 0.7));
         let fill = Some(self.colour);

@@ -29,12 +29,9 @@ fn land(brightness: u8) -> Colour {
     Colour { rgb: [grey; 3], alpha: 255 }
 }
 
-/// Division of a map into pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Raster {
-    /// Pixels from west to east.
     pub columns: u32,
-    /// Pixels from north to south.
     pub rows: u32,
     /// Cells along each side of a pixel.
     pub cells: u32,
@@ -110,12 +107,10 @@ impl<'a> Map<'a> {
         canvas.shapes.push(Shape::Image { area, pixels });
     }
 
-    /// Draws the land.
     pub fn ground(&self, canvas: &mut Canvas) {
         self.image(canvas, pixels(self.terrain));
     }
 
-    /// Draws a thin frame around the land.
     pub fn frame(&self, canvas: &mut Canvas) {
         canvas.rectangle(self.area, None, Some(Stroke::new(INK, 1.0)));
     }

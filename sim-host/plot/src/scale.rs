@@ -11,7 +11,6 @@ const NUMBER: f64 = 11.5;
 /// Largest overhang of numbers at the ends of the x axis; less than the margins there.
 const OVERHANG: f64 = 24.0;
 
-/// One axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
     range: [f64; 2],
@@ -29,7 +28,6 @@ impl Axis {
         (at(value) - low) / (high - low)
     }
 
-    /// Width of the widest tick label.
     pub fn widest_label(&self, size: f64) -> f64 {
         self.ticks.iter().map(|tick| font::width(&tick.label, size, false)).fold(0.0, f64::max)
     }
@@ -47,19 +45,14 @@ impl Axis {
     }
 }
 
-/// Both axes of a chart.
 #[derive(Clone, Debug)]
 pub struct Axes {
-    /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
     pub y: Axis,
-    /// Whether there is nothing to show.
     pub empty: bool,
 }
 
 impl Axes {
-    /// Creates axes for a plotting area of this width and height.
     pub fn new(chart: &Chart, looks: &[Look<'_>], [width, height]: [f64; 2]) -> Self {
         let extent = Extent::new(chart, looks);
         let x_range = x_range(chart, &extent);

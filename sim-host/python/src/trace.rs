@@ -57,7 +57,6 @@ impl Trace {
         Self { every: if every == 0 { usual } else { every }, ..Self::default() }
     }
 
-    /// Adds the present moment.
     pub fn take(&mut self, engine: &dyn Operated) {
         engine.show(&mut |moment, rows| {
             self.swarm.take(moment);
@@ -67,7 +66,6 @@ impl Trace {
         });
     }
 
-    /// Adds the last moment if it is missing.
     pub fn finish(&mut self, engine: &dyn Operated) {
         engine.show(&mut |moment, rows| {
             if self.last != Some(moment.row.tick) {

@@ -130,7 +130,7 @@ def test_others_keep_clear_of_a_vehicle_whose_companion_dies(fly, free_port):
         time.sleep(30.0)
         near, *_ = simulation.nearest(killed, time.time(), only=ONE)
         companions[1].finish()
-        figures(f"killed at {speed:.2f} m/s it went on for {rolled:.1f} m and {stood - killed:.1f} s; {near:.2f} m to it from then on; "
+        figures(f"killed at {speed:.2f} m/s it continued for {rolled:.1f} m and {stood - killed:.1f} s; {near:.2f} m to it from then on; "
                 f"30 s later the others are {[round(simulation[n].off(GOALS[n - 1])) for n in OTHERS]} m from their goals")
         least(simulation, begun)
 

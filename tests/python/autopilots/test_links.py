@@ -70,7 +70,7 @@ def test_a_refused_tcp_link_is_reported_and_retried(fly, free_port):
             ended = arrive(simulation, GOALS[:1], 60)
             companion.finish()
         said = companion.process.output().count("no connection: ")
-        figures(f"said once that it is refused, connected {connected - refused - 2.0:.1f} s after there was somebody; there in {ended - begun:.1f} s")
+        figures(f"refusal reported once, connected {connected - refused - 2.0:.1f} s after the relay started; arrived in {ended - begun:.1f} s")
         assert said == 1, companion.process.output()
 
 

@@ -79,7 +79,6 @@ pub struct TemplateArgs {
 }
 
 impl TemplateArgs {
-    /// The selected function.
     pub fn templated(&self) -> Result<Templated> {
         let templated = self.template()?.function()?;
         let Some(extent) = &self.extent else {

@@ -113,7 +113,6 @@ pub fn note(canvas: &mut Canvas, pictures: usize, text: &str) {
     canvas.text(Text { colour: MUTED, ..text });
 }
 
-/// Pixels with a title and axes.
 pub fn picture(canvas: &mut Canvas, view: &View, title: &str, pixels: Pixels) {
     let [left, top, side] = view.area;
     let at = [left + side / 2.0, top - 10.0];
@@ -169,7 +168,6 @@ pub fn label(canvas: &mut Canvas, view: &View, at: V, away: V, name: &str, colou
     canvas.text(Text { colour, halo: Some(WHITE), ..text });
 }
 
-/// An arrow between two velocities.
 pub fn arrow(canvas: &mut Canvas, view: &View, from: V, to: V, stroke: Stroke) {
     let Some(unit) = (to - from).normalized() else {
         canvas.circle(view.place(to), 2.5, Some(stroke.colour), None);

@@ -21,7 +21,6 @@ impl Budget {
         Self { each_us: 1_000_000 / u64::from(count.max(1)), even_us: 0 }
     }
 
-    /// Takes one unit, if the limit allows it.
     pub fn take(&mut self, now_us: u64) -> bool {
         let even_us = self.even_us.max(now_us);
         if even_us - now_us > AT_ONCE_US {

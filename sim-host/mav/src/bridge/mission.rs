@@ -25,13 +25,9 @@ pub struct Item {
     pub frame: u8,
     /// 1 if the mission continues after this item without a command.
     pub autocontinue: u8,
-    /// Parameters 1 to 4.
     pub params: [f32; 4],
-    /// Parameter 5.
     pub x: i32,
-    /// Parameter 6.
     pub y: i32,
-    /// Parameter 7.
     pub z: f32,
 }
 
@@ -141,7 +137,6 @@ pub struct Mission {
 }
 
 impl Mission {
-    /// Number of items, home included.
     #[must_use]
     pub fn len(&self) -> u16 {
         // At most `ITEMS`.
@@ -154,7 +149,6 @@ impl Mission {
         self.items.len() < 2
     }
 
-    /// Number of the item that is next or in progress.
     #[must_use]
     pub const fn current(&self) -> u16 {
         self.current
@@ -175,7 +169,6 @@ impl Mission {
         is_there
     }
 
-    /// Marks the mission as completed.
     pub const fn complete(&mut self) {
         self.is_complete = true;
     }

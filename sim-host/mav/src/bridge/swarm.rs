@@ -69,7 +69,7 @@ pub enum BridgeError {
     )]
     Number(u32),
     /// The robots do not fit into the scenario.
-    #[error("the robots cannot be placed: {0}")]
+    #[error("the robots cannot be placed: {0}; change their starts")]
     Misplaced(#[from] Misplaced),
     /// A link cannot be opened.
     #[error(transparent)]

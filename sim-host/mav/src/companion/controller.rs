@@ -18,7 +18,9 @@ use std::time::Duration;
 /// State of a vehicle from telemetry, in metres and m/s east, north, up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Body {
+    /// Position.
     pub position_m: [f64; 3],
+    /// Velocity.
     pub velocity_mps: [f64; 3],
     /// Largest position error, metres; 0 while telemetry is fresh and trusted.
     pub error_m: f64,
@@ -221,7 +223,7 @@ fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag
         return f64::INFINITY;
     }
     let slow = brake.tolerance_m / (2.0 * lag_s);
-    // v^2 / 2a + v lag / 2 = remaining distance, solved for v.
+    // With half of the acceleration a: v^2 / a + v lag = remaining distance, solved for v.
     let by_lag = acceleration_mps2 * lag_s / 2.0;
     let fast = if acceleration_mps2.is_finite() {
         (by_lag * by_lag + acceleration_mps2 * distance_m).sqrt() - by_lag

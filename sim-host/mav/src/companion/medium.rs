@@ -40,7 +40,7 @@ pub enum MediumSetup {
 
 /// Why the network to other companions is unavailable.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot exchange packets with other companions over {over}: {source}")]
+#[error("cannot exchange packets with other companions over {over}: {source}; check the addresses in [air]")]
 pub struct MediumError {
     /// Address of the group or own address.
     over: String,

@@ -69,7 +69,6 @@ impl Frame {
         at.iter().all(|c| c.is_finite() && c.abs() < 1e5).then_some(at)
     }
 
-    /// Draws title, grid, ticks, numbers and labels.
     pub fn draw(&self, snapshot: &Snapshot, canvas: &mut Canvas) {
         let [left, top, width, height] = self.plot;
         let (right, bottom) = (left + width, top + height);

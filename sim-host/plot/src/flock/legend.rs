@@ -36,7 +36,6 @@ pub fn draw(sheet: &Sheet, canvas: &mut Canvas, mut top: f64, width: f64) -> f64
     if keys.is_empty() { top } else { top + ROW }
 }
 
-/// Height of the legend.
 pub fn height(sheet: &Sheet, width: f64) -> f64 {
     draw(sheet, &mut Canvas::new(width, 1.0, ""), 0.0, width)
 }

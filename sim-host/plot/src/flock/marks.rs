@@ -164,7 +164,6 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     canvas.lines(arrows, Stroke::new(INK, 1.0));
 }
 
-/// A line from the centre with two barbs.
 pub fn arrow([x, y]: Point, [dx, dy]: Point, length: f64) -> [Vec<Point>; 2] {
     let tip = [x + dx * length, y + dy * length];
     let barb = |side: f64| {

@@ -17,12 +17,10 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Starts with the static background.
     pub const fn new(ground: Pixmap) -> Self {
         Self { ground, before: Vec::new() }
     }
 
-    /// Draws the next frame.
     pub fn next(&mut self, scenario: &Scenario, view: &View, frame: &Frame) -> io::Result<Pixmap> {
         let now: Vec<_> = frame.samples.iter().take(MOST_WAYS).map(|sample| sample.position_m).collect();
         if frame.samples.len() <= MOST_WAYS && self.before.len() == now.len() {

@@ -10,7 +10,6 @@ const STEP: i32 = 5;
 /// Bits of red, green and blue in the lookup table.
 const BITS: u32 = 6;
 
-/// A palette of up to 255 colours.
 pub struct Palette {
     colours: Vec<u8>,
     /// Nearest colour by the leading bits of each channel.
@@ -18,7 +17,6 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// Creates a palette for these pictures.
     pub fn new(pictures: &[Pixmap]) -> Self {
         let pixels: Vec<u8> = pictures.iter().flat_map(|picture| picture.data()).copied().collect();
         let found = NeuQuant::new(STEP, usize::from(CLEAR), &pixels);

@@ -81,7 +81,6 @@ impl<'a> Neighborhood<'a> {
 }
 
 impl Obstacles<'_> {
-    /// The obstacles relative to a position.
     pub fn from(&self, [x, y, _]: [f64; 3]) -> impl Iterator<Item = Obstacle<f32>> + '_ {
         let point = move |px: f64, py: f64| Vec2::new((px - x) as f32, (py - y) as f32);
         let walls = self.walls_m.iter().map(move |&[ax, ay, bx, by]| Obstacle::Wall([point(ax, ay), point(bx, by)]));

@@ -1,6 +1,5 @@
 //! The part of Protocol Buffers that MCAP needs: encoding of fields, and descriptors of messages.
 
-/// Type of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// 64-bit float.
@@ -31,12 +30,10 @@ pub struct Field {
     pub repeated: bool,
 }
 
-/// A single field.
 pub const fn one(name: &'static str, number: u32, kind: Kind) -> Field {
     Field { name, number, kind, repeated: false }
 }
 
-/// A repeated field.
 pub const fn many(name: &'static str, number: u32, kind: Kind) -> Field {
     Field { name, number, kind, repeated: true }
 }
@@ -57,7 +54,6 @@ pub struct File {
     pub types: &'static [Type],
 }
 
-/// A message being encoded.
 #[derive(Clone, Debug, Default)]
 pub struct Bytes(pub Vec<u8>);
 
@@ -100,7 +96,6 @@ impl Bytes {
         self.bytes(number, value.as_bytes());
     }
 
-    /// A nested message.
     pub fn message(&mut self, number: u32, fill: impl FnOnce(&mut Self)) {
         let mut inside = Self::default();
         fill(&mut inside);

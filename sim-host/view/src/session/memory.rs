@@ -36,7 +36,6 @@ impl Memory {
         }
     }
 
-    /// Drops the frames of `tick` and later.
     pub fn forget_from(&mut self, tick: u32) {
         while self.frames.last().is_some_and(|(last, _)| *last >= tick) {
             let gone = self.frames.pop();
@@ -44,7 +43,6 @@ impl Memory {
         }
     }
 
-    /// The last stored tick.
     pub fn last(&self) -> Option<u32> {
         self.frames.last().map(|(tick, _)| *tick)
     }

@@ -39,7 +39,7 @@ pub enum SessionError {
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
     /// The robots do not fit into the scenario.
-    #[error("the robots cannot be placed: {0}")]
+    #[error("the robots cannot be placed: {0}; change their starts")]
     Misplaced(#[from] Misplaced),
 }
 

@@ -9,13 +9,9 @@ use staya_mavlink::dialect::{
 use staya_mavlink::mavlink_core::MessageData as _;
 use std::time::Duration;
 
-/// `MAV_CMD_NAV_TAKEOFF`.
 pub const NAV_TAKEOFF: u16 = 22;
-/// `MAV_CMD_DO_SET_MODE`.
 pub const DO_SET_MODE: u16 = 176;
-/// `MAV_CMD_COMPONENT_ARM_DISARM`.
 pub const ARM_DISARM: u16 = 400;
-/// `MAV_CMD_SET_MESSAGE_INTERVAL`.
 pub const SET_MESSAGE_INTERVAL: u16 = 511;
 /// `POSITION_TARGET_TYPEMASK` that ignores position, acceleration, yaw and yaw rate.
 const VELOCITY_ONLY: u16 = 0xDC7;

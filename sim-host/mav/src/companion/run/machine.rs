@@ -63,7 +63,6 @@ pub trait Machine {
     fn tell(&mut self, line: &str) -> io::Result<()>;
 }
 
-/// The real environment.
 pub struct Host {
     pub began: Instant,
     pub lines: Lines,

@@ -13,12 +13,10 @@ const INBOX: usize = 16 * 1024;
 
 pub struct Vehicle {
     pub setup: VehicleSetup,
-    /// Largest speed, m/s.
     pub max_speed_mps: f64,
     pub error_m: f64,
     pub offboard: OffboardStateMachine,
     pub controller: Controller<HostWire>,
-    /// Address of its autopilot.
     pub peer: Option<Peer>,
     /// Whether a signature problem was reported.
     pub is_signing_told: bool,
@@ -35,7 +33,6 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// Stores packets for the next step.
     pub fn listen(&mut self, frames: &[u8]) {
         if self.inbox.len() + frames.len() <= INBOX {
             self.inbox.extend_from_slice(frames);
