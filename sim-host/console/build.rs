@@ -1,13 +1,13 @@
-//! Tells the program which commit it was built of: rows of results say so.
+//! Sets the version that results record.
 //!
-//! `STAYA_VERSION` is the package's version; where the sources are those of a git repository, `+` and the last commit that touched
-//! what rows depend on, and where these differ from that commit, a fingerprint of the difference. So rows of two builds are
-//! told apart, and a change of documents alone makes no new build.
+//! `STAYA_VERSION` is the package version. In a git repository it continues with `+` and the last
+//! commit that changed the sources of results, and with a hash of uncommitted changes to them. So
+//! results of different builds differ in version, and a change of documents alone does not.
 
 use std::path::Path;
 use std::process::Command;
 
-/// What rows depend on.
+/// Files that influence results.
 const SOURCES: [&str; 7] = [
     "Cargo.lock",
     "controller",
@@ -30,9 +30,9 @@ fn main() {
     println!("cargo::rustc-env=STAYA_VERSION={}{commit}", env!("CARGO_PKG_VERSION"));
 }
 
-/// `None`: there is no git, or the sources are not those of a repository.
+/// `None` without git or outside its repository.
 fn commit(root: &Path) -> Option<String> {
-    // Sources that were unpacked inside of somebody else's repository are not its own.
+    // The sources may lie inside a foreign repository.
     git(root, &["ls-files", "--error-unmatch", "sim-host/console/build.rs"])?;
     let of_sources = |words: &[&str]| git(root, &[words, &["--"], &SOURCES].concat());
     let commit = of_sources(&["log", "-1", "--abbrev=12", "--format=%h"]).filter(|commit| !commit.is_empty())?;
@@ -41,14 +41,14 @@ fn commit(root: &Path) -> Option<String> {
     if changes.is_empty() && new.is_empty() {
         return Some(commit);
     }
-    // FNV-1a.
+    // FNV-1a hash.
     let texts = new.lines().map(|file| std::fs::read_to_string(root.join(file)).unwrap_or_default());
     let all: String = [changes, new.clone()].into_iter().chain(texts).collect();
     let hash = all.bytes().fold(0x811c_9dc5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
     Some(format!("{commit}.{hash:08x}"))
 }
 
-/// What git says; `None`: it fails, or there is none.
+/// Output of git; `None` if it fails.
 fn git(root: &Path, words: &[&str]) -> Option<String> {
     let done = Command::new("git").arg("-C").arg(root).args(words).output().ok()?;
     let said = String::from_utf8(done.stdout).ok()?;

@@ -1,8 +1,9 @@
-//! The command line of `staya` itself.
+//! The command line of `staya`.
 //!
-//! A new command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and one line in [`Command`].
-//! Results go to standard output, progress and errors to standard error. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 stopped
-//! by Ctrl-C (what was done until then is kept).
+//! A command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and
+//! a variant of [`Command`]. Results go to standard output, progress and errors to standard error.
+//! Exit codes: 0 success, 1 error, 2 invalid usage, 130 stopped by Ctrl-C (results so far are
+//! kept).
 
 use crate::programs::{self, VIEW};
 use crate::{page, run, terrain};
@@ -14,13 +15,13 @@ use std::process::ExitCode;
 /// Commands of `staya` itself; [`programs`] has the others.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Make a project of your own: a guidance law, its scenario, a test, firmware.
+    /// Create a project with your own guidance law: scenario, test, firmware.
     New(staya_new::NewArgs),
     /// Run a scenario.
     Run(run::RunArgs),
     /// Make one HTML file of a run, for any browser, without server or network.
     Page(page::PageArgs),
-    /// Make, measure and draw terrain.
+    /// Generate, measure and draw terrain.
     Terrain(terrain::TerrainArgs),
 }
 
@@ -28,11 +29,11 @@ impl Command {
     /// Runs the command.
     ///
     /// # Errors
-    /// Those of the command.
+    /// Any error of the command.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match self {
             Self::New(args) => args.run(global),
-            // The library function is the same there, with more observers.
+            // `staya-view` runs the same command with more observers.
             Self::Run(args) if args.needs_view() => programs::hand_over(VIEW),
             Self::Run(args) => args.run(global),
             Self::Page(args) => args.run(global),
@@ -41,7 +42,7 @@ impl Command {
     }
 }
 
-/// Parses the command line, runs the command or hands it to its program, and reports errors.
+/// Parses the command line, runs the command or its program, and reports errors.
 #[must_use]
 pub fn main() -> ExitCode {
     let matches = programs::with_commands(Line::<Command>::command()).get_matches();
@@ -56,7 +57,6 @@ pub fn main() -> ExitCode {
     staya_console::exit("staya", ended)
 }
 
-/// `staya help [COMMAND]`.
 fn help(command: Option<&str>) -> ExitCode {
     let ended = match command.and_then(programs::of) {
         Some(program) => {

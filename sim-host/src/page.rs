@@ -1,4 +1,4 @@
-//! `staya page`: a run as one HTML file.
+//! `staya page` makes one HTML file of a run.
 
 use anyhow::{Context as _, Result};
 use clap::Args;
@@ -16,23 +16,23 @@ use std::path::{Path, PathBuf};
 /// Make one HTML file of a run, for any browser, without server or network.
 #[derive(Args, Clone, Debug)]
 pub struct PageArgs {
-    /// A scenario (.toml), which is run, or a recording of `staya run --record`.
+    /// Scenario (.toml), which is run, or a recording made with `staya run --record`.
     #[command(flatten)]
     source: ScenarioArgs,
-    /// The page.
+    /// Output file.
     #[arg(long, value_name = "FILE", default_value = "page.html")]
     out: PathBuf,
-    /// Of a scenario: ticks from one moment on the page to the next.
+    /// For a scenario: ticks between two recorded moments.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
 }
 
-/// What was made, as with `--json`.
+/// Result, the output of `--json`.
 #[derive(Debug, Serialize)]
 struct Made {
     page: PathBuf,
     bytes: usize,
-    /// Of the recording inside.
+    /// Size of the recording inside.
     recording_bytes: usize,
     first_tick: u32,
     last_tick: u32,
@@ -42,7 +42,7 @@ impl PageArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A scenario or recording that cannot be read or is wrong, a page that cannot be written.
+    /// An unreadable or invalid scenario or recording, or a page that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let path = self.source.path();
         let stop = Stop::on_ctrl_c()?;
@@ -51,11 +51,11 @@ impl PageArgs {
             true => recorded(&self.source.load()?, self.every, &stop, global)?,
             false => read(path, MAP).with_context(|| format!("cannot read {}; check the name", path.display()))?,
         };
-        // A page that shows nothing is of no use.
+        // The recording is checked before a page is made of it.
         let mut reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
         reader.scene()?;
         let (first_tick, last_tick) =
-            reader.ticks().with_context(|| format!("{} has no frames; record it anew", path.display()))?;
+            reader.ticks().with_context(|| format!("{} has no frames; record the run again", path.display()))?;
         let page = page::with_recording(&bytes)?;
         write_atomically(&self.out, page.as_bytes())?;
         let made =
@@ -70,7 +70,6 @@ impl PageArgs {
     }
 }
 
-/// Runs a scenario and records it in memory.
 fn recorded(scenario: &Scenario, every: u32, stop: &Stop, global: &Global) -> Result<Vec<u8>> {
     let mut recorder = RunRecorder::new(Vec::new(), Path::new(&scenario.name), scenario, every)?;
     let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
@@ -80,7 +79,7 @@ fn recorded(scenario: &Scenario, every: u32, stop: &Stop, global: &Global) -> Re
         progress.set(moment.row.tick.into(), || "ticks".to_owned());
         if failed.is_some() || stop.is_requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let outcome = simulate(scenario, watch).context("the robots cannot be placed")?;
+    let outcome = simulate(scenario, watch).context("the robots cannot be placed; change their starts")?;
     progress.finish();
     if let Some(error) = failed {
         return Err(error.into());

@@ -1,8 +1,8 @@
-//! Programs beside `staya`: `staya NAME` finds the program that has the command NAME, builds it first where it runs from a
-//! checkout, and hands the whole command line over unchanged.
+//! Finds the programs of commands: `staya NAME` runs the program with the command NAME and passes
+//! the whole command line on.
 //!
-//! The search goes: in a checkout, the package is built with cargo, into the folder and profile of this program (0.2 s when nothing
-//! has changed); then beside this program; then on the PATH.
+//! The search order: in a checkout, cargo builds the package into this program's folder and profile
+//! (0.2 s if up to date); then the folder of this program; then the PATH.
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Arg, Command};
@@ -11,21 +11,21 @@ use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// A program beside `staya`.
+/// A program with some of the commands.
 #[derive(Debug)]
 pub struct Program {
-    /// The program, and the package that has it.
+    /// Name of the program.
     pub name: &'static str,
-    /// The package that cargo builds it from.
+    /// Package that contains it.
     pub package: &'static str,
-    /// Its commands, each with the line that `staya --help` prints.
+    /// Its commands with their lines in `staya --help`.
     pub commands: &'static [(&'static str, &'static str)],
 }
 
-/// Live pages and MCAP.
+/// The program for live pages and MCAP.
 pub const VIEW: &Program = &PROGRAMS[1];
 
-/// All programs.
+/// All programs beside `staya`.
 pub const PROGRAMS: [Program; 5] = [
     Program {
         name: "staya-lab",
@@ -49,28 +49,28 @@ pub const PROGRAMS: [Program; 5] = [
         name: "staya-mav",
         package: "staya-mav",
         commands: &[
-            ("bridge", "Let ground stations and scripts see and command a simulated swarm over MAVLink"),
-            ("formation", "Tell a swarm in formation to take another shape and to go elsewhere, over MAVLink"),
-            ("companion", "Steer ArduPilot or PX4 vehicles as a swarm"),
+            ("bridge", "Connect a simulated swarm to ground stations and scripts over MAVLink"),
+            ("formation", "Send a new shape or goal to a formation over MAVLink"),
+            ("companion", "Control ArduPilot or PX4 vehicles as a swarm"),
         ],
     },
     Program {
         name: "staya-voxel",
         package: "staya-fvm",
         commands: &[
-            ("orca", "Draw what ORCA forbids two robots, and measure the table that it can be looked up in"),
+            ("orca", "Draw the velocities that ORCA forbids two robots, and measure its lookup tables"),
             ("voxel", "Make, draw and measure functional voxel models: functions as tables for a microcontroller"),
         ],
     },
 ];
 
-/// The program that has a command.
+/// The program with the command `command`.
 #[must_use]
 pub fn of(command: &str) -> Option<&'static Program> {
     PROGRAMS.iter().find(|program| program.commands.iter().any(|(name, _)| *name == command))
 }
 
-/// Adds the commands of all programs, and `help`, to the command line of `staya`.
+/// Adds the commands of all programs and `help` to the command line of `staya`.
 #[must_use]
 pub fn with_commands(line: Command) -> Command {
     let rest = || Arg::new("arguments").num_args(0..).allow_hyphen_values(true).trailing_var_arg(true).hide(true);
@@ -82,8 +82,8 @@ pub fn with_commands(line: Command) -> Command {
     line.subcommands(stubs).disable_help_subcommand(true).subcommand(help)
 }
 
-/// Runs a program with the command line of this one. On Unix the program replaces this process, so that signals and the exit code are
-/// its own.
+/// Runs a program with this process's arguments. On Unix the program replaces this process, so it
+/// receives the signals and sets the exit code.
 ///
 /// # Errors
 /// The program cannot be built or found.
@@ -99,7 +99,7 @@ pub fn hand_over_as(program: &Program, arguments: &[OsString]) -> Result<Ended> 
     let path = find(program)?;
     let mut command = std::process::Command::new(&path);
     command.args(arguments);
-    become_it(command).with_context(|| format!("{} cannot be started", path.display()))
+    become_it(command).with_context(|| format!("cannot start {}", path.display()))
 }
 
 #[cfg(unix)]
@@ -114,10 +114,9 @@ fn become_it(mut command: std::process::Command) -> Result<Ended> {
     std::process::exit(status.code().unwrap_or(1));
 }
 
-/// The program's file.
 fn find(program: &Program) -> Result<PathBuf> {
     let file = format!("{}{}", program.name, env::consts::EXE_SUFFIX);
-    let own = env::current_exe().context("this program does not know its own file")?;
+    let own = env::current_exe().context("cannot find the path of this program")?;
     let beside = own.with_file_name(&file);
     if let Some(place) = Place::of(&own) {
         place.build(program, &beside)?;
@@ -128,13 +127,13 @@ fn find(program: &Program) -> Result<PathBuf> {
     match files.find(|file| file.is_file()) {
         Some(file) => Ok(file),
         None => bail!(
-            "{file} is neither beside this program nor on the PATH; in a checkout of Staya, `cargo xtask install` installs all \
-             programs"
+            "{file} is neither beside this program nor on the PATH; in a checkout of Staya, run `cargo xtask install` to install all \
+            programs"
         ),
     }
 }
 
-/// Where cargo built this program: in the checkout that it was compiled from.
+/// The checkout and target folder in which cargo built this program.
 struct Place {
     manifest: PathBuf,
     target: PathBuf,
@@ -142,7 +141,7 @@ struct Place {
 }
 
 impl Place {
-    /// `None`: this program was installed, or its sources are gone.
+    /// `None` if this program was installed, or its sources are gone.
     fn of(own: &Path) -> Option<Self> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
         let folder = own.parent()?;
@@ -159,7 +158,7 @@ impl Place {
         })
     }
 
-    /// Builds a program if it is missing or its sources have changed.
+    /// Builds a program if it is missing or outdated.
     fn build(&self, program: &Program, file: &Path) -> Result<()> {
         let is_there = file.is_file();
         if !is_there {
@@ -171,10 +170,10 @@ impl Place {
         cargo.arg("--manifest-path").arg(&self.manifest);
         match cargo.status() {
             Ok(status) if status.success() => Ok(()),
-            Ok(_) => bail!("cargo could not build {}; the lines above say why", program.name),
-            // Without cargo the program that is there is good enough.
+            Ok(_) => bail!("cargo could not build {}; see the messages above", program.name),
+            // Without cargo the existing program is used.
             Err(_) if is_there => Ok(()),
-            Err(error) => bail!("cargo, which builds {}, does not start: {error}", program.name),
+            Err(error) => bail!("cannot start cargo to build {}: {error}; install Rust", program.name),
         }
     }
 }
@@ -201,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_outside_of_a_target_folder_is_installed() {
+    fn a_program_outside_a_target_folder_counts_as_installed() {
         assert!(Place::of(Path::new("/usr/local/bin/staya")).is_none());
     }
 }

@@ -1,4 +1,4 @@
-//! `staya run SCENARIO`: one run, its figures and its pictures.
+//! `staya run SCENARIO`: one run with its results and pictures.
 
 mod also;
 mod checkpoint;
@@ -27,11 +27,12 @@ use std::time::Instant;
 pub struct RunArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Folder for the results; those of an earlier run are replaced when the new ones are complete [default: out/ and the
-    /// scenario's name].
+    /// Folder for the results; replaces the results of an earlier run once the new ones are
+    /// complete [default: out/ and the scenario's name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Leave out what grows with the robots: trace.csv and the picture of their ways. For swarms of a million.
+    /// Do not write files that grow with the number of robots (trace.csv and the picture of paths);
+    /// for swarms of a million.
     #[arg(long, conflicts_with = "gif")]
     no_trace: bool,
     #[command(flatten)]
@@ -42,23 +43,23 @@ pub struct RunArgs {
     page: WatchArgs,
 }
 
-/// Makes the observers that the options of a run ask for.
+/// Creates the observers that the options of a run select.
 pub type Observers<'a> = dyn Fn(&RunArgs, &Scenario) -> Result<Vec<Box<dyn Observer>>> + 'a;
 
 impl RunArgs {
-    /// Whether an option asks for an observer that only `staya-view` has: an MCAP file or a live page.
+    /// Whether an option needs an observer of `staya-view`: an MCAP file or a live page.
     #[must_use]
     pub fn needs_view(&self) -> bool {
         self.mcap().is_some() || self.page.address().is_some()
     }
 
-    /// The MCAP file, and ticks from one of its moments to the next.
+    /// Path of the MCAP file, and ticks between its moments.
     #[must_use]
     pub fn mcap(&self) -> Option<(&Path, u32)> {
         self.also.mcap()
     }
 
-    /// Whether a page shows the run.
+    /// Options of the live page.
     #[must_use]
     pub const fn watch(&self) -> &WatchArgs {
         &self.page
@@ -72,10 +73,10 @@ impl RunArgs {
         self.run_with(global, &|_, _| Ok(Vec::new()))
     }
 
-    /// Runs the command with more observers.
+    /// Runs the command with further observers.
     ///
     /// # Errors
-    /// A scenario that cannot be read or is wrong, results that cannot be written.
+    /// An unreadable or invalid scenario, or results that cannot be written.
     pub fn run_with(&self, global: &Global, observers: &Observers<'_>) -> Result<Ended> {
         let scenario = self.scenario.load()?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&scenario.name));
@@ -84,7 +85,7 @@ impl RunArgs {
         if let Some(from) = &from
             && self.also.begins_anew()
         {
-            eprintln!("what --record and --mcap write begins after tick {}", from.tick());
+            eprintln!("the files of --record and --mcap start after tick {}", from.tick());
         }
         let before_seconds = from.as_ref().map_or(0.0, Checkpoint::wall_seconds);
         let checkpoints = self.checkpoint.checkpoint.map(|every| {
@@ -104,24 +105,24 @@ impl RunArgs {
     }
 }
 
-/// The figures of a run that left no files.
+/// Summary of a run without files.
 pub fn summary(scenario: &Scenario, outcome: &Outcome) -> impl serde::Serialize + use<> {
     Summary::new(scenario, outcome, Vec::new())
 }
 
-/// What to run, from where to where.
 struct Task<'a> {
     scenario: &'a Scenario,
-    /// The folder for its results.
+    /// Folder for the results.
     out: &'a Path,
-    /// Their lines and the picture of their ways.
+    /// Whether to write the lines of robots and the picture of paths.
     keeps_robots: bool,
     from: Option<Checkpoint>,
     checkpoints: Option<Checkpoints>,
     stop: &'a Stop,
 }
 
-/// Runs a scenario and leaves everything about it in its folder; what was there before stays until all of it is written.
+/// Runs a scenario and writes all results to its folder. Earlier results stay until the new ones
+/// are complete.
 fn run(task: Task<'_>, also: &AlsoArgs, observers: Vec<Box<dyn Observer>>, global: &Global) -> Result<Summary> {
     let also = Also::begin(also, task.scenario, observers)?;
     let out = task.out;
@@ -138,18 +139,17 @@ fn run(task: Task<'_>, also: &AlsoArgs, observers: Vec<Box<dyn Observer>>, globa
         Err(error) if error.is::<record::Error>() || error.is::<RecordingError>() => {
             let kept = results.keep();
             let (kept, out) = (kept.display(), out.display());
-            let what =
-                format!("{kept} keeps what was written until the next run into {out}, where nothing has changed");
+            let what = format!("{out} is unchanged; {kept} has the incomplete results until the next run into {out}");
             Err(anyhow!("{}; {what}", staya_console::in_one_line(&error)))
         }
         Err(error) => Err(error),
     }
 }
 
-/// The same in folder `dir`, which will be the results'; without `summary.json`.
+/// Writes the results except `summary.json` to `dir`, which later becomes the results folder.
 fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> Result<Summary> {
     let Task { scenario, out, keeps_robots, mut from, mut checkpoints, stop } = task;
-    // What was left out at first is nowhere.
+    // A checkpoint without the robots' lines cannot continue them.
     let keeps_robots = keeps_robots && from.as_ref().is_none_or(Checkpoint::keeps_robots);
     let recorder = match &mut from {
         Some(from) => from.recorder(dir, keeps_robots)?,
@@ -214,7 +214,7 @@ fn simulate_recorded(
         if is_stopped { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let outcome = match from {
-        None => simulate(scenario, watch).context("the robots cannot be placed")?,
+        None => simulate(scenario, watch).context("the robots cannot be placed; change their starts")?,
         Some(from) => simulate_from(scenario, from.state(), &mut watch).map_err(|unable| match unable {
             Unable::State(error) => from.refused(error).into(),
             misplaced => anyhow!(misplaced).context("the robots cannot be placed"),

@@ -1,4 +1,4 @@
-//! `staya terrain generate | metrics | draw`: land by chance, land described, land shown.
+//! `staya terrain generate | metrics | draw`: random terrain, statistics, pictures.
 
 use anyhow::{Result, bail};
 use clap::{Args, Subcommand, ValueEnum};
@@ -12,7 +12,7 @@ use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Make, measure and draw terrain.
+/// Generate, measure and draw terrain.
 #[derive(Args, Clone, Debug)]
 pub struct TerrainArgs {
     #[command(subcommand)]
@@ -21,7 +21,7 @@ pub struct TerrainArgs {
 
 #[derive(Clone, Debug, Subcommand)]
 enum Action {
-    /// Make a random landscape.
+    /// Generate random terrain.
     Generate(Generate),
     /// Print size, entropy and edges of a terrain file.
     Metrics(Source),
@@ -29,7 +29,7 @@ enum Action {
     Draw {
         #[command(flatten)]
         source: Source,
-        /// The picture: .png or .svg.
+        /// Output picture, .png or .svg.
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
         /// Pixels per cell [default: about 1000 pixels along the longer side].
@@ -38,12 +38,12 @@ enum Action {
     },
 }
 
-/// How a random landscape is made.
+/// Kind of random terrain.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Kind {
-    /// Every cell drawn independently.
+    /// Every cell is drawn independently.
     Uniform,
-    /// Hills of mud around the worst cells.
+    /// Hills around the least passable cells.
     Natural,
     /// With a given configuration entropy and total edge.
     Entropy,
@@ -52,7 +52,7 @@ enum Kind {
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 struct Generate {
-    /// How the landscape is made.
+    /// Kind of terrain.
     #[arg(long, value_enum, default_value = "natural")]
     kind: Kind,
     /// Cells from west to east.
@@ -67,48 +67,48 @@ struct Generate {
     /// natural: number of least passable cells.
     #[arg(long, default_value_t = 70)]
     obstacles: u32,
-    /// natural: how impassability falls around the least passable cells.
+    /// natural: shape of the hills around the least passable cells.
     #[arg(long, default_value = "even", value_parser = options::hills())]
     hills: Hills,
-    /// natural: how distances are measured.
+    /// natural: norm of distances.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]
     norm: Norm,
-    /// entropy: the wanted configuration entropy S, 0 to ln(classes).
+    /// entropy: required configuration entropy S, 0 to ln(classes).
     #[arg(long, required_if_eq("kind", "entropy"))]
     entropy: Option<f64>,
-    /// entropy: how far S may be off.
+    /// entropy: tolerance of S.
     #[arg(long, default_value_t = 0.01)]
     entropy_tolerance: f64,
-    /// entropy: the wanted total edge TE.
+    /// entropy: required total edge TE.
     #[arg(long, required_if_eq("kind", "entropy"))]
     total_edge: Option<u64>,
-    /// entropy: how far TE may be off.
+    /// entropy: tolerance of TE.
     #[arg(long, default_value_t = 2)]
     edge_tolerance: u64,
-    /// Equal seeds give equal landscapes.
+    /// Seed; equal seeds give equal terrain.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The landscape as a ROS map: this .yaml and a .pgm picture beside it. Reads back exactly.
+    /// Output as a ROS map: this .yaml and a .pgm picture beside it, without loss.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
 
-/// A terrain file, and how to read it.
+/// A terrain file and options to read it.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 struct Source {
     /// .map (Moving AI), .asc (ESRI heights) or .yaml (ROS map with a .pgm).
     file: PathBuf,
-    /// Only a part of the map: column and row of its south-west cell, width, height.
+    /// Part of the map: column and row of its south-west cell, width, height.
     #[arg(long, value_name = "X,Y,W,H", value_delimiter = ',', num_args = 1, allow_hyphen_values = true)]
     crop: Option<Vec<u16>>,
-    /// .asc: the steepest passable slope, rise over run.
+    /// .asc: steepest passable slope, rise over run.
     #[arg(long, value_name = "SLOPE", default_value_t = SlopeRule::default().max_slope)]
     max_slope: f64,
-    /// .asc: classes of slope.
+    /// .asc: number of slope classes.
     #[arg(long, value_name = "N", default_value_t = SlopeRule::default().classes)]
     slope_classes: u8,
-    /// .asc: average squares of this many cells along each side into one.
+    /// .asc: average squares with this many cells per side into one cell.
     #[arg(long, value_name = "N", default_value_t = 1)]
     downsample: u16,
 }
@@ -129,7 +129,6 @@ impl Source {
     }
 }
 
-/// What the commands report.
 #[derive(Debug, Serialize)]
 struct LandReport {
     file: PathBuf,
@@ -138,7 +137,7 @@ struct LandReport {
     cell_m: f64,
     #[serde(flatten)]
     metrics: Metrics,
-    /// N(S) of a natural landscape of the same entropy (100 x 100 cells, 9 classes).
+    /// N(S) of natural terrain with equal entropy (100 x 100 cells, 9 classes).
     equivalent_obstacles: f64,
 }
 
@@ -177,7 +176,7 @@ impl TerrainArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A file that cannot be read or written, a parameter out of range.
+    /// A file that cannot be read or written, or a parameter out of range.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.action {
             Action::Generate(generate) => generate.run(global)?,
@@ -199,7 +198,7 @@ impl Generate {
         let extension = self.out.extension().and_then(|extension| extension.to_str());
         if !matches!(extension, Some("yaml" | "yml")) {
             bail!(
-                "--out {}: landscapes are written as ROS maps; choose a name that ends in .yaml (the picture goes into a .pgm beside it)",
+                "--out {}: terrain is written as a ROS map; give a name that ends in .yaml (the picture is a .pgm beside it)",
                 self.out.display()
             );
         }
@@ -241,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_generated_is_measured_and_drawn() {
+    fn generated_terrain_can_be_measured_and_drawn() {
         let dir = tempfile::tempdir().unwrap();
         let path = |name: &str| dir.path().join(name).to_str().unwrap().to_owned();
         let (land, picture) = (path("a.yaml"), path("a.png"));
@@ -265,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_usage_names_the_remedy() {
+    fn invalid_usage_is_an_error_with_a_remedy() {
         let message = |words: &[&str]| run(words).unwrap_err().to_string();
         assert!(message(&["generate", "--out", "a.asc"]).contains("ends in .yaml"));
         assert!(message(&["generate", "--kind", "entropy", "--out", "a.yaml"]).contains("--total-edge"));

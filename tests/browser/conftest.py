@@ -1,4 +1,5 @@
-"""What the tests in a real browser share. `cargo xtask browser` runs them; by hand: STAYA=path/to/staya pytest tests/browser."""
+"""Fixtures of the browser tests. `cargo xtask browser` runs the tests; by hand: STAYA=path/to/staya
+pytest tests/browser."""
 
 import json
 import os
@@ -13,13 +14,13 @@ from playwright.sync_api import sync_playwright
 ROOT = Path(__file__).resolve().parents[2]
 STAYA = os.environ.get("STAYA", str(ROOT / "target/debug/staya"))
 CHROMIUM = shutil.which(os.environ.get("CHROMIUM", "chromium"))
-# Rendering by software: the machines that run this have no GPU.
+# Software rendering, since test machines have no GPU.
 OPTIONS = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 def until(condition, timeout: float = 30.0, what: str = "it"):
-    """Waits until `condition()` gives something true, and returns it. In a page nothing may be evaluated from strings by
-    itself, so that waiting is done here."""
+    """Waits until `condition()` returns a true value, and returns it. The page's security policy
+    forbids evaluating strings in the page, so the wait loop is here."""
     deadline = time.monotonic() + timeout
     while time.monotonic() < deadline:
         found = condition()
@@ -32,7 +33,7 @@ def until(condition, timeout: float = 30.0, what: str = "it"):
 @pytest.fixture(scope="session")
 def browser():
     with sync_playwright() as playwright:
-        # As root Chromium has no sandbox.
+        # Chromium has no sandbox as root.
         sandbox = os.geteuid() != 0
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=OPTIONS, chromium_sandbox=sandbox)
         yield browser
@@ -40,7 +41,7 @@ def browser():
 
 
 class View:
-    """`staya view`, and its address."""
+    """A `staya view` process and its URL."""
 
     def __init__(self, *arguments):
         command = [STAYA, "view", *map(str, arguments), "--no-open", "--json"]
@@ -59,7 +60,7 @@ class View:
 
 @pytest.fixture
 def view():
-    """A function that starts a view; it is ended with the test, by its own process id."""
+    """A function that starts a view. Each view is stopped after the test by its process id."""
     started = []
 
     def start(*arguments) -> View:
@@ -73,7 +74,7 @@ def view():
 
 @pytest.fixture
 def look(browser):
-    """A function that opens an address; the page must not complain in the end."""
+    """A function that opens a URL. The test fails if the page logs errors."""
     pages, complaints = [], []
 
     def open_page(url: str, **options):

@@ -1,4 +1,4 @@
-"""The page of `staya view` in Chromium: what it shows is what runs, and what is done in it is done to the robots."""
+"""The page of `staya view` in Chromium: it shows the run, and its actions reach the robots."""
 
 import http.server
 import json
@@ -21,12 +21,12 @@ def tick(page) -> int:
 
 
 def on_page(page, place: list[float]) -> list[float]:
-    """Where a place of the world is on the page, pixels."""
+    """Position of a point of the world on the page, pixels."""
     return page.evaluate("([x, y, z]) => staya.project(x, y, z ?? 0)", place)[:2]
 
 
 def place_of(page, index: int) -> list[float]:
-    """Where a robot is, metres."""
+    """Position of a robot, metres."""
     return page.evaluate("index => Array.from(staya.place(index))", index)
 
 
@@ -48,12 +48,12 @@ def play_to_the_end(page):
 
 
 def summary(*arguments) -> dict:
-    """What a run without a page says of itself."""
+    """Summary of a run without a page."""
     said = subprocess.run([STAYA, "run", *arguments, "--json", "-q"], cwd=ROOT, capture_output=True, check=True)
     return json.loads(said.stdout)
 
 
-def test_it_moves_and_its_figures_are_those_of_the_run(view, look, tmp_path):
+def test_the_page_shows_the_summary_of_the_run(view, look, tmp_path):
     page = look(view(SIX, "--paused").url)
     before = page.screenshot()
     assert tick(page) == 0
@@ -73,10 +73,10 @@ def test_it_moves_and_its_figures_are_those_of_the_run(view, look, tmp_path):
     assert shown["arrived"] == run["arrived"]
 
 
-def test_a_selected_robot_tells_what_it_knows(view, look):
+def test_a_selected_robot_shows_its_knowledge(view, look):
     page = look(view(SWAP).url)
     until(lambda: tick(page) > 70, what="ticks")
-    # All sixteen are near enough to each other by then to be heard.
+    # All sixteen robots are in radio range of each other by then.
     seek(page, 70)
     select(page, 4)
     robot = until(lambda: (robot := page.evaluate("staya.robot")) and robot["tick"] == 70 and robot, what="its tick")
@@ -84,7 +84,7 @@ def test_a_selected_robot_tells_what_it_knows(view, look):
     assert page.get_by_text("Robot 5", exact=True).first.is_visible()
 
 
-def test_a_robot_arrives_where_its_goal_was_dragged(view, look):
+def test_a_robot_arrives_at_its_dragged_goal(view, look):
     page = look(view(SWAP, "--paused").url)
     select(page, 4)
     was, wanted = page.evaluate("Array.from(staya.target(4))"), [2.7, 0.5, 0]
@@ -115,12 +115,12 @@ def test_a_slider_changes_a_parameter_in_the_controllers(view, look):
     panel.locator("label.slider", has=page.get_by_text("horizon", exact=True)).locator("input").press("End")
     page.locator("#step").click()
     until(lambda: page.evaluate("staya.robot.parameters.horizon_s") == greatest, what="the change")
-    # Nobody was singled out.
+    # The change was for all robots.
     select(page, 9)
     assert page.evaluate("staya.robot.parameters.horizon_s") == greatest
 
 
-def test_what_is_done_by_the_page_is_saved_and_done_again(view, look, tmp_path):
+def test_actions_of_the_page_are_saved_and_repeated(view, look, tmp_path):
     page = look(view(SWAP, "--paused").url)
     for order in [
         {"kind": "goal", "robot": 0, "place_m": [3, 3, 0]},
@@ -138,7 +138,7 @@ def test_what_is_done_by_the_page_is_saved_and_done_again(view, look, tmp_path):
     assert summary(str(saved), "--out", str(tmp_path / "out"))["trace_hash"] == end
 
 
-def test_strangers_get_nothing(view):
+def test_requests_without_the_token_are_refused(view):
     url = view(SIX, "--paused").url
     host = url.split("/?")[0]
     for request in [
@@ -159,7 +159,7 @@ def test_strangers_get_nothing(view):
 
 @pytest.fixture
 def elsewhere():
-    """The address of a page of another origin."""
+    """URL of a page of another origin."""
 
     class Empty(http.server.BaseHTTPRequestHandler):
         def do_GET(self):
@@ -176,7 +176,7 @@ def elsewhere():
         server.shutdown()
 
 
-def test_only_its_own_page_gets_a_socket(browser, view, elsewhere):
+def test_only_the_own_page_gets_a_socket(browser, view, elsewhere):
     url = view(SIX, "--paused").url
     live = url.replace("http://", "ws://").replace("/?", "/live?")
     wrong = re.sub("token=.*", "token=" + 32 * "0", live)
@@ -201,7 +201,7 @@ def test_recordings_play_from_a_server_and_from_one_file(view, look, tmp_path):
     subprocess.run(run, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
     subprocess.run([STAYA, "page", recording, "--out", page_file, "-q"], check=True, stdout=subprocess.DEVNULL)
     assert page_file.stat().st_size < 1_000_000
-    # The file comes from the disk, and would complain if it asked the network for anything.
+    # The page comes from a file and would log an error if it used the network.
     for url, options in [(view(recording, "--paused").url, {}), (page_file.as_uri(), {"offline": True})]:
         page = look(url, **options)
         assert page.evaluate("staya.scene.mode") == "recording"
@@ -212,7 +212,7 @@ def test_recordings_play_from_a_server_and_from_one_file(view, look, tmp_path):
         assert page.screenshot() != before
 
 
-def test_it_fits_a_phone_in_light_and_dark(view, look):
+def test_the_page_fits_a_phone_in_light_and_dark(view, look):
     url = view(SWAP, "--paused").url
     pictures = []
     for scheme in ["light", "dark"]:

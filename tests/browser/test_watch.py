@@ -1,4 +1,4 @@
-"""Pages that look on at a run which goes on by itself, and what a page remembers."""
+"""Read-only pages of a run, and settings that pages store."""
 
 import subprocess
 
@@ -11,7 +11,8 @@ CIRCLE = "scenarios/swap-circle.toml"
 
 @pytest.fixture
 def watched():
-    """A function that starts a command with `--view` and gives its address; each is ended by its own process id."""
+    """A function that starts a command with `--view` and returns its URL. Each process is stopped
+    by its id."""
     started = []
 
     def start(*arguments) -> str:
@@ -30,13 +31,13 @@ def middle(page, x: float, y: float) -> list[float]:
     return page.evaluate("([x, y]) => staya.project(x, y)", [x, y])
 
 
-def test_a_page_looks_on_and_says_when_it_is_over(watched, look):
+def test_a_live_page_shows_the_run_and_its_end(watched, look):
     url = watched("bridge", "scenarios/bridge.toml", "--mavlink", "udpout:127.0.0.1:9", "--seconds", "6", "-q")
     page = look(url)
     assert page.evaluate("staya.scene.mode") == "watch"
     first = page.evaluate("staya.currentTick")
     until(lambda: page.evaluate("staya.currentTick") > first, what="a tick")
-    # There is nothing to take hold of.
+    # The page has no controls.
     assert not page.locator("#play").is_visible() and not page.locator("#tools").is_visible()
     page.keyboard.press("n")
     until(lambda: page.evaluate("staya.robot?.index") == 0, what="its panel")
@@ -44,7 +45,7 @@ def test_a_page_looks_on_and_says_when_it_is_over(watched, look):
     assert "last picture" in page.locator("#banner").inner_text()
 
 
-def test_the_theme_that_was_chosen_is_there_the_next_time_on_any_port(browser):
+def test_the_chosen_theme_is_kept_on_any_port(browser):
     context = browser.new_context(color_scheme="light")
     themes = []
     for _ in range(2):
@@ -70,14 +71,14 @@ def test_a_polygon_is_drawn_corner_by_corner(view, look):
     page.keyboard.press("6")
     west, south, east, north = page.evaluate("staya.scene.bounds_m")
     x, y, side = (west + east) / 2, (south + north) / 2, (east - west) / 12
-    # Two corners and Escape are nothing.
+    # Two corners and Escape cancel the polygon.
     for corner in [(x, y), (x + side, y)]:
         page.mouse.click(*middle(page, *corner))
     page.keyboard.press("Escape")
     for corner in [(x, y), (x + side, y), (x + side / 2, y + side), (x, y)]:
         page.mouse.click(*middle(page, *corner))
     until(lambda: len(page.evaluate("staya.scene.solids")) == before + 3, what="three walls")
-    # The same by Enter.
+    # Now with Enter.
     for corner in [(x - side, y), (x - side / 2, y), (x - side, y + side), (x - 2 * side, y + side)]:
         page.mouse.click(*middle(page, *corner))
     page.keyboard.press("Enter")

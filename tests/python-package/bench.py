@@ -1,9 +1,10 @@
-"""How quick a thousand robots behind ORCA are from Python: `python tests/python-package/bench.py [STAYA]`, on a
-quiet machine.
+"""Measures a thousand robots with ORCA from Python: `python tests/python-package/bench.py [STAYA]`,
+on a machine without other load.
 
-A run through `Simulation.step` with positions after each tick, beside the command `staya` (built with the wheel's
-profile, its path as the argument); and `staya.Orca` beside RVO2's Python loop (the package `pyrvo`), if it is
-installed. Processor time on one thread, the least of three, in turn.
+Compares a run through `Simulation.step`, with positions after each tick, with the command `staya`
+(built with the wheel's profile, its path is the argument), and `staya.Orca` with RVO2's Python loop
+(the package `pyrvo`) if it is installed. Reports the processor time on one thread, the smallest of
+three.
 """
 
 import json
@@ -52,7 +53,7 @@ def commanded(staya_path, ticks):
 
 
 def crowd():
-    """Robots on a grid, each bound for another one's place."""
+    """Robots on a grid, each with another one's start as its goal."""
     places = 1.5 * np.stack(np.meshgrid(np.arange(32.0), np.arange(32.0)), axis=-1).reshape(-1, 2)[:COUNT]
     return places, np.random.default_rng(1).permutation(places)
 

@@ -1,4 +1,4 @@
-"""What all tests of the package share: the scenarios, and what the golden tables say of them."""
+"""Fixtures of the package's tests: scenarios and their golden results."""
 
 import re
 from pathlib import Path
@@ -10,13 +10,13 @@ TOP = Path(__file__).resolve().parents[2]
 
 @pytest.fixture
 def scenario():
-    """The file of a scenario by its name."""
+    """Path of a scenario by its name."""
     return lambda name: TOP / "scenarios" / f"{name}.toml"
 
 
 @pytest.fixture
 def golden():
-    """The trace hash and the ticks that `staya run` has, from the table of a scenario."""
+    """Trace hash and number of ticks of `staya run`, from the golden table of a scenario."""
 
     def read(name):
         text = (TOP / "tests" / "golden" / f"{name}.txt").read_text()

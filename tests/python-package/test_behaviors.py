@@ -1,4 +1,4 @@
-"""Behaviours by themselves: ORCA, routes, flocks; what they refuse."""
+"""Single behaviours: ORCA, routes, flocks, and their argument errors."""
 
 import numpy as np
 import pytest
@@ -36,7 +36,7 @@ def test_robots_swap_places_across_a_circle_and_do_not_touch(axes, count):
     assert np.linalg.norm(goals - places, axis=1).max() < 0.1 and least > 0.4 - 1e-3
 
 
-def test_a_lone_robot_does_as_it_likes_and_no_faster_than_it_can():
+def test_a_single_robot_has_its_preferred_velocity_within_its_limit():
     best = staya.orca([[0, 0], [50, 0]], np.zeros((2, 2)), [[0.5, 0.25], [3, 4]], **ROBOT)
     assert best == pytest.approx(np.array([[0.5, 0.25], [0.6, 0.8]]), abs=1e-6)
 
@@ -49,7 +49,7 @@ def test_robots_stop_at_walls_and_discs():
     assert 0 <= disc[0, 0] <= 0.3 + 1e-6
 
 
-def test_numbers_of_any_kind_and_order_do():
+def test_arrays_of_any_type_and_memory_order_are_accepted():
     places, wishes = circle(8).astype(np.float32), -circle(8)
     still = np.zeros((8, 2), dtype=np.int64)
     best = staya.orca(places, still, wishes, **ROBOT)
@@ -68,18 +68,18 @@ def test_numbers_of_any_kind_and_order_do():
         ({"step_s": 0}, "step_s is 0.0; give more than 0"),
         ({"horizon_s": -1}, "horizon_s is -1.0; give more than 0"),
         ({"share": 2}, "share is 2.0; give 0 or more, up to 1"),
-        ({"walls": [[0, 0, 1]]}, r"walls has the shape \(1, 3\); give an array of shape \(m, 4\): from x, y to x, y"),
-        ({"discs": "round"}, "discs is no array of numbers"),
+        ({"walls": [[0, 0, 1]]}, r"walls has the shape \(1, 3\); give an array of shape \(m, 4\): x, y to x, y"),
+        ({"discs": "round"}, "discs is not an array of numbers"),
         ({"goals": np.full((4, 2), np.nan)}, r"goals\[0, 0\] is nan"),
     ],
 )
-def test_what_orca_refuses_is_named(changed, message):
+def test_invalid_arguments_of_orca_are_named(changed, message):
     sound = {"positions": circle(4), "velocities": np.zeros((4, 2)), "preferred": np.ones((4, 2)), **ROBOT}
     with pytest.raises(ValueError, match=message):
         staya.orca(**{**sound, **changed})
 
 
-def test_routes_go_round_walls_and_say_who_arrived():
+def test_routes_avoid_walls_and_report_arrivals():
     land = np.ones((12, 20), dtype=np.uint8)
     land[2:, 10] = 0
     land[5, 15:18] = 4
@@ -90,7 +90,7 @@ def test_routes_go_round_walls_and_say_who_arrived():
     assert (np.abs(np.diff(first, axis=0)).max(axis=1) == 1).all() and land[first[:, 1], first[:, 0]].all()
     assert first[:, 1].min() <= 1 and routes.ticks[0] >= 22
     assert routes.paths[1].tolist() == [[0, 0]] and routes.ticks[1] == 0
-    # Seven cells to the east, round the three that are dear.
+    # Seven cells to the east, around the three slow ones.
     assert 7 <= routes.ticks[2] < 11
     land[:, 10] = 0
     assert not staya.route(land, [[2, 9]], [[18, 9]]).arrived[0]
@@ -101,7 +101,7 @@ def test_routes_go_round_walls_and_say_who_arrived():
     [
         ({"land": np.ones(5)}, r"land has the shape \(5,\) and the type float64; give whole numbers"),
         ({"land": [[1, 300]]}, r"land\[0, 1\] is 300; give 0 \(a wall\) to 255"),
-        ({"starts": [[9, 0]]}, r"starts\[0\] is \(9, 0\), off the land; give x below 3 and y below 2"),
+        ({"starts": [[9, 0]]}, r"starts\[0\] is \(9, 0\), off the map; give x below 3 and y below 2"),
         ({"goals": [[2, 1]]}, r"goals\[0\] is \(2, 1\), in a wall"),
         ({"goals": [[0, 0], [1, 1]]}, r"goals has the shape \(2, 2\) and .* of shape \(1, 2\)"),
         ({"radius": 17}, "radius is 17; give 1 to 16"),
@@ -109,7 +109,7 @@ def test_routes_go_round_walls_and_say_who_arrived():
         ({"exit": "door"}, "exit is 'door'; give 'best' or 'ray'"),
     ],
 )
-def test_what_routes_refuse_is_named(changed, message):
+def test_invalid_arguments_of_routes_are_named(changed, message):
     sound = {"land": [[1, 1, 1], [1, 1, 0]], "starts": [[0, 0]], "goals": [[2, 0]]}
     with pytest.raises(ValueError, match=message):
         staya.route(**{**sound, **changed})
@@ -127,7 +127,7 @@ def test_a_lattice_settles_at_its_spacing():
     assert np.linalg.norm(places.mean(axis=0)) < 0.1
 
 
-def test_a_goal_flock_goes_to_its_goal_and_keeps_its_distances():
+def test_a_goal_flock_reaches_its_goal_and_keeps_its_distances():
     places = np.stack(np.meshgrid(np.arange(4.0), np.arange(4.0)), axis=-1).reshape(-1, 2)
     start = places
     for _ in range(200):
@@ -138,7 +138,7 @@ def test_a_goal_flock_goes_to_its_goal_and_keeps_its_distances():
     assert lone == pytest.approx(np.array([[1.2, 1.6]]), abs=1e-6)
 
 
-def test_boids_on_a_torus_come_to_fly_one_way():
+def test_boids_on_a_torus_align():
     random = np.random.default_rng(1)
     places, angles = random.uniform(0, 400, (200, 2)), random.uniform(-np.pi, np.pi, 200)
     headings = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -169,12 +169,12 @@ def test_boids_on_a_torus_come_to_fly_one_way():
         (lambda: flock.boids(circle(4), circle(4), torus=(1, -1)), r"torus\[1\] is -1.0; give more than 0"),
     ],
 )
-def test_what_flocks_refuse_is_named(call, message):
+def test_invalid_arguments_of_flocks_are_named(call, message):
     with pytest.raises(ValueError, match=message):
         call()
 
 
-def test_arrays_are_read_whatever_they_are_empty_of():
+def test_empty_arrays_are_accepted():
     none = np.empty((0, 2))
     assert staya.orca(none, none, none, **ROBOT).shape == (0, 2)
     assert flock.lattice(none, none, spacing=1).shape == (0, 2)

@@ -1,4 +1,5 @@
-"""The notebook of the documentation runs, says what it promises, and is kept without outputs."""
+"""The notebook of the documentation runs, prints the documented results, and is stored without
+outputs."""
 
 import re
 
@@ -24,22 +25,22 @@ def shown(notebook, start):
     return cells[0].outputs[-1]["data"]
 
 
-def test_it_is_kept_without_outputs():
+def test_the_notebook_is_stored_without_outputs():
     cells = nbformat.read(NOTEBOOK, as_version=4).cells
     assert all(cell.cell_type != "code" or (not cell.outputs and cell.execution_count is None) for cell in cells)
 
 
-def test_it_has_the_hash_of_the_command(executed, golden):
+def test_the_notebook_has_the_hash_of_the_command(executed, golden):
     assert shown(executed, "record=2")["text/plain"] == f"('{golden('swap-circle')[0]}', 16, 0)"
 
 
-def test_a_run_shows_itself(executed):
+def test_a_run_is_displayed_inline(executed):
     recorded = [cell for cell in executed.cells if cell.source == "result"]
     html = recorded[0].outputs[-1]["data"]["text/html"]
     assert html.startswith("<iframe") and "id=&quot;recording&quot;" in html
 
 
-def test_a_law_of_ones_own_keeps_robots_apart(executed):
+def test_an_own_law_keeps_robots_apart(executed):
     text = re.sub(r"\s+", " ", shown(executed, "def vortex")["text/plain"])
     assert text.startswith("(0, array([") and all(1.0 < float(r) < 3.0 for r in re.findall(r"\d\.\d+", text))
 

@@ -1,4 +1,4 @@
-"""Environments: the checkers of Gymnasium and PettingZoo, and what they do not check."""
+"""Environments: the checkers of Gymnasium and PettingZoo, and tests beyond them."""
 
 import warnings
 
@@ -19,19 +19,19 @@ def to_goals(seen):
     return ways / np.maximum(np.linalg.norm(ways, axis=-1, keepdims=True), 0.05)
 
 
-def test_gymnasiums_checker_is_content(scenario):
+def test_gymnasiums_checker_passes(scenario):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         warnings.filterwarnings("ignore", message=".*(recommend using a symmetric|spec|render).*")
         check_env(SwarmEnv(scenario("swap-circle"), **FOUR), skip_render_check=True)
 
 
-def test_pettingzoos_checkers_are_content(scenario):
+def test_pettingzoos_checkers_pass(scenario):
     parallel_api_test(RobotsEnv(scenario("swap-circle"), ticks=60, **FOUR), num_cycles=100)
     parallel_seed_test(lambda: RobotsEnv(scenario("swap-circle"), ticks=60, radio__loss=0.5, **FOUR), num_cycles=20)
 
 
-def test_who_goes_to_its_goal_gets_there_and_is_paid_for_it(scenario):
+def test_moving_to_the_goal_is_rewarded_until_arrival(scenario):
     env = SwarmEnv(scenario("swap-circle"), ticks_per_step=2, **FOUR)
     seen, _ = env.reset(seed=3)
     assert seen.shape == env.observation_space.shape == (4, 2 * (2 + 2 * 5)) and seen.dtype == np.float32
@@ -50,7 +50,7 @@ def test_who_goes_to_its_goal_gets_there_and_is_paid_for_it(scenario):
     assert all(abs(reward) < 1e-6 for reward, *_ in ends) and [end[2] for end in ends] == [False] * 9 + [True]
 
 
-def test_many_swarms_at_once_are_each_by_itself(scenario):
+def test_parallel_swarms_are_independent(scenario):
     def one():
         return SwarmEnv(scenario("swap-circle"), ticks=30, radio__loss=0.5, **FOUR)
 
@@ -81,7 +81,7 @@ def test_robots_leave_when_they_are_done(scenario):
     assert env.agents == ["robot_1", "robot_2", "robot_3", "robot_4"]
     left = []
     while env.agents:
-        # The first one hurries.
+        # Only the first robot moves.
         actions = {agent: to_goals(seen[agent]) * (1.0 if agent == "robot_1" else 0.5) for agent in env.agents}
         seen, rewards, terminated, truncated, _ = env.step(actions)
         left += [agent for agent, is_done in terminated.items() if is_done]

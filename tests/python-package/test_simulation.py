@@ -1,4 +1,4 @@
-"""Runs: the hashes of the command, arrays, orders, faults, results, errors."""
+"""Runs: trace hashes, arrays, orders, faults, results, errors."""
 
 import os
 import signal
@@ -20,7 +20,7 @@ def test_a_run_has_the_hash_of_the_command(scenario, golden, name):
     assert (result.trace_hash, result.summary["ticks"]) == (trace_hash, ticks)
 
 
-def test_steps_are_the_run(scenario, golden):
+def test_single_steps_equal_a_run(scenario, golden):
     sim = staya.Simulation(scenario("swap-circle"))
     trace_hash, ticks = golden("swap-circle")
     sim.step(7)
@@ -48,7 +48,7 @@ def test_arrays_have_a_row_per_robot(scenario):
         sim.ids[0] = 5
 
 
-def test_a_seed_and_other_fields_are_said_otherwise(scenario, tmp_path):
+def test_the_seed_and_other_fields_can_be_overridden(scenario, tmp_path):
     file = scenario("six-robots")
     first, other = (staya.Simulation(file, seed=seed, ticks=60).run().trace_hash for seed in (1, 2))
     assert first != other
@@ -60,7 +60,7 @@ def test_a_seed_and_other_fields_are_said_otherwise(scenario, tmp_path):
     assert staya.Simulation.from_text(text, folder=file.parent, seed=1, ticks=60).run().trace_hash == first
 
 
-def test_what_is_wrong_with_a_scenario_is_said(scenario):
+def test_errors_of_a_scenario_are_named(scenario):
     with pytest.raises(staya.ScenarioError, match=r"six-robots.toml:\d+: radio.loss: .*by an argument"):
         staya.Simulation(scenario("six-robots"), radio__loss=1.5)
     with pytest.raises(staya.ScenarioError, match="scenarios/README.md"):
@@ -75,7 +75,7 @@ def test_what_is_wrong_with_a_scenario_is_said(scenario):
         staya.Simulation(scenario("six-robots")).step(1.5)
 
 
-def test_a_robot_that_is_down_stands_and_comes_back(scenario):
+def test_a_robot_that_is_down_stops_and_restarts(scenario):
     sim = staya.Simulation(scenario("swap-circle"))
     sim.step(20)
     sim.take_down(3, for_s=1.0)
@@ -88,7 +88,7 @@ def test_a_robot_that_is_down_stands_and_comes_back(scenario):
     assert sim.is_up.all() and (sim.positions[2] != there).any()
 
 
-def test_orders_move_goals_tune_and_jam(scenario):
+def test_orders_change_goals_parameters_and_the_radio(scenario):
     sim = staya.Simulation(scenario("swap-circle"), ticks=2000)
     sim.set_goal([0.0, 3.0], robot=1)
     assert sim.goals[0].tolist() == [0.0, 3.0, 0.0]
@@ -104,7 +104,7 @@ def test_orders_move_goals_tune_and_jam(scenario):
         sim.set_radio(loss=2)
 
 
-def test_what_was_ordered_is_saved_for_the_command(scenario, tmp_path):
+def test_orders_are_saved_in_a_scenario(scenario, tmp_path):
     sim = staya.Simulation(scenario("swap-circle"), seed=5, radio__loss=0.2)
     sim.step(30)
     sim.set_goal([0.5, 2.5], robot=4)
@@ -129,7 +129,7 @@ def test_results_are_tables(scenario):
         result.to_pandas("rows")
 
 
-def test_own_guidance_goes_behind_the_robots_safety(scenario):
+def test_own_guidance_keeps_the_safety_layer(scenario):
     sim = staya.Simulation(scenario("swap-circle"), ticks=800)
 
     def to_goal(sim):
@@ -141,11 +141,11 @@ def test_own_guidance_goes_behind_the_robots_safety(scenario):
     assert np.linalg.norm(sim.goals - sim.positions, axis=1).max() < 0.2
     assert result.summary["collisions"] == 0 < result.summary["packets"]["delivered"]
     assert len(result.series["tick"]) == 801
-    with pytest.raises(ValueError, match="which no scenario can say"):
+    with pytest.raises(ValueError, match="cannot be saved in a scenario"):
         sim.save("nowhere.toml")
 
 
-def test_wishes_hold_are_masked_and_are_released(scenario, golden):
+def test_commanded_velocities_persist_with_mask_and_release(scenario, golden):
     sim = staya.Simulation(scenario("swap-circle"))
     mask = np.arange(16) == 0
     sim.wish(np.tile([0.0, 0.3, 0.0], (16, 1)), mask=mask)
@@ -159,7 +159,7 @@ def test_wishes_hold_are_masked_and_are_released(scenario, golden):
     assert plain.run().trace_hash == golden("swap-circle")[0]
 
 
-def test_wrong_wishes_name_the_place(scenario):
+def test_invalid_velocities_name_the_element(scenario):
     sim = staya.Simulation(scenario("swap-circle"))
     with pytest.raises(ValueError, match=r"velocities has the shape \(3, 2\); give an array of shape \(16, 2 or 3\)"):
         sim.wish(np.zeros((3, 2)))
@@ -170,9 +170,9 @@ def test_wrong_wishes_name_the_place(scenario):
     sim.wish(np.full((16, 2), 1e300))
     with pytest.raises(ValueError, match="mask has the shape"):
         sim.wish(np.zeros((16, 2)), mask=[True])
-    with pytest.raises(ValueError, match="velocities is no array of numbers"):
+    with pytest.raises(ValueError, match="velocities is not an array of numbers"):
         sim.wish([["a", "b"]] * 16)
-    with pytest.raises(ValueError, match=r"robot 1 goes from cell to cell .* \[plane\]"):
+    with pytest.raises(ValueError, match=r"robot 1 moves from cell to cell .* \[plane\]"):
         staya.Simulation(scenario("six-robots")).wish(np.zeros((6, 2)))
 
 

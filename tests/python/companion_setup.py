@@ -1,10 +1,10 @@
-"""Scenarios, configurations and the end of `staya companion`, for the tests of one vehicle and of several."""
+"""Scenarios, configurations and shutdown of `staya companion` for tests."""
 
 from fake_autopilot import ORIGIN
 
 
 AUTOPILOTS = {"rover": "ardupilot-rover", "copter": "ardupilot-copter", "px4": "px4-copter"}
-# Of all scenarios here.
+# Tick of all scenarios.
 RADIUS = 0.4
 STAND = (0.0, 0.0, 0.0)
 
@@ -49,6 +49,6 @@ def rate(vehicle, since, until):
 
 
 def ends_well(process):
-    """Ends it as a person does; returns what it printed."""
+    """Stops the companion with Ctrl-C. Returns its output."""
     assert process.interrupt() == 130, process.output()
     return process.output()

@@ -1,4 +1,5 @@
-"""What the tests with real MAVLink clients share. `cargo xtask clients` runs them; by hand: STAYA=path/to/staya pytest tests/python."""
+"""Fixtures of the tests with real MAVLink clients. `cargo xtask clients` runs the tests; by hand:
+STAYA=path/to/staya pytest tests/python."""
 
 import os
 import signal
@@ -8,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-# pymavlink reads both when it is imported.
+# pymavlink reads both variables during import.
 os.environ["MAVLINK20"] = "1"
 os.environ["MAVLINK_DIALECT"] = "staya"
 
@@ -34,7 +35,7 @@ def dialect():
 
 @pytest.fixture
 def free_port():
-    """A function that gives ports of 127.0.0.1 that nobody has, for UDP and TCP."""
+    """A function that returns unused UDP and TCP ports of 127.0.0.1."""
 
     def pick() -> int:
         while True:
@@ -51,7 +52,7 @@ def free_port():
 
 
 class Process:
-    """A program that runs beside the test; what it prints is in a file."""
+    """A program that runs during the test, with its output in a file."""
 
     def __init__(self, arguments, log: Path, cwd=ROOT, env=None):
         self.log = log
@@ -69,7 +70,7 @@ class Process:
         return self.child.poll() is None
 
     def wait_for(self, text: str, timeout: float = 20.0) -> str:
-        """Waits until it has printed `text`; returns all it has printed."""
+        """Waits until the program has printed `text`. Returns all output."""
         deadline = time.monotonic() + timeout
         while time.monotonic() < deadline:
             if text in self.output():
@@ -80,14 +81,14 @@ class Process:
         raise AssertionError(f"no {text!r} from {' '.join(self.arguments)}:\n{self.output()}")
 
     def wait(self, timeout: float = 30.0) -> int:
-        """Waits for its end; returns its exit code."""
+        """Waits for the end. Returns the exit code."""
         try:
             return self.child.wait(timeout)
         except subprocess.TimeoutExpired:
             raise AssertionError(f"{' '.join(self.arguments)} does not end:\n{self.output()}") from None
 
     def interrupt(self, timeout: float = 10.0) -> int:
-        """Ctrl-C; returns its exit code."""
+        """Stops with Ctrl-C. Returns the exit code."""
         self.child.send_signal(signal.SIGINT)
         return self.wait(timeout)
 
@@ -104,7 +105,7 @@ class Process:
 
 @pytest.fixture
 def run(tmp_path):
-    """A function that starts a program; it is ended with the test, by its own process id."""
+    """A function that starts a program. Each is stopped after the test by its process id."""
     started = []
 
     def start(*arguments, **options) -> Process:
@@ -119,7 +120,7 @@ def run(tmp_path):
 
 @pytest.fixture
 def staya(run):
-    """A function that starts `staya` with arguments, in the repository's top folder."""
+    """A function that starts `staya` with arguments in the repository's root."""
     program = os.environ.get("STAYA", str(ROOT / "target/debug/staya"))
     assert Path(program).is_file(), f"no {program}: run `cargo build`, or set STAYA"
 
@@ -130,7 +131,7 @@ def staya(run):
 
 
 def wait_until(condition, timeout: float = 20.0, what: str = "it"):
-    """Waits until `condition()` gives something true, and returns it."""
+    """Waits until `condition()` returns a true value, and returns it."""
     deadline = time.monotonic() + timeout
     while time.monotonic() < deadline:
         found = condition()

@@ -1,6 +1,7 @@
-"""Staya's dialect for pymavlink: `python dialect.py` makes it a part of the installed one.
+"""Installs Staya's dialect into pymavlink: `python dialect.py`.
 
-The messages of controller/mavlink/messages/staya.xml, on top of the whole public dialects that pymavlink brings along.
+Adds the messages of controller/mavlink/messages/staya.xml to the complete public dialects of
+pymavlink.
 """
 
 import shutil
@@ -15,7 +16,7 @@ DIALECTS = Path(pymavlink.__file__).parent / "dialects/v20"
 
 
 def generate(language: str, folder: Path, name: str = "staya") -> Path:
-    """Writes `name` for a language that mavgen knows (Python3, WLua, ...) into a folder and returns the file."""
+    """Generates `name` for a language of mavgen (Python3, WLua, ...) in a folder. Returns the path."""
     definition = DIALECTS / "staya.xml"
     shutil.copyfile(MESSAGES, definition)
     output = folder / name

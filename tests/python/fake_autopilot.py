@@ -1,12 +1,16 @@
-"""Autopilots that are not there: what ArduPilot and PX4 promise a companion, with vehicles that follow velocities as real ones do.
+"""Fake autopilots with ArduPilot's and PX4's behaviour towards a companion, and vehicles that
+follow velocities.
 
 By hand, six rovers at the companion's port, armed and in GUIDED:
 
-    python fake_autopilot.py --kind rover --count 6 --link udpout:127.0.0.1:14550 --mode guided --armed
+    python fake_autopilot.py --kind rover --count 6 --link udpout:127.0.0.1:14550 --mode guided
+--armed
 
-What is promised, and obeyed here: ArduPilot forgets a velocity after 3 s and stops; PX4 refuses OFFBOARD without a stream of setpoints, and leaves it 1 s after
-the last one; a lost ground station (system 255) changes the mode after 5 s; copters take no velocities before they have taken off;
-before the position is ready ArduPilot says 0, 0 and PX4 nothing, and neither arms; a restart forgets modes, rates and arming.
+Modelled behaviour: ArduPilot stops 3 s after the last velocity. PX4 refuses OFFBOARD without a
+stream of setpoints, and leaves it 1 s after the last one. A lost ground station (system 255)
+changes the mode after 5 s. Copters ignore velocities before their takeoff. Before the position is
+ready, ArduPilot sends 0, 0 and PX4 nothing, and neither arms. A restart resets modes, rates and
+arming.
 """
 
 import argparse
@@ -20,7 +24,7 @@ from fake_line import Faults, Line, Server
 os.environ.setdefault("MAVLINK20", "1")
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-# ArduPilot's usual place, CMAC.
+# ArduPilot's default home, CMAC.
 ORIGIN = (-35.363261, 149.165230, 584.0)
 
 GUIDED, PILOT, FAILSAFE = "guided", "pilot", "failsafe"
@@ -35,7 +39,7 @@ MODES = {
 VELOCITY_VALID_S = 3.0
 OFFBOARD_LOSS_S = 1.0
 STREAM_S = 0.5
-# From the command until a copter leaves the ground.
+# Time from the command until a copter leaves the ground.
 SPOOL_UP_S = 2.4
 # Flags of a heartbeat's base mode.
 CUSTOM, GUIDES, STABILIZES, TAKES_STICKS, IS_ARMED = 1, 8, 16, 64, 128
@@ -54,20 +58,20 @@ class Vehicle:
         self.velocity = [0.0, 0.0, 0.0]
         self.wish = [0.0, 0.0, 0.0]
         self.climb_to, self.spools_up = None, 0.0
-        # Where a rover turns, radians from north to east.
+        # Heading of a rover, radians from north to east.
         self.heading = math.radians(90.0)
         self.position_after = position_after
         self.max_speed, self.max_acceleration, self.lag = 5.0, 3.0, 0.3
         self.mute = False
         self.mute_position = False
-        # Its estimator goes on by dead reckoning, and says so.
+        # Whether its estimator uses dead reckoning, and reports that.
         self.gps_lost = False
         self.down_until = None
         self.key = key
         self.setpoints, self.commands, self.heard = [], [], []
         self.texts = []
         self.started = None
-        # A real one that has a position has been up for so long.
+        # A real autopilot with a position has been running for this time.
         self.uptime_s = 45.0
         self._start()
 
@@ -87,10 +91,10 @@ class Vehicle:
         self.ground_station = None
         self.wish = [0.0, 0.0, 0.0]
 
-    # What a person does.
+    # Actions of the pilot.
 
     def pilot(self, mode=PILOT):
-        """The pilot chooses a mode, and the next heartbeat says so at once."""
+        """Selects a mode and sends a heartbeat at once."""
         self.mode = mode
         self.due[0] = time.monotonic()
 
@@ -100,13 +104,13 @@ class Vehicle:
         self.mode, self.armed = mode, False
 
     def take_off(self, height):
-        """To so many metres; whether it does, which one that has left the ground never does again."""
+        """Takes off to a height. Returns whether it does; a vehicle in the air refuses."""
         does = self.kind == "copter" and self.mode == GUIDED and self.armed and self.up < 0.1
         if does and self.climb_to is None:
             self.climb_to, self.spools_up = height, SPOOL_UP_S
         return does
 
-    # What the autopilot does.
+    # Behaviour of the autopilot.
 
     @property
     def is_ready(self):
@@ -119,7 +123,7 @@ class Vehicle:
         self.line.send(now, message.pack(self.codec))
 
     def turn(self, now: float, dt: float):
-        """One step of time. Returns broadcast frames for the other vehicles' links."""
+        """Advances by one step. Returns broadcast frames for the links of other vehicles."""
         if self.started is None:
             self.started = now
         if self.down_until is not None:
@@ -167,10 +171,10 @@ class Vehicle:
             self.stream_since = now
         self.last_setpoint = now
         if self.mode == GUIDED and self.armed and (self.kind == "rover" or self.up > 0.3 or self.kind == "px4"):
-            # A velocity breaks a takeoff off, as ArduCopter does.
+            # A velocity aborts a takeoff, as in ArduCopter.
             self.climb_to = None
             if self.kind == "rover" and message.type_mask == velocity:
-                # ArduRover makes a heading of it, and north of none.
+                # ArduRover derives its heading from the velocity; zero means north.
                 self.heading = math.atan2(message.vy, message.vx)
             self.wish = [message.vy, message.vx, -message.vz if self.kind != "rover" else 0.0]
 
@@ -237,7 +241,7 @@ class Vehicle:
         self.up = max(0.0, self.up + self.velocity[2] * dt)
 
     def place(self):
-        """Degrees and metres: radii of curvature of WGS 84 at the origin."""
+        """Converts metres to degrees by the radii of curvature of WGS 84 at the origin."""
         lat, lon, alt = self.origin
         s = math.sin(math.radians(lat))
         w = 1.0 - 6.69437999014e-3 * s * s
@@ -294,7 +298,7 @@ class Vehicle:
 
 
 class Fleet:
-    """Vehicles that move in real time on a thread of their own, as long as the `with` lasts."""
+    """Vehicles that move in real time on their own thread, for the duration of the `with` block."""
 
     STEP_S = 0.02
 
@@ -333,7 +337,7 @@ class Fleet:
     def _turn(self, now, dt):
         for vehicle in self.vehicles:
             for frame in vehicle.turn(now, dt):
-                # As a mesh of telemetry radios does.
+                # As in a mesh of telemetry radios.
                 for other in self.vehicles:
                     if other is not vehicle:
                         other.line.send(now, frame)

@@ -1,4 +1,4 @@
-"""Lines between fake autopilots and a companion, which lose, delay and damage what they carry."""
+"""Links between fake autopilots and a companion that lose, delay and damage data."""
 
 import heapq
 import random
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 @dataclass
 class Faults:
-    """What a line does to each datagram, in either direction; the same for the same seed."""
+    """Faults of a link in either direction; equal seeds give equal faults."""
 
     drop: float = 0.0
     delay_s: float = 0.0
@@ -20,7 +20,7 @@ class Faults:
         self.dice = random.Random(self.seed)
 
     def pass_on(self, data: bytes):
-        """`(delay, data)`, or None when it is lost."""
+        """`(delay, data)`, or None for a lost datagram."""
         if self.dice.random() < self.drop:
             return None
         if self.dice.random() < self.corrupt:
@@ -30,7 +30,7 @@ class Faults:
 
 
 class Line:
-    """Datagrams to and from a companion, through faults."""
+    """A UDP link to a companion with faults."""
 
     def __init__(self, host: str, port: int, faults: Faults | None = None):
         self.to = (host, port)
@@ -58,7 +58,7 @@ class Line:
             except BlockingIOError:
                 return None
             except OSError:
-                # Nobody listens yet.
+                # The companion does not listen yet.
                 continue
 
     def _send(self, data: bytes):
@@ -68,7 +68,7 @@ class Line:
             pass
 
     def turn(self, now: float) -> list[bytes]:
-        """Sends what is due and returns what has arrived."""
+        """Sends due data and returns received data."""
         while data := self._receive():
             self._queue(now, False, data)
         arrived = []
@@ -85,7 +85,7 @@ class Line:
 
 
 class Server(Line):
-    """The same over TCP, as ArduPilot's simulation offers it: a companion connects."""
+    """A TCP link with faults; the companion connects, as to ArduPilot's simulator."""
 
     def __init__(self, host: str, port: int, faults: Faults | None = None):
         self.faults, self.is_cut, self.waiting, self.count = faults or Faults(), False, [], 0

@@ -1,6 +1,7 @@
-"""Clients that mean no good, and one that does, each in a process of its own: what `soak.py` sets upon `staya`.
+"""Hostile clients and a well-behaved one, each in its own process, for `soak.py`.
 
-Each function runs until `over` is set and returns what it has sent, so that it can be compared with what the other side has counted.
+Each function runs until `over` is set, and returns the numbers of sent items, which the test
+compares with the report of `staya`.
 """
 
 import os
@@ -16,13 +17,13 @@ from pymavlink.dialects.v20 import staya as dialect  # noqa: E402
 
 HOST = "127.0.0.1"
 REQUEST_MESSAGE, AUTOPILOT_VERSION, HEARTBEAT_ID, ACK_ID = 512, 148, b"\0\0\0", b"\x4d\0\0"
-# Seconds between 1970 and 2015, where MAVLink's timestamps begin.
+# Seconds between 1970 and 2015, the start of MAVLink's timestamps.
 MAVLINK_EPOCH = 1_420_070_400
 DAY = 86_400
 
 
 def codec(system, key=None, ahead_s=0.0, link=0):
-    """Makes frames; with a key they are signed, by a clock that is so far ahead."""
+    """Builds frames; with a key they are signed by a clock that is ahead by `ahead`."""
     made = dialect.MAVLink(None, srcSystem=system, srcComponent=190)
     if key:
         made.signing.secret_key, made.signing.sign_outgoing, made.signing.link_id = key, True, link
@@ -47,7 +48,7 @@ def datagrams(port):
 
 
 def send(sink, data):
-    """Whether the system took it."""
+    """Whether the system accepted the datagram."""
     try:
         sink.send(data)
         return True
@@ -56,7 +57,8 @@ def send(sink, data):
 
 
 def station(over, port, system, vehicles, key=None):
-    """A ground station: a heartbeat a second, and five requests a second, each up to three times, half a second apart. How many were answered, and when."""
+    """A ground station with a heartbeat and five requests per second, each sent up to three times
+    at intervals of 0.5 s. Returns the number and the delays of answers."""
     made, sink, dice = codec(system, key), datagrams(port), random.Random(system)
     sink.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
     found = dict(sent=0, requests=0, answered=0, tries=0, waits_ms=[])
@@ -73,7 +75,8 @@ def station(over, port, system, vehicles, key=None):
                 data = sink.recv(2048)
             except (BlockingIOError, ConnectionRefusedError):
                 continue
-            # An acknowledgement of this vehicle for this station: its payload's last two bytes.
+            # An acknowledgement of this vehicle for this station; the payload ends with the
+            # station's ids.
             if data[7:10] == ACK_ID and data[5] == target and len(data) >= 22 and data[18] == system:
                 return True
         return False
@@ -98,7 +101,8 @@ def station(over, port, system, vehicles, key=None):
 
 
 def flood(over, port, system, vehicles, rate):
-    """One peer that says so many sound frames a second: commands, requests for parameter lists, PINGs, setpoints."""
+    """A peer that sends valid frames at a fixed rate: commands, parameter requests, PINGs,
+    setpoints."""
     made, sink = codec(system), datagrams(port)
     frames = []
     for vehicle in range(1, vehicles + 1):
@@ -112,7 +116,7 @@ def flood(over, port, system, vehicles, rate):
     began, number = time.monotonic(), 0
     while not over.is_set():
         due = int((time.monotonic() - began) * rate) - number
-        # What could not be sent in time is not made up for.
+        # Late frames are not made up for.
         number += max(0, due - rate // 50)
         for _ in range(min(due, rate // 50)):
             found["sent"] += send(sink, frames[number % len(frames)])
@@ -136,7 +140,7 @@ def junk(over, port, ports=200, size=64, rate=500):
 
 
 def half_open(over, port, connections=60):
-    """TCP connections that say nothing, or junk, and end as connections end when a machine is switched off."""
+    """TCP connections that send nothing or junk, and end abruptly."""
     dice, held = random.Random(port), []
     found = dict(opened=0)
 
@@ -153,7 +157,7 @@ def half_open(over, port, connections=60):
             try:
                 sink.connect((HOST, port))
                 if dice.random() < 0.5:
-                    # The beginning of a frame that never ends.
+                    # The start of a frame without an end.
                     sink.send(b"\xfd\xff\0\0" + dice.randbytes(20))
                 found["opened"] += 1
                 held.append(sink)
@@ -167,7 +171,8 @@ def half_open(over, port, connections=60):
 
 
 def cut_and_restored(over, port, system, every_s=4.0):
-    """A station over TCP whose link is cut every few seconds; how soon it hears the vehicles again."""
+    """A station whose TCP link is cut every few seconds. Returns the delays until it receives the
+    vehicles again."""
     made = codec(system)
     found = dict(links=0, heard=0, waits_ms=[], sent=0)
     while not over.is_set():
@@ -194,7 +199,7 @@ def cut_and_restored(over, port, system, every_s=4.0):
         except OSError:
             pass
         if over.is_set() and time.monotonic() - began < every_s:
-            # Nobody knows whether it would have been heard.
+            # Unknown, since the run ended first.
             found["links"] = found["heard"]
         over.wait(0.3)
     found["waits_ms"].sort()
@@ -202,7 +207,8 @@ def cut_and_restored(over, port, system, every_s=4.0):
 
 
 def impostors(over, port, key, rate=50):
-    """Without the key, or with frames that were recorded or are of the far future: so many a second of each kind, each from a port of its own."""
+    """Frames without the key, replayed ones, and ones with future timestamps, at a fixed rate of
+    each kind and each from its own port."""
     honest, stranger = codec(240, key, link=7), codec(241)
     forger, hasty = codec(242, bytes(32), link=8), codec(243, key, ahead_s=30 * DAY, link=9)
     sinks = {kind: datagrams(port) for kind in ("honest", "unsigned", "forged", "replayed", "ahead")}
@@ -211,7 +217,7 @@ def impostors(over, port, key, rate=50):
     while not found["honest"]:
         found["honest"] += send(sinks["honest"], recorded)
         time.sleep(0.1)
-    # It is heard before its recordings come.
+    # The original frames arrive before their replays.
     time.sleep(0.3)
     while not over.is_set():
         for kind, frame in [

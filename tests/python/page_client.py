@@ -1,4 +1,4 @@
-"""A page of `staya ... --view` without a browser: just enough of RFC 6455."""
+"""A minimal WebSocket client (RFC 6455) for the pages of `staya ... --view`."""
 
 import base64
 import json
@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 
 class Page:
-    """The WebSocket behind an address that was printed."""
+    """The WebSocket of a printed URL."""
 
     def __init__(self, url: str):
         address = urlsplit(url)
@@ -25,10 +25,10 @@ class Page:
             pass
 
     def say(self, word: dict):
-        """Says something shorter than 126 bytes."""
+        """Sends a message below 126 bytes."""
         text = json.dumps(word).encode()
         assert len(text) < 126
-        # Masked with zeros, which changes nothing.
+        # Masked with zeros, which leaves the data unchanged.
         self._socket.sendall(bytes([0x81, 0x80 | len(text), 0, 0, 0, 0]) + text)
 
     def read(self):

@@ -1,19 +1,23 @@
-"""All of `staya` at once among clients that mean no good, for as long as you like: is it as it was when it began?
+"""Runs all of `staya` under attack for any time, and checks that its resources do not grow.
 
-`cargo xtask soak [--minutes N] [--json FILE] [PART...]` runs it. Parts: flood (a bridge that anybody may command), key (a bridge with a key), companion
-(six vehicles over bad links), hil (firmware on emulated parts that are reset). By hand:
+`cargo xtask soak [--minutes N] [--json FILE] [PART...]` runs it. Parts: flood (a bridge without a
+key), key (a bridge with a key), companion (six vehicles over bad links), hil (firmware on emulated
+parts that are reset). By hand:
 
     STAYA=target/release/staya target/python/bin/python tests/python/soak.py --minutes 1 flood
 
-What is judged, of each process of `staya`:
+Checks for each process of `staya`:
 
-- Memory: a line through its resident memory, one sample a second, in the second half of the run rises by less than GROWTH in all. A byte that is kept for each
-  frame of the flood is more than that in half a minute; queues are full long before.
-- Threads and descriptors are those from before the attack when it is over.
-- Deadlines: none was missed but what the system's scheduler explains: a thread that waited D seconds for a processor (`/proc/PID/schedstat`) may have missed
-  D / tick deadlines by it. On a quiet machine that is none.
-- Every frame is accounted for: what was sent is what came in and what the system dropped (`/proc/net/udp`); what came in was heard, or refused for a reason that is counted.
-- It ends when it is told to, with the exit code that is documented, and leaves no process behind.
+- Memory: a line through its resident memory, sampled at 1 Hz in the second half of the run, rises
+  by less than GROWTH in total. One leaked byte per frame of the flood would exceed that within half
+  a minute; queues are full long before.
+- Threads and descriptors after the attack equal those before.
+- Deadlines: none is missed beyond what the system's scheduler explains. A thread that waited D
+  seconds for a processor (`/proc/PID/schedstat`) may have missed D / tick deadlines. Without other
+  load that is none.
+- Frames: all sent frames either arrived or were dropped by the system (`/proc/net/udp`); all frames
+  that arrived were handled, or rejected for a counted reason.
+- Exit: the process ends when told to, with the documented exit code, and leaves no process behind.
 """
 
 import argparse
@@ -37,16 +41,16 @@ from fake_autopilot import GUIDED, PILOT, Faults, Fleet, Line, Vehicle
 ROOT = Path(__file__).resolve().parents[2]
 VEHICLES = 100
 BRIDGE = "scenarios/bridge-100.toml"
-# Bytes: see above.
+# In bytes, see the module's documentation.
 GROWTH = 1 << 20
-# Before the attack, and after it.
+# Seconds before and after the attack.
 QUIET_S = 3.0
 TICK_S = {BRIDGE: 0.05}
 RATE = 50_000
 
 
 class Process:
-    """`staya`, and what the system says of it each second."""
+    """A `staya` process with samples of its resources at 1 Hz."""
 
     def __init__(self, name, folder, *arguments):
         self.name, self.samples, self.children = name, [], set()
@@ -69,16 +73,17 @@ class Process:
                     bytes=pages * os.sysconf("SC_PAGE_SIZE"),
                     threads=len(os.listdir(proc / "task")),
                     files=len(os.listdir(proc / "fd")),
-                    # Seconds for which its main thread could have run and did not.
+                    # Seconds for which its main thread was ready but did not run.
                     waited_s=int((proc / "schedstat").read_text().split()[1]) / 1e9,
                 )
             )
         except (OSError, IndexError):
-            # It is over.
+            # The process has ended.
             pass
 
     def end(self, code):
-        """Ctrl-C, as a person does it; its figures. Raises when it does not end so."""
+        """Stops with Ctrl-C. Returns the report; raises an error if the process does not end
+        properly."""
         if self.child.poll() is None:
             self.child.send_signal(signal.SIGINT)
         try:
@@ -111,7 +116,8 @@ class Judge:
         self.rows.append(dict(part=part, what=what, passed=bool(is_right), figures=figures))
 
     def memory(self, process, begins_at=1):
-        """Resident memory; `begins_at` is the sample before the attack to compare threads and descriptors with."""
+        """Judges the resources; `begins_at` is the sample before the attack for threads and
+        descriptors."""
         first, last = process.samples[begins_at], process.samples[-1]
         growth, most = process.growth(), max(sample["bytes"] for sample in process.samples)
         mib = 1 << 20
@@ -119,7 +125,7 @@ class Judge:
                   f"{growth / 1024:+.0f} KiB in the second half, {GROWTH // 1024} at most; {most / mib:.1f} MiB at most, {last['bytes'] / mib:.1f} at the end")
         peaks = [max(sample[of] for sample in process.samples) for of in ("threads", "files")]
         is_same = all(first[of] == last[of] for of in ("threads", "files"))
-        self.says(process.name, "threads and descriptors are as before", is_same,
+        self.says(process.name, "threads and descriptors are unchanged", is_same,
                   f"{first['threads']} and {first['files']}, at most {peaks[0]} and {peaks[1]}, then {last['threads']} and {last['files']}")
 
     def deadlines(self, process, missed, ticks, tick_s, slowest_s):
@@ -129,7 +135,7 @@ class Judge:
 
 
 def free_port():
-    """A port of UDP and TCP."""
+    """An unused UDP and TCP port."""
     while True:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp, socket.socket() as tcp:
             udp.bind((hostile.HOST, 0))
@@ -141,7 +147,7 @@ def free_port():
 
 
 def drops(port):
-    """Datagrams for a local port that the system had no room for."""
+    """Datagrams for a local port that the system dropped."""
     for line in Path("/proc/net/udp").read_text().splitlines()[1:]:
         fields = line.split()
         if int(fields[1].split(":")[1], 16) == port and fields[2] == "00000000:0000":
@@ -150,7 +156,7 @@ def drops(port):
 
 
 class Clients:
-    """Functions of `hostile`, each in a process, and what they return."""
+    """Functions of `hostile`, each in a process, and their results."""
 
     def __init__(self):
         self.context = multiprocessing.get_context("spawn")
@@ -165,7 +171,7 @@ class Clients:
         self.running.append(process)
 
     def begin(self):
-        """Lets them go when all are there: on a busy machine that takes a while."""
+        """Starts all when all processes are ready, which takes a while on a loaded machine."""
         for _ in self.running:
             if not self.ready.acquire(timeout=120):
                 raise SystemExit("a client did not start")
@@ -180,7 +186,7 @@ class Clients:
 
 def _work(shared, name, work, *arguments):
     found, ready, go, over = shared
-    # Ctrl-C is for the one who started it.
+    # Only the parent process handles Ctrl-C.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     ready.release()
     go.wait()
@@ -188,22 +194,22 @@ def _work(shared, name, work, *arguments):
 
 
 def accounts(judge, part, report):
-    """Every frame that came in became one thing."""
+    """Every received frame is counted exactly once."""
     came = sum(line["frames_in"] for line in report["lines"])
     lost = sum(line["lost_in"] for line in report["lines"])
     parts = [report[of] for of in ("frames_heard", "frames_ignored", "frames_refused", "frames_waiting")]
     judge.says(part, "every frame that came in is counted once", came == sum(parts) + lost,
-               "{} in: {} heard, {} for nobody, {} refused, {} waiting, {} lost".format(came, *parts, lost))
+               "{} in: {} handled, {} ignored, {} rejected, {} queued, {} lost".format(came, *parts, lost))
 
 
 def waits(found):
-    """Half, and all, of its answers came within so many milliseconds."""
+    """The times in ms within which half, and all, of the answers arrived."""
     times = found["waits_ms"] or [math.nan]
     return f"half within {times[len(times) // 2]:.0f} ms, all within {times[-1]:.0f} ms"
 
 
 class Flood:
-    """A bridge that believes anybody."""
+    """A bridge without a key."""
 
     name = "flood"
 
@@ -233,24 +239,25 @@ class Flood:
         judge.says(self.name, "what was sent came in, or the system dropped it", sent == crowd["frames_in"] + dropped["crowd"],
                    f"{sent} frames, {flood['sent'] / flood['seconds']:.0f} a second of one peer: {crowd['frames_in']} in, {dropped['crowd']} dropped by the system")
         accounts(judge, self.name, report)
-        judge.says(self.name, "who behaves is answered", station["answered"] == station["requests"] > 0,
+        judge.says(self.name, "well-behaved clients are answered", station["answered"] == station["requests"] > 0,
                    f"{station['answered']} of {station['requests']} requests in {station['tries']} tries, {waits(station)}")
         answers, seconds = sum(report["commands"].values()), report["wall_seconds"]
-        judge.says(self.name, "who floods gets no more answers than a peer may have", answers <= 2 * (1000 + 1000 * seconds),
+        judge.says(self.name, "a flooding client gets at most a peer's answers", answers <= 2 * (1000 + 1000 * seconds),
                    f"{answers} commands answered, {answers / seconds:.0f} a second")
-        # Of messages that are not known nobody knows the sum: what begins like one of them is a frame that is for nobody.
-        judge.says(self.name, "junk is counted to the byte", junk["bytes"] == noise["junk_bytes"] + noise["bytes_in"] + dropped["junk"] * junk["size"],
-                   f"{junk['bytes']} bytes from 200 ports: {noise['junk_bytes']} junk, {noise['frames_in']} frames that nobody knows, {dropped['junk']} datagrams dropped")
+        # The checksum of unknown messages is unknown, so a frame that looks like one counts as
+        # ignored.
+        judge.says(self.name, "every byte of junk is counted", junk["bytes"] == noise["junk_bytes"] + noise["bytes_in"] + dropped["junk"] * junk["size"],
+                   f"{junk['bytes']} bytes from 200 ports: {noise['junk_bytes']} junk, {noise['frames_in']} unknown frames, {dropped['junk']} datagrams dropped")
         cut, opened = self.found["cut"], self.found["half_open"]["opened"]
-        judge.says(self.name, "a link that was cut comes back", cut["heard"] >= cut["links"] - 1 > 0,
+        judge.says(self.name, "a cut link reconnects", cut["heard"] >= cut["links"] - 1 > 0,
                    f"{cut['heard']} of {cut['links']} times, among {opened} half-open connections, {waits(cut)}")
         judge.deadlines(process, report["deadlines_missed"], report["ticks"], TICK_S[BRIDGE], report["slowest_seconds"])
-        judge.says(self.name, "nobody touched anybody", report["collisions"] == 0, f"{report['collisions']} overlaps")
+        judge.says(self.name, "no bodies overlapped", report["collisions"] == 0, f"{report['collisions']} overlaps")
         judge.memory(process)
 
 
 class Key:
-    """A bridge with a key, among those who do not have it."""
+    """A bridge with a key and clients without it."""
 
     name = "key"
 
@@ -275,19 +282,19 @@ class Key:
         report = process.end(0)
         station, sent, refused = self.found["station"], self.found["impostors"], report["refused"]
         accounts(judge, self.name, report)
-        judge.says(self.name, "who has the key is answered", station["answered"] == station["requests"] > 0,
+        judge.says(self.name, "clients with the key are answered", station["answered"] == station["requests"] > 0,
                    f"{station['answered']} of {station['requests']} requests, {waits(station)}")
-        # If the system or a full queue took some of them, nobody knows of which kind they were.
+        # Frames dropped by the system or a full queue are of unknown kind.
         lost = dropped + report["lines"][0]["lost_in"] + report["frames_waiting"]
         short = sum(abs(sent[kind] - refused[kind]) for kind in ("unsigned", "forged", "replayed", "ahead"))
-        judge.says(self.name, "each refusal is counted by its reason", short <= lost and report["frames_refused"] > 0,
+        judge.says(self.name, "each rejection is counted by its reason", short <= lost and report["frames_refused"] > 0,
                    ", ".join(f"{refused[kind]} of {sent[kind]} {kind}" for kind in ("unsigned", "forged", "replayed", "ahead")) + f"; {lost} lost before")
         judge.deadlines(process, report["deadlines_missed"], report["ticks"], TICK_S[BRIDGE], report["slowest_seconds"])
         judge.memory(process)
 
 
 class Companion:
-    """Six vehicles with bad links, pilots who interfere and autopilots that start anew."""
+    """Six vehicles with bad links, active pilots and restarting autopilots."""
 
     name = "companion"
 
@@ -312,7 +319,8 @@ class Companion:
         self.thread.start()
 
     def _interfere(self):
-        """One vehicle after the other: its pilot takes it, its autopilot starts anew, its link is cut; then it is given back."""
+        """For one vehicle after the other: its pilot takes over, its autopilot restarts, its link
+        is cut; then it is given back."""
         number = 0
         while not self.over.wait(2.0):
             vehicle, kind = self.vehicles[number % len(self.vehicles)], number % 3
@@ -342,7 +350,7 @@ class Companion:
         self.thread.start()
 
     def _blow(self):
-        """A wind, so that nobody stands at his goal when the end comes."""
+        """A wind that keeps vehicles away from their goals until the end."""
         while not self.over.wait(0.05):
             with self.fleet.lock:
                 for vehicle in self.vehicles:
@@ -352,12 +360,12 @@ class Companion:
         [process] = self.processes
 
         def stand():
-            """How many were told last to stand."""
+            """Number of vehicles whose last setpoint is zero."""
             with self.fleet.lock:
                 return sum(vehicle.setpoints[-1][1:] == (0.0, 0.0, 0.0) for vehicle in self.vehicles if vehicle.setpoints)
 
         stood = stand()
-        # Ended by a person, which is how it ends.
+        # Stopped by Ctrl-C, its normal end.
         report = process.end(130)
         time.sleep(0.5)
         self.over.set()
@@ -366,21 +374,21 @@ class Companion:
         setpoints = [len(vehicle.setpoints) for vehicle in self.vehicles]
         vehicles = report["vehicles"]
         told = {of: sum(vehicle[of] for vehicle in vehicles) for of in ("setpoints", "hand_overs", "restarts", "stops", "packets_refused")}
-        judge.says(self.name, "all are steered to the end", min(setpoints) > 0 and all(vehicle["setpoints"] > 0 for vehicle in vehicles),
+        judge.says(self.name, "all vehicles are controlled to the end", min(setpoints) > 0 and all(vehicle["setpoints"] > 0 for vehicle in vehicles),
                    f"{told['setpoints']} setpoints, {sum(setpoints)} of them arrived; {told['hand_overs']} hand-overs, {told['restarts']} restarts, {told['stops']} stops")
         judge.says(self.name, "it hands over when a pilot takes a vehicle", told["hand_overs"] >= self.trouble["taken"] > 0,
                    f"{self.trouble['taken']} taken by pilots, {self.trouble['restarts']} restarted, {self.trouble['cuts']} links cut")
-        judge.says(self.name, "nobody touched anybody", self.fleet.least_gap > 0, f"{self.fleet.least_gap:.2f} m at least between bodies")
-        judge.says(self.name, "its last word is to stand", stood < stand() == len(self.vehicles), f"{stand()} of {len(self.vehicles)} vehicles, {stood} before the end")
+        judge.says(self.name, "no bodies overlapped", self.fleet.least_gap > 0, f"{self.fleet.least_gap:.2f} m at least between bodies")
+        judge.says(self.name, "the last setpoint is zero", stood < stand() == len(self.vehicles), f"{stand()} of {len(self.vehicles)} vehicles, {stood} before the end")
         [noise] = report["links"]
         sent = self.found["junk"]["bytes"]
         is_counted = noise["junk_bytes"] + noise["bytes_in"] >= sent > 0 and noise["junk_bytes"] > sent // 2
-        judge.says(self.name, "junk is counted", is_counted, f"{sent} bytes, {noise['junk_bytes']} counted with what the links damaged")
+        judge.says(self.name, "junk is counted", is_counted, f"{sent} bytes, {noise['junk_bytes']} counted including frames damaged by the links")
         judge.memory(process)
 
 
 class Hil:
-    """Two robots on emulated parts, over lines that lose and damage frames, which start anew; run after run."""
+    """Two robots on emulated parts with lossy serial links and resets, run after run."""
 
     name = "hil"
     RESETS, DOWN, TICKS, DEVICES = (20, 60), 5, 100, 2
@@ -405,7 +413,7 @@ class Hil:
                     "--firmware", os.environ.get("STAYA_FIRMWARE", ROOT / "target/firmware"), "--json", "-q",
                 )
                 self.processes.append(process)
-                # It comes to its end, also when the others have come to theirs.
+                # Runs end by themselves, after the other parts too.
                 process.child.wait(300)
                 self.reports.append(process.end(0))
         except (AssertionError, subprocess.TimeoutExpired) as trouble:

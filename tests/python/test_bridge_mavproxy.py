@@ -1,4 +1,4 @@
-"""`staya bridge` as MAVProxy's command line sees it."""
+"""`staya bridge` with MAVProxy's command line."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ PROXY = Path(sys.executable).with_name("mavproxy.py")
 
 
 class Console:
-    """MAVProxy without a terminal: lines go in by its standard input, what it prints is in a file."""
+    """MAVProxy without a terminal: commands on its standard input, output in a file."""
 
     def __init__(self, folder, port):
         self.log = folder / "mavproxy.log"
@@ -30,7 +30,7 @@ class Console:
         return self.log.read_text(errors="replace")
 
     def type(self, line, *answers, timeout=15.0):
-        """Types a line, and again now and then until MAVProxy has printed one of these after it."""
+        """Types a line, with retries until MAVProxy has printed one of the answers."""
         start, deadline, again = len(self.text()), time.monotonic() + timeout, 0.0
         while time.monotonic() < deadline:
             if time.monotonic() > again:
@@ -66,7 +66,7 @@ def test_modes_arming_and_parameters(staya, free_port, tmp_path):
         console.type("param set SPEED_MPS 0.5", "GUIDED>")
         console.type("param show SPEED_MPS", "SPEED_MPS        0.5")
         console.type("mode HOLD", "HOLD>")
-        # Its fence and console modules have seen some SYS_STATUS by now.
+        # By now its fence and console modules have received some SYS_STATUS.
         text = console.text().lower()
         assert "fence breach" not in text and "pre-arm fail" not in text and "prearm" not in text, console.text()
     finally:

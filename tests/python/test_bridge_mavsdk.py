@@ -1,4 +1,4 @@
-"""`staya bridge` as MAVSDK sees it: one vehicle and ten."""
+"""`staya bridge` with MAVSDK: one vehicle and ten."""
 
 import math
 import time
@@ -31,7 +31,7 @@ start_m = [3, 0]
 
 @pytest.fixture
 def connect(staya, free_port):
-    """A function that starts a bridge and gives the vehicles that MAVSDK finds, by number."""
+    """A function that starts a bridge and returns MAVSDK's vehicles by number."""
     opened = []
 
     def start(scenario, count, *options):
@@ -63,7 +63,7 @@ def degrees(north, east):
 
 
 def fly(system, north, east):
-    """Offboard velocity, then a goto, from where the vehicle stands."""
+    """Offboard velocity, then a goto, from the vehicle's position."""
     telemetry, action, offboard = Telemetry(system), Action(system), Offboard(system)
     wait_until(lambda: telemetry.armed() and near(telemetry, north, east), 15, "telemetry")
     place = telemetry.position()
@@ -87,14 +87,14 @@ def test_one_vehicle(connect, tmp_path):
     telemetry, action = fly(system, 0.0, 3.0)
     wait_until(lambda: telemetry.home().latitude_deg > 47, 10, "a home")
     assert not telemetry.in_air()
-    # What these vehicles cannot do, they say.
+    # Unsupported commands are answered.
     with pytest.raises(ActionError):
         action.takeoff()
     parameters = Param(system)
     assert parameters.get_param_float("RADIUS_M") == 0.25
     parameters.set_param_float("SPEED_MPS", 0.5)
     assert parameters.get_param_float("SPEED_MPS") == 0.5
-    # Who is on the way is not disarmed.
+    # A moving vehicle is not disarmed.
     wait_until(lambda: abs(telemetry.position_velocity_ned().velocity.north_m_s) < 0.01, 10, "the end of the goto")
     action.disarm()
     wait_until(lambda: not telemetry.armed(), 10, "to be disarmed")
@@ -104,7 +104,7 @@ def test_one_vehicle(connect, tmp_path):
 def test_ten_vehicles(connect):
     systems = connect("scenarios/bridge.toml", 10)
     assert sorted(systems) == list(range(1, 11))
-    # All of them are told the same, at once: each sends its setpoints by itself.
+    # All vehicles get commands at once; each client sends its own setpoints.
     flights = {}
     for number, system in systems.items():
         telemetry, offboard = Telemetry(system), Offboard(system)
@@ -137,7 +137,7 @@ def test_takeoff_and_landing(connect):
 
 
 def item(north, east, height, **wanted):
-    """A place of a mission as MAVSDK's examples give it: with a speed, and nothing of a camera."""
+    """A mission item as in MAVSDK's examples, with a speed and no camera action."""
     latitude, longitude = degrees(north, east)
     nan = math.nan
     usual = dict(
@@ -177,7 +177,8 @@ def test_missions_with_speeds_run_to_their_end(connect, tmp_path):
     scenario = tmp_path / "one.toml"
     scenario.write_text(ONE)
     (system,) = connect(scenario, 1).values()
-    # The first item is the place where it stands: MAVSDK sends no home, and item 0 is taken for it, as ArduPilot does.
+    # The first item is the vehicle's position: MAVSDK sends no home, and item 0 becomes home, as in
+    # ArduPilot.
     plan = [item(0.0, 3.0, 0.0), item(4.0, 3.0, 0.0, loiter_time_s=0.5), item(4.0, 6.0, 0.0, is_fly_through=False)]
     telemetry = fly_mission(system, plan, False)
     assert near(telemetry, 4.0, 6.0, 1.5)

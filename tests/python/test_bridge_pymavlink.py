@@ -1,4 +1,4 @@
-"""`staya bridge` as a script on pymavlink sees it."""
+"""`staya bridge` with pymavlink."""
 
 import json
 import math
@@ -13,7 +13,7 @@ from pymavlink import mavutil
 ACCEPTED, NOT_NOW, DENIED, UNSUPPORTED, INT_ONLY, BAD_FRAME = 0, 1, 2, 3, 8, 9
 NAN = math.nan
 TEN = "scenarios/bridge.toml"
-# Simulated seconds a second.
+# Simulated seconds per second.
 SPEED = 5
 
 
@@ -32,7 +32,7 @@ def bridge(staya, free_port):
         one.close()
 
 
-def test_every_robot_is_a_vehicle_that_says_where_and_how_it_is(bridge):
+def test_every_robot_is_a_vehicle_with_telemetry(bridge):
     ten = bridge()
     beats = {}
     while len(beats) < 10:
@@ -40,7 +40,7 @@ def test_every_robot_is_a_vehicle_that_says_where_and_how_it_is(bridge):
         beats[beat.get_srcSystem()] = beat
     assert sorted(beats) == list(range(1, 11))
     assert all(b.type == 10 and b.autopilot == 3 and b.base_mode & 128 and b.custom_mode == AUTO for b in beats.values())
-    # Robot 4 stands 6 m east of the origin.
+    # Robot 4 is 6 m east of the origin.
     local = ten.position(4)
     assert (local.x, local.y, local.z) == (0.0, 6.0, 0.0)
     place = ten.next("GLOBAL_POSITION_INT", 4)
@@ -77,12 +77,12 @@ def test_parameters_are_listed_set_limited_and_have_an_effect(bridge):
     assert ten.next("PARAM_VALUE", 2).param_value == 0.5
     ten.sink.param_set_send(2, 1, b"SPEED_MPS", 99.0, 9)
     assert ten.next("PARAM_VALUE", 2).param_value == 0.5
-    ten.text(2, "SPEED_MPS: 0 to 2")
+    ten.text(2, "SPEED_MPS: give 0 to 2")
     ten.sink.param_set_send(2, 1, b"RADIUS_M", 0.1, 9)
     assert ten.next("PARAM_VALUE", 2).param_value == 0.25
     ten.sink.param_request_read_send(2, 1, b"SPEED_MPS", -1)
     assert ten.next("PARAM_VALUE", 2).param_value == 0.5
-    # It goes as fast as it was told, and its neighbour as fast as ever.
+    # It moves at the set speed, its neighbour at the default one.
     fastest = {}
     for system, limit in [(2, 0.5), (3, 1.0)]:
         assert ten.reposition(system, -20, 2.0 * system) == ACCEPTED
@@ -93,33 +93,33 @@ def test_parameters_are_listed_set_limited_and_have_an_effect(bridge):
         assert abs(fastest[system] - limit) < 0.05, fastest
 
 
-def test_goto_velocity_and_what_ends_it(bridge):
+def test_goto_and_velocity_setpoints_and_their_end(bridge):
     ten = bridge()
-    # A setpoint counts in GUIDED only.
+    # Setpoints count in GUIDED only.
     ten.set_local(1, POSITION, (-5, 0, 0))
-    ten.text(1, "not armed and GUIDED")
+    ten.text(1, "arm and select GUIDED first")
     ten.mode(1, GUIDED)
     ten.set_local(1, POSITION, (-5, 1, 0))
     ten.arrives(1, -5, 1)
-    # North for as long as it is said, and three simulated seconds more.
+    # North while setpoints arrive, then for three more simulated seconds.
     for _ in range(3):
         ten.set_local(1, VELOCITY, velocity=(-1, 0, 0))
         time.sleep(0.1)
     ten.position(1, lambda at: at.vx < -0.8)
     ten.text(1, "holding")
     ten.position(1, lambda at: abs(at.vx) < 1e-3)
-    # Place and velocity, in the frame of its body: it looks south.
+    # Position and velocity, in the frame of the body, which faces south.
     ten.set_local(1, BOTH, (1.0, 0, 0), (0.1, 0, 0), frame=8)
     ten.position(1, lambda at: at.vx < -0.1)
     assert ten.reposition(1, 0, -3) == ACCEPTED
     ten.arrives(1, 0, -3)
-    # Home again, and then what it was doing all the time.
+    # Home, then the behaviour of the scenario.
     ten.mode(1, 11)
     ten.arrives(1, 0, 0)
     ten.mode(1, AUTO)
 
 
-def test_what_cannot_be_is_refused_in_the_right_way(bridge):
+def test_impossible_commands_get_the_right_result(bridge):
     ten = bridge()
     for command, params, result in [
         (400, (NAN,), DENIED),
@@ -152,7 +152,7 @@ def test_what_cannot_be_is_refused_in_the_right_way(bridge):
                                    "unsupported": 6, "unsupported frame": 1}
 
 
-def test_commands_reach_whom_they_are_for(bridge):
+def test_commands_reach_their_target_only(bridge):
     ten = bridge()
     assert ten.command(3, 400, 0) == ACCEPTED
     armed = {}
@@ -161,28 +161,29 @@ def test_commands_reach_whom_they_are_for(bridge):
         beat = ten.next("HEARTBEAT")
         armed[beat.get_srcSystem()] = bool(beat.base_mode & 128)
     assert [system for system, is_armed in armed.items() if not is_armed] == [3]
-    # Nobody has these numbers, and no vehicle a camera.
+    # No vehicle has these numbers, and none has a camera.
     for system, component in [(77, 1), (3, 100)]:
         ten.drop()
         ten.sink.command_long_send(system, component, 400, 0, 1, 0, 0, 0, 0, 0, 0)
         with pytest.raises(AssertionError, match="no COMMAND_ACK"):
             ten.next("COMMAND_ACK", timeout=0.7)
-    # 0 is everybody.
+    # 0 addresses all vehicles.
     ten.sink.command_long_send(0, 0, 400, 0, 1, 0, 0, 0, 0, 0, 0)
     answers = {ten.next("COMMAND_ACK").get_srcSystem() for _ in range(10)}
     assert answers == set(range(1, 11))
 
 
-def test_rates_are_those_that_were_asked_for(bridge):
+def test_streams_have_the_requested_rates(bridge):
     ten = bridge()
     ten.link.port.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4 << 20)
 
     def waited():
-        """Seconds for which the bridge's main thread could have run, and others had the processors."""
+        """Seconds for which the bridge's main thread was ready but did not run."""
         return int(Path(f"/proc/{ten.process.child.pid}/schedstat").read_text().split()[1]) / 1e9
 
     def count(kind, seconds):
-        """Messages of vehicle 6, and the seconds, between two moments of its own clock, which it tells in turn with them: however late this client reads."""
+        """Messages of vehicle 6 between two of its own timestamps, and the seconds between them,
+        which do not depend on the client's delays."""
 
         def moment(number):
             ten.sink.timesync_send(0, number)
@@ -202,7 +203,8 @@ def test_rates_are_those_that_were_asked_for(bridge):
     def has_rate(kind, hz, seconds=2.0):
         before = waited()
         seen, passed = count(kind, seconds)
-        # What is late is sent once, and a clock that is late stays behind: the system's scheduler explains as much as would have been due while it kept
+        # An overdue message is sent once. The scheduler explains at most the messages that were due
+        # while the bridge waited for a processor.
         # the bridge waiting, and no more.
         late = waited() - before
         assert passed + late > 0.9 * seconds
@@ -220,13 +222,13 @@ def test_rates_are_those_that_were_asked_for(bridge):
 
 
 def mission_item(seq, north, east, command=16, current=0):
-    """North and east in metres of the origin, frame LOCAL_NED."""
+    """North and east in metres from the origin, frame LOCAL_NED."""
     return dict(seq=seq, frame=1, command=command, current=current, autocontinue=1, param1=0, param2=0, param3=0, param4=NAN,
                 x=round(north * 1e4), y=round(east * 1e4), z=0.0)
 
 
 def upload(one, system, items):
-    """The result of an upload."""
+    """Result of an upload."""
     one.drop()
     one.sink.mission_count_send(system, 1, len(items))
     while True:
@@ -236,9 +238,9 @@ def upload(one, system, items):
         one.sink.mission_item_int_send(system, 1, **items[asked.seq])
 
 
-def test_missions_go_up_come_down_and_are_gone_through(bridge):
+def test_missions_are_uploaded_downloaded_and_flown(bridge):
     ten = bridge()
-    # Item 0 is home, as with ArduPilot.
+    # Item 0 is home, as in ArduPilot.
     items = [mission_item(0, 0, 0), mission_item(1, 5, 8), mission_item(2, 5, 12)]
     assert upload(ten, 5, items) == 0
     ten.sink.mission_request_list_send(5, 1)
@@ -256,23 +258,23 @@ def test_missions_go_up_come_down_and_are_gone_through(bridge):
     ten.sink.mission_clear_all_send(5, 1)
     assert ten.next("MISSION_ACK", 5).type == 0
     assert ten.command(5, 300) == DENIED
-    # dronekit's goto: an item of no mission, in degrees.
+    # dronekit's goto: an item outside a mission, in degrees.
     ten.mode(5, GUIDED)
     ten.sink.mission_item_send(5, 1, 0, 3, 16, 2, 1, 0, 0, 0, 0, LAT + 0.00002, LON, 0)
     assert ten.next("MISSION_ACK", 5).type == 0
     ten.position(5, lambda at: at.vy < -0.3)
 
 
-def test_orca_keeps_two_apart_that_are_sent_to_the_same_place(bridge):
+def test_orca_separates_two_robots_with_one_goal(bridge):
     ten = bridge()
     for system in (1, 5):
         ten.mode(system, GUIDED)
     for system in (1, 5):
         ten.set_local(system, POSITION, (-3, 4, 0))
-    # One is there, the other one beside it.
+    # One robot reaches the goal, the other stops beside it.
     for system in (1, 5):
         ten.arrives(system, -3, 4, near=0.9)
-    # And at each other at full speed.
+    # Head-on at full speed.
     for _ in range(15):
         ten.set_local(1, VELOCITY, velocity=(0, 2, 0))
         ten.set_local(5, VELOCITY, velocity=(0, -2, 0))
@@ -298,7 +300,7 @@ goal = [14, 20]
 
 
 def templates(places, edges):
-    """What each robot must know of a formation: who should stand where, as seen from it, and over how many edges."""
+    """The template of each robot: relative places of others, and the number of edges to them."""
     count = len(places)
     hops = [[0 if a == b else 99 for b in range(count)] for a in range(count)]
     for a, b in edges:
@@ -320,7 +322,7 @@ def test_the_formation_changes_while_it_runs(bridge, tmp_path):
     three = bridge(scenario, speed=20)
 
     def stands_like(places):
-        """Waits until all stand so, in cells of the first robot."""
+        """Waits until all robots are in place, in cells relative to the first one."""
         cells, deadline = {}, time.monotonic() + 20
         while time.monotonic() < deadline:
             at = three.position(None)
@@ -333,9 +335,9 @@ def test_the_formation_changes_while_it_runs(bridge, tmp_path):
 
     goal = (14, 20)
     stands_like([(0, 0), (-3, 0), (-6, 0)])
-    # A goto would tear it apart, and there are no velocities.
+    # Single goals and velocities are refused in a formation.
     assert three.reposition(2, 10, 10) == DENIED
-    # From a column to a wedge, and on to another goal.
+    # From a column to a wedge, and to another goal.
     wedge = [(0, 0), (-3, 3), (-3, -3)]
     sequence = 0
     for _ in range(2):
@@ -355,11 +357,11 @@ def test_the_formation_changes_while_it_runs(bridge, tmp_path):
     stands_like(wedge)
 
 
-def test_places_of_the_dialect_are_the_robots_own_goals(bridge):
+def test_goals_of_the_dialect_set_the_robots_goals(bridge):
     ten = bridge()
     ten.sink.staya_place_send(-2000, 4000, 0, 0, 0, 0, 0, 1, 6, 1, 0)
     ten.arrives(6, 4, -2)
-    # It is its own behaviour: nobody took it over.
+    # The behaviour of the scenario, without an operator's command.
     assert ten.next("HEARTBEAT", 6).custom_mode == AUTO
 
 
@@ -385,7 +387,7 @@ def test_takeoff_goto_and_landing_in_space(bridge):
     assert four.next("EXTENDED_SYS_STATE", 1).landed_state == 1
 
 
-def test_only_who_has_the_key_is_heard(bridge, tmp_path, staya, free_port):
+def test_only_clients_with_the_key_are_accepted(bridge, tmp_path, staya, free_port):
     key = bytes(range(32))
     file = tmp_path / "key"
     file.write_text(key.hex())
@@ -435,7 +437,7 @@ def test_a_hundred_vehicles_at_ten_positions_a_second_lose_nothing(bridge):
     print(f"{figures['lines'][0]['bytes_out_per_s'] / 1000:.0f} kB/s")
 
 
-def test_a_run_that_nobody_commands_is_the_run_without_a_bridge(staya, free_port, tmp_path):
+def test_a_run_without_commands_equals_a_run_without_a_bridge(staya, free_port, tmp_path):
     for scenario in ["swap-circle", "six-robots"]:
         path, ticks = f"scenarios/{scenario}.toml", 60
         line = f"udpout:127.0.0.1:{free_port()}"
@@ -447,7 +449,7 @@ def test_a_run_that_nobody_commands_is_the_run_without_a_bridge(staya, free_port
         assert figures["ticks"] == ticks
 
 
-def test_ticks_that_come_late_are_counted(staya, free_port):
+def test_late_ticks_are_counted(staya, free_port):
     # Ticks of 50 microseconds for a hundred robots.
     line = f"udpout:127.0.0.1:{free_port()}"
     hasty = staya("bridge", "scenarios/bridge-100.toml", "--mavlink", line, "--ticks", 50, "--speed", 1000, "--json", "--quiet")
@@ -471,13 +473,13 @@ def test_a_log_has_all_frames_both_ways(bridge, tmp_path):
     assert sum(senders.values()) == figures["frames_out"] and len(senders) == 10
 
 
-def test_more_robots_than_vehicles_can_be_are_an_error(staya, free_port):
+def test_too_many_robots_are_an_error(staya, free_port):
     process = staya("bridge", "scenarios/scale-small.toml", "--mavlink", f"udpout:127.0.0.1:{free_port()}")
     assert process.wait() == 1
     assert "1 to 254" in process.output()
 
 
-def test_clients_over_tcp_and_two_lines_see_the_same(staya, free_port):
+def test_clients_on_two_links_receive_the_same(staya, free_port):
     ports = [free_port(), free_port()]
     process = staya("bridge", TEN, "--mavlink", f"tcpin:127.0.0.1:{ports[0]}", "--mavlink", f"udpin:127.0.0.1:{ports[1]}", "--quiet")
     tcp = mavutil.mavlink_connection(f"tcp:127.0.0.1:{ports[0]}", source_system=254, retries=20)

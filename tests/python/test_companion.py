@@ -1,4 +1,4 @@
-"""`staya companion` beside an autopilot that is not there: see fake_autopilot.py."""
+"""`staya companion` with a fake autopilot, see fake_autopilot.py."""
 
 import json
 import math
@@ -18,7 +18,8 @@ from fake_line import Faults, Line, Server
 
 @pytest.fixture
 def one(tmp_path, free_port, staya):
-    """One vehicle that is to go 6 m to the east; `(vehicle, fleet to enter, function that starts the companion)`."""
+    """A vehicle with a goal 6 m to the east; `(vehicle, fleet to enter, function that starts the
+    companion)`."""
 
     def make(kind="rover", rules="", faults=None, goal=(6.0, 0.0), **options):
         port = free_port()
@@ -31,18 +32,18 @@ def one(tmp_path, free_port, staya):
 
 
 @pytest.mark.parametrize("kind", ["rover", "copter", "px4"])
-def test_goes_to_its_goal_in_a_mode_that_the_pilot_chose(one, kind):
+def test_a_vehicle_reaches_its_goal_in_the_pilots_mode(one, kind):
     vehicle, fleet, start = one(kind, armed=True, airborne=kind != "rover")
     with fleet:
         process = start()
-        process.wait_for("the pilot steers")
+        process.wait_for("pilot has control")
         time.sleep(1.5)
-        # PX4 must be offered zeros, or it would refuse the mode.
+        # PX4 needs zero setpoints, or it would refuse the mode.
         assert all(setpoint[1:] == STAND for setpoint in vehicle.setpoints)
         assert (kind == "px4") == bool(vehicle.setpoints)
         assert {command for _, command in vehicle.commands} == {511}, "it asked for telemetry only"
         vehicle.pilot(GUIDED)
-        process.wait_for("robot 1: steers")
+        process.wait_for("robot 1: companion has control")
         begun = time.monotonic()
         process.wait_for("arrived")
         found = rate(vehicle, begun + 0.5, begun + 2.5)
@@ -54,63 +55,63 @@ def test_goes_to_its_goal_in_a_mode_that_the_pilot_chose(one, kind):
         gaps = [b - a for a, b in zip(beats, beats[1:])]
         assert max(gaps) < 2.0 and 0.8 < sum(gaps) / len(gaps) < 1.2, gaps
         output = ends_well(process)
-        assert "steers, arrived, at" in output
+        assert "companion has control, arrived, at" in output
         assert [setpoint[1:] for setpoint in vehicle.setpoints[-3:]] == [STAND] * 3, "it ends with zeros"
 
 
 @pytest.mark.parametrize("kind", ["rover", "copter", "px4"])
-def test_asks_arms_and_takes_off_if_it_is_told_to(one, kind):
+def test_the_entry_requests_the_mode_arms_and_takes_off(one, kind):
     rules = 'entry = "once"\narm = true' + ("\ntakeoff = true\naltitude_m = 3" if kind != "rover" else "")
     vehicle, fleet, start = one(kind, rules, goal=(2.0, 0.0), position_after=1.5)
     with fleet:
         process = start()
-        process.wait_for("robot 1: steers", 30)
+        process.wait_for("robot 1: companion has control", 30)
         assert vehicle.mode == GUIDED and vehicle.armed
         assert kind == "rover" or vehicle.up > 2.3
         process.wait_for("arrived")
         if kind != "rover":
             wait_until(lambda: abs(vehicle.up - 3.0) < 0.3, 10, "its height")
-        # A takeoff may be asked for again until it has left the ground.
+        # A takeoff may be requested again until the vehicle has left the ground.
         asked = list(dict.fromkeys(command for _, command in vehicle.commands if command != 511))
         assert asked == {"rover": [176, 400], "copter": [176, 400, 22], "px4": [176, 400]}[kind], asked
         ends_well(process)
 
 
-def test_the_pilots_takeoff_is_left_alone(one):
+def test_the_pilots_takeoff_is_not_interrupted(one):
     vehicle, fleet, start = one("copter", goal=(4.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start()
-        process.wait_for("waits: not in the air")
+        process.wait_for("waits: on the ground")
         time.sleep(0.5)
         with fleet.lock:
             assert vehicle.take_off(5.0)
-        process.wait_for("robot 1: steers")
+        process.wait_for("robot 1: companion has control")
         assert abs(vehicle.up - 5.0) < 0.2, "the takeoff was broken off"
         process.wait_for("arrived")
         ends_well(process)
 
 
-def test_a_late_position_is_waited_for(one):
+def test_the_companion_waits_for_a_late_position(one):
     vehicle, fleet, start = one(position_after=4.0, mode=GUIDED, armed=True)
     with fleet:
         process = start()
-        process.wait_for("no position yet")
+        process.wait_for("waits: no position")
         time.sleep(2.0)
         assert not vehicle.setpoints
-        process.wait_for("robot 1: steers")
+        process.wait_for("robot 1: companion has control")
         assert vehicle.is_ready
         ends_well(process)
 
 
-def test_stale_telemetry_stops_and_fresh_telemetry_goes_on(one):
+def test_stale_telemetry_stops_and_fresh_telemetry_resumes(one):
     vehicle, fleet, start = one(goal=(30.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start()
-        process.wait_for("robot 1: steers")
+        process.wait_for("robot 1: companion has control")
         wait_until(lambda: vehicle.velocity[0] > 1.0, what="motion")
         vehicle.mute_position = True
         at = time.monotonic()
-        process.wait_for("position is stale")
+        process.wait_for("position stale")
         assert 0.8 < time.monotonic() - at < 2.5
         wait_until(lambda: abs(vehicle.velocity[0]) < 0.05, 5, "standing")
         since = time.monotonic()
@@ -123,8 +124,8 @@ def test_stale_telemetry_stops_and_fresh_telemetry_goes_on(one):
 
 
 @pytest.mark.parametrize("kind", ["rover", "px4"])
-def test_a_vehicle_whose_gps_is_lost_stands_and_goes_on_after_a_while(one, kind):
-    # PX4 leaves OFFBOARD before anybody streams.
+def test_a_vehicle_without_gps_stops_and_resumes_later(one, kind):
+    # PX4 leaves OFFBOARD without setpoints.
     mode = GUIDED if kind == "rover" else PILOT
     vehicle, fleet, start = one(kind, 'entry = "once"', goal=(60.0, 0.0), mode=mode, armed=True, airborne=kind == "px4")
     with fleet:
@@ -133,7 +134,7 @@ def test_a_vehicle_whose_gps_is_lost_stands_and_goes_on_after_a_while(one, kind)
         with fleet.lock:
             vehicle.gps_lost = True
         wait_until(lambda: abs(vehicle.velocity[0]) < 0.05, 4, "standing")
-        process.wait_for("position not trusted: GPS has lost its fix")
+        process.wait_for("position not trusted: GPS lost its fix")
         since = time.monotonic()
         with fleet.lock:
             vehicle.gps_lost = False
@@ -153,19 +154,19 @@ def test_a_lost_link_ends_setpoints_and_the_vehicle_stops(one):
         process.wait_for("no heartbeat", 10)
         wait_until(lambda: abs(vehicle.velocity[0]) < 0.05, 6, "standing")
         vehicle.line.is_cut = False
-        process.wait_for("heard again")
+        process.wait_for("heartbeat back")
         wait_until(lambda: vehicle.velocity[0] > 1.0, 5, "motion again")
         ends_well(process)
 
 
 @pytest.mark.parametrize("kind", ["rover", "px4"])
 @pytest.mark.parametrize("entry", ["wait", "once"])
-def test_the_pilot_takes_over_and_nothing_is_taken_back(one, kind, entry):
+def test_the_pilot_takes_over_permanently(one, kind, entry):
     vehicle, fleet, start = one(
         kind, f'entry = "{entry}"', goal=(60.0, 0.0), armed=True, airborne=kind == "px4", mode=PILOT if entry == "once" else GUIDED
     )
     with fleet:
-        # PX4 leaves OFFBOARD at once when nobody streams.
+        # PX4 leaves OFFBOARD at once without setpoints.
         process = start()
         if kind == "px4" and entry == "wait":
             wait_until(lambda: vehicle._has_stream(time.monotonic()), what="a stream")
@@ -186,12 +187,12 @@ def test_the_pilot_takes_over_and_nothing_is_taken_back(one, kind, entry):
         ends_well(process)
 
 
-def test_a_lost_ground_station_is_a_hand_over_too(one):
+def test_a_lost_ground_station_counts_as_a_hand_over(one):
     vehicle, fleet, start = one(goal=(60.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start()
         wait_until(lambda: vehicle.velocity[0] > 0.5, what="motion")
-        # The last heartbeat of a ground station, long ago: the companion's own do not count.
+        # The last heartbeat of a ground station is old; the companion's own do not count.
         vehicle.ground_station = time.monotonic() - 4.0
         process.wait_for("handed over", 10)
         at = time.monotonic()
@@ -200,24 +201,24 @@ def test_a_lost_ground_station_is_a_hand_over_too(one):
         ends_well(process)
 
 
-def test_a_restarted_autopilot_is_the_pilots(one):
+def test_a_restarted_autopilot_belongs_to_the_pilot(one):
     vehicle, fleet, start = one(rules='entry = "once"\narm = true', goal=(60.0, 0.0))
     with fleet:
         process = start()
         wait_until(lambda: vehicle.velocity[0] > 0.5, what="motion")
         with fleet.lock:
-            # It comes up in the mode and armed, which is nobody's choice.
+            # It restarts in the mode and armed, which no pilot has chosen.
             vehicle.reboot(0.5, GUIDED)
             vehicle.armed = True
             vehicle.commands.clear()
-        process.wait_for("restarted: choose the mode anew", 10)
+        process.wait_for("restarted: select the mode again", 10)
         at = time.monotonic()
         time.sleep(2.0)
         assert rate(vehicle, at + 0.1, at + 2.0) == 0.0
         assert {command for _, command in vehicle.commands} == {511}, "telemetry is asked for again, and nothing else"
-        told = process.output().count("the pilot steers")
+        told = process.output().count("pilot has control")
         vehicle.pilot()
-        wait_until(lambda: process.output().count("the pilot steers") > told, 5, "the pilot's turn")
+        wait_until(lambda: process.output().count("pilot has control") > told, 5, "the pilot's turn")
         vehicle.pilot(GUIDED)
         wait_until(lambda: vehicle.velocity[0] > 0.5, 5, "motion")
         ends_well(process)
@@ -246,7 +247,7 @@ def test_links_that_lose_delay_and_damage_frames(one):
     assert report["interrupted"] and report["vehicles"][0]["restarts"] == 0
 
 
-def test_a_link_over_tcp_that_breaks_is_made_anew(tmp_path, free_port, staya):
+def test_a_broken_tcp_link_reconnects(tmp_path, free_port, staya):
     port = free_port()
     write_scenario(tmp_path, [((0.0, 0.0), (40.0, 0.0))])
     config = write_config(tmp_path, [port], "rover")
@@ -262,7 +263,7 @@ def test_a_link_over_tcp_that_breaks_is_made_anew(tmp_path, free_port, staya):
         ends_well(process)
 
 
-def test_a_connection_that_is_refused_is_told(tmp_path, free_port, staya):
+def test_a_refused_connection_is_reported(tmp_path, free_port, staya):
     port = free_port()
     write_scenario(tmp_path, [((0.0, 0.0), (40.0, 0.0))])
     config = write_config(tmp_path, [port], "rover")
@@ -287,11 +288,11 @@ def test_a_wrong_origin_moves_nothing(tmp_path, free_port, staya):
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux's /proc")
-def test_waiting_costs_little(one):
+def test_waiting_needs_little_processor_time(one):
     vehicle, fleet, start = one(armed=True)
     with fleet:
         process = start()
-        process.wait_for("the pilot steers")
+        process.wait_for("pilot has control")
         time.sleep(3.0)
         # User and system time in clock ticks: proc_pid_stat(5).
         times = Path(f"/proc/{process.child.pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
@@ -310,7 +311,7 @@ def test_dry_run_shows_and_sends_nothing(one):
     output = process.output()
     assert "COMMAND_LONG SET_MESSAGE_INTERVAL GLOBAL_POSITION_INT 10.0 Hz" in output
     assert "COMMAND_LONG DO_SET_MODE 15" in output and "COMPONENT_ARM_DISARM: arm" in output
-    assert 'STATUSTEXT "staya: steers"' in output
+    assert 'STATUSTEXT "staya: companion has control"' in output
     speeds = [float(east) for east in re.findall(r"m/s north, (\S+) m/s east", output)]
     assert 2 <= len(speeds) <= 4 and max(speeds) > 0.1, output
     assert "nothing was sent" in process.output()
@@ -334,11 +335,11 @@ def test_log_is_read_by_pymavlink(one, tmp_path, dialect):
     assert counts["GLOBAL_POSITION_INT", 1] > 15
     dump = Path(sys.executable).with_name("mavlogdump.py")
     text = subprocess.run([sys.executable, dump, "--types", "STATUSTEXT", str(log)], capture_output=True, text=True, check=True).stdout
-    assert "staya: steers" in text
+    assert "staya: companion has control" in text
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs Linux's /dev/full")
-def test_a_full_disk_does_not_end_steering(one):
+def test_a_full_disk_does_not_end_control(one):
     vehicle, fleet, start = one(goal=(40.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start("--tlog", "/dev/full")
@@ -353,7 +354,7 @@ def test_a_full_disk_does_not_end_steering(one):
     assert "what is there is not all" in output
 
 
-def test_signed_links_take_the_right_key_and_no_other(one, tmp_path):
+def test_signed_links_accept_the_right_key_only(one, tmp_path):
     key = bytes(range(32))
     file = tmp_path / "link.key"
     file.write_text(key.hex() + "\n")
@@ -366,7 +367,7 @@ def test_signed_links_take_the_right_key_and_no_other(one, tmp_path):
     vehicle, fleet, start = one(mode=GUIDED, armed=True, key=key)
     with fleet:
         process = start()
-        process.wait_for("its messages are signed")
+        process.wait_for("messages are signed")
         ends_well(process)
     for other in (bytes(32), None):
         vehicle, fleet, start = one(mode=GUIDED, armed=True, key=other)
@@ -384,4 +385,4 @@ def test_a_wrong_configuration_is_an_error_with_its_place(tmp_path, staya):
     config.write_text('scenario = "none.toml"\norigin = { latitude_deg = 91, longitude_deg = 0 }\n')
     process = staya("companion", config)
     assert process.wait() == 1
-    assert "config.toml:2: origin: this is no place on the Earth" in process.output()
+    assert "config.toml:2: origin: not a position on the Earth" in process.output()

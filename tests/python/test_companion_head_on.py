@@ -1,4 +1,5 @@
-"""Two vehicles head for each other, and the network between their companions breaks at any moment: they do not collide."""
+"""Two vehicles approach each other while the network between their companions fails at any moment:
+they do not collide."""
 
 import math
 import socket
@@ -12,13 +13,13 @@ from fake_autopilot import GUIDED, Fleet, Vehicle
 from fake_line import Line
 
 SPEED = 1.5
-# Metres between the two at the start: at full speed they are in the middle after four seconds.
+# Initial distance in metres; at full speed they meet after four seconds.
 WAY = 12.0
 STANDS = 0.05
 
 
 class Lan:
-    """The network between two companions, `[air]` for each of them, and a plug that can be pulled."""
+    """A network between two companions, `[air]` for each of them, that can be interrupted."""
 
     def __init__(self, free_port):
         self.is_cut, self._over = False, threading.Event()
@@ -37,7 +38,7 @@ class Lan:
             try:
                 data = self._sockets[one].recv(4096)
             except OSError:
-                # Nothing to hear, or nobody listens yet.
+                # No data, or no receiver yet.
                 continue
             if not self.is_cut:
                 self._sockets[other].sendto(data, self._companions[other])
@@ -55,9 +56,9 @@ class Lan:
             each.close()
 
 
-# Each second of the way, until they are beside each other.
+# Each second until they are side by side.
 @pytest.mark.parametrize("after_s", [1.0, 2.0, 3.0, 4.0])
-def test_two_that_hear_each_other_no_more_stand_before_they_touch(tmp_path, free_port, staya, after_s):
+def test_two_vehicles_without_contact_stop_before_they_touch(tmp_path, free_port, staya, after_s):
     robots = [((0.0, 0.0), (WAY, 0.0)), ((WAY, 0.1), (0.0, 0.1))]
     write_scenario(tmp_path, robots, speed=SPEED)
     ports = [free_port(), free_port()]
@@ -68,7 +69,7 @@ def test_two_that_hear_each_other_no_more_stand_before_they_touch(tmp_path, free
             config = write_config(tmp_path, [ports[i]], "rover", air=lan.air(i), name=f"config-{i}.toml", robots=[i + 1])
             processes.append(staya("companion", config))
         for i, process in enumerate(processes):
-            process.wait_for(f"hears robot {2 - i}")
+            process.wait_for(f"found robot {2 - i}")
         for vehicle in vehicles:
             vehicle.pilot(GUIDED)
         wait_until(lambda: all(abs(v.east - start[0]) > 0.05 for v, (start, _) in zip(vehicles, robots)), 5, "setting off")
@@ -80,7 +81,7 @@ def test_two_that_hear_each_other_no_more_stand_before_they_touch(tmp_path, free
 
         wait_until(stand, 12, "standing")
         for process in processes:
-            process.wait_for("hears nobody any more")
+            process.wait_for("lost contact to all robots")
         print(f"cut after {after_s} s: {fleet.least_gap:.2f} m between them at least")
         assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
         for process in processes:

@@ -1,4 +1,4 @@
-"""`staya companion` beside several autopilots that are not there, in one process and in two."""
+"""`staya companion` with several fake autopilots, in one process and in two."""
 
 import json
 import math
@@ -39,7 +39,7 @@ def test_six_cross_and_keep_their_distance(tmp_path, free_port, staya, faults):
 
 
 @pytest.mark.parametrize("way", ["multicast", "peers", "tunnel"])
-def test_companions_in_two_processes_hear_each_other(tmp_path, free_port, staya, way):
+def test_companions_in_two_processes_exchange_beacons(tmp_path, free_port, staya, way):
     robots = [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))]
     write_scenario(tmp_path, robots)
     ports, lan = [free_port(), free_port()], [free_port(), free_port()]
@@ -56,12 +56,13 @@ def test_companions_in_two_processes_hear_each_other(tmp_path, free_port, staya,
             processes.append(staya("companion", config))
         arrive(robots, fleet, 30)
         for i, process in enumerate(processes):
-            assert f"hears robot {2 - i}" in ends_well(process)
+            assert f"found robot {2 - i}" in ends_well(process)
         assert fleet.least_gap > 0.0, f"they touched: {fleet.least_gap} m"
 
 
 def two_that_meet(tmp_path, free_port, staya, keys, packets):
-    """Two companions, each in a process of its own with its key, in a group; their reports after 3 s."""
+    """Two companions, each in its own process with its key, in a multicast group. Returns their
+    reports after 3 s."""
     write_scenario(tmp_path, [((0.0, 0.0), (8.0, 0.0)), ((8.0, 0.2), (0.0, 0.2))], packets=packets)
     group, processes = free_port(), []
     for i, key in enumerate(keys):
@@ -74,7 +75,7 @@ def two_that_meet(tmp_path, free_port, staya, keys, packets):
         port = free_port()
         config = write_config(tmp_path, [port], "rover", air=air, name=f"config-{i}.toml", robots=[i + 1])
         processes.append((port, config))
-    # The pilots keep them.
+    # The pilots keep control.
     vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", processes[i][0]), (8.0 * i, 0.0)) for i in range(2)]
     with Fleet(vehicles, RADIUS):
         running = [staya("companion", config, "--json", "--quiet", "--seconds", "3") for _, config in processes]
@@ -83,7 +84,7 @@ def two_that_meet(tmp_path, free_port, staya, keys, packets):
 
 
 @pytest.mark.parametrize("packets", ["postcard", "mavlink"])
-def test_sealed_packets_are_heard_by_who_has_the_key(tmp_path, free_port, staya, packets):
+def test_encrypted_packets_are_accepted_with_the_key(tmp_path, free_port, staya, packets):
     for report in two_that_meet(tmp_path, free_port, staya, ["one for all", "one for all"], packets):
         assert report["neighbors"] == 1 and report["packets_heard"] > 10 and report["packets_refused"] == 0, report
 
@@ -95,7 +96,7 @@ def test_packets_without_the_right_key_are_refused(tmp_path, free_port, staya, k
     assert first["neighbors"] == 0 and first["packets_heard"] == 0 and first["packets_refused"] > 10, first
 
 
-def test_the_others_go_around_one_that_its_pilot_has_taken(tmp_path, free_port, staya):
+def test_vehicles_avoid_one_under_its_pilots_control(tmp_path, free_port, staya):
     robots = [((0.0, 0.0), (10.0, 0.0)), ((5.0, 0.1), (5.0, 8.0))]
     write_scenario(tmp_path, robots)
     port = free_port()
@@ -115,8 +116,9 @@ def test_the_others_go_around_one_that_its_pilot_has_taken(tmp_path, free_port, 
 @pytest.mark.parametrize("lag_s", [0.3, 0.8], ids=["quick", "sluggish"])
 @pytest.mark.parametrize("faults", [None, dict(drop=0.1, delay_s=0.1, corrupt=0.02)], ids=["good", "bad"])
 def test_six_travel_in_formation(tmp_path, free_port, staya, faults, lag_s):
-    """In two rows of three, from places up to a metre off, over good links and such that lose, delay and damage frames: within a
-    metre of their places after 10 s, in at most 1.2 times of what each would need by itself."""
+    """In two rows of three, from starts up to a metre off, over good links and over bad ones:
+    within a metre of their places after 10 s, in at most 1.2 times the time that each would need
+    alone."""
     side, speed, acceleration = 30, 2.0, 2.0
     (tmp_path / "formation.toml").write_text(
         f"""
@@ -146,7 +148,7 @@ margin_m = 0.2
     )
     port = free_port()
     config = write_config(tmp_path, [port] * 6, "rover", f"lag_s = {lag_s}", scenario="formation.toml")
-    # Where the scenario's robots start, in metres, and up to 1 m off.
+    # Starts of the scenario's robots, in metres, with errors of up to 1 m.
     off = [(0.6, -0.4), (-0.8, 0.3), (0.2, 0.9), (-0.5, -0.7), (0.9, 0.1), (-0.3, 0.5)]
     places = [(-4.0 * (i % 3), -4.0 * (i // 3)) for i in range(6)]
     starts = [(17.0 + x + dx, 17.0 + y + dy) for (x, y), (dx, dy) in zip(places, off)]

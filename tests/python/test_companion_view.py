@@ -1,4 +1,5 @@
-"""The page of `staya companion --view`: it shows what the companions know, and what steers does not depend on it."""
+"""The page of `staya companion --view`: it shows the companions' knowledge, and control does not
+depend on it."""
 
 import math
 import re
@@ -23,7 +24,7 @@ def places(frame: bytes) -> list[tuple[float, float]]:
     return list(zip(x, y))
 
 
-def test_it_shows_vehicles_and_who_is_heard_and_dead_pages_cost_nothing(tmp_path, free_port, staya):
+def test_the_page_shows_vehicles_and_dead_pages_cost_nothing(tmp_path, free_port, staya):
     write_scenario(tmp_path, ROBOTS)
     ports, lan = [free_port(), free_port()], [free_port(), free_port()]
     vehicles = [Vehicle(i + 1, "rover", Line("127.0.0.1", ports[i]), ROBOTS[i][0], mode=GUIDED, armed=True) for i in range(2)]
@@ -34,7 +35,7 @@ def test_it_shows_vehicles_and_who_is_heard_and_dead_pages_cost_nothing(tmp_path
             config = write_config(tmp_path, [ports[i]], "rover", air=air, name=f"config-{i}.toml", robots=[i + 1])
             processes.append(staya("companion", config, *(["--view"] if i == 0 else [])))
         url = address(processes[0])
-        # These never read, and one of them is dead.
+        # These pages never read, and one of them is dead.
         deaf = [Page(url) for _ in range(10)]
         deaf[0].close()
         page = Page(url)
@@ -44,11 +45,11 @@ def test_it_shows_vehicles_and_who_is_heard_and_dead_pages_cost_nothing(tmp_path
         page.say({"do": "links", "on": True})
 
         def about(message):
-            return message["type"] == "robot" and message["neighbors"] and ["companion", "steers"] in message["facts"]
+            return message["type"] == "robot" and message["neighbors"] and ["companion", "companion has control"] in message["facts"]
 
         robot = page.until(about)
         (other,) = robot["neighbors"]
-        # Its place is what it says itself: there is nothing to compare it with.
+        # Its position comes from its own beacons, without an independent measurement.
         assert other["index"] == 1 and other["age_s"] < 2 and other["error_m"] is None
         page.until(lambda message: message["type"] == "links" and message["pairs"])
         while not isinstance(frame := page.read(), bytes):

@@ -1,4 +1,5 @@
-"""The dialect: our cut of the public messages is what the public one has, and what Rust says Python understands, and the other way round."""
+"""The dialect: its public messages equal the public dialect's, and Rust and Python understand each
+other's frames."""
 
 from pathlib import Path
 
@@ -21,7 +22,7 @@ def value(text):
 
 
 @pytest.mark.parametrize("file, count", [("common.xml", 48), ("ardupilotmega.xml", 1)])
-def test_public_messages_are_those_of_the_public_dialect(dialect, file, count):
+def test_public_messages_equal_the_public_dialects(dialect, file, count):
     ours = mavparse.MAVXML(str(MESSAGES / file), wire_protocol_version=mavparse.PROTOCOL_2_0)
     assert len(ours.message) >= count
     for message in ours.message:
@@ -30,12 +31,12 @@ def test_public_messages_are_those_of_the_public_dialect(dialect, file, count):
         assert message.crc_extra == public.crc_extra, message.name
         assert ours.message_lengths[message.id] == public.unpacker.size, message.name
         assert [field.name for field in message.fields] == public.fieldnames, message.name
-        # Extension fields are not in the sum.
+        # Extension fields are not part of the checksum.
         assert [field.type for field in message.fields] == public.fieldtypes, message.name
 
 
 @pytest.mark.parametrize("name, frame, fields", rust_frames())
-def test_frames_of_rust_are_understood_by_python_and_made_again(dialect, name, frame, fields):
+def test_frames_of_rust_round_trip_through_python(dialect, name, frame, fields):
     frame = bytes.fromhex(frame)
     receiver = dialect.MAVLink(None)
     (message,) = receiver.parse_buffer(frame)
@@ -51,7 +52,7 @@ def test_frames_of_rust_are_understood_by_python_and_made_again(dialect, name, f
     assert again.pack(sender) == frame
 
 
-def test_every_message_of_the_dialect_is_there(dialect):
+def test_every_message_of_the_dialect_exists(dialect):
     own = {message.msgname for message in dialect.mavlink_map.values() if message.msgname.startswith("STAYA_")}
     assert own == {name for name, _, _ in rust_frames()}
 

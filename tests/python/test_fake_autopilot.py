@@ -1,4 +1,5 @@
-"""The fake autopilots are what ArduPilot is: they are told what a companion told ArduPilot's own code in recorded flights, and answer the same."""
+"""The fake autopilots behave like ArduPilot: they get a companion's messages from recorded flights
+and give the same answers."""
 
 import gzip
 import math
@@ -12,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 FLIGHTS = Path(__file__).resolve().parents[1] / "data/ardupilot"
 STEP_S = 0.02
-# What a companion reads, besides answers.
+# Messages that a companion reads, besides answers.
 STREAMS = ["HEARTBEAT", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED", "EXTENDED_SYS_STATE"]
 
 
@@ -34,7 +35,7 @@ def recorded(name, system, until):
 
 
 class Wire:
-    """A line without time or place."""
+    """A line without time and position."""
 
     def __init__(self):
         self.sent, self.arrived = [], []
@@ -48,7 +49,7 @@ class Wire:
 
 
 def answers(kind, system, messages, until):
-    """What a fake autopilot says to the same companion: `(seconds, message)`."""
+    """Messages of a fake autopilot to the same companion: `(seconds, message)`."""
     wire = Wire()
     vehicle = Vehicle(system, kind, wire, mode=PILOT)
     waiting = [(at, message) for at, message in messages if message.get_srcComponent() == 191]
@@ -62,7 +63,7 @@ def answers(kind, system, messages, until):
 
 
 def changes(values):
-    """Without what is repeated."""
+    """Without repetitions."""
     values = list(values)
     return [value for i, value in enumerate(values) if i == 0 or values[i - 1] != value]
 
@@ -72,7 +73,7 @@ def of(messages, kind):
 
 
 @pytest.mark.parametrize("name, kind, system, until", [("rovers-crossing", "rover", 1, 27.0), ("rovers-crossing", "rover", 4, 27.0), ("copter-crossing", "copter", 1, 60.0)])
-def test_a_fake_says_what_ardupilot_said_to_the_same_companion(name, kind, system, until):
+def test_a_fake_answers_like_ardupilot(name, kind, system, until):
     real = list(recorded(name, system, until))
     fake = answers(kind, system, real, until)
 
@@ -104,8 +105,8 @@ def test_a_fake_says_what_ardupilot_said_to_the_same_companion(name, kind, syste
 
 
 @pytest.mark.parametrize("name, system", [("rovers-gps-lost", 3), ("rovers-crossing", 2)])
-def test_a_fake_says_of_its_health_what_ardupilot_says(name, system):
-    """What is read of it, well and with its GPS lost."""
+def test_a_fake_reports_health_like_ardupilot(name, system):
+    """Health messages, in good condition and without GPS."""
     gps_and_ahrs = 1 << 5 | 1 << 21
 
     def health(messages):
@@ -117,7 +118,7 @@ def test_a_fake_says_of_its_health_what_ardupilot_says(name, system):
         )
         return set(fixes), set(flags), set(sensors)
 
-    # Until dead reckoning ends, on which the fake one goes.
+    # Until dead reckoning ends, which the fake one does not model.
     real = list(recorded(name, system, 12.0))
     wire = Wire()
     vehicle = Vehicle(system, "rover", wire)

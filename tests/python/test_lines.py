@@ -1,13 +1,13 @@
-"""What every test here stands on: the program starts, and the dialect is there."""
+"""Preconditions of all tests here: the program starts, and the dialect is installed."""
 
 
-def test_program_says_what_it_is(staya):
+def test_the_program_prints_its_version(staya):
     process = staya("--version")
     assert process.wait() == 0
     assert process.output().startswith("staya ")
 
 
-def test_bad_arguments_end_with_an_error_that_names_them(staya):
+def test_an_error_names_the_invalid_argument(staya):
     process = staya("--no-such-option")
     assert process.wait() == 2
     assert "--no-such-option" in process.output()

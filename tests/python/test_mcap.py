@@ -1,4 +1,5 @@
-"""MCAP files of `staya run --mcap`, read by the format's own Python package and by protobuf with the schemas in the file."""
+"""MCAP files of `staya run --mcap`, read by the official Python package and by protobuf with the
+schemas in the file."""
 
 import csv
 import json
@@ -17,7 +18,7 @@ from mcap.reader import NonSeekingReader, make_reader
 ROOT = Path(__file__).resolve().parents[2]
 STAYA = os.environ.get("STAYA", ROOT / "target/debug/staya")
 
-# Numbers and types of fields in Foxglove's own .proto files; what is in a file must be the same.
+# Numbers and types of fields in Foxglove's .proto files, which the file must equal.
 FOXGLOVE = {
     "SceneUpdate": {"deletions": 1, "entities": 2},
     "SceneEntity": {"timestamp": 1, "frame_id": 2, "id": 3, "lifetime": 4, "frame_locked": 5, "metadata": 6, "spheres": 9, "cylinders": 10, "lines": 11},
@@ -32,7 +33,7 @@ FOXGLOVE = {
 
 
 def run(tmp_path, scenario, *arguments):
-    """Runs a scenario; gives the MCAP file and the lines of trace.csv."""
+    """Runs a scenario. Returns the MCAP file and the lines of trace.csv."""
     file, out = tmp_path / "run.mcap", tmp_path / "out"
     command = [STAYA, "run", ROOT / "scenarios" / scenario, "--quiet", "--out", out, "--mcap", file, *arguments]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, timeout=120)
@@ -41,7 +42,8 @@ def run(tmp_path, scenario, *arguments):
 
 
 def nose(turn):
-    """Where a body's own x axis points, which a turn without a change of length has taken there, level from side to side."""
+    """Direction of a body's x axis after its rotation, which must not change lengths or roll the
+    body."""
     x, y, z, w = turn.x, turn.y, turn.z, turn.w
     assert x**2 + y**2 + z**2 + w**2 == pytest.approx(1.0)
     side = 2 * (y * z + x * w)
@@ -50,13 +52,13 @@ def nose(turn):
 
 
 def direction(velocity):
-    """Of length 1; east for what stands."""
+    """Normalised; east for a stationary body."""
     speed = math.hypot(*velocity)
     return [value / speed for value in velocity] if speed > 0 else [1.0, 0.0, 0.0]
 
 
 def decoder(schema):
-    """What reads the messages of a schema, by nothing but what the file says."""
+    """A decoder for the messages of a schema that uses only the file."""
     if schema.encoding == "jsonschema":
         validator = jsonschema.Draft202012Validator(json.loads(schema.data))
 
@@ -100,7 +102,7 @@ def of_topic(found, topic):
 
 
 @pytest.mark.parametrize("scenario", ["six-robots.toml", "twenty-discs.toml", "mixed.toml", "downwash.toml"])
-def test_messages_are_as_many_as_moments_and_say_what_the_trace_says(tmp_path, scenario):
+def test_messages_match_the_trace(tmp_path, scenario):
     file, trace = run(tmp_path, scenario, "--ticks", "60")
     found = read_all(file)
     ticks = sorted({int(line["tick"]) for line in trace})
@@ -137,7 +139,7 @@ def test_messages_are_as_many_as_moments_and_say_what_the_trace_says(tmp_path, s
         assert [(field.name, field.type) for field in land.fields] == [("ticks", 1)]
 
 
-def test_schemas_are_foxgloves(tmp_path):
+def test_schemas_equal_foxgloves(tmp_path):
     file, _ = run(tmp_path, "figure-5.toml", "--ticks", "2")
     with open(file, "rb") as stream:
         schemas = make_reader(stream).get_summary().schemas.values()
@@ -151,21 +153,21 @@ def test_schemas_are_foxgloves(tmp_path):
         assert {field.name: field.number for field in types[name].field} == fields
 
 
-def test_a_file_that_is_cut_off_is_read_up_to_there(tmp_path):
+def test_a_truncated_file_is_readable_up_to_its_end(tmp_path):
     file, _ = run(tmp_path, "twenty-discs.toml")
     whole = read_all(file)
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
     found = []
     with open(cut, "rb") as stream, pytest.raises((McapError, EOFError)):
-        # In the order of the file: to sort them, the reader would have to come to the end.
+        # In file order: sorting would need the end of the file.
         for message in messages(NonSeekingReader(stream), log_time_order=False):
             found.append(message)
     assert len(whole) / 3 < len(found) < len(whole)
     assert [(topic, time) for topic, time, _ in found] == [(topic, time) for topic, time, _ in whole[: len(found)]]
 
 
-def test_every_nth_moment_and_the_last_one(tmp_path):
+def test_every_nth_moment_and_the_last_one_are_written(tmp_path):
     file, trace = run(tmp_path, "figure-5.toml", "--ticks", "25", "--record-every", "10")
     ticks = [figures["tick"] for _, figures in of_topic(read_all(file), "/figures")]
     last = int(trace[-1]["tick"])

@@ -1,4 +1,4 @@
-"""The Python of docs/bridge.md, as it is pasted: each block runs against the bridge of the command above it."""
+"""Runs each Python block of docs/bridge.md against the bridge of the command above it."""
 
 import re
 import subprocess
@@ -13,7 +13,7 @@ DIALECT = r"```sh\npython3 (-m pymavlink.tools.mavgen .*)\n```"
 
 
 def blocks():
-    """The bridge's arguments, and the script that is meant for it."""
+    """Arguments of a bridge, and the script for it."""
     arguments = None
     for kind, text in re.findall(r"^```(\w*)\n(.*?)^```$", PAGE, re.M | re.S):
         if kind == "python":
@@ -24,7 +24,7 @@ def blocks():
 
 
 def generate(folder):
-    """What the page says, in a folder of its own."""
+    """The scripts of the page, in their own folder."""
     (command,) = re.findall(DIALECT, PAGE)
     arguments = command.replace("controller/", f"{ROOT}/controller/").split()
     made = subprocess.run([sys.executable, *arguments], cwd=folder, capture_output=True, text=True, timeout=60)
@@ -39,26 +39,26 @@ def test_pasted_python_runs(arguments, script, staya, run, free_port, tmp_path):
     assert PORT in script
     path = tmp_path / "pasted.py"
     path.write_text(script.replace(PORT, port))
-    # Nothing of these tests' own environment helps.
+    # Without the environment of these tests.
     pasted = run("env", "-u", "MAVLINK20", "-u", "MAVLINK_DIALECT", sys.executable, path, cwd=tmp_path)
     assert pasted.wait(90) == 0, pasted.output()
     assert "robot" in pasted.output() or "vehicle" in pasted.output() or "item" in pasted.output(), pasted.output()
     if "82" in script:
-        assert "mission item 2: no command 82 here" in pasted.output()
+        assert "mission item 2: unsupported command 82" in pasted.output()
 
 
-def test_a_wedge_is_sent_and_taken(staya, free_port):
+def test_a_wedge_is_sent_and_confirmed(staya, free_port):
     port = free_port()
     staya("bridge", "scenarios/six-robots.toml", "--speed", 20, "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
     sent = staya("formation", "wedge", "--to", f"udpout:127.0.0.1:{port}", "--goal", "60,40")
     assert sent.wait() == 0, sent.output()
-    assert "wedge: 6 of 6 robots have their places, 6 head for cell 60, 40" in sent.output()
-    # Another call is another order, whatever the first one counted.
+    assert "wedge: 6 of 6 robots confirmed their places, 6 robots head for cell (60, 40)" in sent.output()
+    # A second call is a new order, whatever the first one's version.
     sent = staya("formation", "column", "--to", f"udpout:127.0.0.1:{port}")
     assert sent.wait() == 0, sent.output()
 
 
-def test_a_swarm_without_a_formation_says_so(staya, free_port):
+def test_a_swarm_without_a_formation_refuses(staya, free_port):
     port = free_port()
     staya("bridge", "scenarios/bridge.toml", "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
     sent = staya("formation", "line", "--to", f"udpout:127.0.0.1:{port}")
@@ -66,23 +66,23 @@ def test_a_swarm_without_a_formation_says_so(staya, free_port):
     assert "not in a formation" in sent.output(), sent.output()
 
 
-def test_nobody_there_and_no_such_shape_are_errors(staya, free_port):
+def test_an_absent_swarm_and_an_unknown_shape_are_errors(staya, free_port):
     port = free_port()
     sent = staya("formation", "line", "--to", f"udpout:127.0.0.1:{port}", "--wait", 1)
-    assert sent.wait() == 1 and "no robot is heard" in sent.output(), sent.output()
+    assert sent.wait() == 1 and "no robot found" in sent.output(), sent.output()
     sent = staya("formation", "triangle", "--to", f"udpout:127.0.0.1:{port}")
     assert sent.wait() == 1 and "line, column, wedge, grid, circle" in sent.output(), sent.output()
 
 
-def test_some_robots_become_a_formation_of_their_own(staya, free_port):
+def test_some_robots_form_a_separate_formation(staya, free_port):
     port = free_port()
     staya("bridge", "scenarios/six-robots.toml", "--speed", 20, "--mavlink", f"udpin:127.0.0.1:{port}", "--quiet")
     to = ("--to", f"udpout:127.0.0.1:{port}")
     for robots, goal in [("2,4-5", "60,40"), ("1,3,6", "40,20")]:
         sent = staya("formation", "wedge", *to, "--robots", robots, "--goal", goal)
         assert sent.wait() == 0, sent.output()
-        assert "wedge: 3 of 3 robots have their places, 3 head for cell" in sent.output()
+        assert "wedge: 3 of 3 robots confirmed their places, 3 robots head for cell" in sent.output()
     sent = staya("formation", "line", *to, "--robots", "5-8", "--wait", 2)
-    assert sent.wait() == 1 and "robots 7, 8 are not heard" in sent.output(), sent.output()
+    assert sent.wait() == 1 and "robots 7, 8 not found" in sent.output(), sent.output()
     sent = staya("formation", "line", *to, "--robots", "6-2")
     assert sent.wait() == 2 and "as in 3,5,8-12" in sent.output(), sent.output()

@@ -1,4 +1,4 @@
-"""Signatures: staya-mavlink signs byte for byte as pymavlink does (its own tests compare it with the same file)."""
+"""Signatures: staya-mavlink signs like pymavlink, byte for byte (its own tests use the same file)."""
 
 import os
 from pathlib import Path
@@ -28,12 +28,12 @@ def codec(key, timestamp=TIMESTAMP):
 
 
 def heard(mav, frame):
-    """The names of the messages that pymavlink accepts of a frame."""
+    """Names of the messages that pymavlink accepts."""
     messages = mav.parse_buffer(frame) or []
     return [message.get_type() for message in messages if message.get_type() != "BAD_DATA"]
 
 
-def test_pymavlink_signs_these_very_frames():
+def test_pymavlink_signs_the_same_frames():
     mav = codec(KEY)
     messages = {
         "heartbeat": common.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3),
@@ -64,6 +64,6 @@ def test_frames_are_refused_with_another_key_and_by_a_later_clock():
 
 def test_a_changed_frame_is_refused():
     for name, frame in golden():
-        # The signature's last bit: the checksum does not cover it.
+        # The last bit of the signature, which the checksum does not cover.
         changed = frame[:-1] + bytes([frame[-1] ^ 1])
         assert heard(codec(KEY), changed) == [], name

@@ -1,11 +1,11 @@
-"""What `soak.py` judges by: that it can say no."""
+"""The checks of `soak.py` can fail."""
 
 import pytest
 import soak
 
 
 def of(*samples):
-    """A process with such samples: bytes, threads, files, seconds of waiting."""
+    """A process with given samples: bytes, threads, files, seconds of waiting."""
     process = object.__new__(soak.Process)
     process.name = "it"
     process.samples = [
@@ -38,12 +38,12 @@ def test_memory_threads_and_files(name, samples, is_flat, are_same):
 
 
 @pytest.mark.parametrize(["missed", "waited_s", "is_right"], [(0, 0.0, True), (1, 0.0, False), (10, 0.5, True), (11, 0.5, False)])
-def test_only_waiting_explains_deadlines(missed, waited_s, is_right):
+def test_only_scheduling_delays_excuse_missed_deadlines(missed, waited_s, is_right):
     process = of((MIB, 1, 1, waited_s))
     assert list(verdicts(lambda judge: judge.deadlines(process, missed, 100, 0.05, 0.1)).values()) == [is_right]
 
 
 @pytest.mark.parametrize(["lost", "is_right"], [(1, True), (0, False), (2, False)])
-def test_a_frame_too_many_or_too_few_is_noticed(lost, is_right):
+def test_a_wrong_frame_count_is_detected(lost, is_right):
     report = dict(lines=[dict(frames_in=10, lost_in=lost)], frames_heard=4, frames_ignored=3, frames_refused=2, frames_waiting=0)
     assert list(verdicts(lambda judge: soak.accounts(judge, "it", report)).values()) == [is_right]

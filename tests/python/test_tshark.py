@@ -1,4 +1,5 @@
-"""A capture of `staya bridge` as Wireshark's dissector, made by mavgen from the same definitions, sees it."""
+"""Captures of `staya bridge` in Wireshark's dissector, which mavgen generates from the same
+definitions."""
 
 import shutil
 import socket
@@ -14,7 +15,7 @@ TSHARK = shutil.which("tshark")
 
 
 def record(port, seconds, capture):
-    """Datagrams that come to a port, as a capture of raw IP packets: no rights are needed for that."""
+    """Captures datagrams to a port as raw IP packets, without privileges."""
     import struct
 
     sink = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -23,7 +24,7 @@ def record(port, seconds, capture):
     deadline, count = time.monotonic() + seconds, 0
     client = None
     with open(capture, "wb") as file:
-        # Link type 228: IPv4 without anything around it.
+        # Link type 228: raw IPv4.
         file.write(struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, 228))
         while time.monotonic() < deadline:
             try:
@@ -47,7 +48,7 @@ def record(port, seconds, capture):
 def test_no_frame_is_malformed(staya, free_port, tmp_path, dialect):
     from pymavlink.generator import mavgen, mavparse
 
-    # mavgen wants both files beside each other, as the environment's dialect has them.
+    # mavgen needs both files in one folder, as in the environment's dialect.
     definitions = Path(dialect.__file__)
     messages = Path(__file__).resolve().parents[2] / "controller/mavlink/messages/staya.xml"
     script = tmp_path / "staya.lua"
@@ -71,7 +72,7 @@ def test_no_frame_is_malformed(staya, free_port, tmp_path, dialect):
 
     arguments = [TSHARK, "-r", capture, "-X", f"lua_script:{script}", "-d", f"udp.port=={port},mavlink_proto", "-T", "fields"]
     fields = ["-e", "mavlink_proto.msgid", "-e", "_ws.malformed", "-e", "_ws.lua.error", "-e", "_ws.expert.severity"]
-    # As root tshark refuses scripts by default.
+    # tshark refuses scripts as root by default.
     environment = {"HOME": str(tmp_path), "PATH": "/usr/bin:/bin", "WIRESHARK_RUN_FROM_BUILD_DIRECTORY": ""}
     found = subprocess.run(arguments + fields, capture_output=True, text=True, env=environment, timeout=60)
     assert found.returncode == 0, found.stderr

@@ -1,4 +1,4 @@
-//! The canned swarms: what they do, as hashes that the host and every part must give.
+//! Golden hashes of the built-in swarms, which the host and every part must produce.
 
 use std::fmt::Write as _;
 

@@ -1,4 +1,4 @@
-//! Golden tables of swaps, doorways and other crossings, as the commands print them.
+//! Golden tables of swaps, doorways and other crossings, as printed by the commands.
 
 use staya_controller::agent::SafetyKind;
 use staya_lab::crossing::cases::{self, Case};
@@ -32,7 +32,7 @@ fn golden_doorway() {
     golden("doorway-experiment", &plan.measure().expect("a sound plan").to_string());
 }
 
-/// Robots of each case, so few that a debug build is done in seconds.
+/// Number of robots of each case, small enough for a debug build.
 const fn few(case: Case) -> u32 {
     match case {
         Case::DeadEnd => 2,
@@ -54,7 +54,7 @@ fn golden_crossing_of_each_kind() {
     }
 }
 
-/// Of these, two came into one cell of a corridor and pressed on for ever, or met somebody who had arrived in it.
+/// Seeds in which robots once met in a narrow corridor, or met one that had arrived there.
 #[test]
 fn discs_that_route_among_walls_all_arrive() {
     let path = root().join("scenarios/twenty-discs.toml");

@@ -1,10 +1,10 @@
-//! A formation of which some have failed for good: the others arrive, whoever it is.
+//! Formations with failed robots: the others arrive, whichever robots fail.
 
 use staya_controller::robot::{Mode, RobotId};
 use staya_sim::scenario::{Fault, Scenario};
 use staya_tests::{run, scenario};
 
-/// The scenario with robots that stand silent from some tick on.
+/// The scenario with robots that stop and are silent from a tick on.
 fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
     let mut scenario = scenario(name, Some(ticks));
     scenario.seed = seed;
@@ -13,7 +13,7 @@ fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
     scenario
 }
 
-/// Who of the living is not at its goal in the end.
+/// The working robots that are not at their goals at the end.
 fn missing(scenario: &Scenario, dead: &[(u32, u32)]) -> Vec<usize> {
     let (_, rows) = run(scenario);
     let (_, robots) = rows.last().expect("at least the start");
@@ -23,7 +23,7 @@ fn missing(scenario: &Scenario, dead: &[(u32, u32)]) -> Vec<usize> {
 }
 
 #[test]
-fn six_go_on_without_any_one_or_two_of_them() {
+fn six_robots_arrive_without_any_one_or_two_of_them() {
     assert_eq!(scenario("figure-5", None).robots.len(), 6);
     for first in 1..=6_u32 {
         for second in first..=6 {
@@ -36,7 +36,7 @@ fn six_go_on_without_any_one_or_two_of_them() {
 }
 
 #[test]
-fn six_robots_go_on_over_a_bad_radio_without_any_one_of_them() {
+fn six_robots_with_a_bad_radio_arrive_without_any_one_of_them() {
     for robot in 1..=6 {
         let dead = [(robot, 100)];
         let scenario = without("six-robots", 1, &dead, 1500);
@@ -45,7 +45,7 @@ fn six_robots_go_on_over_a_bad_radio_without_any_one_of_them() {
 }
 
 #[test]
-fn ranks_close_up_to_the_place_of_a_dead_robot() {
+fn ranks_close_the_gap_of_a_dead_robot() {
     for robot in 1..=6_usize {
         let dead = [(robot as u32, 10)];
         let mut scenario = without("figure-5", 1, &dead, 300);
@@ -56,7 +56,7 @@ fn ranks_close_up_to_the_place_of_a_dead_robot() {
             let (_, rows) = run(&scenario);
             let (_, robots) = rows.last().expect("at least the start").clone();
             let living = (0..robots.len()).filter(|index| index + 1 != robot);
-            // Numbers of the places at whose goals they stand.
+            // Indices of the places at whose goals the robots are.
             let place = |cell| goals.iter().position(|&goal| goal == cell);
             living.filter_map(|index| place(robots[index].motion.cell)).collect::<Vec<_>>()
         });

@@ -1,4 +1,4 @@
-//! Two robots with one number: they hear of it, and keep clear of each other and of those who hear both.
+//! Two robots with one number: they detect it, and avoid each other and robots that receive both.
 
 use staya_controller::scalar::Scalar;
 use staya_sim::engine::Outcome;
@@ -13,7 +13,8 @@ fn outcome(text: &str, seed: u64) -> Outcome {
     run(&scenario.unwrap_or_else(|error| panic!("{error}"))).0
 }
 
-/// Robots at `starts_m`, each with its goal on the other side of the origin, some of which are misnumbered.
+/// Robots at `starts_m`, each with its goal opposite of the origin, some with another robot's
+/// number.
 fn plane(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], rest: &str) -> String {
     let mut text = format!("name = \"duplicates\"\nticks = 1200\ntick_s = 0.05\n[radio]\nrange_m = 30\n{radio}\n");
     text.push_str("[plane]\nradius_m = 0.15\nmax_speed_mps = 1\n[plane.robots]\nlist = [\n");
@@ -29,8 +30,8 @@ fn plane(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], rest: &st
 
 const KEY: &str = "[authentication]\nkey = \"passphrase: a number of one's own\"\n";
 
-/// As with numbers of their own, to the last bit.
-fn assert_as_ever(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], rest: &str) {
+/// Asserts that the run equals one with unique numbers, bit for bit.
+fn assert_unchanged(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], rest: &str) {
     for seed in 1..5 {
         let [theirs, own] = [misnumbered, &[]].map(|numbers| outcome(&plane(radio, starts_m, numbers, rest), seed));
         assert_eq!(theirs.trace_hash, own.trace_hash, "{radio} {rest} seed {seed}: {:?}", theirs.clearance);
@@ -38,7 +39,6 @@ fn assert_as_ever(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], 
     }
 }
 
-/// All arrive, and nobody touches anybody.
 fn assert_clear(text: &str, robots: usize) {
     for seed in 1..9 {
         let outcome = outcome(text, seed);
@@ -47,20 +47,21 @@ fn assert_clear(text: &str, robots: usize) {
 }
 
 #[test]
-fn two_with_one_number_pass_head_on_as_any_two_in_any_format_with_and_without_a_key() {
+fn two_robots_with_one_number_pass_head_on_like_any_two() {
     for format in ["postcard", "mavlink"] {
         for key in ["", KEY] {
             for faults in ["", "loss = 0.3", "jitter_ms = 120\nloss = 0.2", "duplicate = 0.5"] {
                 let radio = format!("format = \"{format}\"\n{faults}");
-                assert_as_ever(&radio, &[[-4.0, 0.0], [4.0, 0.01]], &[[2, 1]], key);
+                assert_unchanged(&radio, &[[-4.0, 0.0], [4.0, 0.01]], &[[2, 1]], key);
             }
         }
     }
 }
 
-/// One that has been on its way for longer, and one that has started more often, are ahead of the other one's numbers.
+/// A robot that was on its way for longer, or restarted more often, has larger sequence and boot
+/// numbers than the other.
 #[test]
-fn it_does_not_matter_who_started_when_and_how_often() {
+fn start_times_and_restarts_do_not_matter() {
     for key in ["", KEY] {
         for fault in ["robot = 1\nat_s = 0\ndown_s = 2.5", "robot = 2\nat_s = 0\ndown_s = 1.5", "robot = 1\nat_s = 2"] {
             let rest = format!("{key}[[fault]]\n{fault}\n");
@@ -75,9 +76,9 @@ fn circle(robots: u32) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn third_ones_keep_clear_of_both() {
+fn other_robots_avoid_both() {
     for loss in ["", "loss = 0.1", "loss = 0.3"] {
-        // With a key third ones hear only one of the two at a time, but the two hear everybody.
+        // With a key, others receive only one of the two at a time, but the two receive all.
         for key in ["", KEY] {
             assert_clear(&plane(loss, &[[-4.0, 0.0], [4.0, 0.3], [0.2, -4.0]], &[[2, 1]], key), 3);
             assert_clear(&plane(loss, &circle(12), &[[7, 1], [4, 2], [9, 5]], key), 12);
@@ -86,7 +87,7 @@ fn third_ones_keep_clear_of_both() {
 }
 
 #[test]
-fn on_the_grid_and_in_formation_all_arrive() {
+fn duplicates_on_the_grid_and_in_formation_arrive() {
     for name in ["six-robots", "moving-ai-20", "six-discs"] {
         let text = std::fs::read_to_string(root().join(format!("scenarios/{name}.toml"))).expect("a scenario");
         for [robot, number] in [[4, 2], [6, 1], [1, 6]] {
@@ -101,10 +102,10 @@ fn on_the_grid_and_in_formation_all_arrive() {
     }
 }
 
-/// From behind, on one that is slow, while the other one of its number drives by far away: who takes the two for one does not
-/// see it.
+/// A fast robot approaches a slow one from behind, while the other robot with its number is far
+/// away. A robot that takes the two for one would not see it.
 #[test]
-fn one_that_is_fast_does_not_run_into_the_second_one() {
+fn a_fast_robot_does_not_run_into_the_duplicate() {
     for radio in ["", "loss = 0.2", "format = \"mavlink\""] {
         let text = plane(radio, &[[-0.5, 6.0], [-3.0, 0.0]], &[[3, 1]], "");
         let slow = "[[plane.group]]\nmax_speed_mps = 0.1\nrobots.list = [{ start_m = [-1, 0], goal_m = [1, 0] }]\n";

@@ -1,4 +1,4 @@
-//! Radios that fail and robots that reboot: the swarm comes through, and finds its formation again.
+//! Radio failures and restarts: the swarm recovers its formation.
 
 use staya_controller::robot::{Mode, RobotId};
 use staya_sim::engine::Outcome;
@@ -8,7 +8,7 @@ use staya_tests::{run, scenario};
 
 type Rows = [(TickRow, Vec<RobotRow>)];
 
-/// The formation error at its best within some ticks, cells per robot.
+/// Smallest formation error within some ticks, cells per robot.
 fn best_error(rows: &Rows, ticks: std::ops::Range<u32>) -> f64 {
     let within = rows.iter().filter(|(row, _)| ticks.contains(&row.tick));
     within.map(|(row, _)| row.formation_error_per_agent).fold(f64::INFINITY, f64::min)
@@ -18,7 +18,7 @@ fn assert_all_arrive(scenario: &Scenario, outcome: &Outcome) {
     let name = &scenario.name;
     assert_eq!(outcome.arrived, scenario.robots.len(), "{name}");
     assert_eq!(outcome.collisions, 0, "{name}");
-    assert!(outcome.ticks < scenario.ticks, "{name} took all its ticks");
+    assert!(outcome.ticks < scenario.ticks, "{name} did not finish early");
 }
 
 #[test]
@@ -27,7 +27,7 @@ fn a_swarm_recovers_from_a_blackout() {
     let [from_s, to_s] = scenario.radio.blackout_s[0];
     let (outcome, rows) = run(&scenario);
     assert_all_arrive(&scenario, &outcome);
-    // The row of tick t holds the packets sent in the tick before.
+    // Row t contains the packets sent in tick t - 1.
     let (from, to) = (from_s as u32 + 1, to_s as u32 + 1);
     for (row, _) in &rows[from as usize..to as usize] {
         assert_eq!(row.packets.delivered, 0, "tick {}", row.tick);
@@ -35,13 +35,13 @@ fn a_swarm_recovers_from_a_blackout() {
     }
     let before = best_error(&rows, 20..from);
     let after = best_error(&rows, to..to + 30);
-    assert!(before < 1.5, "the formation never stood: {before}");
+    assert!(before < 1.5, "the formation was never complete: {before}");
     assert!(after < 1.5, "the formation was never restored: {after}");
 }
 
-/// In the plane, behind ORCA: in the thick of a swap, head on, for seconds and for minutes.
+/// In the plane with ORCA: during a swap and head-on, for seconds and for minutes.
 #[test]
-fn a_radio_that_dies_lets_nobody_touch_and_all_arrive_when_it_is_back() {
+fn without_radio_robots_do_not_collide_and_arrive_later() {
     for name in ["radio-dies", "head-on"] {
         let scenario = scenario(name, None);
         let (outcome, _) = run(&scenario);
@@ -53,7 +53,7 @@ fn a_radio_that_dies_lets_nobody_touch_and_all_arrive_when_it_is_back() {
 }
 
 #[test]
-fn ten_dead_seconds_of_radio_change_little() {
+fn ten_seconds_without_radio_change_little() {
     let mut scenario = scenario("figure-6", None);
     let (undisturbed, _) = run(&scenario);
     scenario.radio.blackout_s = vec![[100.0, 110.0]];
@@ -69,7 +69,7 @@ fn ten_dead_seconds_of_radio_change_little() {
 }
 
 #[test]
-fn any_robot_may_reboot_in_the_middle() {
+fn any_robot_may_restart_during_the_run() {
     for robot in 1..=6 {
         for down in [0, 15, 40] {
             let mut scenario = scenario("figure-6", None);
@@ -81,14 +81,14 @@ fn any_robot_may_reboot_in_the_middle() {
             let faulty = modes.filter(|&mode| mode == Mode::Fault).count();
             assert_eq!(faulty, down as usize, "{who}");
             let after = best_error(&rows, 120 + down..120 + down + 100);
-            assert!(after < 1.5, "{who}: it never came back: {after}");
+            assert!(after < 1.5, "{who}: the formation was never restored: {after}");
         }
     }
 }
 
 #[test]
-fn a_robot_that_stays_down_does_not_hold_up_those_who_do_not_follow_it() {
-    // Robot 6 leads nobody. It is down for good.
+fn a_robot_that_stays_down_delays_its_followers_only() {
+    // Robot 6 has no followers; it stays down.
     let mut scenario = scenario("figure-6", Some(900));
     scenario.faults = vec![Fault { robot: RobotId(6), from_tick: 100, to_tick: u32::MAX }];
     let (outcome, _) = run(&scenario);
@@ -97,7 +97,7 @@ fn a_robot_that_stays_down_does_not_hold_up_those_who_do_not_follow_it() {
 }
 
 #[test]
-fn a_radio_that_loses_everything_leaves_robots_that_arrive_alone() {
+fn robots_without_any_radio_arrive_alone() {
     let mut scenario = scenario("figure-6", None);
     scenario.radio.loss = 1.0;
     let (outcome, _) = run(&scenario);
@@ -106,15 +106,15 @@ fn a_radio_that_loses_everything_leaves_robots_that_arrive_alone() {
 }
 
 #[test]
-fn bits_that_flip_cost_packets_and_nothing_else() {
+fn bit_errors_cost_packets_only() {
     let mut scenario = scenario("figure-6", None);
     scenario.radio.bit_error_rate = 0.003;
     let (outcome, _) = run(&scenario);
     assert_all_arrive(&scenario, &outcome);
     let packets = outcome.packets;
     assert!(packets.corrupted > packets.delivered / 2, "{packets:?}");
-    // Every damaged packet is refused (CRC-16 lets one in 65536 through); one in which a byte became
-    // zero falls into two frames, both of them refused.
+    // Every damaged packet is rejected (CRC-16 misses one in 65536). A packet in which a byte
+    // became zero splits into two frames, both of them rejected.
     assert!(packets.rejected + 2 >= packets.corrupted, "{packets:?}");
     assert!(packets.rejected < packets.corrupted * 5 / 4, "{packets:?}");
 }

@@ -1,5 +1,5 @@
-//! What the experiments with flocks give, small, as tables that any change of behaviour breaks. `cargo xtask bless golden`
-//! rewrites them.
+//! Golden tables of small flock experiments, which any change of behaviour breaks. `cargo xtask
+//! bless golden` rewrites them.
 
 use staya_controller::agent::SafetyKind;
 use staya_controller::names::Named as _;
@@ -121,9 +121,9 @@ fn golden_experiment_goals() {
     golden("experiment-goals", &text);
 }
 
-/// That it is one flock, of one velocity and even spacing, in the last quarter of the run, and never too near.
+/// One flock with one velocity and even spacing in the last quarter of the run, never too dense.
 #[test]
-fn the_late_flock_stays_one() {
+fn a_settled_flock_stays_connected() {
     for seed in 1..4 {
         let scenario = seeded("late-flock", seed);
         assert_eq!(scenario.remarks(), Vec::<String>::new());
@@ -139,25 +139,23 @@ fn the_late_flock_stays_one() {
     }
 }
 
-/// A scenario with another seed.
 fn seeded(name: &str, seed: u64) -> Scenario {
     let path = root().join("scenarios").join(format!("{name}.toml"));
     Scenario::load(&path, &Overrides { seed: Some(seed), ticks: None }).expect("sound")
 }
 
-/// Places, metres, and velocities, m/s.
 fn motions(robots: &[RobotRow]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
     robots.iter().map(|robot| (robot.motion.position_m, robot.motion.velocity_mps)).unzip()
 }
 
 #[test]
-fn the_squeezed_flock_goes_between_the_balls_and_is_one_behind_them() {
+fn a_squeezed_flock_passes_between_the_balls_and_reunites() {
     for seed in 1..3 {
         let (outcome, rows) = run(&seeded("flock-squeeze", seed));
         assert_eq!(outcome.collisions, 0, "seed {seed}");
         for (row, robots) in &rows {
             let (places, _) = motions(robots);
-            // Beside the middles of the balls at (15, 3) and (15, 10), whose radius is 2.5 m.
+            // Outside of the gap between the balls at (15, 3) and (15, 10) with radius 2.5 m.
             let goes_round = places.iter().any(|[x, y, _]| (x - 15.0).abs() < 0.1 && !(5.5..7.5).contains(y));
             assert!(!goes_round, "seed {seed}, tick {}", row.tick);
         }
@@ -168,7 +166,7 @@ fn the_squeezed_flock_goes_between_the_balls_and_is_one_behind_them() {
     }
 }
 
-/// Length of the mean heading within each part of the proximity graph, weighted by its robots.
+/// Length of the mean heading within each component of the proximity graph, weighted by its robots.
 fn order_within_parts(places: &[[f64; 3]], velocities: &[[f64; 3]], range_m: f64) -> f64 {
     let mut meter = FlockMeter::new(range_m, range_m, Space::OPEN);
     meter.look(places, velocities).expect("robots are somewhere");
@@ -186,7 +184,7 @@ fn order_within_parts(places: &[[f64; 3]], velocities: &[[f64; 3]], range_m: f64
 }
 
 #[test]
-fn boids_of_one_flock_have_one_heading() {
+fn boids_of_a_component_align() {
     for seed in 1..5 {
         let (_, rows) = run(&seeded("boids", seed));
         let order = |(_, robots): &(_, Vec<RobotRow>)| {
@@ -198,7 +196,8 @@ fn boids_of_one_flock_have_one_heading() {
     }
 }
 
-/// How often robots of two flocks of twelve overlap, and the tick from which on each flock is one part around its own goal.
+/// Number of overlaps of two flocks of twelve, and the tick from which each flock is one component
+/// around its own goal.
 fn two_flocks(scenario: &Scenario) -> (u64, Option<u32>) {
     let (outcome, rows) = run(scenario);
     let mut meter = FlockMeter::new(0.7, 0.84, Space::OPEN);
@@ -216,7 +215,7 @@ fn two_flocks(scenario: &Scenario) -> (u64, Option<u32>) {
 }
 
 #[test]
-fn two_flocks_pass_each_other_and_neither_loses_anybody() {
+fn two_flocks_pass_without_losing_robots() {
     for seed in 1..4 {
         let (overlaps, since) = two_flocks(&seeded("two-flocks", seed));
         assert_eq!(overlaps, 0, "seed {seed}");
@@ -224,9 +223,9 @@ fn two_flocks_pass_each_other_and_neither_loses_anybody() {
     }
 }
 
-/// With the same number they are one flock that nobody can please.
+/// With equal numbers they form one flock with conflicting goals.
 #[test]
-fn two_groups_of_one_flock_merge_and_stand() {
+fn two_groups_of_one_flock_merge_and_stop() {
     let mut scenario = seeded("two-flocks", 1);
     let plane = scenario.plane.as_mut().expect("a plane");
     plane.groups.iter_mut().for_each(|group| group.flock = 0);

@@ -1,7 +1,7 @@
-//! Formations in the plane: how far from their places robots are, and how long they take.
+//! Formations in the plane: distances of robots from their places, and travel times.
 //!
-//! `cargo test -p staya-tests formation_plane -- --nocapture` prints the figures of all scenes. The law was made
-//! on [`TUNED`] alone; of the other scenes only the bounds were set after they had been seen.
+//! `cargo test -p staya-tests formation_plane -- --nocapture` prints the results of all scenes. The
+//! law was tuned on [`TUNED`] only; the bounds of the other scenes were set from their results.
 
 use staya_controller::grid::UNIT;
 use staya_sim::engine::Outcome;
@@ -10,14 +10,15 @@ use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{run, scenario};
 use std::path::Path;
 
-/// What differs from `companions/formation.toml`: lines that take the place of those that begin alike, or come after
-/// them.
+/// Differences to `companions/formation.toml`: each line replaces lines with the same start, or is
+/// inserted after them.
 type Changes<'a> = &'a [(&'a str, &'a str)];
 
-/// A name, the scene, and the bounds: metres after the first 10 s, and times of the free time.
+/// Name, scene, and bounds: error in metres after the first 10 s, and travel time relative to free
+/// motion.
 type Scene<'a> = (&'a str, Changes<'a>, f64, f64);
 
-/// `companions/formation.toml`: the bounds.
+/// `companions/formation.toml`, with the required bounds.
 const TUNED: Scene<'_> = ("six rovers", &[], 1.0, 1.2);
 
 const SMALL: Changes<'_> = &[
@@ -80,7 +81,7 @@ fn scene(name: &str, changes: Changes<'_>, seed: u64) -> Scenario {
     parsed.unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// What came of it, and its time over the free time.
+/// Outcome, error, and travel time relative to free motion.
 fn travel(scenario: &Scenario) -> (Outcome, PlaceError, f64) {
     let (outcome, _) = run(scenario);
     let error = outcome.place_error.expect("longer than it takes to form");
@@ -101,19 +102,19 @@ fn keeps_to(&(name, changes, most_m, most_times): &Scene<'_>) {
 }
 
 #[test]
-fn six_rovers_are_within_a_metre_of_their_places_and_take_at_most_a_fifth_longer() {
+fn six_rovers_stay_within_a_metre_and_take_at_most_a_fifth_longer() {
     keeps_to(&TUNED);
 }
 
 #[test]
-fn so_do_others() {
+fn other_formations_keep_their_bounds() {
     SCENES.iter().for_each(keeps_to);
 }
 
-/// Rovers in a line, 8 and 12 m apart, as autopilots start them: each has its place in the time that the last one needs
-/// to drive there, and half as long again.
+/// Rovers in a line, 8 and 12 m apart: each is in its place within 1.5 times the time in which the
+/// last one drives there.
 #[test]
-fn those_that_start_elsewhere_form_on_the_way() {
+fn robots_that_start_elsewhere_form_on_the_way() {
     let line = "starts = [[20, 20], [23, 20], [25, 20], [28, 20], [30, 20], [33, 20]]";
     for (goal, most_times) in [("goal = [60, 60]", 1.2), ("goal = [70, 20]", 1.2), ("goal = [20, 60]", 1.5)] {
         let scenario = scene(goal, &[("start =", line), ("goal =", goal)], 1);
@@ -128,14 +129,14 @@ fn those_that_start_elsewhere_form_on_the_way() {
         let formed_s = error_m.iter().rev().find(|(_, error_m)| *error_m > 1.0).map_or(0.0, |(at_s, _)| *at_s);
         println!("in a line, {goal}: within 1 m from {formed_s:.1} s on, {ratio:.3} times");
         assert_eq!((outcome.arrived, outcome.collisions), (6, 0));
-        // Robot 6 is 66 m off its place.
+        // Robot 6 starts 66 m from its place.
         assert!(formed_s < 1.5 * 66.0 / 2.0 && ratio <= most_times, "{goal}: {formed_s} s, {ratio}");
     }
 }
 
-/// On rough land and among obstacles shape costs time: bounds on the mean only.
+/// On rough terrain and among obstacles only the mean is bounded.
 #[test]
-fn on_rough_land_they_keep_their_places_where_land_lets_them() {
+fn on_rough_terrain_the_mean_error_is_bounded() {
     let six = scenario("six-discs", None);
     let obstacles = scene("obstacles", &[("uniform =", "natural = { width = 80, height = 80, obstacles = 40 }")], 1);
     for (name, scenario, most_m) in [("six-discs", six, 0.2), ("among 40 obstacles", obstacles, 0.2)] {
@@ -146,9 +147,10 @@ fn on_rough_land_they_keep_their_places_where_land_lets_them() {
     }
 }
 
-/// Whoever dies, the others arrive; a radio that is dead for 10 s holds nobody for longer.
+/// A dead robot never stops the others, and 10 s without radio delay the formation by not much
+/// more.
 #[test]
-fn nobody_waits_for_ever() {
+fn no_robot_waits_for_ever() {
     for robot in 1..=6 {
         let fault = format!("margin_m = 0.5\n[[fault]]\nrobot = {robot}\nat_s = 30\ndown_s = 900");
         let scenario = scene("a dead member", &[("margin_m =", &fault)], 1);

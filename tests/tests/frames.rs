@@ -1,4 +1,5 @@
-//! One MAVLink frame of each of the swarm's messages, for other implementations: `tests/python/test_dialect.py` reads the golden file.
+//! A MAVLink frame of each of the swarm's messages, for other implementations:
+//! `tests/python/test_dialect.py` reads the golden file.
 
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::land::LandPatch;

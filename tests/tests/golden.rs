@@ -1,5 +1,5 @@
-//! What happens in each scenario, as a table that a person can read and any change of behaviour
-//! breaks. `cargo xtask bless golden` rewrites them.
+//! Golden tables of scenarios, which are readable and which any change of behaviour breaks. `cargo
+//! xtask bless golden` rewrites them.
 
 use staya_controller::robot::Mode;
 use staya_fvm::orca::Sample;
@@ -10,7 +10,7 @@ use staya_sim::scenario::Scenario;
 use staya_tests::{golden, run, scenario};
 use std::fmt::Write as _;
 
-/// Robots whose cells fit into a line.
+/// Number of robots whose cells fit into a line.
 const SHOWN: usize = 6;
 
 fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>)]) -> Result<String, std::fmt::Error> {
@@ -134,7 +134,7 @@ fn golden_scale_in_its_first_ticks() {
     check("scale", Some(3));
 }
 
-/// What `staya orca table` prints for fewer pairs: how far half-planes from the templates are off the exact ones.
+/// Output of `staya orca table` for fewer pairs: errors of half-planes from the templates.
 #[test]
 fn golden_orca_table() {
     let sample = Sample { pairs: 20_000, seed: 1 };

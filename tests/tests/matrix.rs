@@ -1,5 +1,5 @@
-//! Any guidance law with any safety layer, over a perfect, a lossy and a dead radio: robots arrive or stay together,
-//! do not overlap where anything can keep them from it, and never run away.
+//! Every guidance law with every safety layer, with a perfect, a lossy and a dead radio: robots
+//! arrive or stay together, do not overlap where that can be avoided, and stay in their area.
 
 use rayon::prelude::*;
 use staya_controller::agent::{GuidanceKind, SafetyKind};
@@ -11,26 +11,22 @@ use staya_sim::scenario::{Overrides, Scenario, ScenarioError};
 use staya_tests::run;
 use std::path::Path;
 
-/// Robots of each swarm.
 const ROBOTS: usize = 6;
 const RADIUS_M: f64 = 0.2;
-/// Highest speed, m/s.
 const FASTEST_MPS: f64 = 1.0;
-/// Spacing of the alpha flock, metres.
 const SPACING_M: f64 = 1.0;
 
 const RADIOS: [(&str, &str); 3] = [("perfect", ""), ("lossy", "loss = 0.3"), ("dead", "loss = 1")];
 
-/// A safety layer, and how it pushes out if it does.
+/// A safety layer, with its push-out model.
 type Layer = (SafetyKind, Model);
 
-/// All of them.
 fn layers() -> Vec<Layer> {
     let kinds = SafetyKind::NAMES.iter().map(|&(_, kind)| (kind, Model::Radial));
     kinds.chain([(SafetyKind::PushOut, Model::Tangential)]).collect()
 }
 
-/// Who takes part and what their law needs, and the least and greatest x and y where they have business.
+/// Robots and settings of a law, and the smallest and largest x and y of its area.
 fn swarm(guidance: GuidanceKind) -> (&'static str, &'static str, [f64; 2]) {
     match guidance {
         GuidanceKind::Waypoint => ("robots.circle = { count = 6, radius_m = 3, noise_m = 0.05 }", "", [-5.0, 5.0]),
@@ -48,7 +44,7 @@ fn swarm(guidance: GuidanceKind) -> (&'static str, &'static str, [f64; 2]) {
         GuidanceKind::Boids => (
             "robots.cloud = { count = 6, from_m = [0, 0], to_m = [4, 4] }\nboids = { crowded_m = 0.8, closest_m = 4 }",
             "",
-            // As far as they get.
+            // Unlimited in practice.
             [-100.0, 100.0],
         ),
         GuidanceKind::Route => (
@@ -82,21 +78,20 @@ fn scenario(guidance: GuidanceKind, (safety, model): Layer, radio: &str) -> Resu
     Scenario::parse(&text, Path::new("matrix.toml"), &Overrides::default())
 }
 
-/// Whether a pair does not go together: who goes straight to a place finds no way past another one by turning aside
-/// from him as he does.
+/// Whether a combination is refused: a robot with a straight path cannot pass another one if both
+/// turn aside.
 fn is_refused(guidance: GuidanceKind, layer: Layer) -> bool {
     (guidance, layer) == (GuidanceKind::Waypoint, (SafetyKind::PushOut, Model::Tangential))
 }
 
-/// What came of a pair.
 #[derive(Debug)]
 struct Verdict {
     arrived: usize,
-    /// Parts of the swarm at the end, of robots up to two spacings apart.
+    /// Connected components at the end, for a range of two spacings.
     parts: usize,
     overlaps: u64,
     deepest_m: f64,
-    /// Nobody was ever faster than bodies are, or elsewhere than there is something to do.
+    /// Whether all robots stayed within the speed limit and the area.
     stays: bool,
 }
 
@@ -124,31 +119,31 @@ fn verdict(guidance: GuidanceKind, safety: Layer, radio: &str) -> Verdict {
     }
 }
 
-/// What is wrong with a pair; empty: nothing.
+/// The failed requirement of a combination; empty if none failed.
 fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
     let hears = radio != "dead";
     let has_goal = !matches!(guidance, GuidanceKind::Boids | GuidanceKind::Lattice);
     if !verdict.stays {
-        return "somebody ran away";
+        return "a robot left the area or was too fast";
     }
     if has_goal && verdict.arrived < ROBOTS {
         return "not all arrived";
     }
     if guidance == GuidanceKind::Lattice && hears && verdict.parts > 1 {
-        return "the flock is no longer one";
+        return "the flock broke up";
     }
     let guards = safety != SafetyKind::None;
-    // Who hears nothing can avoid nobody.
+    // Without reception robots cannot avoid each other.
     match radio {
         "perfect" if guards && verdict.overlaps > 0 => "robots overlapped",
-        // A tenth of a radius: see docs/limits.md.
+        // A tenth of a radius, see docs/limits.md.
         "lossy" if guards && verdict.deepest_m > RADIUS_M / 10.0 => "robots overlapped deeply",
         _ => "",
     }
 }
 
 #[test]
-fn pairs_that_do_not_go_together_are_refused_with_a_remedy() {
+fn unsupported_combinations_are_refused_with_a_remedy() {
     let mut refused = 0;
     for &(_, guidance) in GuidanceKind::NAMES {
         for layer in layers() {
@@ -161,7 +156,7 @@ fn pairs_that_do_not_go_together_are_refused_with_a_remedy() {
 }
 
 #[test]
-fn any_guidance_goes_with_any_safety_over_any_radio() {
+fn every_guidance_works_with_every_safety_layer_and_radio() {
     let mut all = Vec::new();
     for &(_, guidance) in GuidanceKind::NAMES {
         for safety in layers().into_iter().filter(|&layer| !is_refused(guidance, layer)) {

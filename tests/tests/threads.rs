@@ -1,4 +1,4 @@
-//! No result depends on the number of threads (for the engine alone, see its own tests).
+//! No result depends on the number of threads (the engine has its own tests of that).
 
 use staya_sim::engine::Outcome;
 use staya_tests::{run, scenario};
@@ -22,42 +22,42 @@ fn same_on_any_number(name: &str, ticks: Option<u32>) {
 }
 
 #[test]
-fn six_robots_over_a_bad_radio_are_the_same_on_any_number_of_threads() {
+fn six_robots_with_a_bad_radio_do_not_depend_on_threads() {
     same_on_any_number("six-robots", None);
 }
 
 #[test]
-fn faults_are_the_same_on_any_number_of_threads() {
+fn faults_do_not_depend_on_threads() {
     same_on_any_number("blackout", None);
 }
 
 #[test]
-fn robots_among_walls_are_the_same_on_any_number_of_threads() {
+fn robots_among_walls_do_not_depend_on_threads() {
     same_on_any_number("moving-ai-20", None);
 }
 
 #[test]
-fn robots_that_share_maps_are_the_same_on_any_number_of_threads() {
+fn robots_that_share_maps_do_not_depend_on_threads() {
     same_on_any_number("shared-maps", Some(200));
 }
 
 #[test]
-fn a_thousand_robots_are_the_same_on_any_number_of_threads() {
+fn a_thousand_robots_do_not_depend_on_threads() {
     same_on_any_number("scale-small", Some(30));
 }
 
 #[test]
-fn a_flock_in_the_plane_is_the_same_on_any_number_of_threads() {
+fn a_flock_in_the_plane_does_not_depend_on_threads() {
     same_on_any_number("boids", Some(60));
     same_on_any_number("goal-flock", Some(60));
 }
 
 #[test]
-fn groups_with_guidance_and_safety_of_their_own_are_the_same_on_any_number_of_threads() {
+fn groups_with_different_laws_do_not_depend_on_threads() {
     same_on_any_number("groups", Some(200));
 }
 
 #[test]
-fn a_thousand_discs_among_pillars_are_the_same_on_any_number_of_threads() {
+fn a_thousand_discs_among_pillars_do_not_depend_on_threads() {
     same_on_any_number("scale-plane-small", Some(30));
 }

@@ -78,7 +78,7 @@ fn is_the_same(staya: &mut Command) -> Result<(), String> {
     let mut verdict = None;
     run_reading(staya, |line| {
         if let Some(said) = line.trim_start().strip_prefix("without devices") {
-            verdict = Some(said.trim_end().ends_with(", the same"));
+            verdict = Some(said.trim_end().ends_with(", identical"));
         }
     })?;
     match verdict {
@@ -98,7 +98,7 @@ mod tests {
 
     #[test]
     fn only_the_run_without_devices_will_do() {
-        assert_eq!(said("  without devices 2dcb4dc319df1a21, the same"), Ok(()));
+        assert_eq!(said("  without devices 2dcb4dc319df1a21, identical"), Ok(()));
         assert!(said("  without devices 2dcb4dc319df1a21, another one: ...").is_err());
         assert!(said("  trace hash      2dcb4dc319df1a21").is_err());
         assert!(is_the_same(&mut Command::new("false")).is_err());

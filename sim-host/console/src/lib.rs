@@ -1,4 +1,4 @@
-//! What every command of `staya` does alike: the options that all understand, progress, Ctrl-C, printing.
+//! Parts common to all commands of `staya`: shared options, progress, Ctrl-C, output.
 //!
 //! Results go to standard output, progress and errors to standard error.
 
@@ -15,13 +15,13 @@ use serde::Serialize;
 use std::io::{self, ErrorKind, Write as _};
 use std::process::ExitCode;
 
-/// Options that every command understands.
+/// Options of every command.
 #[derive(Args, Clone, Copy, Debug, Default)]
 pub struct Global {
     /// Print one JSON object on standard output instead of tables.
     #[arg(long, global = true, help_heading = "Options of every command")]
     pub json: bool,
-    /// Threads to use, at most one per processor, which is the default; results never depend on it.
+    /// Number of threads, at most one per processor (the default); results do not depend on it.
     #[arg(long, global = true, help_heading = "Options of every command", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Show no progress.
@@ -30,13 +30,13 @@ pub struct Global {
 }
 
 impl Global {
-    /// Makes the pool of as many threads as are wanted; once, before the first of them works.
+    /// Starts the thread pool. Call this once, before any parallel work.
     ///
     /// # Errors
-    /// They cannot be started.
+    /// The threads cannot be started.
     pub fn begin(&self) -> Result<()> {
         if let Some(threads) = self.threads {
-            // More than one for each processor only cost time.
+            // More than one thread per processor would only cost time.
             let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
             rayon::ThreadPoolBuilder::new()
                 .num_threads(usize::from(threads).min(processors))
@@ -47,17 +47,17 @@ impl Global {
     }
 }
 
-/// The version of this program, as results have it: `0.1.0`, and what `build.rs` knows of the commit, as in
-/// `0.1.0+298ef29bca11` or, for sources that differ from that commit, `0.1.0+298ef29bca11.5f0c2d9a`.
+/// Version of this program in results: `0.1.0`, then the commit as found by `build.rs`:
+/// `0.1.0+298ef29bca11`, or `0.1.0+298ef29bca11.5f0c2d9a` with uncommitted changes.
 pub const VERSION: &str = env!("STAYA_VERSION");
 
-/// The command line of each program: the options of every command, and the commands `C` of this program.
+/// Command line of a program: the options of every command, and the program's own commands `C`.
 ///
-/// Every program calls itself `staya`, since `staya` hands its own command line over unchanged.
+/// Every program calls itself `staya`, because `staya` passes its command line on unchanged.
 #[derive(Debug, Parser)]
 #[command(name = "staya", bin_name = "staya", version = VERSION, propagate_version = true)]
 pub struct Line<C: Subcommand> {
-    /// The options of every command.
+    /// Options of every command.
     #[command(flatten)]
     pub global: Global,
     /// The command.
@@ -65,24 +65,24 @@ pub struct Line<C: Subcommand> {
     pub command: C,
 }
 
-/// The whole of a program: parses the command line, runs the command and reports its errors.
+/// Runs a program: parses the command line, runs the command and reports its errors.
 #[must_use]
 pub fn main<C: Subcommand>(run: impl FnOnce(&C, &Global) -> Result<Ended>) -> ExitCode {
     let Line { global, command } = Line::parse();
     exit("staya", global.begin().and_then(|()| run(&command, &global)))
 }
 
-/// How a command that did not fail came to its end.
+/// How a successful command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// By itself.
+    /// It completed.
     Done,
-    /// By Ctrl-C or a termination signal; what was done until then is kept.
+    /// Ctrl-C or a termination signal stopped it; results so far are kept.
     Interrupted,
 }
 
 impl Ended {
-    /// `Interrupted` when `stop` was requested.
+    /// `Interrupted` if `stop` was requested.
     #[must_use]
     pub fn by(stop: &Stop) -> Self {
         if stop.is_requested() { Self::Interrupted } else { Self::Done }
@@ -92,7 +92,7 @@ impl Ended {
 /// Writes text to standard output.
 ///
 /// # Errors
-/// When standard output is closed or full.
+/// Standard output is closed or full.
 pub fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).context("cannot write to standard output")
@@ -101,30 +101,31 @@ pub fn print(text: &str) -> Result<()> {
 /// Writes one JSON object and a line feed to standard output.
 ///
 /// # Errors
-/// When standard output is closed or full, or `value` has no JSON form.
+/// Standard output is closed or full, or `value` cannot be encoded as JSON.
 pub fn print_json(value: &impl Serialize) -> Result<()> {
     let mut text = serde_json::to_string_pretty(value)?;
     text.push('\n');
     print(&text)
 }
 
-/// The exit code of a command of `program`: 0 done, 1 failed, with the reason on standard error, 130 stopped by Ctrl-C.
+/// Exit code of a command: 0 for success, 1 for an error (printed on standard error), 130 for
+/// Ctrl-C.
 #[must_use]
 pub fn exit(program: &str, ended: Result<Ended>) -> ExitCode {
     match ended {
         Ok(Ended::Done) => ExitCode::SUCCESS,
         Ok(Ended::Interrupted) => ExitCode::from(130),
-        // The reader of a pipe (`staya ... | head`) went away: nothing to tell anybody.
+        // The reader of a pipe (`staya ... | head`) has closed it; that is not an error.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            // Standard error may be closed as well; the exit code still tells.
+            // Standard error may be closed; the exit code still reports the failure.
             let _ = writeln!(io::stderr(), "{program}: {}", in_one_line(&error));
             ExitCode::FAILURE
         }
     }
 }
 
-/// An error and its causes; a cause that the message before it quotes is not said again.
+/// An error with its causes, without a cause that the previous message already contains.
 #[must_use]
 pub fn in_one_line(error: &anyhow::Error) -> String {
     let mut text = error.to_string();

@@ -1,4 +1,4 @@
-//! Options that several commands have: named values and their help, parameters of routing, coefficients.
+//! Options shared by several commands: named values, routing parameters, coefficients.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Command};
@@ -12,32 +12,32 @@ use staya_controller::route::{ExitRule, Replan, RouteParams};
 use staya_controller::shuffle::Sharpness;
 use staya_sim::terrain::generate::Hills;
 
-/// A plan as the command line makes it without any option: every default is said once, in its arguments.
+/// Arguments with all defaults, so that defaults are declared only once.
 ///
 /// # Panics
-/// When an option has no default.
+/// An option has no default.
 pub fn defaults<P: Args>() -> P {
     let line = P::augment_args(Command::new("defaults").no_binary_name(true));
     let matches = line.get_matches_from([""; 0]);
     P::from_arg_matches(&matches).expect("every option has a default")
 }
 
-/// A value as it is written on the command line and in reports: its name with dashes.
+/// Name of a value on the command line and in reports, with dashes.
 pub fn word(value: impl Named) -> String {
     value.name().replace('_', "-")
 }
 
-/// Takes one of these values by its name, and says in `--help` what it is.
+/// Parser of named values that lists them with their help.
 pub fn one_of<T: Named + Send + Sync>(values: &'static [(T, &'static str)]) -> impl TypedValueParser<Value = T> {
     let possible = values.iter().map(|(value, help)| {
-        // A few bytes for the time that the program runs.
+        // Leaks a few bytes for the lifetime of the program.
         let possible = PossibleValue::new(&*word(*value).leak()).alias(value.name());
         if help.is_empty() { possible } else { possible.help(*help) }
     });
     PossibleValuesParser::new(possible).map(|given| T::from_name(&given).expect("one of the possible values"))
 }
 
-/// The safety layer of robots in the plane or in space.
+/// Safety layer of robots in the plane or in space.
 pub fn safety() -> impl TypedValueParser<Value = SafetyKind> {
     one_of(&[
         (SafetyKind::Orca, "ORCA in the plane"),
@@ -47,51 +47,52 @@ pub fn safety() -> impl TypedValueParser<Value = SafetyKind> {
     ])
 }
 
-/// The safety layer of robots that cross: ORCA, exact or looked up.
+/// Safety layer of crossing robots: ORCA, computed or from a table.
 pub fn crossing_safety() -> impl TypedValueParser<Value = SafetyKind> {
     one_of(&[(SafetyKind::Orca, ""), (SafetyKind::Template2k, ""), (SafetyKind::None, "")])
 }
 
-/// What push-out makes of a step.
+/// Reaction of push-out in a step.
 pub fn model() -> impl TypedValueParser<Value = Model> {
     one_of(&[(Model::Radial, "1: along the radius"), (Model::Tangential, "2: turned aside")])
 }
 
-/// How many robots push-out evades at once.
+/// Number of robots that push-out avoids at once.
 pub fn evasion() -> impl TypedValueParser<Value = Evasion> {
     one_of(&[(Evasion::Single, "The nearest in the way"), (Evasion::Multiple, "All")])
 }
 
-/// How robots of a formation foresee each other.
+/// Prediction of other robots in a formation.
 pub fn prediction() -> impl TypedValueParser<Value = Prediction> {
     one_of(&[
-        (Prediction::Constant, "They go on as they announced"),
-        (Prediction::Reflexive, "They do what the robot itself would do in their place"),
+        (Prediction::Constant, "Others continue as announced"),
+        (Prediction::Reflexive, "Others do what this robot would do in their place"),
     ])
 }
 
-/// What the top leader does while somebody is too far behind.
+/// Behaviour of the top leader while a robot is too far behind.
 pub fn recovery() -> impl TypedValueParser<Value = Recovery> {
-    one_of(&[(Recovery::Wait, "It stands"), (Recovery::Def, "It heads for where the others are off to (def)")])
+    one_of(&[(Recovery::Wait, "The leader stops"), (Recovery::Def, "The leader follows the others (def)")])
 }
 
-/// A norm of the plane.
+/// Norm of the plane.
 pub fn norm() -> impl TypedValueParser<Value = Norm> {
     one_of(&[(Norm::Euclidean, "A diagonal move is sqrt 2 long"), (Norm::Chebyshev, "A diagonal move is 1 long")])
 }
 
-/// What natural land is taken to mean.
+/// Shape of natural terrain.
 pub fn hills() -> impl TypedValueParser<Value = Hills> {
     one_of(&[
         (Hills::Even, "Impassability falls by one each cell"),
-        (Hills::Rounded, "The same with rounded distances"),
-        (Hills::Wide, "It falls by one every second cell"),
-        (Hills::Added, "It falls by one each cell, and hills that overlap add up"),
-        (Hills::Rough, "It falls by 0 to 2 each cell, drawn for every cell"),
+        (Hills::Rounded, "As even, with rounded distances"),
+        (Hills::Wide, "Impassability falls by one every second cell"),
+        (Hills::Added, "Impassability falls by one each cell, overlapping hills add up"),
+        (Hills::Rough, "Impassability falls by a random 0 to 2 each cell"),
     ])
 }
 
-/// How strictly the order of moves follows their costs: ticks that halve a priority, in sixteenths; 0 is greedy.
+/// Sharpness of the order of moves: cost difference in ticks that halves a priority, in sixteenths;
+/// 0 is greedy.
 pub fn shuffle(word: &str) -> Result<Sharpness, String> {
     Ok(match gain(word)? {
         Gain::ZERO => Sharpness::Greedy,
@@ -99,7 +100,6 @@ pub fn shuffle(word: &str) -> Result<Sharpness, String> {
     })
 }
 
-/// Which cells of a window's border end a route.
 fn exit() -> impl TypedValueParser<Value = ExitRule> {
     one_of(&[
         (ExitRule::Best, "Any border cell, by path cost and distance to the target (eq. 10)"),
@@ -107,39 +107,41 @@ fn exit() -> impl TypedValueParser<Value = ExitRule> {
     ])
 }
 
-/// When to search anew.
+/// When a route is searched again.
 pub fn replan() -> impl TypedValueParser<Value = Replan> {
     one_of(&[
         (Replan::EachCell, "In each cell (algorithm 1)"),
-        (Replan::UntilChanged, "At the end of the planned way or when something changed on it (KUZ section 3)"),
+        (Replan::UntilChanged, "At the end of the planned route or after a change on it (KUZ section 3)"),
     ])
 }
 
-/// Route parameters; what is not given is the controller's default.
+/// Routing parameters; `None` means the controller's default.
 #[derive(Args, Clone, Debug)]
 pub struct RouteOptions {
-    /// Which cells of the window's border end a route.
+    /// Border cells of the window that can end a route.
     #[arg(long, default_value = "best", value_parser = exit())]
     exit: ExitRule,
-    /// When the robot searches its way anew.
+    /// When a robot searches its route again.
     #[arg(long, default_value = "each-cell", value_parser = replan())]
     pub replan: Replan,
-    /// Weight of travel time; this and the others in steps of 1/16 (0.0625) [default: the controller's].
+    /// Weight of travel time, in steps of 1/16 (0.0625) like the other weights [default: the
+    /// controller's].
     #[arg(long, value_name = "NUMBER", value_parser = gain)]
     a0: Option<Gain>,
-    /// Ticks that a cell with another robot costs [default: the controller's].
+    /// Cost of a cell with another robot, ticks [default: the controller's].
     #[arg(long, value_name = "TICKS", value_parser = gain)]
     a1: Option<Gain>,
-    /// Ticks per earlier visit of a cell [default: the controller's].
+    /// Cost per earlier visit of a cell, ticks [default: the controller's].
     #[arg(long, value_name = "TICKS", value_parser = gain)]
     a2: Option<Gain>,
-    /// Ticks per cell between exit and target [default: the controller's].
+    /// Cost per cell between exit and target, ticks [default: the controller's].
     #[arg(long, value_name = "TICKS", value_parser = gain)]
     a3: Option<Gain>,
 }
 
 impl RouteOptions {
-    /// The parameters for a window of that radius, with the default moves (Euclidean, no corner cutting).
+    /// Parameters for a window with this radius and the default moves (Euclidean, no corner
+    /// cutting).
     pub fn params(&self, radius: u8) -> RouteParams {
         let default = RouteParams::default();
         RouteParams {
@@ -154,7 +156,8 @@ impl RouteOptions {
     }
 }
 
-/// The ticks by which a move must cost more to come first half as often; 0: the cheapest always comes first.
+/// Extra cost of a move, in ticks, that halves how often it comes first; 0: the cheapest always
+/// comes first.
 #[must_use]
 pub fn shuffle_ticks(sharpness: Sharpness) -> f64 {
     match sharpness {
@@ -163,7 +166,7 @@ pub fn shuffle_ticks(sharpness: Sharpness) -> f64 {
     }
 }
 
-/// Reads a coefficient: a decimal number that is a whole number of sixteenths.
+/// Parses a coefficient, a decimal number that is a multiple of 1/16.
 pub fn gain(word: &str) -> Result<Gain, String> {
     let value: f64 = word.parse().map_err(|_| String::from("give a decimal number, such as 2.5"))?;
     let one = f64::from(Gain::ONE.sixteenths());
@@ -175,7 +178,7 @@ pub fn gain(word: &str) -> Result<Gain, String> {
     let below = libm::floor(sixteenths);
     if sixteenths != below {
         let (low, high) = (below / one, (below + 1.0) / one);
-        return Err(format!("coefficients are whole sixteenths; give {low} or {high}"));
+        return Err(format!("coefficients are multiples of 1/16; give {low} or {high}"));
     }
     Ok(Gain::from_sixteenths(sixteenths as u16))
 }
@@ -185,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coefficients_are_sixteenths_or_errors_with_the_neighbours() {
+    fn a_coefficient_off_the_grid_is_an_error_with_its_neighbours() {
         assert_eq!(gain("3"), Ok(Gain::from_int(3)));
         assert_eq!(gain("2.5"), Ok(Gain::from_sixteenths(40)));
         assert_eq!(gain("0.0625"), Ok(Gain::from_sixteenths(1)));

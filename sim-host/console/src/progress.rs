@@ -1,4 +1,4 @@
-//! Progress on standard error, and the request to stop.
+//! Progress on standard error, and requests to stop.
 
 use super::Global;
 use anyhow::{Context as _, Result};
@@ -8,18 +8,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Without a terminal: at most one line of progress in this time.
+/// Interval of progress lines without a terminal.
 const LINE_EVERY: Duration = Duration::from_secs(5);
 
-/// Whether the user asked for an early end. Clones share the request.
+/// A request to stop early, shared by all clones.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// A request that Ctrl-C or a termination signal makes. The second one ends the process at once.
+    /// Creates a request that Ctrl-C or a termination signal sets. A second signal ends the process
+    /// at once.
     ///
     /// # Errors
-    /// When the signal handler cannot be installed, as on the second call in one process.
+    /// The signal handler cannot be installed, for example on the second call in a process.
     pub fn on_ctrl_c() -> Result<Self> {
         let stop = Self::default();
         let request = stop.clone();
@@ -32,34 +33,33 @@ impl Stop {
         Ok(stop)
     }
 
-    /// Asks for an early end.
+    /// Requests an early end.
     pub fn request(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// The request itself, for who cannot ask.
+    /// The flag itself, for callers without a `Stop`.
     #[must_use]
     pub fn flag(&self) -> Arc<AtomicBool> {
         Arc::clone(&self.0)
     }
 
-    /// Whether somebody asked.
+    /// Whether an early end was requested.
     #[must_use]
     pub fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// How far long work has come: a bar with an estimate on a terminal, a line now and then elsewhere.
+/// Progress of long work: a bar with an estimate on a terminal, occasional lines elsewhere.
 #[derive(Debug)]
 pub struct Progress {
     bar: ProgressBar,
-    /// Without a terminal: when the last line was written.
     lines: Option<Instant>,
 }
 
 impl Progress {
-    /// Progress of `total` steps, shown as `label`.
+    /// Creates progress over `total` steps, shown as `label`.
     #[must_use]
     pub fn new(label: &str, total: u64, global: &Global) -> Self {
         let terminal = io::stderr().is_terminal();
@@ -69,7 +69,7 @@ impl Progress {
             ProgressDrawTarget::hidden()
         };
         let bar = ProgressBar::with_draw_target(Some(total), target);
-        let style = "{prefix} [{bar:30}] {pos}/{len}{msg} ({elapsed} gone, {eta} to go)";
+        let style = "{prefix} [{bar:30}] {pos}/{len}{msg} ({elapsed} elapsed, {eta} left)";
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style.progress_chars("=> "));
         }
@@ -77,12 +77,12 @@ impl Progress {
         Self { bar, lines: (!terminal && !global.quiet).then(Instant::now) }
     }
 
-    /// There are `total` steps, as turns out.
+    /// Sets the total number of steps.
     pub fn of(&mut self, total: u64) {
         self.bar.set_length(total);
     }
 
-    /// `done` steps are behind; `message` says what is worth watching.
+    /// Sets the number of finished steps; `message` returns a short status.
     pub fn set(&mut self, done: u64, message: impl FnOnce() -> String) {
         self.bar.set_position(done);
         if !self.bar.is_hidden() {
@@ -92,7 +92,7 @@ impl Progress {
             let (label, total) = (self.bar.prefix(), self.bar.length().unwrap_or(0));
             let left = self.bar.eta().as_secs();
             // A closed standard error must not stop the work.
-            let _ = writeln!(io::stderr(), "{label}: {done}/{total}{}, about {left} s to go", spaced(&message()));
+            let _ = writeln!(io::stderr(), "{label}: {done}/{total}{}, about {left} s left", spaced(&message()));
         }
     }
 
@@ -102,7 +102,6 @@ impl Progress {
     }
 }
 
-/// A message behind a number.
 fn spaced(message: &str) -> String {
     match message {
         "" => String::new(),
@@ -115,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_message_is_spaced_only_if_there_is_one() {
+    fn only_a_non_empty_message_is_spaced() {
         assert_eq!(spaced(""), "");
         assert_eq!(spaced("ticks"), " ticks");
     }

@@ -1,52 +1,53 @@
-//! A model of a function: the plane that touches its graph in each node of a grid.
+//! Builds a model of a function: the tangent plane of its graph in each node of a grid.
 
 use crate::Function;
 use staya_voxel::{Header, checksum};
 
-/// Where a function is sampled.
+/// The grid on which a function is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid<const V: usize> {
-    /// The least and the greatest coordinate along each axis.
+    /// Smallest and largest coordinate along each axis.
     pub extent: [[f64; 2]; V],
-    /// Nodes along each axis, 2 to 65,535, the first and the last on the extent's ends.
+    /// Nodes along each axis, 2 to 65,535; the first and last are at the ends of the extent.
     pub nodes: [u16; V],
 }
 
-/// Bytes that a model may have: more than any microcontroller has flash for.
+/// Size limit of a model, bytes: more than any microcontroller's flash.
 const MOST_BYTES: usize = 64 << 20;
 
-/// Why there is no model.
+/// Why a model cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BuildError {
-    /// Of variables other than two or three.
-    #[error("models have two or three variables, not {0}")]
+    /// The number of variables is not two or three.
+    #[error("{0} variables: give a function of two or three")]
     Variables(usize),
-    /// Bits that components cannot have.
-    #[error("a depth of {0} bits: 4 to 16 are possible")]
+    /// The depth is not supported.
+    #[error("depth {0}: give 4 to 16 bits")]
     Depth(u8),
-    /// An axis without sense.
-    #[error("axis {0}: two nodes at least, and an extent from a smaller to a larger number, are needed")]
+    /// The extent or the nodes of an axis are invalid.
+    #[error("axis {0}: give at least two nodes, and an extent from a smaller to a larger number")]
     Axis(usize),
-    /// Too large.
-    #[error("{0} bytes are more than the 64 MiB that a model may have: choose fewer nodes")]
+    /// The model would be too large.
+    #[error("a model of {0} bytes exceeds 64 MiB; give fewer nodes")]
     Size(usize),
-    /// No number there.
-    #[error("the function is no finite number at {0:?}: leave that place out of the extent, or define it there")]
+    /// The function has no finite value at a node.
+    #[error("the function is not finite at {0:?}; exclude that point from the extent, or define the function there")]
     NotFinite(Vec<f64>),
-    /// Its slope does not go into so few bits.
-    #[error("the function is too steep at {at:?} for {depth} bits: choose a greater depth")]
+    /// The slope is too steep for the depth.
+    #[error("the function is too steep at {at:?} for {depth} bits; give a greater depth")]
     TooSteep {
-        /// Where.
+        /// Coordinates of the node.
         at: Vec<f64>,
-        /// Bits.
+        /// Depth, bits.
         depth: u8,
     },
 }
 
-/// The model of a function on a grid, with components of `depth` bits: bytes for `staya_voxel::Model`.
+/// Builds the model of a function on a grid, with components of `depth` bits. Returns the bytes for
+/// `staya_voxel::Model`.
 ///
-/// Each node's plane goes through the function's value there; its slopes are differences over half a step to both
-/// sides.
+/// Each node's plane has the function's value there; its slopes are central differences over half a
+/// step to both sides.
 ///
 /// # Errors
 /// [`BuildError`].

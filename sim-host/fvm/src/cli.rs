@@ -1,4 +1,5 @@
-//! The command line of `staya-voxel`: `staya voxel build | draw | evaluate | measure | swarm`, `staya orca table | draw`.
+//! The command line of `staya-voxel`: `staya voxel build | draw | evaluate | measure | swarm`,
+//! `staya orca table | draw`.
 
 mod options;
 mod orca;
@@ -18,10 +19,10 @@ use staya_voxel::{Header, Local, Model, VoxelNeighbor};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Commands about tables of functions.
+/// Commands for tables of functions.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Draw what ORCA forbids two robots, and measure the table that it can be looked up in.
+    /// Draw the velocities that ORCA forbids two robots, and measure its lookup tables.
     Orca(orca::OrcaArgs),
     /// Make, draw and measure functional voxel models: functions as tables for a microcontroller.
     Voxel(VoxelArgs),
@@ -31,7 +32,7 @@ impl Command {
     /// Runs the command.
     ///
     /// # Errors
-    /// Those of the command.
+    /// Any error of the command.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match self {
             Self::Orca(args) => args.run(global),
@@ -40,7 +41,8 @@ impl Command {
     }
 }
 
-/// Functional voxel models: any function of two or three variables as a table of local planes for a microcontroller.
+/// Functional voxel models: any function of two or three variables as a table of tangent planes for
+/// a microcontroller.
 #[derive(Args, Clone, Debug)]
 pub struct VoxelArgs {
     #[command(subcommand)]
@@ -49,15 +51,17 @@ pub struct VoxelArgs {
 
 #[derive(Clone, Debug, Subcommand)]
 enum Action {
-    /// Make a model: circle, ball, polygon, room, velocity obstacle, or every neighbour's velocity obstacle.
+    /// Make a model: circle, ball, polygon, room, velocity obstacle, or every neighbour's velocity
+    /// obstacle.
     Build(Box<BuildArgs>),
     /// Draw a model's values and M-images (PNG, SVG).
     Draw(DrawArgs),
-    /// What a model says in a point: value, gradient, distance to the border, and ORCA's half-plane.
+    /// Evaluate a model at a point: value, gradient, distance to the border, and ORCA's half-plane.
     Evaluate(EvaluateArgs),
-    /// How far models of a template are off the function itself, by resolution and depth.
+    /// Measure the errors of a template's models by resolution and depth.
     Measure(Box<MeasureArgs>),
-    /// Robots change places in a room, with half-planes of formulas, of ORCA's table, and of models.
+    /// Simulate robots that swap places in a room, with half-planes from formulas, from ORCA's
+    /// table and from models.
     Swarm(SwarmArgs),
 }
 
@@ -68,19 +72,19 @@ struct BuildArgs {
     /// Nodes along the longest axis.
     #[arg(long, value_name = "N", default_value_t = 33, value_parser = clap::value_parser!(u16).range(2..))]
     resolution: u16,
-    /// Bits of each component.
+    /// Bits per component.
     #[arg(long, value_name = "BITS", default_value_t = 16, value_parser = clap::value_parser!(u8).range(4..=16))]
     depth: u8,
-    /// The file to write.
+    /// Output file.
     #[arg(long, value_name = "FILE", default_value = "model.fvm")]
     out: PathBuf,
 }
 
 #[derive(Args, Clone, Debug)]
 struct DrawArgs {
-    /// A model, as `staya voxel build` makes it.
+    /// A model made by `staya voxel build`.
     model: PathBuf,
-    /// The third variable, for models of three; its middle without.
+    /// Third variable of the slice, for models of three variables [default: the middle].
     #[arg(long, value_name = "Z", allow_hyphen_values = true)]
     slice: Option<f64>,
     /// Folder for the pictures.
@@ -90,12 +94,12 @@ struct DrawArgs {
 
 #[derive(Args, Clone, Debug)]
 struct EvaluateArgs {
-    /// A model, as `staya voxel build` makes it.
+    /// A model made by `staya voxel build`.
     model: PathBuf,
-    /// Where: two or three numbers with commas.
+    /// Point: two or three numbers with commas.
     #[arg(value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     at: String,
-    /// By the plane of the nearest node alone, instead of the blend of those around.
+    /// Use the plane of the nearest node instead of blending the surrounding ones.
     #[arg(long)]
     nearest: bool,
 }
@@ -107,32 +111,33 @@ struct MeasureArgs {
     /// Nodes along the longest axis.
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "9,17,33,65", value_parser = clap::value_parser!(u16).range(2..))]
     resolution: Vec<u16>,
-    /// Bits of each component.
+    /// Bits per component.
     #[arg(long, value_name = "BITS,...", value_delimiter = ',', default_value = "8,12,16", value_parser = clap::value_parser!(u8).range(4..=16))]
     depth: Vec<u8>,
-    /// Points to compare in.
+    /// Number of random points to compare.
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     points: u32,
-    /// Equal seeds give equal points.
+    /// Seed; equal seeds give equal points.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
 
 #[derive(Args, Clone, Debug)]
 struct SwarmArgs {
-    /// A room as TOML (`outline`, `[[circle]]`, `[[polygon]]`); without, the one of the documentation.
+    /// A room as TOML (`outline`, `[[circle]]`, `[[polygon]]`) [default: the room of the
+    /// documentation].
     #[arg(long, value_name = "FILE")]
     room: Option<PathBuf>,
-    /// Robots.
+    /// Number of robots.
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=64))]
     robots: u32,
-    /// Radius of the circle around the origin that they stand on, metres.
+    /// Radius of the circle of starts around the origin, metres.
     #[arg(long, value_name = "M", default_value_t = 2.5)]
     circle: f32,
-    /// Equal seeds give equal starts.
+    /// Seed; equal seeds give equal starts.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// A run ends after so long, seconds.
+    /// Time limit of a run, seconds.
     #[arg(long, value_name = "S", default_value_t = 60.0)]
     limit: f32,
     /// Nodes along the longest axis of the room's model.
@@ -141,7 +146,7 @@ struct SwarmArgs {
     /// Nodes along the longest axis of the neighbours' model.
     #[arg(long, value_name = "N", default_value_t = 17, value_parser = clap::value_parser!(u16).range(2..))]
     neighbor_resolution: u16,
-    /// Bits of each component of both.
+    /// Bits per component of both models.
     #[arg(long, value_name = "BITS", default_value_t = 16, value_parser = clap::value_parser!(u8).range(4..=16))]
     depth: u8,
 }
@@ -150,7 +155,7 @@ impl VoxelArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// Files that cannot be read or written, templates without sense, models that are none.
+    /// A file that cannot be read or written, an invalid template, or an invalid model.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.action {
             Action::Build(args) => args.run(global)?,
@@ -163,7 +168,6 @@ impl VoxelArgs {
     }
 }
 
-/// A template's model.
 fn made(template: &Templated, resolution: u16, depth: u8) -> Result<Vec<u8>> {
     Ok(match template {
         Templated::Plane(function, extent) => build(function, &grid(*extent, resolution)?, depth)?,
@@ -175,7 +179,6 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))
 }
 
-/// What is said of a model.
 #[derive(Debug, Serialize)]
 struct About {
     file: PathBuf,
@@ -238,14 +241,14 @@ impl DrawArgs {
     }
 }
 
-/// What `evaluate --json` prints.
 #[derive(Debug, Serialize)]
 struct Evaluated {
     value: f32,
     gradient: Vec<f32>,
-    /// To the border, to first order; positive where the function is. Of two variables.
+    /// First-order distance to the border, positive where the function is positive; two variables
+    /// only.
     distance: Option<f32>,
-    /// Out of where the function is positive. Of two variables.
+    /// Normal out of the positive set; two variables only.
     normal: Option<[f32; 2]>,
 }
 
@@ -269,8 +272,8 @@ impl EvaluateArgs {
         }
         let mut text = format!("value    {}\ngradient {:?}\n", found.value, found.gradient);
         if let (Some(distance), Some([x, y])) = (found.distance, found.normal) {
-            writeln!(text, "distance {distance}, to first order; positive where the function is")?;
-            writeln!(text, "normal   ({x}, {y}), out of where the function is positive")?;
+            writeln!(text, "distance {distance}, first order; positive where the function is positive")?;
+            writeln!(text, "normal   ({x}, {y}), out of the positive set")?;
         }
         print(&text)
     }
@@ -279,14 +282,13 @@ impl EvaluateArgs {
 fn local<const V: usize>(bytes: &[u8], at: &[f64], reading: Reading) -> Result<Local<f32, V>> {
     let model = Model::<f32, V>::from_bytes(bytes)?;
     let at: [f64; V] =
-        at.try_into().map_err(|_| anyhow!("{} numbers for a function of {V} variables: give {V}", at.len()))?;
+        at.try_into().map_err(|_| anyhow!("{} numbers for a function of {V} variables; give {V}", at.len()))?;
     let extent = model.extent();
     reading
         .local(&model, at.map(|x| x as f32))
-        .ok_or_else(|| anyhow!("the model knows nothing at {at:?}: its extent is {extent:?}"))
+        .ok_or_else(|| anyhow!("{at:?} is outside the model; give a point in its extent {extent:?}"))
 }
 
-/// One line of the table.
 #[derive(Debug, Serialize)]
 struct Row {
     nodes: Vec<u16>,
@@ -295,7 +297,7 @@ struct Row {
     reading: Reading,
     #[serde(flatten)]
     errors: Measured,
-    /// Of models of neighbours, blended as ORCA reads them: against the formula.
+    /// Errors of half-planes against the formula, for models of neighbours.
     #[serde(skip_serializing_if = "Option::is_none")]
     half_planes: Option<HalfPlaneErrors>,
 }
@@ -371,7 +373,9 @@ impl MeasureArgs {
             Templated::Plane(function, _) => measure(function, &Model::from_bytes(bytes)?, reading, points, seed),
             Templated::Space(function, _) => measure(function, &Model::from_bytes(bytes)?, reading, points, seed),
         };
-        found.ok_or_else(|| anyhow!("nothing could be compared: the function is level, or too steep for the depth"))
+        found.ok_or_else(|| {
+            anyhow!("no point could be compared: the function is constant or too steep; give a greater depth")
+        })
     }
 }
 
@@ -390,9 +394,7 @@ impl SwarmArgs {
             models: Models { room: &room_model, neighbor: &neighbor },
         };
         if let Some(robot) = swap.blocked() {
-            return Err(anyhow!(
-                "robot {robot} would start or end in a wall: choose another --circle, or fewer --robots"
-            ));
+            return Err(anyhow!("robot {robot} would start or end in a wall; give another --circle or fewer --robots"));
         }
         let mut outcomes = Vec::new();
         for walls in [Source::Formula, Source::Model] {

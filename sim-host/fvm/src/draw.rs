@@ -1,4 +1,4 @@
-//! Models as pictures: M-images, one pixel for each voxel, and a sheet to look at.
+//! Pictures of models: M-images with one pixel per voxel, and an overview sheet.
 
 use staya_controller::scalar::Scalar;
 use staya_plot::canvas::{Anchor, Canvas, Pixels, Shape, Stroke, Text};
@@ -6,35 +6,35 @@ use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 use staya_voxel::{FileError, HEADER_LEN, Header, Model};
 use std::path::{Path, PathBuf};
 
-/// Why there are no pictures.
+/// Why pictures cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum DrawError {
-    /// No model.
+    /// The model is invalid.
     #[error("{0}")]
     Model(#[from] FileError),
-    /// Not on its third axis.
-    #[error("a slice at {at}: the model knows {low} to {high} along its third axis")]
+    /// The slice is outside the third axis.
+    #[error("no slice at {at}; give {low} to {high} along the third axis")]
     Slice {
-        /// What was asked for.
+        /// Requested slice.
         at: f64,
-        /// The least.
+        /// Smallest coordinate.
         low: f64,
-        /// The greatest.
+        /// Largest coordinate.
         high: f64,
     },
-    /// Not written.
+    /// A file cannot be written.
     #[error("{0}: {1}")]
     Write(PathBuf, String),
 }
 
-/// Names of the components.
 const NAMES: [&[&str]; 2] = [
     &["cos alpha", "cos beta", "cos gamma", "cos delta"],
     &["cos alpha", "cos beta", "cos gamma", "cos epsilon", "cos delta"],
 ];
 
-/// Writes a PNG for each component, `STEM-1.png` and so on: one pixel for each voxel, north up, in 8 or 16 bits of
-/// grey from -1, black, to 1, white. Layers of three variables are one above the other, the first at the bottom.
+/// Writes a PNG for each component, `STEM-1.png` and so on: one pixel per voxel, north up, 8 or 16
+/// bits of grey from -1 (black) to 1 (white). Layers of three variables are stacked, the first at
+/// the bottom.
 ///
 /// # Errors
 /// [`DrawError`].
@@ -49,7 +49,7 @@ pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>, DrawError> {
         for row in (0..rows).rev() {
             for column in 0..width {
                 let at = ((row * width + column) * components + component) * length;
-                // Offset binary, in the upper bits.
+                // Offset binary in the upper bits.
                 if length == 1 {
                     let level = i16::from(nodes[at].cast_signed()) + (1 << (header.depth - 1));
                     grey.push((level << (8 - header.depth)) as u8);
@@ -83,12 +83,10 @@ fn suffixed(stem: &Path, suffix: &str) -> PathBuf {
 const SIDE: f64 = 300.0;
 const GAP: f64 = 34.0;
 const TOP: f64 = 62.0;
-/// Pixels along a picture of values.
 const PIXELS: u32 = 360;
 
-/// A sheet: the values with the border, the distance to first order, and the M-images; of three variables a slice
-/// through
-/// the nearest layer to `slice`, the middle one if it is `None`.
+/// A sheet with the values and the border, the first-order distance, and the M-images. Three
+/// variables show the layer nearest to `slice`, or the middle one for `None`.
 ///
 /// # Errors
 /// [`DrawError`].
@@ -120,7 +118,7 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
     Ok(Sheet { extent: [x, y], nodes: [nx, ny], fields: &fields, names: NAMES[1], node: &node }.draw(&title))
 }
 
-/// A picture's title, and its value at a place.
+/// Title of a picture, and its value at a point.
 type Field<'a> = (&'a str, &'a dyn Fn(f64, f64) -> Option<f64>);
 
 struct Sheet<'a> {
@@ -128,7 +126,6 @@ struct Sheet<'a> {
     nodes: [u16; 2],
     fields: &'a [Field<'a>],
     names: &'a [&'a str],
-    /// All components of a node.
     node: &'a dyn Fn(u16, u16) -> Option<Vec<f64>>,
 }
 
@@ -186,7 +183,8 @@ fn show(canvas: &mut Canvas, area: [f64; 4], name: &str, pixels: Pixels) {
     canvas.rectangle([left, top, width, height], None, Some(Stroke::new(MUTED, 1.0)));
 }
 
-/// Orange where positive, blue where negative, with lines; `line` is how wide they are, in values.
+/// Orange where positive, blue where negative, with contour lines of width `line` in units of the
+/// value.
 fn contoured(value: f64, most: f64, line: f64) -> [u8; 4] {
     let colour = if value > 0.0 { PALETTE[1] } else { PALETTE[0] };
     let fill = WHITE.towards(colour, Scalar::min(value.abs() / most, 1.0) * 0.7 + 0.08);

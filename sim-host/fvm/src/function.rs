@@ -1,27 +1,28 @@
-//! Functions of two or three variables, and R-functions, which combine them as Boolean operations combine sets (V. L.
-//! Rvachev 1982, "Theory of R-functions and some applications of it"; in English V. Shapiro 2007, "Semi-analytic
-//! geometry
-//! with R-functions", Acta Numerica 16).
+//! Functions of two or three variables, and R-functions, which combine them like Boolean operations
+//! combine sets (V. L. Rvachev 1982, "Theory of R-functions and some applications of it"; in
+//! English V. Shapiro 2007, "Semi-analytic geometry with R-functions", Acta Numerica 16).
 //!
-//! A function stands for the set where it is positive; its zeros are the border. An R-function's sign follows from
-//! the signs of its arguments alone.
+//! A function stands for the set where it is positive; its zeros are the border. The sign of an
+//! R-function depends only on the signs of its arguments.
 
 use std::fmt::{self, Display};
 use std::ops::Not;
 use std::str::FromStr;
 use std::sync::Arc;
 
-/// Rvachev's system R_alpha: which functions stand for "and" and "or". "Not" is -x in each.
+/// Rvachev's system R_alpha, which defines "and" and "or". "Not" is -x in all systems.
 ///
-/// x and y: (x + y - sqrt(x^2 + y^2 - 2 alpha x y)) / (1 + alpha), x or y: the same with +, for -1 < alpha <= 1.
+/// x and y: (x + y - sqrt(x^2 + y^2 - 2 alpha x y)) / (1 + alpha); x or y: with + instead of -
+/// before the root; -1 < alpha <= 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum System {
-    /// R_0, alpha = 0: x + y -+ sqrt(x^2 + y^2). Smooth but where both are 0: gradients are defined on the whole
-    /// border but in corners; values grow and shrink away from it.
+    /// R_0, alpha = 0: x + y -+ sqrt(x^2 + y^2). Smooth except where both arguments are 0, so
+    /// gradients exist on the whole border except in corners. Values are not distances.
     R0,
-    /// R_1, alpha = 1: least and greatest. Values stay distances where they were; a kink wherever both are equal.
+    /// R_1, alpha = 1: minimum and maximum. Distances stay distances, but there is a kink where
+    /// both arguments are equal.
     R1,
-    /// R_alpha with an alpha between; -1 < alpha <= 1.
+    /// R_alpha for another alpha, -1 < alpha <= 1.
     Alpha(f64),
 }
 
@@ -34,22 +35,21 @@ impl System {
         }
     }
 
-    /// Conjunction: positive where both are.
+    /// Conjunction: positive where both arguments are.
     #[must_use]
     pub fn and(self, x: f64, y: f64) -> f64 {
         if self == Self::R1 {
             return if x < y || x.is_nan() { x } else { y };
         }
         let alpha = self.alpha();
-        // The smaller of the two parts, from the product of both: what remains of the plain difference is rounding,
-        // and can
-        // have the wrong sign.
+        // The part of smaller magnitude follows from the product of both parts: the plain
+        // difference is mostly rounding error and can have the wrong sign.
         let (sum, product) = (x + y, x * y);
         let root = libm::sqrt((x * x + y * y - 2.0 * alpha * product).max(0.0));
         if sum > 0.0 { 2.0 * product / (sum + root) } else { (sum - root) / (1.0 + alpha) }
     }
 
-    /// Disjunction: positive where at least one is.
+    /// Disjunction: positive where at least one argument is.
     #[must_use]
     pub fn or(self, x: f64, y: f64) -> f64 {
         -self.and(-x, -y)
@@ -75,7 +75,7 @@ impl FromStr for System {
             "r1" => Ok(Self::R1),
             _ => match text.parse() {
                 Ok(alpha) if alpha > -1.0 && alpha <= 1.0 => Ok(Self::Alpha(alpha)),
-                _ => Err(format!("`{text}` is none of r0, r1, and alpha of R_alpha (above -1, at most 1)")),
+                _ => Err(format!("`{text}` is not r0, r1, or an alpha of R_alpha; give a number above -1, at most 1")),
             },
         }
     }
@@ -86,19 +86,19 @@ impl FromStr for System {
 pub struct Function<const V: usize>(Arc<dyn Fn([f64; V]) -> f64 + Send + Sync>);
 
 impl<const V: usize> Function<V> {
-    /// Any closure.
+    /// Wraps a closure.
     #[must_use]
     pub fn new(function: impl Fn([f64; V]) -> f64 + Send + Sync + 'static) -> Self {
         Self(Arc::new(function))
     }
 
-    /// Its value in a point.
+    /// Value at a point.
     #[must_use]
     pub fn value(&self, at: [f64; V]) -> f64 {
         (self.0)(at)
     }
 
-    /// Its derivatives in a point, by differences over `apart` to both sides.
+    /// Gradient at a point, by differences over `apart` to both sides.
     #[must_use]
     pub fn gradient(&self, at: [f64; V], apart: [f64; V]) -> [f64; V] {
         let mut gradient = [0.0; V];
@@ -111,20 +111,20 @@ impl<const V: usize> Function<V> {
         gradient
     }
 
-    /// Positive where both are.
+    /// Conjunction: positive where both functions are.
     #[must_use]
     pub fn and(self, other: Self, system: System) -> Self {
         Self::new(move |at| system.and(self.value(at), other.value(at)))
     }
 
-    /// Positive where at least one is.
+    /// Disjunction: positive where at least one function is.
     #[must_use]
     pub fn or(self, other: Self, system: System) -> Self {
         Self::new(move |at| system.or(self.value(at), other.value(at)))
     }
 }
 
-/// Positive where the function is negative.
+/// Negation: positive where the function is negative.
 impl<const V: usize> Not for Function<V> {
     type Output = Self;
 

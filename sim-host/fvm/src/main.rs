@@ -1,4 +1,4 @@
-//! `staya-voxel`: `staya voxel` and `staya orca`.
+//! The program `staya-voxel` with the commands `voxel` and `orca`.
 
 fn main() -> std::process::ExitCode {
     staya_console::main(|command: &staya_fvm::cli::Command, global| command.run(global))

@@ -1,4 +1,4 @@
-//! How far a model is off the function that it was made of.
+//! Measures the errors of models.
 
 use crate::Function;
 use serde::Serialize;
@@ -8,18 +8,18 @@ use staya_controller::rand::Rng;
 use staya_stats::{mean, quantile};
 use staya_voxel::{Local, Model};
 
-/// How a model is read.
+/// Interpolation of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reading {
     /// The plane of the nearest node.
     Nearest,
-    /// The planes around, blended.
+    /// A blend of the surrounding planes.
     Blend,
 }
 
 impl Reading {
-    /// What the model says in a point.
+    /// Evaluates a model at a point; `None` outside of it.
     #[must_use]
     pub fn local<const V: usize>(self, model: &Model<'_, f32, V>, at: [f32; V]) -> Option<Local<f32, V>> {
         match self {
@@ -29,14 +29,14 @@ impl Reading {
     }
 }
 
-/// Errors of one kind.
+/// Statistics of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// Over all points.
+    /// Mean.
     pub mean: f64,
-    /// What 99 of 100 points do not exceed.
+    /// 99th percentile.
     pub p99: f64,
-    /// The greatest.
+    /// Maximum.
     pub max: f64,
 }
 
@@ -47,20 +47,21 @@ impl Errors {
     }
 }
 
-/// What [`measure`] found.
+/// Errors found by [`measure`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Measured {
-    /// Of values, in the function's units.
+    /// Errors of values, in the function's units.
     pub value: Errors,
     /// Lengths of the differences of gradients.
     pub gradient: Errors,
-    /// Angles between gradients, degrees, where the function is not level.
+    /// Angles between gradients, degrees, except where the function is constant.
     pub angle_deg: Errors,
 }
 
 const PURPOSE: u32 = u32::from_be_bytes(*b"fvm\0");
 
-/// Compares in so many points of the model's extent, at random but the same for equal seeds. `None` without points.
+/// Compares a model with its function at random points of its extent. Equal seeds give equal
+/// points. `None` without points.
 #[must_use]
 pub fn measure<const V: usize>(
     function: &Function<V>,
@@ -76,7 +77,7 @@ pub fn measure<const V: usize>(
         let mut rng = Rng::keyed(seed, PURPOSE, point, 0);
         let at = extent.map(|[low, high]| {
             let share = f64::from(rng.next_u32()) / f64::from(u32::MAX);
-            // As the model gets it: a number of single precision.
+            // Rounded to single precision, as the model receives it.
             (low + (high - low) * (1e-5 + (1.0 - 2e-5) * share)) as f32
         });
         let found = reading.local(model, at)?;
@@ -99,13 +100,13 @@ pub fn measure<const V: usize>(
 pub struct HalfPlaneErrors {
     /// Angles between normals, degrees.
     pub angle_deg: Errors,
-    /// Differences of the demanded changes of velocity, in (R_A + R_B) / tau.
+    /// Differences of the required changes of velocity, in (R_A + R_B) / tau.
     pub change: Errors,
 }
 
-/// Compares half-planes from `source` with the formula's, on so many pairs of robots: radii of 0.1 to 0.5 m, up to 5
-/// m apart,
-/// velocities of up to 1.5 m/s along each axis, a horizon of 2 s. `None` without pairs.
+/// Compares half-planes of `source` with the formula on random pairs of robots: radii of 0.1 to 0.5
+/// m, up to 5 m apart, velocities up to 1.5 m/s along each axis, a horizon of 2 s. `None` without
+/// pairs.
 #[must_use]
 pub fn half_planes<P: HalfSpaces<f32, Velocity = Vec2<f32>>>(
     source: &P,

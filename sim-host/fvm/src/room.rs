@@ -1,4 +1,4 @@
-//! Rooms from files: an outline, and what stands in it.
+//! Rooms from files: an outline and obstacles.
 
 use crate::{Function, System, shape};
 use serde::Deserialize;
@@ -9,12 +9,12 @@ use staya_controller::obstacle::Obstacle;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Room {
-    /// Corners of its wall.
+    /// Corners of the outer wall.
     pub outline: Vec<[f64; 2]>,
     /// Round obstacles.
     #[serde(default, rename = "circle")]
     pub circles: Vec<Circle>,
-    /// Others.
+    /// Polygonal obstacles.
     #[serde(default, rename = "polygon")]
     pub polygons: Vec<Polygon>,
 }
@@ -23,40 +23,40 @@ pub struct Room {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Circle {
-    /// Its centre, metres.
+    /// Centre, metres.
     pub center: [f64; 2],
-    /// Its radius, metres; more than 0.
+    /// Radius, metres, above 0.
     pub radius: f64,
 }
 
-/// An obstacle with corners.
+/// A polygonal obstacle.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Polygon {
-    /// Its corners, metres, in either direction.
+    /// Corners, metres, in either direction.
     pub corners: Vec<[f64; 2]>,
 }
 
-/// Why a text is no room.
+/// Why a room is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoomError {
-    /// Not TOML, or not these fields.
+    /// Not TOML, or unknown fields.
     #[error("{0}")]
     Toml(String),
-    /// A field without sense.
+    /// A field has an invalid value.
     #[error("{field}: {remedy}")]
     Field {
-        /// Which.
+        /// Name of the field.
         field: String,
-        /// What it has to be.
+        /// Valid values.
         remedy: &'static str,
     },
 }
 
-const CORNERS: &str = "three corners or more, of finite numbers, of which no two in a row are the same, are needed";
+const CORNERS: &str = "give three corners or more, finite, no two in a row equal";
 
 impl Default for Room {
-    /// 8 m by 6 m with a niche, a round pillar and a square one: what the documentation shows.
+    /// 8 m by 6 m with a niche, a round and a square pillar, as in the documentation.
     fn default() -> Self {
         Self {
             outline: vec![[-4.0, -3.0], [4.0, -3.0], [4.0, 1.5], [2.5, 1.5], [2.5, 3.0], [-4.0, 3.0]],
@@ -67,7 +67,7 @@ impl Default for Room {
 }
 
 impl Room {
-    /// From a file's text.
+    /// Parses the text of a file.
     ///
     /// # Errors
     /// [`RoomError`] with line or field.
@@ -84,10 +84,10 @@ impl Room {
         }
         for (index, circle) in self.circles.iter().enumerate() {
             if !circle.center.iter().all(|x| x.is_finite()) {
-                return bad(format!("circle {}: center", index + 1), "two finite numbers are needed");
+                return bad(format!("circle {}: center", index + 1), "give two finite numbers");
             }
             if !(circle.radius > 0.0 && circle.radius.is_finite()) {
-                return bad(format!("circle {}: radius", index + 1), "a number above 0 is needed");
+                return bad(format!("circle {}: radius", index + 1), "give a number above 0");
             }
         }
         for (index, polygon) in self.polygons.iter().enumerate() {
@@ -98,7 +98,7 @@ impl Room {
         Ok(())
     }
 
-    /// Positive where no robot can be: outside of the outline, or in an obstacle.
+    /// A function that is positive outside of the outline and in obstacles.
     #[must_use]
     pub fn function(&self, system: System) -> Function<2> {
         let walls = !shape::polygon(self.outline.clone());
@@ -107,13 +107,13 @@ impl Room {
         circles.chain(polygons).fold(walls, |all, one| all.or(one, system))
     }
 
-    /// The outline's least and greatest coordinates, and `margin` around.
+    /// Smallest and largest coordinates of the outline with a `margin` around it.
     #[must_use]
     pub fn extent(&self, margin: f64) -> [[f64; 2]; 2] {
         extent(&self.outline, margin)
     }
 
-    /// The same things as ORCA's formulas have them, seen from a place.
+    /// Walls and obstacles for ORCA's formulas, relative to `from`.
     #[must_use]
     pub fn obstacles(&self, from: Vec2<f32>) -> Vec<Obstacle<f32>> {
         let point = |[x, y]: [f64; 2]| Vec2::new(x as f32, y as f32) - from;

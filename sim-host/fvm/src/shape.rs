@@ -1,8 +1,8 @@
-//! Functions of simple shapes: each the distance to its border, positive inside.
+//! Distance functions of simple shapes, positive inside.
 
 use crate::Function;
 
-/// Everything to the left of a directed line through `from` and `to`, which are different.
+/// The half-plane to the left of a directed line through two different points.
 #[must_use]
 pub fn left_of(from: [f64; 2], to: [f64; 2]) -> Function<2> {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
@@ -22,7 +22,7 @@ pub fn ball(center: [f64; 3], radius: f64) -> Function<3> {
     Function::new(move |[x, y, z]| radius - libm::hypot(libm::hypot(x - center[0], y - center[1]), z - center[2]))
 }
 
-/// A polygon, convex or not, that does not cross itself; its corners in either direction.
+/// A simple polygon, convex or not, with corners in either direction.
 #[must_use]
 pub fn polygon(corners: Vec<[f64; 2]>) -> Function<2> {
     Function::new(move |at| {

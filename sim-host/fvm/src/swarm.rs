@@ -1,4 +1,5 @@
-//! A swarm that changes places in a room, its ORCA by the formulas, by the table, or by functional voxel models.
+//! Simulates robots that swap places in a room, with ORCA from formulas, from the table, or from
+//! functional voxel models.
 
 use crate::Room;
 use serde::Serialize;
@@ -15,66 +16,64 @@ use std::f64::consts::TAU;
 const RADIUS_M: f32 = 0.12;
 const SPEED_MPS: f32 = 0.8;
 const STEP_S: f32 = 0.05;
-/// How far a robot sees walls.
 const SIGHT_M: f32 = 1.5;
-/// As near as that a robot has arrived.
 const ARRIVED_M: f32 = 0.1;
 const PURPOSE: u32 = u32::from_be_bytes(*b"swap");
 
-/// Where half-planes come from.
+/// Source of half-planes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
     /// The formula.
     Formula,
-    /// ORCA's own table of 2 KiB.
+    /// ORCA's table of 2 KiB.
     Table,
     /// A functional voxel model.
     Model,
 }
 
-/// What happens.
+/// A swap of places.
 #[derive(Clone, Debug)]
 pub struct Swap<'a> {
-    /// Where.
+    /// The room.
     pub room: Room,
-    /// Robots on the circle, each on its way to the opposite place.
+    /// Number of robots on the circle, each with its goal on the opposite side.
     pub robots: u32,
-    /// Its radius around the origin, metres.
+    /// Radius of the circle around the origin, metres.
     pub circle_m: f32,
-    /// Equal seeds give equal starts: each robot stands up to 20 mm off its place.
+    /// Seed; each start has a random offset of up to 20 mm.
     pub seed: u64,
-    /// A run ends after so long, seconds.
+    /// Time limit, seconds.
     pub limit_s: f32,
-    /// The model of the room, and of every neighbour.
+    /// Models of the room and of neighbours.
     pub models: Models<'a>,
 }
 
-/// Bytes of models.
+/// The bytes of the models.
 #[derive(Clone, Copy, Debug)]
 pub struct Models<'a> {
-    /// Of [`Template::Room`](crate::Template::Room).
+    /// Model of [`Template::Room`](crate::Template::Room).
     pub room: &'a [u8],
-    /// Of [`Template::Neighbor`](crate::Template::Neighbor).
+    /// Model of [`Template::Neighbor`](crate::Template::Neighbor).
     pub neighbor: &'a [u8],
 }
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Outcome {
-    /// Where neighbours' half-planes came from.
+    /// Source of the neighbours' half-planes.
     pub neighbors: Source,
-    /// Where walls' came from.
+    /// Source of the walls' half-planes.
     pub walls: Source,
-    /// Robots that arrived.
+    /// Number of robots that arrived.
     pub arrived: u32,
-    /// When the last one did, seconds; the limit, if not all did.
+    /// Time at which the last robot arrived, seconds; the limit if not all arrived.
     pub time_s: f32,
-    /// The least distance between two robots' borders, metres.
+    /// Smallest distance between the borders of two robots, metres.
     pub gap_m: f32,
-    /// The least distance between a robot's border and a wall, metres, by the room itself.
+    /// Smallest distance between a robot's border and a wall, metres, by the exact room.
     pub wall_gap_m: f32,
-    /// Pairs and ticks of overlap.
+    /// Overlaps, summed over pairs and ticks.
     pub overlaps: u32,
 }
 
@@ -87,7 +86,7 @@ struct Robot<P: HalfSpaces<f32>> {
 }
 
 impl Swap<'_> {
-    /// The first robot, counted from 1, whose place on the circle is not free of walls.
+    /// The first robot, counted from 1, whose place on the circle is inside a wall.
     #[must_use]
     pub fn blocked(&self) -> Option<u32> {
         let function = self.room.function(crate::System::R1);
@@ -103,10 +102,10 @@ impl Swap<'_> {
         Vec2::new(cos as f32, sin as f32) * self.circle_m
     }
 
-    /// One run.
+    /// Simulates one run.
     ///
     /// # Errors
-    /// Models that are none.
+    /// An invalid model.
     pub fn run(&self, neighbors: Source, walls: Source) -> Result<Outcome, FileError> {
         let outcome = match neighbors {
             Source::Formula => self.go(Analytic, walls)?,
@@ -118,7 +117,7 @@ impl Swap<'_> {
 
     fn go<P: HalfSpaces<f32, Velocity = Vec2<f32>> + Clone>(&self, by: P, walls: Source) -> Result<Outcome, FileError> {
         let model = Model::<f32, 2>::from_bytes(self.models.room)?;
-        // What is true, whatever robots go by.
+        // The exact room, for the results.
         let truth = self.room.function(crate::System::R1);
         let mut robots: Vec<Robot<P>> = (0..self.robots).map(|index| self.robot(index, by.clone())).collect();
         let mut outcome = Outcome {
@@ -191,7 +190,7 @@ impl Swap<'_> {
         nearby.sort_by(|one, other| one.offset_m.norm().total_cmp(&other.offset_m.norm()));
         nearby.truncate(16);
         let around: Vec<Obstacle<f32>> = match walls {
-            // Who is where the model knows nothing goes by neighbours alone: the outcome tells.
+            // Outside of the model the robot avoids neighbours only, which shows in the result.
             Source::Model => obstacles(model, at, RADIUS_M + 2.0 * SPEED_MPS * STEP_S)
                 .map(|found| found.iter().copied().collect())
                 .unwrap_or_default(),

@@ -1,9 +1,9 @@
-//! Functions by name: circle, ball, polygon, room, and velocity obstacles.
+//! Named functions: circle, ball, polygon, room, and velocity obstacles.
 
 use crate::room::{extent, is_polygon};
 use crate::{Function, Room, System, shape};
 
-/// What a model is made of.
+/// The function of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Template {
     /// A disc: centre and radius, metres.
@@ -14,20 +14,20 @@ pub enum Template {
     Polygon(Vec<[f64; 2]>),
     /// A room: positive where no robot can be.
     Room(Room, System),
-    /// The relative velocities, m/s, that lead one pair of robots to a collision (FVM, eq. 15).
+    /// The relative velocities, m/s, that lead a pair of robots to a collision (FVM, eq. 15).
     VelocityObstacle(Pair, VelocityForm),
-    /// The same for every pair: see `velocity_obstacle`.
+    /// As `VelocityObstacle`, for every pair; see `velocity_obstacle`.
     Neighbor(VelocityForm),
 }
 
 /// Two robots.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// Places of A, which decides, and of B, metres.
+    /// Positions of A, which decides, and of B, metres.
     pub places_m: [[f64; 2]; 2],
     /// Radii, metres.
     pub radii_m: [f64; 2],
-    /// No collision within this time, seconds.
+    /// Time horizon without collisions, seconds.
     pub horizon_s: f64,
 }
 
@@ -38,48 +38,50 @@ impl Default for Pair {
     }
 }
 
-/// How a velocity obstacle is one function.
+/// Function that represents a velocity obstacle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum VelocityForm {
-    /// The distance to the nearest border: what ORCA asks for.
+    /// Distance to the nearest border, as ORCA needs it.
     Distance,
-    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions: what the paper has. Zero on the same border; the gradient
-    /// is
-    /// not everywhere the shortest way out.
+    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions, as in the paper. It has the same
+    /// border, but its gradient is not everywhere the shortest way out.
     RFunction(System),
 }
 
-/// Why a template makes no function.
+/// Why a template is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TemplateError {
-    /// No length.
-    #[error("radius {0}: a finite number above 0 is needed")]
+    /// Invalid radius.
+    #[error("radius {0}: give a finite number above 0")]
     Radius(f64),
-    /// No place.
-    #[error("center: finite numbers are needed")]
+    /// Invalid centre.
+    #[error("center: give finite numbers")]
     Center,
-    /// No polygon.
-    #[error("corners: three or more, finite, no two in a row the same, are needed")]
+    /// Invalid polygon.
+    #[error("corners: give three or more, finite, no two in a row equal")]
     Corners,
-    /// No cone.
-    #[error("the robots have to be more than {0} m, the sum of their radii, apart, and radii and horizon above 0")]
+    /// Robots that overlap, or a radius or horizon that is not above 0.
+    #[error(
+        "the robots overlap or a number is not positive; give places more than {0} m apart, radii and horizon above 0"
+    )]
     Pair(f64),
 }
 
-/// A function, and where it is worth sampling.
+/// A function and its default extent.
 #[derive(Clone)]
 pub enum Templated {
-    /// Of two variables.
+    /// Two variables.
     Plane(Function<2>, [[f64; 2]; 2]),
-    /// Of three.
+    /// Three variables.
     Space(Function<3>, [[f64; 2]; 3]),
 }
 
-/// Along, beside the axis to the neighbour, in disc radii; tangent of half of the half angle.
+/// Along and across the axis to the neighbour, in disc radii; tangent of a quarter of the cone's
+/// angle.
 const NEIGHBOR: [[f64; 2]; 3] = [[-2.0, 2.0], [0.0, 2.0], [0.0, 1.0]];
 
 impl Template {
-    /// The function, and its usual extent.
+    /// The function and its default extent.
     ///
     /// # Errors
     /// [`TemplateError`].
@@ -143,18 +145,20 @@ impl Pair {
     }
 }
 
-/// The velocity obstacle with its disc's centre in the origin, the disc's radius as unit and the neighbour ahead
-/// along x,
-/// by sine and cosine of its half angle: positive inside. `y >= 0`; the other half is its mirror image. (Differences
-/// at y = 0 look a little below: there it goes on as a smooth function.)
+/// The velocity obstacle, positive inside. The disc has its centre at the origin and radius 1, the
+/// neighbour is on the positive x axis, and the cone is given by sine and cosine of its half angle.
+/// `y >= 0`; the other half is the mirror image. (Differences at y = 0 need values slightly below,
+/// where the function continues smoothly.)
 #[must_use]
 pub fn velocity_obstacle(form: VelocityForm, x: f64, y: f64, [sine, cos]: [f64; 2]) -> f64 {
-    // Inside of both legs, which touch the disc; beyond the perpendiculars from the disc's centre on them.
+    // Inside both legs, which touch the disc; beyond the perpendiculars on them through the disc's
+    // centre.
     let (pr1, pr2) = (1.0 + sine * x - cos * y, 1.0 + sine * x + cos * y);
     let (pr3, pr4) = (cos * x + sine * y, cos * x - sine * y);
     let disc = 1.0 - libm::hypot(x, y);
     match form {
-        // Beyond the perpendicular on the nearer leg that leg is nearest, as everywhere ahead; before it the disc.
+        // Beyond the perpendicular on the nearer leg, and everywhere ahead, that leg is nearest;
+        // elsewhere the disc.
         VelocityForm::Distance if pr3 > 0.0 || x > 0.0 => pr1,
         VelocityForm::Distance => disc,
         VelocityForm::RFunction(system) => {

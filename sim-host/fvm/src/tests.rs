@@ -21,14 +21,14 @@ fn space(template: &Template, nodes: [u16; 3], depth: u8) -> Vec<u8> {
 }
 
 proptest! {
-    /// The sign of an R-function is that of the Boolean operation, also where rounding could turn it.
+    /// The sign of an R-function equals the Boolean operation, even where rounding could change it.
     #[test]
     fn signs_of_r_functions_are_boolean(x in -1e3_f64..1e3, y in -1e3_f64..1e3, tiny in -1e-12_f64..1e-12, alpha in -0.99_f64..1.0) {
         for system in [System::R0, System::R1, System::Alpha(alpha)] {
             for (x, y) in [(x, y), (x, tiny), (tiny, y), (x, x), (x, -x)] {
                 prop_assert_eq!(system.and(x, y) > 0.0, x > 0.0 && y > 0.0, "{} {} {}", system, x, y);
                 prop_assert_eq!(system.or(x, y) > 0.0, x > 0.0 || y > 0.0, "{} {} {}", system, x, y);
-                // De Morgan, and order plays no part.
+                // De Morgan's law, and symmetry.
                 prop_assert_eq!(-system.and(x, y), system.or(-x, -y));
                 prop_assert_eq!(system.and(x, y), system.and(y, x));
             }
@@ -43,13 +43,14 @@ proptest! {
         prop_assert_eq!(System::R1.or(x, y), if x > y { x } else { y });
     }
 
-    /// The template is the controller's own R-function (min and max), and the distance that the formula asks for.
+    /// The template equals the controller's R-function (min and max), and the formula's distance.
     #[test]
     fn velocity_obstacle_agrees_with_the_controllers_formula(seed: u64) {
         let mut rng = Rng::new(seed);
         let mut number = |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX);
         let (x, y, sine) = (number(-2.0, 2.0), number(0.0, 2.0), number(0.01, 0.99));
-        // Radii and horizon of 1: the disc's radius is 1, its centre as far ahead as the neighbour.
+        // With radii and horizon of 1 the disc's radius is 1, and its centre is as far as the
+        // neighbour.
         let offset = V::new(1.0 / sine, 0.0);
         let leg = [sine, libm::sqrt(1.0 - sine * sine)];
         let exact = VelocityObstacle::new(offset, 1.0, 1.0).unwrap().value(offset + V::new(x, y));
@@ -63,9 +64,8 @@ proptest! {
         prop_assert!((found - change).abs() < 1e-9, "{found} {change}");
     }
 
-    /// Nothing of the velocity obstacle is permitted, whatever the model: a coarse one, a rough one, one of a
-    /// function with
-    /// other gradients. And both robots of a pair get opposite half-planes.
+    /// No half-plane permits a part of the velocity obstacle, whether the model is coarse, has few
+    /// bits, or has other gradients. Both robots of a pair get opposite half-planes.
     #[test]
     fn every_half_plane_of_a_neighbor_model_forbids_the_whole_obstacle(seed: u64) {
         for (form, nodes, depth) in [
@@ -95,7 +95,7 @@ proptest! {
     }
 }
 
-/// Robots of 0.1 to 0.5 m within 5 m, at up to 1.5 m/s along each axis.
+/// Robots of 0.1 to 0.5 m within 5 m, with up to 1.5 m/s along each axis.
 fn pair(rng: &mut Rng) -> (V, MovingBall<V>) {
     let mut number = |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX);
     let radii_m = number(0.2, 1.0);
@@ -106,7 +106,8 @@ fn pair(rng: &mut Rng) -> (V, MovingBall<V>) {
     (own, MovingBall { offset_m: V::new(cos, sin) * distance, velocity_mps, radii_m, tie: V::ZERO })
 }
 
-/// FVM's worked example: relative velocity (-1.5, 2.5), the whole correction, half-plane through (1.707107, 0.792893).
+/// FVM's worked example: relative velocity (-1.5, 2.5), the whole correction, half-plane through
+/// (1.707107, 0.792893).
 #[test]
 fn worked_example_of_the_paper() {
     let own = V::new(1.5, 1.0);
@@ -130,8 +131,8 @@ fn worked_example_of_the_paper() {
     assert!(found.penetration(own) >= 0.292893 - 1e-6);
 }
 
-/// A smooth function: values and gradients by the blend fall with the square of the step, by the nearest node gradients
-/// with the step. Finite differences are the oracle.
+/// For a smooth function blended values and gradients converge with the square of the step,
+/// gradients of the nearest node with the step. Finite differences are the reference.
 #[test]
 fn errors_fall_with_resolution_and_with_depth() {
     let smooth = Function::new(|[x, y]: [f64; 2]| libm::sin(2.0 * x) * libm::cos(y) + 0.3 * x);
@@ -156,7 +157,7 @@ fn errors_fall_with_resolution_and_with_depth() {
 }
 
 #[test]
-fn functions_that_cannot_be_modelled_are_refused_by_place() {
+fn errors_name_the_point_where_a_function_cannot_be_modelled() {
     let grid = Grid { extent: [[-1.0, 1.0]; 2], nodes: [5, 5] };
     let refused = |function: &Function<2>, grid: &Grid<2>, depth| build(function, grid, depth).unwrap_err().to_string();
     let circle = shape::circle([0.0; 2], 1.0);
@@ -171,7 +172,7 @@ fn functions_that_cannot_be_modelled_are_refused_by_place() {
 }
 
 #[test]
-fn rooms_are_read_and_wrong_ones_refused_by_field() {
+fn rooms_parse_and_errors_name_the_field() {
     let room = Room::read(
         "outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]\n[[circle]]\ncenter = [1.0, 0.5]\nradius = 0.2",
     )
@@ -181,7 +182,7 @@ fn rooms_are_read_and_wrong_ones_refused_by_field() {
         assert_eq!(function.value(at) > 0.0, is_wall, "{at:?}");
     }
     let refused = |text: &str| Room::read(text).unwrap_err().to_string();
-    assert!(refused("outline = [[0.0, 0.0], [1.0, 0.0]]").contains("outline: three corners"));
+    assert!(refused("outline = [[0.0, 0.0], [1.0, 0.0]]").contains("outline: give three corners"));
     let square = "outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0]]\n";
     assert!(refused(&format!("{square}[[circle]]\ncenter = [0.0, 0.0]\nradius = 0.0")).contains("circle 1: radius"));
     assert!(refused(&format!("{square}[[polygon]]\ncorners = []")).contains("polygon 1: corners"));
@@ -189,7 +190,7 @@ fn rooms_are_read_and_wrong_ones_refused_by_field() {
 }
 
 #[test]
-fn templates_without_sense_are_refused() {
+fn invalid_templates_are_refused() {
     for template in [
         Template::Circle([0.0; 2], 0.0),
         Template::Ball([f64::NAN; 3], 1.0),
@@ -203,7 +204,7 @@ fn templates_without_sense_are_refused() {
     }
 }
 
-/// In a corner both walls count, beside a pillar one plane does.
+/// In a corner both walls give a half-plane, beside a pillar one does.
 #[test]
 fn obstacles_of_a_room_are_its_walls() {
     let room = Template::Room(Room::default(), System::R1);
@@ -221,7 +222,7 @@ fn obstacles_of_a_room_are_its_walls() {
 }
 
 #[test]
-fn a_swarm_goes_by_models_as_by_formulas() {
+fn models_and_formulas_give_similar_swarms() {
     let room = Room::default();
     let of_room = plane(&Template::Room(room.clone(), System::R1), [65, 50], 16);
     let of_neighbor = space(&Template::Neighbor(VelocityForm::Distance), [17, 9, 5], 16);
@@ -235,7 +236,7 @@ fn a_swarm_goes_by_models_as_by_formulas() {
 }
 
 #[test]
-fn pictures_hold_the_components() {
+fn pictures_contain_the_components() {
     let folder = tempfile::tempdir().unwrap();
     for (bytes, count) in [
         (plane(&Template::Circle([0.0; 2], 1.0), [9, 7], 8), 4),
@@ -249,7 +250,7 @@ fn pictures_hold_the_components() {
         assert_eq!(reader.info().width, u32::from(header.nodes[0]));
         let mut grey = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut grey).unwrap();
-        // The function's own component is below 0 everywhere: dark.
+        // The function's own component is negative everywhere, hence dark.
         assert!(grey.chunks(header.component_len()).all(|pixel| pixel[0] < 128));
         assert!(sheet(&bytes, "title", None).unwrap().shapes.len() > 8);
     }
@@ -258,7 +259,7 @@ fn pictures_hold_the_components() {
 }
 
 #[test]
-fn fixed_point_reads_models_too() {
+fn models_work_in_fixed_point() {
     let bytes = plane(&Template::Circle([0.0; 2], 1.0), [33, 33], 16);
     let model = Model::<Q16, 2>::from_bytes(&bytes).unwrap();
     let number = |x: f64| <Q16 as staya_controller::scalar::Scalar>::from_f64(x).unwrap();

@@ -5,7 +5,7 @@ use anyhow::Result;
 use clap::Subcommand;
 use staya_console::{Ended, Global};
 
-/// Robots on devices.
+/// Commands for hardware in the loop.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
     /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
@@ -15,8 +15,7 @@ pub enum Command {
 impl Command {
     /// Runs the command.
     ///
-    /// # Errors
-    /// Those of the command.
+    /// Any error of the command.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let Self::Hil(args) = self;
         args.run(global)

@@ -1,4 +1,4 @@
-//! `staya hil SCENARIO`: what `staya-hil` does, also by the program of a crate with a guidance law of its own.
+//! `staya hil SCENARIO`, for Staya's laws and for crates with their own guidance law.
 
 use crate::run::HilArgs;
 use anyhow::{Context as _, Result, bail};
@@ -10,8 +10,9 @@ use std::process::Command;
 
 /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
 ///
-/// The other robots run in this process. For every robot on a device a shadow runs here too: the first step at which both differ
-/// by a bit ends the run and is printed. Exit code 1 if that happens, or a device falls silent.
+/// The other robots run in this process. Each robot on a device also has a shadow here: the run
+/// ends at the first step whose results differ in any bit, and prints that step. Exit code 1 if a
+/// step differs or a device stops answering.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Examples:\n  staya hil scenarios/six-robots.toml --device qemu:stm32f405 --devices 4\n  \
     staya hil scenarios/swap-circle.toml --device qemu:stm32f405 --device qemu:microbit --devices 6\n  \
@@ -20,8 +21,8 @@ use std::process::Command;
 pub struct HilCommand {
     #[command(flatten)]
     hil: HilArgs,
-    /// Robots go by the guidance law of the crate in this folder: its program is built, and does the same with these arguments
-    /// (docs/project.md says how to write one).
+    /// Use the guidance law of the crate in this folder: builds its program and runs it with these
+    /// arguments (see docs/own.md).
     #[arg(long = "crate", value_name = "DIR")]
     folder: Option<PathBuf>,
 }
@@ -30,7 +31,7 @@ impl HilCommand {
     /// Runs the command.
     ///
     /// # Errors
-    /// Those of [`HilArgs::run`]; a crate that does not build or whose program fails.
+    /// Errors of [`HilArgs::run`], or a crate that does not build or whose program fails.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.folder {
             Some(folder) => run_crate(folder),
@@ -39,17 +40,18 @@ impl HilCommand {
     }
 }
 
-/// Hands this command line on to the program of a crate; what is wrong it says itself.
+/// Builds and runs the program of a crate with this command line. That program reports its own
+/// errors.
 fn run_crate(folder: &Path) -> Result<Ended> {
     let manifest = folder.join("Cargo.toml");
     if !manifest.is_file() {
-        bail!("--crate {}: there is no Cargo.toml; docs/project.md says what such a crate has", folder.display());
+        bail!("--crate {}: Cargo.toml is missing; give the folder of a crate as in docs/own.md", folder.display());
     }
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.args(["run", "--release", "--quiet", "--manifest-path"]).arg(manifest).arg("--");
     command.args(handed_on(std::env::args_os().skip(1)));
-    let status = command.status().context("cannot start cargo, which builds the crate")?;
+    let status = command.status().context("cannot start cargo, which builds the crate; install Rust")?;
     match status.code() {
         Some(0) => Ok(Ended::Done),
         Some(130) => Ok(Ended::Interrupted),
@@ -57,7 +59,7 @@ fn run_crate(folder: &Path) -> Result<Ended> {
     }
 }
 
-/// The same arguments for a program that is nothing else than `staya hil`.
+/// The same arguments without `hil` and `--crate`, for a program whose only command is `hil`.
 fn handed_on(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let (mut handed_on, mut is_named, mut is_folder) = (Vec::new(), false, false);
     for argument in arguments {
@@ -80,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_crate_gets_all_arguments_but_its_own_name() {
+    fn a_crate_gets_all_arguments_except_crate() {
         let line = |text: &str| {
             let words = handed_on(text.split(' ').map(OsString::from)).into_iter();
             words.map(|word| word.into_string().expect("text")).collect::<Vec<_>>().join(" ")

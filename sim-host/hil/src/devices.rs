@@ -1,7 +1,8 @@
-//! Robots of a run whose controllers run on devices: on emulated parts or on boards.
+//! Robots whose controllers run on emulated parts or on boards.
 //!
-//! [`OnDevices`] is what the engine sees; [`firmware`](crate::firmware) finds what the devices run. The devices themselves, their line and
-//! the comparison with their shadows are `staya-runner`'s.
+//! [`OnDevices`] is the interface to the engine; [`firmware`](crate::firmware) finds the programs
+//! of emulated devices. The crate `staya-runner` has the devices, their serial links and the
+//! comparison with shadows.
 
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
@@ -9,18 +10,19 @@ use staya_runner::{Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Load,
 use staya_sim::engine::{Decision, ExternalController, Status};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Which robots run where, and what is to happen to them.
+/// Devices of a run, and planned faults.
 #[derive(Clone, Debug)]
 pub struct DevicePlan {
-    /// A robot's number in the scenario and its device, by rising number.
+    /// Index and device of each robot, by index.
     pub devices: Vec<(usize, Device)>,
-    /// What all lines do to frames.
+    /// Faults of all serial links.
     pub faults: LineFaults,
-    /// Each device starts anew at these moments, one after the other: the first in its tick, the next one tick later.
+    /// Times of planned restarts. At each, the devices restart one after the other: the first in
+    /// this tick, the next one tick later.
     pub resets: Vec<Reset>,
 }
 
-/// What came of the devices. Clones share it.
+/// Results of the devices, shared by all clones.
 #[derive(Clone, Debug, Default)]
 pub struct Log(Arc<Mutex<Entries>>);
 
@@ -28,23 +30,23 @@ pub struct Log(Arc<Mutex<Entries>>);
 struct Entries {
     trouble: Option<String>,
     statistics: Vec<Statistics>,
-    /// Robots' numbers in the scenario, and what the last step cost their devices.
+    /// Index of each robot, and the load of its device in the last step.
     loads: Vec<(usize, Load)>,
 }
 
 impl Log {
     fn entries(&self) -> MutexGuard<'_, Entries> {
-        // Entries are whole between any two statements.
+        // Entries are consistent even after a panic.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The first thing that went wrong: the run should end.
+    /// The first error, which should end the run.
     #[must_use]
     pub fn trouble(&self) -> Option<String> {
         self.entries().trouble.clone()
     }
 
-    /// What the last step cost the device of robot `index`, if it runs on one.
+    /// Load of the device of robot `index` in the last step; `None` if it runs on no device.
     #[must_use]
     pub fn load(&self, index: usize) -> Option<Load> {
         let entries = self.entries();
@@ -52,32 +54,30 @@ impl Log {
         entries.loads.get(at).map(|(_, load)| *load)
     }
 
-    /// Figures of each device once the run is over.
     #[must_use]
     pub fn statistics(&self) -> Vec<Statistics> {
         self.entries().statistics.clone()
     }
 }
 
-/// The devices as the engine sees them. They are started when the first step begins.
+/// The devices as the engine sees them. They start at the first step.
 pub struct OnDevices {
     plan: DevicePlan,
     options: Option<Options>,
-    /// What a robot's device is told of its law.
+    /// Encoded guidance law of each robot.
     law: Box<dyn Fn(usize) -> Vec<u8> + Send>,
-    /// What each device is to be; then they are part of the fleet.
+    /// Configuration of each device until the fleet starts.
     orders: Vec<Option<DeviceConfig>>,
     fleet: Option<Fleet>,
-    /// Numbers in the plan of those that were sent, in that order, until somebody collects.
+    /// Indices in the plan of the devices with an outstanding request.
     asked: Vec<usize>,
     decisions: Vec<Option<Decision>>,
-    /// Whose devices were reset, until their robots are started anew.
+    /// Devices that were reset and whose robots did not restart yet.
     lost: Vec<bool>,
     log: Log,
 }
 
 impl OnDevices {
-    /// Devices of a plan, and where to ask what became of them.
     #[must_use]
     pub fn new(plan: DevicePlan, options: Options, law: Box<dyn Fn(usize) -> Vec<u8> + Send>) -> (Self, Log) {
         let (log, count) = (Log::default(), plan.devices.len());
@@ -95,7 +95,7 @@ impl OnDevices {
         (devices, log)
     }
 
-    /// The number in the plan of robot `index`.
+    /// Index in the plan of robot `index`.
     fn at(&self, index: usize) -> Option<usize> {
         let devices = &self.plan.devices;
         devices.binary_search_by_key(&index, |(robot, _)| *robot).ok()
@@ -105,13 +105,12 @@ impl OnDevices {
         self.log.entries().trouble.get_or_insert(trouble);
     }
 
-    /// Starts the devices, once.
     fn begin(&mut self) {
         let Some(options) = self.options.take() else {
             return;
         };
         let orders: Option<Vec<DeviceConfig>> = self.orders.iter_mut().map(Option::take).collect();
-        // The engine starts all robots before any of them steps.
+        // The engine starts all robots before the first step.
         let Some(orders) = orders else {
             return self.fail(String::from("a robot on a device was never started"));
         };
@@ -146,7 +145,7 @@ impl OnDevices {
                 Answer::Down => self.lost[at] = true,
                 Answer::Mismatch(mismatch) => self.fail(mismatch.to_string()),
                 Answer::Failed(error) => match *error.cause {
-                    // The run ends anyway.
+                    // The run ends in any case.
                     Cause::Stopped => {}
                     _ => self.fail(error.to_string()),
                 },
@@ -179,7 +178,7 @@ impl ExternalController for OnDevices {
     }
 
     fn has_restarted(&mut self, index: usize) -> bool {
-        // The fleet has made it a robot again, but only the engine knows what it has to do by now.
+        // The fleet has configured the device again, but only the engine knows its present task.
         let (Some(at), Some(fleet)) = (self.at(index), &self.fleet) else {
             return false;
         };
@@ -195,7 +194,7 @@ impl ExternalController for OnDevices {
     }
 
     fn collect(&mut self, index: usize) -> Option<Decision> {
-        // The first one collects for all.
+        // The first call collects the answers of all devices.
         if !self.asked.is_empty() {
             self.gather();
         }

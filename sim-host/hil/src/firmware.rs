@@ -1,4 +1,4 @@
-//! What emulated devices run: ELF files that `cargo xtask firmware` makes, wherever they are.
+//! Finds or builds the firmware of emulated devices: ELF files made by `cargo xtask firmware`.
 
 use anyhow::{Context as _, Result, bail};
 use staya_runner::{Note, Part, find_emulator};
@@ -7,39 +7,38 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// Names the folder of firmware, or one ELF file, as `--firmware` does.
+/// Environment variable with the same meaning as `--firmware`.
 const VARIABLE: &str = "STAYA_FIRMWARE";
 
-/// What emulated devices are to run.
 pub(crate) struct Program {
-    /// The host program's name: what is installed with it is in `share/NAME/firmware`.
+    /// Name of the host program. Installed firmware is in `share/NAME/firmware`.
     pub(crate) name: &'static str,
-    /// What the firmware says that it is: its name and version.
+    /// Expected name and version inside the firmware.
     pub(crate) says: String,
-    /// Where it is made.
     pub(crate) made: Made,
 }
 
-/// Where a firmware is made.
 pub(crate) enum Made {
-    /// In Staya's repository, as `hil/firmware`.
+    /// Staya's repository, `hil/firmware`.
     InRepository,
-    /// In the package in this folder.
+    /// The package in this folder.
     InPackage(PathBuf),
 }
 
-/// The folder with firmware for these parts, or the one file: what is given; what the environment names; what is installed
-/// beside this program or among the user's data; or what the sources that the program was made of give, which builds what is missing or
-/// old and fetches the emulators.
+/// Finds the folder with firmware for `parts`, or one ELF file. In this order: the given path, the
+/// environment variable, firmware installed beside this program or in the user's data folder, the
+/// sources of this program. The last one builds missing or outdated firmware and downloads the
+/// emulators.
 ///
 /// # Errors
-/// Firmware that is not there, with where it was looked for and what to do, or that is of another part, version or program.
+/// Missing firmware, with the searched places and a remedy; or firmware of another part, version or
+/// program.
 pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> Result<PathBuf> {
     if parts.is_empty() {
         return Ok(PathBuf::new());
     }
     let named = std::env::var_os(VARIABLE).map(PathBuf::from);
-    let mut looked = String::from("no firmware:");
+    let mut looked = String::from("no firmware found:");
     let chosen = match (given, named) {
         (Some(folder), _) => Some(("--firmware", folder.to_owned())),
         (None, Some(folder)) => Some((VARIABLE, folder)),
@@ -49,7 +48,7 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
         return match lacking(parts, &folder) {
             None => checked(parts, folder, program),
             Some(elf) => {
-                write!(looked, "\n  {} is not there ({by})", elf.display())?;
+                write!(looked, "\n  {} is missing ({by})", elf.display())?;
                 bail!("{looked}\n{}", remedy(parts, program))
             }
         };
@@ -57,7 +56,7 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
     for folder in installed(program.name) {
         match lacking(parts, &folder) {
             None => return checked(parts, folder, program),
-            Some(elf) => write!(looked, "\n  {} is not there", elf.display())?,
+            Some(elf) => write!(looked, "\n  {} is missing", elf.display())?,
         }
     }
     let root = repository();
@@ -71,24 +70,23 @@ pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> R
             match lacking(parts, &folder) {
                 None => checked(parts, folder, program),
                 Some(elf) => {
-                    write!(looked, "\n  {} is not there, and no toolchain here builds it", elf.display())?;
+                    write!(looked, "\n  {} is missing, and no installed toolchain can build it", elf.display())?;
                     bail!("{looked}\n{}", remedy(parts, program))
                 }
             }
         }
         _ => {
-            write!(looked, "\n  the sources that this program was made of are not at {} any more", home().display())?;
+            write!(looked, "\n  the sources of this program are no longer at {}", home().display())?;
             bail!("{looked}\n{}", remedy(parts, program))
         }
     }
 }
 
-/// The first ELF file that is not there.
 fn lacking(parts: &[Part], folder: &Path) -> Option<PathBuf> {
     parts.iter().map(|part| part.elf(folder)).find(|elf| !elf.is_file())
 }
 
-/// The folder, if all its firmware is what this program steps.
+/// Returns the folder if all its firmware fits the program.
 fn checked(parts: &[Part], folder: PathBuf, program: &Program) -> Result<PathBuf> {
     for part in parts {
         Note::check(&part.elf(&folder), *part, Some(&program.says))?;
@@ -96,25 +94,24 @@ fn checked(parts: &[Part], folder: PathBuf, program: &Program) -> Result<PathBuf
     Ok(folder)
 }
 
-/// What to do where there is none.
 fn remedy(parts: &[Part], program: &Program) -> String {
     let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
     let names = names.join(" ");
     match &program.made {
         Made::InRepository => format!(
-            "In a clone of Staya's repository `cargo xtask firmware --bin lockstep {names}` makes it, in CLONE/target/firmware; then add \
-             `--firmware CLONE/target/firmware` here, or set {VARIABLE} to that folder. `cargo xtask install --prefix DIR` there puts it \
-             beside the program"
+            "In a clone of Staya's repository, `cargo xtask firmware --bin lockstep {names}` builds it in CLONE/target/firmware; then add \
+            `--firmware CLONE/target/firmware` here, or set {VARIABLE} to that folder. `cargo xtask install --prefix DIR` installs it \
+            beside the program"
         ),
         Made::InPackage(folder) => format!(
-            "In a clone of Staya's repository `cargo xtask firmware --crate {folder} {names}` makes it, in {folder}/target/firmware; then \
-             add `--firmware {folder}/target/firmware` here, or set {VARIABLE} to that folder, or name one ELF file in place of it",
+            "In a clone of Staya's repository, `cargo xtask firmware --crate {folder} {names}` builds it in {folder}/target/firmware; \
+            then add `--firmware {folder}/target/firmware` here, or set {VARIABLE} to that folder or to one ELF file",
             folder = folder.display()
         ),
     }
 }
 
-/// Where installed firmware is: in `share` beside the folder of this program, and among the user's data.
+/// Folders of installed firmware: `share` beside this program's folder, and the user's data folder.
 fn installed(name: &str) -> Vec<PathBuf> {
     let program = std::env::current_exe().ok();
     let beside = program.as_deref().and_then(|program| Some(program.ancestors().nth(2)?.join("share")));
@@ -126,13 +123,14 @@ fn installed(name: &str) -> Vec<PathBuf> {
     places
 }
 
-/// Where Staya's repository was when this was built.
+/// Path of Staya's repository when this was built.
 fn home() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.ancestors().nth(2).unwrap_or(here).to_owned()
 }
 
-/// Staya's repository: the one in which cargo started this program, or the one that it was built from.
+/// Staya's repository: the one in which cargo started this program, or the one that it was built
+/// from.
 fn repository() -> Option<PathBuf> {
     let started = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let started = started.as_deref().and_then(Path::parent).map(Path::to_owned);
@@ -148,18 +146,20 @@ fn target(root: &Path) -> PathBuf {
         .map_or_else(|| root.join("target"), |folder| std::path::absolute(&folder).unwrap_or_else(|_| folder.into()))
 }
 
-/// Brings the firmware for these parts up to date, and fetches the emulators; the folder that it is in then.
+/// Builds outdated firmware and downloads the emulators. Returns the folder of the firmware.
 fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
     let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
     let (folder, what) = match made {
         Made::InRepository => (target(root).join("firmware"), vec!["--bin", "lockstep"]),
         Made::InPackage(package) => {
-            let text = package.to_str().with_context(|| format!("{} is no text", package.display()))?;
+            let text = package
+                .to_str()
+                .with_context(|| format!("{} is not valid UTF-8; rename the folder", package.display()))?;
             (package.join("target/firmware"), vec!["--crate", text])
         }
     };
     if lacking(parts, &folder).is_some() {
-        eprintln!("staya: building the firmware for {}; the first time takes some minutes", names.join(", "));
+        eprintln!("staya: building the firmware for {}; the first build takes some minutes", names.join(", "));
     }
     let began = Instant::now();
     xtask(root, &[&["firmware"], what.as_slice(), names.as_slice()].concat())?;
@@ -170,19 +170,19 @@ fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
         }
     }
     if !parts.iter().all(|part| find_emulator(part.emulator()).is_some()) {
-        eprintln!("staya: fetching the emulators; this takes a minute");
+        eprintln!("staya: downloading the emulators; this takes a minute");
         xtask(root, &["qemu"])?;
     }
     Ok(folder)
 }
 
-/// One of the repository's own commands; what it prints goes to standard error, all of it only if it fails.
+/// Runs a command of the repository. Its output goes to standard error, complete only if it fails.
 fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let line = format!("cargo xtask {}", arguments.join(" "));
     eprintln!("staya: {line}");
     let mut command = Command::new(cargo);
-    // What cargo told this program about its package is not true of the next one.
+    // Cargo's variables describe this program's package, not the next one's.
     for (name, _) in std::env::vars_os() {
         let is_cargos =
             name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_"));
@@ -215,7 +215,7 @@ mod tests {
 
     const PARTS: [Part; 2] = [Part::Stm32f405, Part::Microbit];
 
-    /// A folder with a file for each of these parts, which is no firmware.
+    /// A folder with a file for each part that is not firmware.
     fn folder(parts: &[Part]) -> tempfile::TempDir {
         let top = tempfile::tempdir().expect("a folder");
         for part in parts {
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_given_must_be_there_and_be_firmware() {
+    fn a_given_path_must_exist_and_be_firmware() {
         let refusal =
             |given: &Path, made| find(&PARTS, Some(given), &program(made)).expect_err("no firmware").to_string();
         let one = folder(&PARTS[..1]);
@@ -249,19 +249,18 @@ mod tests {
         assert!(text.contains("cargo xtask firmware --crate /my/law stm32f405 nrf51"), "{text}");
         let both = folder(&PARTS);
         let text = refusal(both.path(), Made::InRepository);
-        assert!(text.contains("no ELF file"), "{text}");
-        // One file for all.
+        assert!(text.contains("ELF file"), "{text}");
         let text = refusal(&PARTS[0].elf(one.path()), Made::InRepository);
-        assert!(text.contains("stm32f405/lockstep is no ELF file"), "{text}");
+        assert!(text.contains("stm32f405/lockstep"), "{text}");
     }
 
     #[test]
-    fn boards_need_no_file() {
+    fn boards_need_no_firmware_file() {
         assert!(find(&[], Some(Path::new("no/such/folder")), &program(Made::InRepository)).is_ok());
     }
 
     #[test]
-    fn installed_firmware_is_looked_for_beside_the_program_first() {
+    fn firmware_beside_the_program_is_found_first() {
         let places = installed("staya");
         let program = std::env::current_exe().expect("this test's path");
         let beside = program.ancestors().nth(2).expect("a folder").join("share/staya/firmware");

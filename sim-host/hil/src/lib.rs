@@ -1,8 +1,8 @@
-//! Robots of a scenario as firmware, on emulated microcontrollers or boards, in lockstep with the rest: what `staya hil` does, for Staya's
-//! own guidance laws ([`run`]) and for one that is the caller's ([`Own`]).
+//! Hardware in the loop: robots of a scenario run as firmware on emulated microcontrollers or
+//! boards, in lockstep with the others. Use [`run`] for Staya's guidance laws and [`Own`] for your
+//! own law.
 //!
-//! A whole program for a guidance law of your own, which takes the arguments of `staya hil` (`examples/own_part` is such
-//! a program):
+//! A complete program for your own law, with the arguments of `staya hil`:
 //!
 //! ```ignore
 //! # use serde::{Deserialize, Serialize};
@@ -29,7 +29,7 @@
 //! }
 //! ```
 //!
-//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. docs/project.md has all of it.
+//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. See docs/own.md.
 
 pub mod cli;
 mod command;

@@ -8,20 +8,23 @@ use staya_sim::scenario::Scenario;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Which robots run on which devices, and what happens to them there.
+/// Devices, their robots and faults.
 #[derive(Args, Clone, Debug)]
 pub struct DeviceArgs {
-    /// Where a robot runs: qemu:stm32f405, qemu:microbit, qemu:riscv32 or serial:PORT[,baud=N]; may be repeated to mix kinds.
+    /// Device of a robot: qemu:stm32f405, qemu:microbit, qemu:riscv32 or serial:PORT[,baud=N]; may
+    /// be repeated for a mix.
     #[arg(long = "device", value_name = "DEVICE", required = true)]
     kinds: Vec<Device>,
-    /// How many robots run on devices: the first ones of the scenario, kinds taken in turn [default: one per --device].
+    /// Number of robots on devices: the first ones of the scenario, with device kinds in turn
+    /// [default: one per --device].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     devices: Option<u32>,
-    /// Run in real time, and count the ticks that are late.
+    /// Run in real time and count late ticks.
     #[arg(long)]
     pub(crate) real_time: bool,
-    /// Firmware for emulated devices: a folder with PART/lockstep, or one ELF file [default: $STAYA_FIRMWARE, or what is installed
-    /// beside this program, or what the sources that it was made of give, which builds it when needed].
+    /// Firmware of emulated devices: a folder with PART/lockstep, or one ELF file [default:
+    /// $STAYA_FIRMWARE, or firmware installed beside this program, or built from the sources of
+    /// this program].
     #[arg(long, value_name = "DIR|FILE")]
     pub(crate) firmware: Option<PathBuf>,
     /// Folder for the logs of emulated devices, one file per robot [default: no logs].
@@ -30,49 +33,54 @@ pub struct DeviceArgs {
     /// Probability that a frame between host and device is lost.
     #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability, help_heading = "Faults of the line")]
     loss: f64,
-    /// Probability that a bit between host and device flips.
+    /// Probability that a bit between host and device is flipped.
     #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = probability, help_heading = "Faults of the line")]
     bit_errors: f64,
     /// Delay of each frame, milliseconds.
     #[arg(long, value_name = "MS", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=10_000), help_heading = "Faults of the line")]
     delay: u64,
-    /// Reset the devices one after the other from this tick on; may be repeated.
+    /// Reset the devices one after the other from this tick; may be repeated.
     #[arg(long, value_name = "TICK", help_heading = "Faults of the line")]
     reset: Vec<u32>,
-    /// Ticks for which a robot that was reset stands still.
+    /// Ticks for which a robot stops after its device was reset.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Faults of the line")]
     down: u32,
 }
 
 fn probability(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
-    value.filter(|value| (0.0..1.0).contains(value)).ok_or_else(|| String::from("a number from 0 to less than 1"))
+    value.filter(|value| (0.0..1.0).contains(value)).ok_or_else(|| String::from("give a number from 0 to below 1"))
 }
 
 impl DeviceArgs {
-    /// Which robots run where.
     pub(crate) fn plan(&self, scenario: &Scenario) -> Result<DevicePlan> {
         let count = self.devices.map_or(self.kinds.len(), |n| n as usize);
         let robots = scenario.robots.len();
         if count > robots {
-            bail!("--devices {count}: {} has {robots} robots", scenario.name);
+            bail!("--devices {count}: {} has {robots} robots; give at most this number", scenario.name);
         }
         if count < self.kinds.len() {
-            bail!("--devices {count}: fewer than the {} given with --device", self.kinds.len());
+            bail!(
+                "--devices {count}: fewer than the {} given with --device; give at least this number",
+                self.kinds.len()
+            );
         }
         let mut devices: Vec<(usize, Device)> = Vec::new();
-        // A port has one board; emulators there are as many as anybody wants.
+        // A port has one board; the number of emulators is unlimited.
         let emulated: Vec<&Device> = self.kinds.iter().filter(|kind| is_emulated(kind)).collect();
         for index in 0..count {
             let device = match self.kinds.get(index) {
                 Some(device) => device,
                 None if emulated.is_empty() => {
-                    bail!("--devices {count}: a port has one board, and {} are given with --device", self.kinds.len())
+                    bail!(
+                        "--devices {count}: a port has one board, and {} are given with --device; add --device options",
+                        self.kinds.len()
+                    )
                 }
                 None => emulated[(index - self.kinds.len()) % emulated.len()],
             };
             if !is_emulated(device) && devices.iter().any(|(_, other)| other == device) {
-                bail!("--device {device} is given twice: a port has one board");
+                bail!("--device {device} is given twice; give each port once, since it has one board");
             }
             devices.push((index, device.clone()));
         }
@@ -89,7 +97,6 @@ impl DeviceArgs {
     }
 }
 
-/// The parts that emulators run in a plan, each once.
 pub(crate) fn emulated_parts(plan: &DevicePlan) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for (_, device) in &plan.devices {
@@ -130,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn kinds_are_taken_in_turn_and_a_port_once() {
+    fn device_kinds_repeat_in_turn_except_ports() {
         let names = |arguments: &str| {
             let devices = plan(arguments).expect(arguments).into_iter().enumerate();
             let named = devices.map(|(at, (index, name))| {
@@ -147,14 +154,14 @@ mod tests {
     }
 
     #[test]
-    fn plans_that_cannot_be_carried_out_say_why() {
+    fn impossible_plans_are_errors_with_a_reason() {
         for (arguments, why) in [
             ("--device qemu:z80", "no part `z80`"),
             ("--device qemu:stm32f405 --devices 7", "has 6 robots"),
             ("--device serial:/dev/x --devices 2", "a port has one board"),
             ("--device serial:/dev/x --device serial:/dev/x", "given twice"),
             ("--device qemu:microbit --device qemu:riscv32 --devices 1", "fewer than the 2"),
-            ("--device qemu:microbit --loss 1", "less than 1"),
+            ("--device qemu:microbit --loss 1", "below 1"),
             ("", "--device"),
         ] {
             let error = plan(arguments).expect_err(arguments);

@@ -1,4 +1,4 @@
-//! Robots by a guidance law of the caller's own, some of them on devices.
+//! Runs robots with the caller's own guidance law, some of them on devices.
 
 use crate::firmware::{Made, Program};
 use crate::options::DeviceArgs;
@@ -17,18 +17,18 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// The package that a program and its firmware are both in; [`package!`](crate::package) makes it.
+/// The package of a program and its firmware; [`package!`](crate::package) creates it.
 #[derive(Clone, Copy, Debug)]
 pub struct Package {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// Its version.
+    /// Version.
     pub version: &'static str,
-    /// Its folder when the program was built.
+    /// Folder at the time of the build.
     pub folder: &'static str,
 }
 
-/// The [`Package`] in which this is written.
+/// The [`Package`] that contains this invocation.
 #[macro_export]
 macro_rules! package {
     () => {
@@ -40,8 +40,8 @@ macro_rules! package {
     };
 }
 
-/// Robots that go by law `G`. Devices are told what the law keeps, as serde writes it, and make the law of it: so a parameter that the
-/// host program changes needs no other firmware.
+/// Robots with guidance law `G`. Devices receive the law's data as encoded by serde, so parameters
+/// changed in the host program need no new firmware.
 pub struct Own<G> {
     package: Package,
     law: Arc<dyn Fn(usize) -> G + Send + Sync>,
@@ -55,14 +55,16 @@ impl<G> std::fmt::Debug for Own<G> {
 }
 
 impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
-    /// Robots of which number `i` in [`Scenario::robots`] goes by `law(i)`, made at its first start and at each restart, here and on
-    /// devices, as [`simulate_own`](staya_sim::engine::simulate_own) has it.
+    /// Creates a swarm whose robot `i` in [`Scenario::robots`] follows `law(i)`. `law` is called at
+    /// every start of a robot, here and on devices, as in
+    /// [`simulate_own`](staya_sim::engine::simulate_own).
     #[must_use]
     pub fn new(package: Package, law: impl Fn(usize) -> G + Send + Sync + 'static) -> Self {
         Self { package, law: Arc::new(law), shadows: || vec![Box::new(OwnLarge::<G>::new())] }
     }
 
-    /// The same also for parts that compute in fixed point (the micro:bit), where the law is one in [`Q16`], too.
+    /// Also supports parts with fixed-point arithmetic (micro:bit); the law must work with [`Q16`]
+    /// too.
     #[must_use]
     pub fn in_fixed_point(self) -> Self
     where
@@ -76,7 +78,7 @@ impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
         Self { shadows, ..self }
     }
 
-    /// A whole program with the arguments of `staya hil`: parses them, runs, prints, and gives the exit code.
+    /// A complete program with the arguments of `staya hil`. Returns its exit code.
     #[must_use]
     pub fn main(self) -> ExitCode {
         #[derive(clap::Parser)]
@@ -97,11 +99,11 @@ impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
         staya_console::exit(name, run())
     }
 
-    /// Runs a scenario, and prints its figures.
+    /// Runs a scenario and prints its summary.
     ///
     /// # Errors
-    /// Devices or firmware that are not there; a device that fell silent or differed from its shadow; a scenario that no law of one's own
-    /// can run.
+    /// Missing devices or firmware, a device that stopped answering or differed from its shadow, or
+    /// a scenario that an own law cannot run.
     pub fn run(&self, scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
         drive(self, scenario, devices, page, global)
     }
@@ -119,7 +121,7 @@ impl<G: OwnLaw + LinkedLaw<f32>> Swarm for Own<G> {
 
     fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send> {
         let law = Arc::clone(&self.law);
-        // What serde can write into a vector it does; a law that it cannot write has no checkpoint and no digest either.
+        // A law that serde cannot encode has no checkpoint and no digest either.
         Box::new(move |index| postcard::to_stdvec(&law(index)).unwrap_or_default())
     }
 
@@ -130,6 +132,7 @@ impl<G: OwnLaw + LinkedLaw<f32>> Swarm for Own<G> {
         watch: &mut Watch<'_>,
     ) -> Result<Outcome> {
         let law = Arc::clone(&self.law);
-        simulate_own_with(scenario, move |index| law(index), external, watch).context("the law cannot run it")
+        simulate_own_with(scenario, move |index| law(index), external, watch)
+            .context("this law cannot run the scenario")
     }
 }

@@ -1,4 +1,4 @@
-//! `staya hil SCENARIO`: some of the robots run as firmware on emulated parts or boards, in lockstep with the rest.
+//! Runs a scenario with some robots on devices in lockstep.
 
 use crate::devices::{Log, OnDevices};
 use crate::firmware::{self, Made, Program};
@@ -20,8 +20,9 @@ use std::time::Instant;
 
 /// Run some robots of a scenario as firmware, on emulated microcontrollers or boards.
 ///
-/// The other robots run in this process. For every robot on a device a shadow runs here too: the first step at which both differ
-/// by a bit ends the run and is printed. Exit code 1 if that happens, or a device falls silent.
+/// The other robots run in this process. Each robot on a device also has a shadow here: the run
+/// ends at the first step whose results differ in any bit, and prints that step. Exit code 1 if a
+/// step differs or a device stops answering.
 #[derive(Args, Clone, Debug)]
 pub struct HilArgs {
     #[command(flatten)]
@@ -36,37 +37,35 @@ impl HilArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A scenario that cannot be read or is wrong; devices or firmware that are not there; a device that fell silent or differed
-    /// from its shadow.
+    /// An unreadable or invalid scenario, missing devices or firmware, or a device that stopped
+    /// answering or differed from its shadow.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         run(&self.scenario.load()?, &self.devices, &self.page, global)
     }
 }
 
-/// Runs a scenario whose robots go by Staya's own guidance laws, some of them on devices, and prints its figures.
+/// Runs a scenario with Staya's guidance laws, with some robots on devices, and prints its summary.
 ///
 /// # Errors
-/// Devices or firmware that are not there; a device that fell silent or differed from its shadow; what no firmware can do.
+/// Missing devices or firmware, a device that stopped answering or differed from its shadow, or a
+/// feature that the firmware lacks.
 pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
     if scenario.published.is_some() || scenario.looks_ahead {
         let law = if scenario.looks_ahead { FormationLaw::Lookahead } else { FormationLaw::Paper };
-        bail!("formation.law = \"{law}\" is in no firmware; give \"staya\", or run it without devices");
+        bail!("formation.law = \"{law}\" is not available in firmware; give \"staya\", or run without devices");
     }
     drive(&Ours, scenario, devices, page, global)
 }
 
-/// What the robots of a run go by, here and on devices.
 pub(crate) trait Swarm {
-    /// What emulated devices run.
     fn program(&self) -> Program;
 
-    /// Among which robots a device's shadow is looked for; `None`: those with Staya's own laws.
+    /// Shadows of devices; `None` for those of Staya's laws.
     fn shadows(&self) -> Option<Shadows>;
 
-    /// What devices are told of the law of robot `i`; nothing where its name says it all.
+    /// Encoded law of each robot; empty if its name is enough.
     fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send>;
 
-    /// The run.
     fn simulate(
         &self,
         scenario: &Scenario,
@@ -75,7 +74,7 @@ pub(crate) trait Swarm {
     ) -> Result<Outcome>;
 }
 
-/// By the laws that scenarios name.
+/// The laws named in scenarios.
 struct Ours;
 
 impl Swarm for Ours {
@@ -98,11 +97,10 @@ impl Swarm for Ours {
         external: Option<Box<dyn ExternalController>>,
         watch: &mut Watch<'_>,
     ) -> Result<Outcome> {
-        simulate_with(scenario, external, watch).context("the robots cannot be placed")
+        simulate_with(scenario, external, watch).context("the robots cannot be placed; change their starts")
     }
 }
 
-/// Runs a scenario with some of its robots on devices, and prints its figures.
 pub(crate) fn drive(
     swarm: &impl Swarm,
     scenario: &Scenario,
@@ -111,16 +109,13 @@ pub(crate) fn drive(
     global: &Global,
 ) -> Result<Ended> {
     if scenario.maps.is_some() {
-        bail!("maps.share is in no firmware for devices; leave [maps] out, or run it without devices");
+        bail!("maps.share is not available in firmware; remove [maps], or run without devices");
     }
     if scenario.eyes.is_some() {
-        bail!("no link tells devices whom they see (plane.eyes); leave it out, or run it without devices");
+        bail!("plane.eyes is not available on devices; remove it, or run without devices");
     }
     if scenario.key.is_some() {
-        bail!(
-            "the robots of {} have a key, and the link does not carry keys to devices; leave [authentication] out",
-            scenario.name
-        );
+        bail!("{}: devices do not support keys; remove [authentication]", scenario.name);
     }
     let plan = devices.plan(scenario)?;
     let program = swarm.program();
@@ -149,7 +144,6 @@ pub(crate) fn drive(
     }
 }
 
-/// Who looks on while it runs.
 struct Watched<'a> {
     devices: &'a DeviceArgs,
     page: &'a WatchArgs,
@@ -157,7 +151,7 @@ struct Watched<'a> {
     stop: &'a Stop,
 }
 
-/// The run with devices, and if that came to its end the same without.
+/// Runs with devices and, if that finished, once more without them.
 fn simulate(
     swarm: &impl Swarm,
     scenario: &Scenario,

@@ -1,38 +1,34 @@
-//! The figures of a run with devices.
+//! Summary of a run with devices.
 
 use crate::pace::RealTime;
 use serde::Serialize;
 use staya_runner::{Spread, Statistics};
 use std::fmt::Write as _;
 
-/// The figures of a run, as with `--json`.
+/// Summary of a run, the output of `--json`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) scenario: String,
     pub(crate) seed: u64,
     pub(crate) robots: usize,
-    /// Ticks done.
     pub(crate) ticks: u32,
     pub(crate) sim_seconds: f64,
-    /// Of the run, starting the devices included.
+    /// Real time of the run, with the start of the devices.
     pub(crate) wall_seconds: f64,
-    /// Stopped by Ctrl-C.
     pub(crate) interrupted: bool,
     pub(crate) arrived: usize,
     pub(crate) collisions: u64,
-    /// 16 hex digits; equal for equal traces.
+    /// 16 hex digits, equal for equal traces.
     pub(crate) trace_hash: String,
-    /// The same scenario with all robots in this process; null when the run ended early.
+    /// Trace hash of the scenario with all robots in this process; null if the run ended early.
     pub(crate) trace_hash_without_devices: Option<String>,
-    /// With `--real-time`.
     pub(crate) real_time: Option<RealTime>,
-    /// What ended the run, if it did not end by itself.
+    /// Error that ended the run.
     pub(crate) trouble: Option<String>,
     pub(crate) devices: Vec<Statistics>,
 }
 
 impl Summary {
-    /// The figures for a reader.
     pub(crate) fn table(&self) -> Result<String, std::fmt::Error> {
         let mut text = String::new();
         let stopped = if self.interrupted { ", stopped" } else { "" };
@@ -45,9 +41,9 @@ impl Summary {
         line("trace hash", self.trace_hash.clone())?;
         if let Some(hash) = &self.trace_hash_without_devices {
             let verdict = if *hash == self.trace_hash {
-                "the same"
+                "identical"
             } else {
-                "another one: numbers, capacities or resets of the devices differ"
+                "different: the devices' numbers, capacities or resets differ"
             };
             line("without devices", format!("{hash}, {verdict}"))?;
         }
@@ -85,7 +81,7 @@ impl Summary {
             )?;
         }
         text.push_str(
-            "round trip: median / p99; instructions (of boards: clock ticks) of a step: median / most; stack: most bytes of a step\n",
+            "round trip: median / p99; instructions (on boards: clock ticks) per step: median / max; stack: max bytes\n",
         );
         Ok(text)
     }

@@ -8,22 +8,21 @@ use anyhow::Result;
 use clap::Subcommand;
 use staya_console::{Ended, Global};
 
-/// Commands that speak MAVLink.
+/// Commands that use MAVLink.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Let ground stations and scripts see and command a simulated swarm over MAVLink.
+    /// Connect a simulated swarm to ground stations and scripts over MAVLink.
     Bridge(Box<bridge::BridgeArgs>),
-    /// Tell a swarm in formation to take another shape and to go elsewhere, over MAVLink.
+    /// Send a new shape or goal to a formation over MAVLink.
     Formation(Box<formation::FormationArgs>),
-    /// Steer ArduPilot or PX4 vehicles as a swarm.
+    /// Control ArduPilot or PX4 vehicles as a swarm.
     Companion(Box<companion::CompanionArgs>),
 }
 
 impl Command {
     /// Runs the command.
     ///
-    /// # Errors
-    /// Those of the command.
+    /// Any error of the command.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match self {
             Self::Bridge(args) => args.run(global),

@@ -1,35 +1,36 @@
-//! `udpout:127.0.0.1:14550` and its like.
+//! Endpoints of MAVLink links, for example `udpout:127.0.0.1:14550`.
 
 use staya_serial::SerialPort;
 use std::fmt;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::str::FromStr;
 
-/// Where the other side of a line is, written as pymavlink, MAVProxy and MAVSDK users know it.
+/// The address of a link, in the notation of pymavlink, MAVProxy and MAVSDK.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Endpoint {
-    /// `udpout:HOST:PORT`: datagrams to this address; answers come back to the port they were sent from.
+    /// `udpout:HOST:PORT`: sends datagrams to this address, receives answers on the same socket.
     UdpOut(SocketAddr),
-    /// `udpin:HOST:PORT`: datagrams at this address; up to 16 who were heard, and believed, are answered.
+    /// `udpin:HOST:PORT`: receives datagrams at this address, answers up to 16 authenticated
+    /// senders.
     UdpIn(SocketAddr),
-    /// `tcpout:HOST:PORT`: a connection to this address, made anew when it ends.
+    /// `tcpout:HOST:PORT`: connects to this address, and reconnects after a disconnect.
     TcpOut(SocketAddr),
-    /// `tcpin:HOST:PORT`: connections at this address, up to 32.
+    /// `tcpin:HOST:PORT`: accepts up to 32 connections at this address.
     TcpIn(SocketAddr),
-    /// `serial:PORT[,baud=N]`.
+    /// `serial:PORT[,baud=N]`: a serial port.
     Serial(SerialPort),
 }
 
-/// A text that names no line.
+/// A text that is not an endpoint.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{text}` is no MAVLink line: {what}; write for instance udpout:127.0.0.1:14550, udpin:0.0.0.0:14550, \
+    "`{text}` is not a MAVLink link: {what}; give for example udpout:127.0.0.1:14550, udpin:0.0.0.0:14550, \
      tcpin:127.0.0.1:5760, tcpout:127.0.0.1:5760 or serial:/dev/ttyACM0,baud=57600"
 )]
 pub struct EndpointError {
-    /// All of it.
+    /// The whole text.
     pub text: String,
-    /// What is wrong.
+    /// The problem.
     pub what: String,
 }
 
@@ -48,11 +49,11 @@ impl FromStr for Endpoint {
                 let port: Result<SerialPort, _> = rest.parse();
                 return port.map(Self::Serial).map_err(|reason| error(reason.to_string()));
             }
-            _ => return Err(error(format!("`{kind}` is no kind of line"))),
+            _ => return Err(error(format!("`{kind}` is not a kind of link"))),
         };
         let mut addresses =
-            rest.to_socket_addrs().map_err(|reason| error(format!("`{rest}` is no HOST:PORT ({reason})")))?;
-        // Where a name has several addresses, most MAVLink programs listen on the one of IPv4.
+            rest.to_socket_addrs().map_err(|reason| error(format!("`{rest}` is not HOST:PORT ({reason})")))?;
+        // IPv4 is preferred, since most MAVLink programs listen on it.
         let first = addresses.next();
         let address = addresses
             .chain(first)
@@ -60,7 +61,7 @@ impl FromStr for Endpoint {
             .or(first)
             .ok_or_else(|| error(format!("`{rest}` has no address")))?;
         if address.port() == 0 && matches!(kind, "udpout" | "tcpout" | "tcp") {
-            return Err(error(String::from("nobody listens on port 0")));
+            return Err(error(String::from("port 0 is not usable")));
         }
         Ok(make(address))
     }
@@ -83,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn endpoints_round_trip() {
         for text in [
             "udpout:127.0.0.1:14550",
             "udpin:0.0.0.0:14550",
@@ -100,11 +101,11 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_the_wrong_piece_and_a_right_one() {
+    fn errors_name_the_problem_and_an_example() {
         for (text, piece) in [
-            ("udp:127.0.0.1:1", "`udp` is no kind"),
-            ("udpout", "`` is no HOST:PORT"),
-            ("udpout:127.0.0.1", "`127.0.0.1` is no HOST:PORT"),
+            ("udp:127.0.0.1:1", "`udp` is not a kind"),
+            ("udpout", "`` is not HOST:PORT"),
+            ("udpout:127.0.0.1", "`127.0.0.1` is not HOST:PORT"),
             ("udpout:127.0.0.1:99999", "`127.0.0.1:99999`"),
             ("tcpout:127.0.0.1:0", "port 0"),
             ("serial:", "no port"),
@@ -112,7 +113,7 @@ mod tests {
         ] {
             let error = text.parse::<Endpoint>().expect_err(text).to_string();
             assert!(error.contains(piece), "{text}: {error}");
-            assert!(error.starts_with(&format!("`{text}` is no MAVLink line")));
+            assert!(error.starts_with(&format!("`{text}` is not a MAVLink link")));
             assert!(error.contains("udpout:127.0.0.1:14550"), "{error}");
         }
     }

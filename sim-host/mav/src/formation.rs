@@ -1,8 +1,8 @@
-//! Another shape and another goal for a formation that is under way: what each robot has to be told. [`Shape`] gives a [`Graph`],
-//! [`orders`] the frames, [`station::give`] sends them and waits until every robot has said that it has its own.
+//! Orders that give a formation a new shape and goal. [`Shape`] builds a [`Graph`], [`orders`]
+//! encodes it, and [`station::give`] sends the frames until every robot has confirmed them.
 //!
-//! Shapes look east, as the scenarios' do; [`Graph::turned`] turns them. Robots have places by rising numbers, the first one in
-//! front, unless [`Graph::nearest`] gives each one that is near.
+//! Shapes face east, as in scenarios; [`Graph::turned`] turns them. Places follow the order of
+//! robot numbers, the first in front, unless [`Graph::nearest`] assigns nearby places.
 
 mod nearest;
 pub mod station;
@@ -17,9 +17,9 @@ use staya_mavlink::frame::MAX_FRAME_LEN;
 use staya_mavlink::wire::{MAX_ROBOT, encode};
 use std::collections::BTreeSet;
 
-/// The ground station's number.
+/// System id of the ground station.
 pub const STATION: u8 = 255;
-/// Usual radii of what a robot knows of its formation: the largest one that fits is taken, as in scenarios.
+/// Radii of a robot's knowledge of its formation, the largest that fits is used, as in scenarios.
 const RADII: [u8; 3] = [3, 2, 1];
 
 /// A formation for any number of robots.
@@ -29,16 +29,16 @@ pub enum Shape {
     Line,
     /// One behind the other.
     Column,
-    /// A V whose point is robot 1.
+    /// A V with robot 1 at its tip.
     Wedge,
-    /// Rows of as many as there are rows, or one more; robot 1 in front on the left.
+    /// A square of rows, robot 1 in front on the left.
     Grid,
     /// A ring, robot 1 in front.
     Circle,
 }
 
 impl Shape {
-    /// All of them, each with its name.
+    /// All shapes with their names.
     pub const NAMES: [(&str, Self); 5] = [
         ("line", Self::Line),
         ("column", Self::Column),
@@ -47,20 +47,21 @@ impl Shape {
         ("circle", Self::Circle),
     ];
 
-    /// The shape of that name.
+    /// The shape with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.into_iter().find(|(own, _)| *own == name).map(|(_, shape)| shape)
     }
 
-    /// The places of `count` robots whose neighbours stand `spacing` cells apart, and who is whose neighbour.
+    /// Builds the formation of `count` robots whose neighbours are `spacing` cells apart.
     ///
     /// # Errors
-    /// Too few or too many robots, or a spacing that takes them off any map or into one cell: see [`GraphError`].
+    /// [`GraphError`]: too few or too many robots, or a spacing that moves places off any map or
+    /// into one cell.
     pub fn graph(self, count: usize, spacing: i16) -> Result<Graph, GraphError> {
         let robots = i32::try_from(count).unwrap_or(i32::MAX).min(i32::from(MAX_ROBOT) + 1);
         let step = i32::from(spacing);
-        // The second to the left, the third to the right, and so on outwards.
+        // Offsets to alternating sides, growing outwards.
         let flank = |index: i32| (index + 1) / 2 * if index % 2 == 1 { 1 } else { -1 };
         let columns = (1..=robots).find(|side| side * side >= robots).unwrap_or(1);
         let turn = std::f64::consts::TAU / f64::from(robots.max(1));
@@ -90,45 +91,43 @@ impl Shape {
     }
 }
 
-/// A formation: places in cells, and pairs of them that are neighbours.
+/// A formation: places in cells, and pairs of places that are neighbours.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Graph {
     places: Vec<Cell>,
     edges: Vec<(u16, u16)>,
 }
 
-/// Why there is no formation.
+/// Why a formation is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GraphError {
-    /// Numbers of robots are 1 to 254.
-    #[error("a formation of {0} robots: MAVLink tells 1 to {MAX_ROBOT} apart")]
+    /// The number of robots is not 1 to 254.
+    #[error("a formation of {0} robots is not possible; give 1 to {MAX_ROBOT}")]
     Count(usize),
-    /// A place beyond all cells.
+    /// A place is outside the range of cells.
     #[error("robot {0} would be off any map: give a smaller spacing")]
     Far(usize),
-    /// Robot 1 is what places are measured from.
-    #[error(
-        "the first place is not [0, 0]: places are cells from robot 1's, x in the direction of travel, y to the left of it"
-    )]
+    /// The first place is not the origin of places.
+    #[error("the first place is not [0, 0]: give places in cells relative to robot 1, x forward, y to the left")]
     First,
-    /// Two robots in one cell.
-    #[error("places {0} and {1} would share a cell: give a larger spacing, or another heading")]
+    /// Two places are in one cell.
+    #[error("places {0} and {1} would share a cell; give a larger spacing, or another heading")]
     Shared(usize, usize),
-    /// A pair of numbers that joins nobody.
-    #[error("edges: [{0}, {1}] joins no two robots of the formation: give two different numbers from 1 to {2}")]
+    /// An edge does not connect two robots.
+    #[error("edges: [{0}, {1}] does not connect two robots of the formation; give two different numbers from 1 to {2}")]
     Edge(u32, u32, usize),
-    /// Somebody who is joined to nobody.
-    #[error("edges: none leads from robot 1 to robot {0}: join every robot to the formation")]
+    /// A robot without a path of edges to robot 1.
+    #[error("edges: robot {0} is not connected to robot 1; connect every robot to the formation")]
     Lost(usize),
-    /// More neighbours than a robot has room for.
-    #[error("robot {0} has more than {TEMPLATE} neighbours, for which a robot has room: give it fewer edges")]
+    /// A robot has too many neighbours.
+    #[error("robot {0} has more than {TEMPLATE} neighbours; give it fewer edges")]
     Neighbors(usize),
-    /// A file that is none.
+    /// The file is invalid.
     #[error("{0}; a formation's file has `places = [[0, 0], [-3, 3]]` and `edges = [[1, 2]]`")]
     File(String),
 }
 
-/// As in a scenario's `[robots.formation]`.
+/// Equal to a scenario's `[robots.formation]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GraphFile {
@@ -137,10 +136,11 @@ struct GraphFile {
 }
 
 impl Graph {
-    /// Places relative to the first one, and pairs of indices into them. O(places * edges).
+    /// Creates a formation from places relative to the first one and pairs of indices. O(places *
+    /// edges).
     ///
     /// # Errors
-    /// Too few or too many robots, places that are too far, or taken twice.
+    /// [`GraphError`]: too few or too many robots, or places that are too far or shared.
     fn new(places: &[(i32, i32)], edges: Vec<(u16, u16)>) -> Result<Self, GraphError> {
         if places.is_empty() || places.len() > usize::from(MAX_ROBOT) {
             return Err(GraphError::Count(places.len()));
@@ -159,10 +159,11 @@ impl Graph {
         }
     }
 
-    /// Reads a file's text: `places` and `edges` as in a scenario's `[robots.formation]`.
+    /// Parses `places` and `edges` as in a scenario's `[robots.formation]`.
     ///
     /// # Errors
-    /// It is no such file, or its robots are too many, too far, on one place, or not joined: see [`GraphError`].
+    /// [`GraphError`] if the text is invalid, or its robots are too many, too far, in one cell or
+    /// not connected.
     pub fn parse(text: &str) -> Result<Self, GraphError> {
         let file: GraphFile = toml::from_str(text).map_err(|error| GraphError::File(error.to_string()))?;
         if file.places.first() != Some(&[0, 0]) {
@@ -181,17 +182,17 @@ impl Graph {
         Self::new(&places, edges.into_iter().collect())
     }
 
-    /// The same formation looking elsewhere than east; `Stay`: east.
+    /// The formation turned from east to `heading`; `Stay` leaves it unchanged.
     ///
     /// # Errors
-    /// Places that would share a cell after the turn.
+    /// [`GraphError::Shared`] if two places are in one cell after the turn.
     pub fn turned(&self, heading: Dir) -> Result<Self, GraphError> {
         let places: Vec<_> = self.places.iter().map(|&place| rotated(place, heading)).collect();
         self.check_apart(&places)?;
         Ok(Self { places, edges: self.edges.clone() })
     }
 
-    /// How many robots it is for.
+    /// Number of robots.
     #[must_use]
     pub fn robots(&self) -> usize {
         self.places.len()
@@ -206,7 +207,7 @@ impl Graph {
         Ok(())
     }
 
-    /// The first place that no edges join to the first one.
+    /// The first place without a path of edges to place 0.
     fn unreached(&self) -> Option<usize> {
         let mut reached = vec![false; self.places.len()];
         *reached.first_mut()? = true;
@@ -237,23 +238,26 @@ impl Graph {
     }
 }
 
-/// What is to be told, and as whose order.
+/// The goal of a formation, and the identity of the order.
 #[derive(Clone, Copy, Debug)]
 pub struct Order {
-    /// The cell for the place in front, [0, 0]; `None`: robots go where they were going anyway.
+    /// Goal cell of place [0, 0]; `None` keeps the robots' present goal.
     pub goal: Option<Cell>,
-    /// Whether the goal is said to everybody at once, or to each robot of the formation by itself: others are there.
+    /// Whether the goal is a broadcast. Otherwise each robot of the formation is addressed, because
+    /// other robots are present.
     pub to_all: bool,
-    /// Tells this start of the ground station from others.
+    /// Boot counter of the ground station.
     pub boot: u8,
-    /// Counts orders of this start.
+    /// Version of the order since the boot.
     pub version: u8,
 }
 
-/// The frames that make `robots`, by rising numbers, this formation: parts of a template for each, then the goal. O(robots * edges).
+/// Encodes the orders that form `robots` (sorted by number): the parts of each robot's template,
+/// then the goal. O(robots * edges).
 ///
 /// # Errors
-/// Another number of robots than of places, or robots that have more neighbours than they have room for.
+/// [`GraphError`] if the number of robots differs from the number of places, or a robot has too
+/// many neighbours.
 pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>>, GraphError> {
     if robots.len() != graph.robots() {
         return Err(GraphError::Count(robots.len()));
@@ -262,7 +266,7 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
     let mut messages = Vec::new();
     for (own, mut template) in graph.templates()?.into_iter().enumerate() {
         for entry in &mut template.entries {
-            // A graph numbers its places from 1.
+            // Graphs number their places from 1.
             entry.id = id(entry.id.0 as usize - 1);
         }
         let parts =
@@ -270,7 +274,7 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
                 .map_err(|_| GraphError::Neighbors(own + 1))?;
         messages.extend(parts.map(Message::Template));
     }
-    // Robots go to their places beside the first robot's, which need not be the one in front.
+    // A template is relative to the first robot, which need not be the one in front.
     let target = order.goal.zip(graph.places.first()).map(|(goal, &first)| goal + first);
     let to = if order.to_all { vec![RobotId::NOBODY] } else { (0..robots.len()).map(id).collect() };
     messages.extend(target.iter().flat_map(|&target| {
@@ -279,7 +283,7 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
     let frame = |(sequence, message): (u16, &Message)| {
         let header = Header { boot: order.boot, sender: RobotId(STATION.into()), sequence };
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        // Every message fits into the longest frame, and every number is one of MAVLink's.
+        // Every message fits into a frame, and every number is a valid system id.
         encode(header, message, &mut frame).ok().map(|_| frame.to_vec())
     };
     Ok((0..).zip(&messages).filter_map(frame).collect())

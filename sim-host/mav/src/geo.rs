@@ -1,35 +1,37 @@
-//! Places on the Earth: a swarm's metres about a shared origin as WGS 84 latitude, longitude and altitude, and back.
+//! Conversion between metres about a shared origin and WGS 84 latitude, longitude and altitude.
 //!
-//! x (east) and y (north) are those of the plane that touches the ellipsoid, at its origin's altitude, in the origin; z (up) is the
-//! altitude above the origin's, as autopilots mean it, not the distance from that plane: level flight keeps its z. The conversion
-//! itself is exact to less than a millimetre. What is left is the Earth's shape: lengths in the plane are short by at most d^2 / 2R^2 at the distance d
-//! from the origin (1.3 mm in a kilometre at 10 km, 130 at 100 km), and north there is off the plane's y by about d tan(latitude) / R
-//! (2 mrad at 10 km and 55 degrees), by which velocities are *not* turned.
+//! x (east) and y (north) are in the plane that touches the ellipsoid at the origin, at the
+//! origin's altitude. z (up) is the altitude above the origin's, as autopilots define it, not the
+//! distance from that plane: level flight has a constant z.
+//!
+//! The conversion is exact to less than a millimetre. What remains is the Earth's curvature at
+//! distance d from the origin: lengths in the plane are short by at most d^2 / 2R^2 (1.3 mm per km
+//! at 10 km, 130 mm at 100 km), and north deviates from y by about d tan(latitude) / R (2 mrad at
+//! 10 km and 55 degrees). Velocities are *not* corrected for that angle.
 
 use std::f64::consts::PI;
 
-/// Half the ellipsoid's longest axis, metres.
+/// Semi-major axis, metres.
 const A_M: f64 = 6_378_137.0;
-/// How flat it is.
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
-/// Square of its eccentricity.
+/// Square of the eccentricity.
 const E2: f64 = FLATTENING * (2.0 - FLATTENING);
-/// Farthest from the origin, metres.
+/// Largest distance from the origin, metres.
 pub const FAR_M: f64 = 1_000_000.0;
 
-/// A place on the Earth (WGS 84).
+/// A geographic position (WGS 84).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Global {
-    /// Degrees north, -90 to 90.
+    /// Latitude, degrees north, -90 to 90.
     pub latitude_deg: f64,
-    /// Degrees east, -180 to 180.
+    /// Longitude, degrees east, -180 to 180.
     pub longitude_deg: f64,
-    /// Metres above whatever altitudes are counted from: the same for all places of a swarm.
+    /// Altitude, metres. All positions of a swarm use the same reference, such as sea level.
     pub altitude_m: f64,
 }
 
 impl Global {
-    /// From the numbers in messages: 1e-7 degrees and millimetres.
+    /// From the integers in messages: 1e-7 degrees and millimetres.
     #[must_use]
     pub fn from_e7(latitude: i32, longitude: i32, altitude_mm: i32) -> Self {
         Self {
@@ -39,7 +41,7 @@ impl Global {
         }
     }
 
-    /// As in messages: 1e-7 degrees (11 mm) and millimetres; saturates.
+    /// To the integers in messages: 1e-7 degrees (11 mm) and millimetres; saturates.
     #[must_use]
     pub fn to_e7(self) -> [i32; 3] {
         [
@@ -49,27 +51,27 @@ impl Global {
         ]
     }
 
-    /// Whether the numbers are those of a place; altitudes are within 100 km.
+    /// Whether latitude and longitude are valid and the altitude is within 100 km.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.latitude_deg.abs() <= 90.0 && self.longitude_deg.abs() <= 180.0 && self.altitude_m.abs() <= 100_000.0
     }
 }
 
-/// A shared origin: between metres east, north, up of it and places on the Earth.
+/// A shared origin, which converts between metres east, north, up of it and geographic positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Origin {
     place: Global,
-    /// From the middle of the Earth, metres.
+    /// Metres from the centre of the Earth.
     center_m: [f64; 3],
-    /// Sine and cosine of the latitude.
+    /// Sine and cosine.
     latitude: [f64; 2],
-    /// Sine and cosine of the longitude.
+    /// Sine and cosine.
     longitude: [f64; 2],
 }
 
 impl Origin {
-    /// `None` when `place` is none.
+    /// Creates an origin; `None` if `place` is invalid.
     #[must_use]
     pub fn new(place: Global) -> Option<Self> {
         let sound = place.is_sound().then_some(place)?;
@@ -82,13 +84,14 @@ impl Origin {
         })
     }
 
-    /// The place itself.
+    /// Geographic position of the origin.
     #[must_use]
     pub const fn place(&self) -> Global {
         self.place
     }
 
-    /// Metres east, north and up of the origin; `None` for what is no place, or farther than [`FAR_M`].
+    /// Metres east, north and up of the origin; `None` for an invalid position, or beyond
+    /// [`FAR_M`].
     #[must_use]
     pub fn to_enu_m(&self, place: &Global) -> Option<[f64; 3]> {
         if !place.is_sound() {
@@ -102,14 +105,14 @@ impl Origin {
         is_near.then_some([east, north, place.altitude_m - self.place.altitude_m])
     }
 
-    /// The place so many metres east, north and up of the origin; `None` farther than [`FAR_M`].
+    /// Geographic position of a point in metres east, north and up; `None` beyond [`FAR_M`].
     #[must_use]
     pub fn to_global(&self, enu_m: [f64; 3]) -> Option<Global> {
         let [east, north, up] = enu_m;
         if enu_m.iter().any(|m| m.is_nan() || m.abs() > FAR_M) {
             return None;
         }
-        // How far the ground falls off the plane; the rest after each round is less than a 20th of that before.
+        // Height of the ground below the plane. Each iteration reduces the error by a factor of 20.
         let mut above = -(east * east + north * north) / (2.0 * A_M);
         let mut found = (0.0, 0.0);
         for _ in 0..10 {
@@ -126,14 +129,14 @@ impl Origin {
         })
     }
 
-    /// From axes of the Earth to east, north, up.
+    /// From Earth-centred axes to east, north, up.
     fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let ([sin_lat, cos_lat], [sin_lon, cos_lon]) = (self.latitude, self.longitude);
         let outward = x * cos_lon + y * sin_lon;
         [y * cos_lon - x * sin_lon, z * cos_lat - outward * sin_lat, outward * cos_lat + z * sin_lat]
     }
 
-    /// From east, north, up to axes of the Earth.
+    /// From east, north, up to Earth-centred axes.
     fn turned_back(&self, [east, north, up]: [f64; 3]) -> [f64; 3] {
         let ([sin_lat, cos_lat], [sin_lon, cos_lon]) = (self.latitude, self.longitude);
         let outward = up * cos_lat - north * sin_lat;
@@ -141,13 +144,13 @@ impl Origin {
     }
 }
 
-/// North, east, down from east, north, up.
+/// Converts east, north, up to north, east, down.
 #[must_use]
 pub fn ned<T: Copy + std::ops::Neg<Output = T>>([east, north, up]: [T; 3]) -> [T; 3] {
     [north, east, -up]
 }
 
-/// East, north, up from north, east, down.
+/// Converts north, east, down to east, north, up.
 #[must_use]
 pub fn enu<T: Copy + std::ops::Neg<Output = T>>([north, east, down]: [T; 3]) -> [T; 3] {
     [east, north, -down]
@@ -157,7 +160,7 @@ fn radians(degrees: f64) -> f64 {
     degrees * PI / 180.0
 }
 
-/// A place in metres from the middle of the Earth: x to longitude 0, z to the north pole.
+/// Earth-centred coordinates, metres: x to longitude 0, z to the north pole.
 fn from_center_m(latitude: f64, longitude: f64, altitude_m: f64) -> [f64; 3] {
     let (sin, cos) = (libm::sin(latitude), libm::cos(latitude));
     let normal_m = A_M / (1.0 - E2 * sin * sin).sqrt();
@@ -165,7 +168,7 @@ fn from_center_m(latitude: f64, longitude: f64, altitude_m: f64) -> [f64; 3] {
     [outward * libm::cos(longitude), outward * libm::sin(longitude), (normal_m * (1.0 - E2) + altitude_m) * sin]
 }
 
-/// Latitude and longitude in radians and altitude in metres: Bowring's formula, in two rounds.
+/// Latitude and longitude in radians and altitude in metres, by two rounds of Bowring's formula.
 fn geodetic([x, y, z]: [f64; 3]) -> (f64, f64, f64) {
     let outward = libm::hypot(x, y);
     let b_m = A_M * (1.0 - FLATTENING);

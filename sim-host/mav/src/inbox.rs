@@ -1,50 +1,49 @@
-//! Frames that wait to be served: every peer in turn, so that one who says too much waits himself and nobody else does.
+//! Queues of received frames, served round robin, so that a peer that floods delays only itself.
 
 use std::collections::{HashMap, VecDeque};
 use std::net::SocketAddr;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Frames of one peer that wait at most; more are lost and counted.
+/// Queue length per peer; more frames are dropped and counted.
 pub(super) const QUEUE: usize = 512;
-/// Messages that one peer can have answered in a second, and at once.
+/// Answers per second and per burst that one peer can cause.
 const ANSWERS_PER_S: u32 = 1000;
 const ANSWERS_AT_ONCE: u32 = 1000;
 
-/// Somebody at the other end of a line.
+/// The other end of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Peer {
-    /// Of a socket.
+    /// A socket address.
     Address(SocketAddr),
-    /// Of a serial port.
+    /// The other end of a serial port.
     Wire,
 }
 
-/// A frame that came in.
+/// A received frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Received {
-    /// Over which line, by its number in [`Lines::open`](super::Lines::open).
+    /// Index of the link in [`Lines::open`](super::Lines::open).
     pub line: usize,
-    /// From whom.
+    /// Sender.
     pub peer: Peer,
-    /// One whole frame: see [`staya_mavlink::frame::RawFrame`].
+    /// One whole frame, see [`staya_mavlink::frame::RawFrame`].
     pub frame: Vec<u8>,
 }
 
-/// A line and who is heard there; `None`: all who are not known yet.
+/// A link and a peer; `None` for all unknown peers of the link together.
 type Source = (usize, Option<Peer>);
 
 #[derive(Debug, Default)]
 struct Waiting {
     queues: HashMap<Source, VecDeque<Received>>,
-    /// Those with something in their queues, in the order of service.
+    /// Sources with frames, in the order of service.
     turn: VecDeque<Source>,
-    /// When all answers will be paid for.
+    /// When the answers to each source are paid for.
     paid_at: HashMap<Source, Instant>,
     served: Option<Source>,
 }
 
-/// One for all lines.
 #[derive(Debug, Default)]
 pub(super) struct Inbox {
     waiting: Mutex<Waiting>,
@@ -56,7 +55,8 @@ impl Inbox {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts a frame behind those of its peer, or behind those of all strangers of its line; whether there was room.
+    /// Queues a frame behind those of its peer, or of all unknown peers of its link. Returns false
+    /// if the queue is full.
     pub(super) fn put(&self, received: Received, is_known: bool) -> bool {
         let source = (received.line, is_known.then_some(received.peer));
         let mut waiting = self.lock();
@@ -72,7 +72,7 @@ impl Inbox {
         true
     }
 
-    /// The frame whose turn it is; `None` when there is none for so long. O(peers).
+    /// The next frame, or `None` after the timeout. O(peers).
     pub(super) fn next(&self, timeout: Duration) -> Option<Received> {
         let until = Instant::now() + timeout;
         let mut waiting = self.lock();
@@ -91,18 +91,18 @@ impl Inbox {
         }
     }
 
-    /// Frames that wait.
     pub(super) fn len(&self) -> u64 {
         self.lock().queues.values().map(|queue| queue.len() as u64).sum()
     }
 
-    /// Puts so many messages on the account of whoever was served last. Who has too many there is not served for a while.
+    /// Charges the last served source for its answers. A source above its limit is not served for a
+    /// while.
     pub(super) fn charge(&self, answers: usize) {
         let mut waiting = self.lock();
         let cost = one() * u32::try_from(answers).unwrap_or(u32::MAX).min(1 << 20);
         if let Some(source) = waiting.served.filter(|_| !cost.is_zero()) {
             let now = Instant::now();
-            // Of those who are even with us there is nothing to remember.
+            // Sources without a debt need no entry.
             waiting.paid_at.retain(|_, at| *at > now);
             let at = waiting.paid_at.entry(source).or_insert(now);
             *at += cost;
@@ -110,7 +110,6 @@ impl Inbox {
     }
 }
 
-/// What one answer costs, and what is given on trust.
 fn one() -> Duration {
     Duration::from_secs(1) / ANSWERS_PER_S
 }
@@ -159,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn who_floods_loses_his_own_frames_and_others_are_served_in_turn() {
+    fn a_flooding_peer_loses_only_its_own_frames() {
         let inbox = Inbox::default();
         let taken = (0..10_000).filter(|_| inbox.put(from(1, 0), true)).count();
         assert_eq!(taken, QUEUE);
@@ -169,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn strangers_share_one_queue_however_many_they_are() {
+    fn unknown_peers_share_one_queue() {
         let inbox = Inbox::default();
         let taken = (0..60_000).filter(|port| inbox.put(from(*port, 0), false)).count();
         assert_eq!(taken, QUEUE);
@@ -177,11 +176,11 @@ mod tests {
         assert_eq!((next(&inbox), next(&inbox)), (Some((0, 0)), Some((1, 7))));
         let rest = std::iter::from_fn(|| next(&inbox)).count();
         assert_eq!(rest, QUEUE - 1);
-        assert_eq!(inbox.lock().queues.len(), 0, "nothing is left behind");
+        assert_eq!(inbox.lock().queues.len(), 0, "empty queues are removed");
     }
 
     #[test]
-    fn who_has_had_too_many_answers_waits_until_they_are_paid_for() {
+    fn a_peer_above_its_answer_limit_waits() {
         let inbox = Inbox::default();
         for port in [1, 2] {
             for frame in 0..3 {
@@ -192,13 +191,12 @@ mod tests {
         inbox.charge(100 * ANSWERS_AT_ONCE as usize);
         let order: Vec<_> = std::iter::from_fn(|| next(&inbox)).collect();
         assert_eq!(order, [(2, 0), (2, 1), (2, 2)]);
-        // A minute and a half later.
         let later = Instant::now() + Duration::from_secs(120);
         assert_eq!(inbox.lock().next(later).map(|received| received.frame), Some(vec![1]));
     }
 
     #[test]
-    fn what_is_waited_for_comes_when_it_comes() {
+    fn a_waiting_receiver_wakes_up_for_a_frame() {
         let inbox = std::sync::Arc::new(Inbox::default());
         let other = std::sync::Arc::clone(&inbox);
         let thread = std::thread::spawn(move || other.next(Duration::from_secs(60)));

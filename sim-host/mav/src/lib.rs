@@ -1,8 +1,12 @@
 //! MAVLink on the host.
 //!
-//! [`bridge`] shows a simulated swarm to ground stations and scripts, [`companion`] is the controller beside autopilots, [`formation`]
-//! gives a swarm another shape and goal. All speak over [`Lines`]: an [`Endpoint`] names a line as other MAVLink programs do, [`Lines`]
-//! opens any number of them and gives whole frames, [`Tlog`] keeps them; [`geo`] is where metres become degrees.
+//! - [`bridge`] connects a simulated swarm to ground stations and scripts.
+//! - [`companion`] runs controllers next to real autopilots.
+//! - [`formation`] sends a new shape and goal to a swarm.
+//!
+//! All of them use [`Lines`], which opens any number of links and returns whole frames. An
+//! [`Endpoint`] names a link in the notation of other MAVLink programs, [`Tlog`] records frames,
+//! and [`geo`] converts metres to degrees.
 
 pub mod bridge;
 pub mod cli;

@@ -1,4 +1,4 @@
-//! Several lines, one queue of frames.
+//! Several links with one queue of received frames.
 
 use super::endpoint::Endpoint;
 use super::inbox::{Inbox, Peer, Received};
@@ -11,13 +11,13 @@ use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Why there is no line.
+/// Why a link cannot be opened.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot open {endpoint}: {source}")]
+#[error("cannot open {endpoint}: {source}; give another address or port, or end the program that uses it")]
 pub struct OpenError {
-    /// Which one.
+    /// The link.
     pub endpoint: Endpoint,
-    /// Why.
+    /// Cause.
     pub source: io::Error,
 }
 
@@ -28,20 +28,22 @@ struct Line {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// Open lines. Nothing here waits for a slow or absent peer: what cannot be sent is lost and counted, as on a radio. Closed when dropped.
+/// Open links. Sending never waits for a slow or absent peer: frames that cannot be sent are lost
+/// and counted, as on a radio. Dropping closes the links.
 ///
-/// Who calls a line that listens is nobody until its owner says [`Self::believe`]: a datagram's sender is not told anything before, and one at a
-/// connection is the first to go when there are too many. Each peer that is believed has a queue of its own, and all are served in turn.
+/// A peer of a listening link counts as unknown until [`Self::believe`]: an unknown sender of
+/// datagrams receives nothing, and an unknown connection is the first to be closed when there are
+/// too many. Every known peer has its own queue; the queues are served in turn.
 pub struct Lines {
     lines: Vec<Line>,
     inbox: Arc<Inbox>,
 }
 
 impl Lines {
-    /// Opens lines; each is known by its place in `endpoints`.
+    /// Opens the links. A link is identified by its index in `endpoints`.
     ///
     /// # Errors
-    /// The first one that cannot be opened. An absent peer is no error.
+    /// The first link that cannot be opened. An absent peer is not an error.
     pub fn open(endpoints: &[Endpoint]) -> Result<Self, OpenError> {
         let inbox = Arc::<Inbox>::default();
         let mut lines = Self { lines: Vec::new(), inbox: Arc::clone(&inbox) };
@@ -64,65 +66,66 @@ impl Lines {
         Ok(lines)
     }
 
-    /// How many there are.
+    /// Number of links.
     #[must_use]
     pub fn len(&self) -> usize {
         self.lines.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no links.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.lines.is_empty()
     }
 
-    /// What line number `line` was opened as.
+    /// The endpoint of link `line`.
     #[must_use]
     pub fn endpoint(&self, line: usize) -> Option<&Endpoint> {
         self.lines.get(line).map(|line| &line.endpoint)
     }
 
-    /// Where line number `line` listens, or is sent from; `None` for a serial port.
+    /// Local address of link `line`; `None` for a serial port.
     #[must_use]
     pub fn local(&self, line: usize) -> Option<SocketAddr> {
         self.lines.get(line)?.outgoing.local()
     }
 
-    /// Sends one frame to everybody on a line. A line that is not there sends nothing.
+    /// Sends a frame to all peers of a link. An unknown index does nothing.
     pub fn send(&self, line: usize, frame: &[u8]) {
         if let Some(line) = self.lines.get(line) {
             line.outgoing.send(frame);
         }
     }
 
-    /// Sends one frame to one peer of a line.
+    /// Sends a frame to one peer of a link.
     pub fn send_to(&self, line: usize, peer: Peer, frame: &[u8]) {
         if let Some(line) = self.lines.get(line) {
             line.outgoing.send_to(peer, frame);
         }
     }
 
-    /// Says that a frame of this peer was sound, and with a key authentic: from now on, and as long as more of them come, it is one of those whom
-    /// [`Self::send`] reaches.
+    /// Marks a peer as known because it sent a valid (and with a key, authentic) frame.
+    /// [`Self::send`] reaches it as long as such frames keep arriving.
     pub fn believe(&self, line: usize, peer: Peer) {
         if let Some(line) = self.lines.get(line) {
             line.outgoing.believe(peer);
         }
     }
 
-    /// The next frame that came in over any line, each peer in turn; `None` when there is none for so long.
+    /// The next received frame of any link, or `None` after the timeout. Peers are served in turn.
     #[must_use]
     pub fn receive(&self, timeout: Duration) -> Option<Received> {
         self.inbox.next(timeout)
     }
 
-    /// Says how many messages the last frame of [`Self::receive`] was answered with. Whoever has had a thousand more than a thousand a second is not
-    /// served until they are made up for; its frames wait, and are lost when its queue is full.
+    /// Charges the sender of the last received frame for its answers. A peer with 1000 answers more
+    /// than 1000 per second is not served for a while; its frames queue up and are dropped when the
+    /// queue is full.
     pub fn charge(&self, answers: usize) {
         self.inbox.charge(answers);
     }
 
-    /// What line number `line` has carried.
+    /// Traffic counters of link `line`.
     #[must_use]
     pub fn counts(&self, line: usize) -> Counts {
         let line = self.lines.get(line);
@@ -131,7 +134,8 @@ impl Lines {
 }
 
 impl Lines {
-    /// Why line number `line` has no connection, when that was tried last; `None` for one that has, or needs none.
+    /// Why the last connection attempt of link `line` failed; `None` if it is connected or needs no
+    /// connection.
     #[must_use]
     pub fn trouble(&self, line: usize) -> Option<String> {
         self.lines.get(line).and_then(|line| line.shared.tally.trouble())
@@ -139,20 +143,20 @@ impl Lines {
 }
 
 impl Lines {
-    /// Ends all lines; nothing comes in any more, and what waits can still be received and counted.
+    /// Closes all links. Frames already received remain available.
     pub fn close(&mut self) {
         for line in &self.lines {
             line.shared.closed.store(true, Ordering::Relaxed);
         }
         for line in &mut self.lines {
             for thread in line.threads.drain(..) {
-                // One that panicked has nothing left to close.
+                // A thread that panicked has nothing left to close.
                 let _ = thread.join();
             }
         }
     }
 
-    /// Frames that have come in and were not received yet.
+    /// Number of queued frames.
     #[must_use]
     pub fn waiting(&self) -> u64 {
         self.inbox.len()

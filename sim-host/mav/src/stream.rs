@@ -1,4 +1,4 @@
-//! Lines of bytes: TCP and serial ports.
+//! Links over byte streams: TCP and serial ports.
 
 use super::inbox::Peer;
 use super::traffic::{GLANCE, Outgoing, Shared};
@@ -11,42 +11,36 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Connections to a port that listens, at most.
 pub(super) const CONNECTIONS: usize = 32;
-/// A connection over which nothing sound came for so long is ended.
+/// A connection without a valid frame for this time is closed.
 const IDLE: Duration = Duration::from_secs(60);
-/// Who was silent for so long makes room for another one.
+/// A known peer that was silent for this time can be replaced by a new one.
 const YIELD: Duration = Duration::from_secs(5);
-/// Frames that wait for a slow peer at most.
+/// Send queue per peer, frames.
 const QUEUE: usize = 1024;
-/// How long until a connection that ended is tried again.
 const RETRY: Duration = Duration::from_secs(1);
-/// How long a write may take before the peer counts as gone.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// How long a serial port is read or written before it is looked at again.
+/// Timeout of one read or write of a serial port.
 const PAUSE: Duration = Duration::from_millis(500);
 
 type Threads = Vec<JoinHandle<()>>;
 type Opened = io::Result<(Box<dyn Outgoing>, Threads)>;
 
-/// Who is connected.
 #[derive(Clone, Default)]
 struct Peers(Arc<Mutex<HashMap<Peer, Connected>>>);
 
-/// One of them.
 struct Connected {
     queue: SyncSender<Vec<u8>>,
-    /// When it was believed last, or since when it is there.
+    /// Time of the last valid frame, or of the connection.
     heard: Instant,
     is_believed: bool,
-    /// To end it.
     socket: Option<TcpStream>,
 }
 
 impl Connected {
     fn end(&self) {
         if let Some(socket) = &self.socket {
-            // The other side may have gone already.
+            // The other side may have closed already.
             let _ = socket.shutdown(Shutdown::Both);
         }
     }
@@ -57,7 +51,7 @@ impl Peers {
         work(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Takes somebody in; what is to be written to him comes out.
+    /// Adds a peer and returns its send queue.
     fn join(&self, peer: Peer, socket: Option<TcpStream>) -> Receiver<Vec<u8>> {
         let (queue, frames) = sync_channel(QUEUE);
         let connected = Connected { queue, heard: Instant::now(), is_believed: false, socket };
@@ -65,7 +59,6 @@ impl Peers {
         frames
     }
 
-    /// Ends connections that were idle for too long.
     fn end_idle(&self, now: Instant) {
         self.with(|peers| {
             let idle = |peer: &Connected| now.saturating_duration_since(peer.heard) >= IDLE;
@@ -73,8 +66,8 @@ impl Peers {
         });
     }
 
-    /// Makes room for one more, if need be by ending a connection: of those that were never believed the oldest, otherwise the one that was silent
-    /// longest, if that is long. Whether there is room.
+    /// Makes room for one more connection. Closes the oldest unknown peer, else the known peer that
+    /// was silent for longest, if that is longer than `YIELD`. Returns whether there is room.
     fn make_room(&self, now: Instant) -> bool {
         self.with(|peers| {
             if peers.len() < CONNECTIONS {
@@ -131,7 +124,7 @@ impl Outgoing for Stream {
     }
 }
 
-/// A connection to an address, again and again.
+/// Connects to an address, and reconnects after every disconnect.
 pub(super) fn connect(to: SocketAddr, shared: &Shared) -> Opened {
     let peers = Peers::default();
     let stream = Stream { peers: peers.clone(), local: None, shared: shared.clone() };
@@ -148,7 +141,7 @@ pub(super) fn connect(to: SocketAddr, shared: &Shared) -> Opened {
     Ok((Box::new(stream), vec![start("tcp", work)?]))
 }
 
-/// Connections at an address.
+/// Accepts connections at an address.
 pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
     let listener = TcpListener::bind(at)?;
     listener.set_nonblocking(true)?;
@@ -161,7 +154,7 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
             threads.retain(|thread| !thread.is_finished());
             let now = Instant::now();
             peers.end_idle(now);
-            // Those that were ended need a moment; callers wait in the system's queue for so long.
+            // Threads of closed connections need time to end; callers wait in the system's backlog.
             let accepted = if threads.len() < 2 * CONNECTIONS { listener.accept().ok() } else { None };
             let Some((socket, from)) = accepted else {
                 thread::sleep(GLANCE);
@@ -177,7 +170,7 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
             let (with, shared) = (peers.clone(), shared.clone());
             match start("tcp", move || converse_tcp(&socket, peer, frames, &with, &shared)) {
                 Ok(thread) => threads.push(thread),
-                // A system that has no thread left has one caller less here; the port stays.
+                // Without a thread the connection is dropped; the port stays open.
                 Err(_) => drop(peers.with(|peers| peers.remove(&peer))),
             }
         }
@@ -192,7 +185,7 @@ fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHan
     thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
-/// A serial port; opened again when it was unplugged.
+/// Opens a serial port, again after it was unplugged.
 pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
     let port = port.clone();
     let open = move || port.open(PAUSE);
@@ -213,7 +206,7 @@ pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
     Ok((Box::new(stream), vec![start("serial", work)?]))
 }
 
-/// Sleeps, but not beyond the line's end.
+/// Sleeps until `time` is over or the link closes.
 fn wait(time: Duration, shared: &Shared) {
     let mut left = time;
     while !left.is_zero() && !shared.is_closed() {
@@ -233,11 +226,11 @@ fn converse_tcp(socket: &TcpStream, peer: Peer, frames: Receiver<Vec<u8>>, peers
         converse(socket, socket, peer, frames, peers, shared);
     }
     peers.with(|peers| peers.remove(&peer));
-    // The other side may have gone already.
+    // The other side may have closed already.
     let _ = socket.shutdown(Shutdown::Both);
 }
 
-/// Reads, and writes `frames`, until either side ends.
+/// Reads frames and writes `frames` until either side ends.
 fn converse(
     mut read: impl Read,
     write: impl Write + Send,
@@ -263,7 +256,7 @@ fn converse(
                 }
             }
         }
-        // The writer ends when nobody can send any more.
+        // The writer ends when no sender is left.
         peers.with(|peers| peers.remove(&peer));
     });
 }
@@ -284,7 +277,6 @@ fn write_all(mut write: impl Write, frames: &Receiver<Vec<u8>>, shared: &Shared)
     }
 }
 
-/// Nothing came in for a while; or the port was interrupted.
 fn is_nothing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

@@ -1,16 +1,17 @@
-//! Logs that MAVExplorer, mavlogdump and QGroundControl read.
+//! Telemetry logs for MAVExplorer, mavlogdump and QGroundControl.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Bytes of one file of a log: hours of a few vehicles.
+/// Largest size of one file, bytes: hours of a few vehicles.
 const LIMIT: u64 = 256 << 20;
 
-/// A tlog: before each frame the time, eight bytes with the highest first, microseconds since 1970.
+/// A tlog file: before each frame its time, microseconds since 1970 as eight bytes, big endian.
 ///
-/// A log that has come to 256 MiB gets `.1` behind its name, in the place of one that had it, and goes on in a new file: so much and no more is kept.
+/// A log of 256 MiB is renamed with `.1` appended, which replaces an older one, and continues in a
+/// new file. So at most 512 MiB are kept.
 #[derive(Debug)]
 pub struct Tlog {
     file: BufWriter<File>,
@@ -19,21 +20,21 @@ pub struct Tlog {
     limit: u64,
 }
 
-/// A log that cannot be written.
+/// A log cannot be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write the log {}: {source}", .path.display())]
+#[error("cannot write the log {}: {source}; {}", .path.display(), staya_sim::file::write_remedy(.source))]
 pub struct TlogError {
-    /// Which one.
+    /// Path.
     pub path: PathBuf,
-    /// Why.
+    /// Cause.
     pub source: io::Error,
 }
 
 impl Tlog {
-    /// Begins a log; one that is there is replaced.
+    /// Creates a log and replaces an existing file.
     ///
     /// # Errors
-    /// When the file cannot be made.
+    /// The file cannot be created.
     pub fn create(path: &Path) -> Result<Self, TlogError> {
         let path = path.to_owned();
         match File::create(&path) {
@@ -42,20 +43,20 @@ impl Tlog {
         }
     }
 
-    /// Adds a frame that came or went just now.
+    /// Appends a frame with the present time.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub fn add(&mut self, frame: &[u8]) -> Result<(), TlogError> {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         let micros = now.map_or(0, |time| time.as_micros());
         self.add_at(u64::try_from(micros).unwrap_or(u64::MAX), frame)
     }
 
-    /// Adds a frame of another time, microseconds since 1970.
+    /// Appends a frame with a time in microseconds since 1970.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub fn add_at(&mut self, micros: u64, frame: &[u8]) -> Result<(), TlogError> {
         self.write(micros, frame).map_err(|source| self.error(source))
     }
@@ -81,10 +82,10 @@ impl Tlog {
         Ok(())
     }
 
-    /// Writes what is still kept back. Dropping does it too, but tells nobody of errors.
+    /// Writes buffered data. Dropping does so too but ignores errors.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// The file cannot be written.
     pub fn finish(mut self) -> Result<(), TlogError> {
         self.file.flush().map_err(|source| self.error(source))
     }
@@ -99,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frame_follows_its_time() {
+    fn each_frame_follows_its_time() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.tlog");
         let mut log = Tlog::create(&path).expect("a log");
@@ -110,11 +111,11 @@ mod tests {
     }
 
     #[test]
-    fn a_log_has_a_bound_and_keeps_what_came_last() {
+    fn a_log_has_a_size_limit_and_keeps_the_last_frames() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.tlog");
         let mut log = Tlog { limit: 40, ..Tlog::create(&path).expect("a log") };
-        // 10 bytes each: four in a file.
+        // Each frame takes 10 bytes, so a file has four.
         for frame in 0..11 {
             log.add_at(frame, b"ab").expect("room");
         }
@@ -125,20 +126,20 @@ mod tests {
         };
         assert_eq!(frames("a.tlog.1"), [4, 5, 6, 7]);
         assert_eq!(frames("a.tlog"), [8, 9, 10]);
-        assert_eq!(std::fs::read_dir(folder.path()).expect("it is there").count(), 2);
+        assert_eq!(std::fs::read_dir(folder.path()).expect("the folder exists").count(), 2);
     }
 
     #[test]
-    fn no_folder_is_an_error_that_names_the_file() {
+    fn a_missing_folder_is_an_error_with_the_path() {
         let error = Tlog::create(Path::new("/no/such/folder/a.tlog")).expect_err("no folder");
         assert!(error.to_string().contains("/no/such/folder/a.tlog"));
     }
 
     #[test]
-    fn full_disk_is_told() {
-        // A device that is always full, where there is one.
+    fn a_full_disk_is_an_error() {
+        // /dev/full is always full, where it exists.
         if let Ok(mut log) = Tlog::create(Path::new("/dev/full")) {
-            log.add(&[0; 100]).expect("kept back");
+            log.add(&[0; 100]).expect("buffered");
             let error = log.finish().expect_err("full");
             assert!(error.to_string().contains("/dev/full"), "{error}");
         }

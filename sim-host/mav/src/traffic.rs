@@ -1,4 +1,4 @@
-//! What goes over a line, whatever its kind: who is at the other end, frames that come in, counts of both ways.
+//! Parts common to all kinds of links: received frames, sending, counters.
 
 use super::inbox::{Inbox, Peer, Received};
 use staya_mavlink::frame::{Scan, scan};
@@ -8,29 +8,28 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How often those who wait look whether they are still wanted.
+/// Interval at which waiting threads check whether the link is closed.
 pub(super) const GLANCE: Duration = Duration::from_millis(50);
 
-/// What a line has carried.
+/// Traffic counters of a link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Counts {
-    /// Frames that came in, and their bytes.
+    /// Frames received.
     pub frames_in: u64,
-    /// See there.
+    /// Bytes received.
     pub bytes_in: u64,
-    /// Frames that went out, once for each peer, and their bytes.
+    /// Frames sent, counted once for each peer.
     pub frames_out: u64,
-    /// See there.
+    /// Bytes sent.
     pub bytes_out: u64,
-    /// Bytes that came in and belong to no frame.
+    /// Received bytes that belong to no frame.
     pub junk_bytes: u64,
-    /// Frames that came in and found their peer's queue full.
+    /// Received frames dropped because the queue of their peer was full.
     pub lost_in: u64,
-    /// Frames that could not be sent: the other side is not there, or reads too slowly.
+    /// Frames that could not be sent, because the peer is absent or reads too slowly.
     pub lost_out: u64,
 }
 
-/// A [`Counts`] that threads share.
 #[derive(Debug, Default)]
 pub(super) struct SharedCounts {
     frames_in: AtomicU64,
@@ -40,7 +39,6 @@ pub(super) struct SharedCounts {
     junk_bytes: AtomicU64,
     lost_in: AtomicU64,
     lost_out: AtomicU64,
-    /// Why there was no connection when it was tried last.
     trouble: Mutex<Option<String>>,
 }
 
@@ -62,18 +60,17 @@ impl SharedCounts {
         }
     }
 
-    /// Keeps why a connection cannot be had, until there is one.
+    /// Stores why a connection attempt failed, until one succeeds.
     pub(super) fn noting<T>(&self, tried: io::Result<T>) -> io::Result<T> {
         *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = tried.as_ref().err().map(ToString::to_string);
         tried
     }
 
-    /// See [`Self::noting`].
     pub(super) fn trouble(&self) -> Option<String> {
         self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// A frame was handed to the system, or not.
+    /// Counts a frame as sent or lost.
     pub(super) fn sent(&self, frame: &[u8], is_sent: bool) {
         if is_sent {
             add(&self.frames_out, 1);
@@ -84,7 +81,7 @@ impl SharedCounts {
     }
 }
 
-/// What the threads of a line share with it.
+/// The part of a link that its threads share.
 #[derive(Clone, Debug)]
 pub(super) struct Shared {
     pub(super) line: usize,
@@ -94,13 +91,12 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Whether the line is being closed.
     pub(super) fn is_closed(&self) -> bool {
         self.closed.load(Ordering::Relaxed)
     }
 
-    /// Takes frames off the front of `bytes` and hands them on; returns how many bytes are used up. `is_whole` as for [`scan`]; who is not
-    /// known shares a queue with all other strangers of the line.
+    /// Queues the frames at the start of `bytes` and returns the number of bytes used. `is_whole`
+    /// as for [`scan`]. Unknown peers share one queue of the link.
     pub(super) fn take(&self, peer: Peer, bytes: &[u8], is_whole: bool, is_known: bool) -> usize {
         let mut used = 0;
         loop {
@@ -128,14 +124,12 @@ impl Shared {
     }
 }
 
-/// What a kind of line does with frames to send.
+/// The sending side of one kind of link.
 pub(super) trait Outgoing: Send + Sync {
-    /// To all who are there.
     fn send(&self, frame: &[u8]);
-    /// To one of them.
     fn send_to(&self, peer: Peer, frame: &[u8]);
-    /// A frame of this one was sound, and with a key authentic.
+    /// Marks a peer as known after a valid frame.
     fn believe(&self, peer: Peer);
-    /// Where it listens, or is sent from; `None` for what is no socket.
+    /// Local address; `None` without a socket.
     fn local(&self) -> Option<SocketAddr>;
 }

@@ -1,4 +1,4 @@
-//! Lines of datagrams.
+//! Links over UDP.
 
 use super::inbox::Peer;
 use super::traffic::{GLANCE, Outgoing, Shared};
@@ -10,29 +10,28 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Who said nothing sound for so long is not told any more. Ground stations speak once a second.
+/// A peer without a valid frame for this time is dropped. Ground stations send at 1 Hz.
 const FORGET: Duration = Duration::from_secs(20);
-/// Peers of a port that listens, at most.
 pub(super) const PEERS: usize = 16;
-/// Who was silent for so long makes room for another one.
+/// A peer that was silent for this time can be replaced by a new one.
 const YIELD: Duration = Duration::from_secs(5);
-/// What the system should keep until it is read, bytes; it may keep less.
+/// Requested receive buffer of the system, bytes; the system may give less.
 const KEPT: usize = 4 << 20;
 
 type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
 
-/// Those who were believed, and when last.
+/// Known peers and the time of their last valid frame.
 #[derive(Clone, Default)]
 struct Believed(Arc<Mutex<HashMap<SocketAddr, Instant>>>);
 
-/// Datagrams to one address.
+/// Sends datagrams to one address.
 struct Out {
     socket: UdpSocket,
     to: SocketAddr,
     shared: Shared,
 }
 
-/// Datagrams to all who were believed.
+/// Sends datagrams to all known peers.
 struct In {
     socket: UdpSocket,
     believed: Believed,
@@ -48,7 +47,7 @@ impl Believed {
         self.lock().contains_key(&peer)
     }
 
-    /// Takes note of a peer, if it is known or there is room.
+    /// Adds or refreshes a peer, if there is room.
     fn note(&self, peer: SocketAddr, now: Instant) {
         let mut peers = self.lock();
         if peers.len() >= PEERS && !peers.contains_key(&peer) {
@@ -61,7 +60,7 @@ impl Believed {
         peers.insert(peer, now);
     }
 
-    /// Those who are still there.
+    /// Peers that have not timed out.
     fn all(&self, now: Instant) -> Vec<SocketAddr> {
         let mut peers = self.lock();
         peers.retain(|_, heard| now.saturating_duration_since(*heard) < FORGET);
@@ -71,14 +70,14 @@ impl Believed {
 
 pub(super) fn open_out(to: SocketAddr, shared: &Shared) -> Opened {
     let any = if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
-    // On this machine nobody else need reach the port.
+    // For a peer on this computer the port need not be reachable from others.
     let local = match to {
         _ if !to.ip().is_loopback() => any,
         SocketAddr::V4(_) => "127.0.0.1:0",
         SocketAddr::V6(_) => "[::1]:0",
     };
     let socket = UdpSocket::bind(local)?;
-    // Only one host is heard, but any port of it.
+    // Only this host is accepted, on any port.
     let reader = read(socket.try_clone()?, shared, move |from| (from.ip() == to.ip()).then_some(from == to))?;
     let shared = shared.clone();
     Ok((Box::new(Out { socket, to, shared }), vec![reader]))
@@ -93,20 +92,21 @@ pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
     Ok((Box::new(In { socket, believed, shared }), vec![reader]))
 }
 
-/// Reads datagrams until the line is closed. `knows` says of a sender whether it is known; `None` when it is not to be heard.
+/// Reads datagrams until the link closes. `knows` returns whether a sender is known, or `None` to
+/// ignore it.
 fn read(
     socket: UdpSocket,
     shared: &Shared,
     knows: impl Fn(SocketAddr) -> Option<bool> + Send + 'static,
 ) -> io::Result<JoinHandle<()>> {
     socket.set_read_timeout(Some(GLANCE))?;
-    // A larger buffer is a wish: bursts of many peers are not lost while others have the processor.
+    // A larger buffer avoids losses in bursts; failure is harmless.
     let _ = SockRef::from(&socket).set_recv_buffer_size(KEPT);
     let shared = shared.clone();
     thread::Builder::new().name(String::from("udp")).spawn(move || {
         let mut buffer = vec![0; 65_536];
         while !shared.is_closed() {
-            // Errors are those of datagrams that nobody took, or that none came: neither ends a line.
+            // Errors report a timeout or an earlier datagram that was rejected; both are harmless.
             if let Ok((len, from)) = socket.recv_from(&mut buffer)
                 && let Some(is_known) = knows(from)
             {
@@ -134,7 +134,7 @@ impl Outgoing for Out {
         }
     }
 
-    /// Whom it tells was said when it was opened.
+    /// The peer is fixed when the link opens.
     fn believe(&self, _: Peer) {}
 
     fn local(&self) -> Option<SocketAddr> {
@@ -159,7 +159,7 @@ impl Outgoing for In {
     fn send_to(&self, peer: Peer, frame: &[u8]) {
         match peer {
             Peer::Address(to) if self.believed.has(to) => self.to(to, frame),
-            // Somebody may only use its address.
+            // An unknown peer may be a spoofed address.
             _ => self.shared.tally.sent(frame, false),
         }
     }
@@ -184,10 +184,10 @@ mod tests {
     }
 
     #[test]
-    fn who_goes_on_speaking_stays_whoever_else_comes() {
+    fn an_active_peer_stays_whatever_others_arrive() {
         let believed = Believed::default();
         let began = Instant::now();
-        // A ground station, once a second, and 64 others each second.
+        // A ground station at 1 Hz, and 64 new peers each second.
         for second in 0..60 {
             let now = began + Duration::from_secs(second);
             believed.note(peer(1), now);
@@ -200,16 +200,16 @@ mod tests {
     }
 
     #[test]
-    fn the_silent_make_room_and_are_forgotten() {
+    fn silent_peers_are_replaced_or_time_out() {
         let believed = Believed::default();
         let began = Instant::now();
         for port in 0..PEERS {
             believed.note(peer(port), began + Duration::from_millis(port as u64));
         }
         believed.note(peer(100), began + YIELD - Duration::from_millis(1));
-        assert!(!believed.has(peer(100)), "everybody speaks");
+        assert!(!believed.has(peer(100)), "all peers are active");
         believed.note(peer(100), began + YIELD);
-        assert!(believed.has(peer(100)) && !believed.has(peer(0)), "the longest silent one goes");
+        assert!(believed.has(peer(100)) && !believed.has(peer(0)), "the longest silent peer is replaced");
         assert_eq!(believed.all(began + FORGET + Duration::from_millis(500)), [peer(100)]);
     }
 }

@@ -1,6 +1,6 @@
-//! One world over ranks: processes, each with its robots, that together make the run that one process makes.
+//! Runs one scenario on several processes (ranks), with the results of a single process.
 //!
-//! The library is complete without MPI: [`ranks::Exchange`] is what connects ranks. The program `staya-mpi`, behind the feature
-//! `mpi`, connects them by MPI.
+//! The library works without MPI: the trait [`ranks::Exchange`] connects ranks. The program
+//! `staya-mpi`, behind the feature `mpi`, connects them by MPI.
 
 pub mod ranks;

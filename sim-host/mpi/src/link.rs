@@ -1,6 +1,7 @@
-//! Ranks connected by MPI.
+//! Connects ranks by MPI.
 //!
-//! MPI is called by the main thread alone, the run is in another one: so it hears of a signal while MPI waits for a rank that is dead.
+//! The main thread makes all MPI calls, and the run is in another thread. So the run receives
+//! signals even while MPI waits for a dead rank.
 
 use mpi::datatype::PartitionMut;
 use mpi::request::{WaitGuard, scope};
@@ -11,16 +12,16 @@ use staya_mpi::ranks::{Exchange, Lost};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// Between a signal to end and giving up on ranks that do not answer: mpirun kills a second after its signal.
+/// Time between a signal and giving up on ranks that do not answer. mpirun kills a second after its
+/// signal.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// What the run asks of MPI.
 pub enum Call {
     Gather(Vec<u8>),
     Swap(Vec<(usize, Vec<u8>)>, Vec<usize>),
 }
 
-/// The run's end.
+/// The end of the link in the run's thread.
 pub struct Link {
     rank: usize,
     ranks: usize,
@@ -29,14 +30,14 @@ pub struct Link {
     stop: Stop,
 }
 
-/// MPI's end.
+/// The end of the link in the main thread.
 pub struct Server {
     world: SimpleCommunicator,
     calls: Receiver<Call>,
     answers: Sender<Vec<Vec<u8>>>,
 }
 
-/// Both ends for this rank.
+/// Creates both ends for this rank.
 pub fn connect(world: SimpleCommunicator, stop: Stop) -> (Link, Server) {
     let (calls, called) = channel();
     let (answers, answered) = channel();
@@ -46,13 +47,13 @@ pub fn connect(world: SimpleCommunicator, stop: Stop) -> (Link, Server) {
 }
 
 impl Link {
-    /// What MPI answers. `whom`: whose answer is awaited.
+    /// Waits for the answer of MPI. `whom` lists the ranks that must answer.
     fn call(&self, call: Call, whom: &[usize]) -> Result<Vec<Vec<u8>>, Lost> {
         let lost = || {
             let others = (0..self.ranks).filter(|&rank| rank != self.rank);
             let rank = whom.first().copied().or(others.into_iter().next()).unwrap_or_default();
-            let among = if whom.len() > 1 { "(or another one) " } else { "" };
-            Lost { rank, why: format!("{among}does not answer, and this run was told to end; mpirun says why") }
+            let among = if whom.len() > 1 { "(or another rank) " } else { "" };
+            Lost { rank, why: format!("{among}did not answer before this run was stopped; see the messages of mpirun") }
         };
         self.calls.send(call).map_err(|_| lost())?;
         let mut told = None;
@@ -94,7 +95,6 @@ impl Exchange for Link {
 }
 
 impl Server {
-    /// Does what the run asks until it is over.
     pub fn serve(self) {
         while let Ok(call) = self.calls.recv() {
             let answer = match call {
@@ -108,11 +108,11 @@ impl Server {
     }
 
     fn gather(&self, own: &[u8]) -> Vec<Vec<u8>> {
-        // One byte in front: the address of no bytes at all is what OpenMPI takes for MPI_IN_PLACE.
+        // A byte in front, because OpenMPI takes the address of an empty buffer for MPI_IN_PLACE.
         let own = &[&[0], own].concat()[..];
         let ranks = usize::try_from(self.world.size()).unwrap_or_default();
         let mut lengths = vec![0_i32; ranks];
-        let length = i32::try_from(own.len()).expect("what a rank tells all is short");
+        let length = i32::try_from(own.len()).expect("broadcast messages are short");
         self.world.all_gather_into(&length, &mut lengths[..]);
         let starts = lengths.iter().scan(0, |end, &length| {
             let start = *end;

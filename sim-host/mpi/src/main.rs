@@ -1,6 +1,7 @@
-//! The command line: `mpirun -n 4 staya-mpi run SCENARIO`. One world over ranks, with the trace hash of `staya run`.
+//! The program `staya-mpi`: `mpirun -n 4 staya-mpi run SCENARIO`, with the trace hash of `staya
+//! run`.
 //!
-//! Rank 0 writes the results and prints them. docs/sweeps.md says how to build it, and what it costs.
+//! Rank 0 writes and prints the results. docs/mpi.md describes the build and the costs.
 
 mod link;
 mod run;
@@ -12,7 +13,7 @@ use staya_console::{Ended, Global, Stop};
 use std::io::Write as _;
 use std::process::ExitCode;
 
-/// One world of robots over many processes, connected by MPI. To be started by mpirun or srun.
+/// Run one scenario on several processes connected by MPI; start it with mpirun or srun.
 #[derive(Debug, Parser)]
 #[command(name = "staya-mpi", version, propagate_version = true)]
 struct Cli {
@@ -42,14 +43,14 @@ fn main() -> ExitCode {
     }
 }
 
-/// The whole life of a rank. An error on one ends all.
+/// Runs a rank. An error on one rank ends all.
 fn on_rank(cli: Cli) -> Result<Ended> {
-    // A rank has one core unless somebody says otherwise.
+    // By default a rank has one core.
     let threads = cli.global.threads.unwrap_or(1);
-    rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global().context("no threads")?;
+    rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global().context("cannot start threads")?;
     let stop = Stop::on_ctrl_c()?;
     let (universe, _) =
-        mpi::initialize_with_threading(mpi::Threading::Funneled).context("MPI has been initialised before")?;
+        mpi::initialize_with_threading(mpi::Threading::Funneled).context("MPI is already initialised")?;
     let world = universe.world();
     let rank = world.rank();
     let (link, server) = link::connect(universe.world(), stop.clone());
@@ -59,17 +60,17 @@ fn on_rank(cli: Cli) -> Result<Ended> {
         match &ended {
             Err(error) if !error.is::<run::Agreed>() => {
                 let _ = writeln!(std::io::stderr(), "staya-mpi: rank {rank}: {error:#}");
-                // MPI may wait for somebody who is gone: nothing but the end gets the main thread out of it, and the others.
+                // MPI may wait for a rank that has ended; only the end of the process releases this
+                // and the other ranks.
                 std::process::exit(1);
             }
             _ => ended,
         }
     });
-    let run = run.context("no thread")?;
+    let run = run.context("cannot start the run's thread")?;
     server.serve();
     match run.join() {
         Ok(ended) => ended,
-        // The panic has been printed.
         Err(_) => world.abort(101),
     }
 }

@@ -1,4 +1,4 @@
-//! `staya-mpi run SCENARIO`: the results of `staya run`, by many processes.
+//! `staya-mpi run SCENARIO`: the results of `staya run`, computed by several processes.
 
 use crate::link::Link;
 use anyhow::{Result, anyhow};
@@ -19,46 +19,48 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Which scenario, and what becomes of it.
+/// A scenario and its outputs.
 #[derive(Args, Clone, Debug)]
 pub struct RunArgs {
-    /// The scenario, a .toml file that every rank can read.
+    /// Scenario, a .toml file that every rank can read.
     scenario: PathBuf,
     /// Seed of all random numbers, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Say something else in a field of the scenario, as in radio.loss=0.3 or plane.orca.horizon_s=3; as often as needed.
+    /// Override a scenario field, for example radio.loss=0.3 or plane.orca.horizon_s=3; may be
+    /// repeated.
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     settings: Vec<Setting>,
-    /// End after this many ticks, instead of the scenario's number.
+    /// Stop after this many ticks, instead of the scenario's number.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
-    /// Folder for the results, which rank 0 writes [default: out/ and the scenario's name].
+    /// Folder for the results, written by rank 0 [default: out/ and the scenario's name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write all that it takes to go on with this run, as `staya run --checkpoint` does, to FOLDER.checkpoint: so often (600s, 10min, 2h of
-    /// real time, or 1000ticks), and when it is told to stop.
+    /// Write a checkpoint at this interval (600s, 10min, 2h of real time, or 1000ticks) and when
+    /// stopped, as `staya run --checkpoint` does, to FOLDER.checkpoint.
     #[arg(long, value_name = "EVERY")]
     checkpoint: Option<Every>,
-    /// Go on from a checkpoint of this scenario, of `staya run` or of any number of ranks; every rank reads it.
+    /// Continue from a checkpoint of this scenario, written by `staya run` or any number of ranks;
+    /// every rank reads it.
     #[arg(long, value_name = "FILE")]
     from: Option<PathBuf>,
-    /// No trace.csv and no pictures: rank 0 need not hear of each robot in each tick.
+    /// Write no trace.csv and no pictures, so that rank 0 does not receive each robot in each tick.
     #[arg(long)]
     no_trace: bool,
 }
 
-/// What a rank has sent.
 #[derive(Debug, Serialize)]
 struct Sent {
     rank: usize,
-    /// Processor time of its run without MPI, which spins while it waits, seconds; null: not known here.
+    /// Processor time without MPI, which uses the processor while it waits, seconds; null if
+    /// unknown.
     busy_seconds: Option<f64>,
     #[serde(flatten)]
     traffic: Traffic,
 }
 
-/// The figures of a run, and what it took to make it.
+/// Summary of a run with the traffic of its ranks.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     #[serde(flatten)]
@@ -66,20 +68,20 @@ struct Report<'a> {
     ranks: &'a [Sent],
 }
 
-/// Something that all ranks know of and rank 0 has said, so that all end in order.
+/// An error that rank 0 has already printed, so that all ranks end in order.
 #[derive(Debug)]
 pub struct Agreed;
 
 impl Display for Agreed {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        f.write_str("rank 0 has said why")
+        f.write_str("see the message of rank 0")
     }
 }
 
 impl std::error::Error for Agreed {}
 
 impl RunArgs {
-    /// Reads the scenario on all ranks, or on none.
+    /// Loads the scenario on all ranks, or on none.
     fn load(&self, link: &mut Link) -> Result<(Scenario, Option<Checkpoint>)> {
         let overrides = Overrides { seed: self.seed, ticks: self.ticks };
         let loaded = Scenario::load_with(&self.scenario, &overrides, &self.settings).map_err(anyhow::Error::from);
@@ -98,7 +100,7 @@ impl RunArgs {
             (Some((rank, said)), _) if link.rank() == 0 => eprintln!("staya-mpi: rank {rank}: {said}"),
             _ => {}
         }
-        // With the first one that ends mpirun ends all: nobody does before it is said.
+        // The first rank that ends makes mpirun end all, so all wait until the message is printed.
         link.gather(Vec::new())?;
         Err(Agreed.into())
     }
@@ -130,13 +132,12 @@ impl RunArgs {
                 let kept = results.keep();
                 let (kept, out) = (kept.display(), out.display());
                 Err(anyhow!(
-                    "{error:#}; {kept} keeps what was written until the next run into {out}, where nothing has changed"
+                    "{error:#}; {out} is unchanged; {kept} has the incomplete results until the next run into {out}"
                 ))
             }
         }
     }
 
-    /// The run itself, on any rank.
     fn simulate(
         &self,
         scenario: &Scenario,
@@ -154,7 +155,7 @@ impl RunArgs {
         })
     }
 
-    /// The run on rank 0, recorded in `dir`, which will be `out`.
+    /// Runs the scenario on rank 0 and records it in `dir`, which becomes `out`.
     fn record(
         &self,
         scenario: &Scenario,
@@ -183,7 +184,7 @@ impl RunArgs {
                 && let Err(error) =
                     place.write(tick, before_seconds + began.elapsed().as_secs_f64(), run, &mut recorder)
             {
-                eprintln!("no checkpoint at tick {tick}: {error}");
+                eprintln!("cannot write the checkpoint of tick {tick}: {error}");
             }
             let Moment { arrived, waiting, .. } = *moment;
             progress.set(tick.into(), || format!("ticks, {arrived} of {count} robots arrived, {waiting} wait"));
@@ -192,7 +193,7 @@ impl RunArgs {
         let ended = self.simulate(scenario, from.as_ref(), &mut link, &mut watch);
         progress.finish();
         let wall_seconds = before_seconds + began.elapsed().as_secs_f64();
-        // What is there is worth keeping, whatever went wrong.
+        // Partial results are kept after an error.
         let history = recorder.finish();
         if let Some(error) = failed {
             return Err(error.into());
@@ -213,7 +214,7 @@ impl RunArgs {
         Ok((summary, sent.collect()))
     }
 
-    /// What is in the results folder; draws the pictures.
+    /// Paths of the results; draws the pictures.
     fn files(&self, scenario: &Scenario, history: &History, dir: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let mut files = ["summary.json", "series.csv", "series.schema.json"].map(|name| out.join(name)).to_vec();
         let trace = ["trace.csv", "trace.schema.json"];
@@ -231,7 +232,7 @@ impl RunArgs {
     }
 }
 
-/// Processor time of all threads but the first one, which MPI has.
+/// Processor time of all threads but the first, which belongs to MPI.
 fn busy_seconds() -> Option<f64> {
     let own = std::process::id().to_string();
     let threads = std::fs::read_dir("/proc/self/task").ok()?.flatten();
@@ -242,11 +243,10 @@ fn busy_seconds() -> Option<f64> {
     Some(times.sum::<Option<f64>>()? / 1e9)
 }
 
-/// The traffic for a reader: bytes per tick and rank.
 fn table(sent: &[Sent]) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     let ticks = sent.first().map_or(1, |sent| sent.traffic.ticks.max(1)) as f64;
-    writeln!(text, "{} ranks, bytes sent a tick: the mean of all, and the most of one", sent.len())?;
+    writeln!(text, "{} ranks, bytes sent per tick: mean and largest over ranks", sent.len())?;
     let mut line = |name: &str, of: fn(&Traffic) -> u64| {
         let each = sent.iter().map(|sent| of(&sent.traffic));
         let (mean, most) = (each.clone().sum::<u64>() as f64 / sent.len() as f64, each.max().unwrap_or(0) as f64);
@@ -262,6 +262,9 @@ fn table(sent: &[Sent]) -> Result<String, std::fmt::Error> {
     }
     let moved: u64 = sent.iter().map(|sent| sent.traffic.moved_robots).sum();
     let (rounds, cuts) = sent.first().map_or((0, 0), |sent| (sent.traffic.rounds, sent.traffic.cuts));
-    writeln!(text, "  {moved} times a robot went to another rank; {rounds} more rounds of moves; {cuts} new cuts")?;
+    writeln!(
+        text,
+        "  robots moved to another rank {moved} times; {rounds} extra rounds of moves; {cuts} new divisions"
+    )?;
     Ok(text)
 }

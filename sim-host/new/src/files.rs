@@ -1,6 +1,5 @@
-//! What projects are made of.
+//! The files of each kind of project.
 
-/// Where it is in a project, and its template.
 pub(crate) type File = (&'static str, &'static str);
 
 macro_rules! files {
@@ -9,24 +8,21 @@ macro_rules! files {
     };
 }
 
-/// A microcontroller that a robot may have.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Part {
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
-    /// What Rust compiles for.
     pub(crate) target: &'static str,
-    /// Whether an emulator of this very part runs the law.
+    /// Whether an emulator of this part can run the law.
     pub(crate) is_emulated: bool,
-    /// Its files of a project in Rust.
     pub(crate) rust: &'static [File],
-    /// The lock file of this repository whose versions its firmware takes; the others bring one of their own.
+    /// The repository's lock file with the versions of its firmware's dependencies; `None` if the
+    /// template has its own.
     pub(crate) lock: Option<&'static str>,
-    /// Its files of a project in C; empty where there is no template.
+    /// Files of a C project for this part; empty without a template.
     pub(crate) c: &'static [File],
 }
 
-/// All of them, the usual one first.
 pub(crate) static PARTS: [Part; 4] = [
     Part {
         name: "stm32f405",
@@ -98,7 +94,6 @@ pub(crate) static PARTS: [Part; 4] = [
     },
 ];
 
-/// A project in Rust, whatever its part.
 pub(crate) const RUST: &[File] = files! {
     ".github/workflows/ci.yml" = "rust/ci.yml",
     ".gitignore" = "rust/gitignore",
@@ -114,7 +109,6 @@ pub(crate) const RUST: &[File] = files! {
     "tests/swarm.rs" = "rust/tests/swarm.rs",
 };
 
-/// A project in C, whatever its part.
 pub(crate) const C: &[File] = files! {
     ".github/workflows/ci.yml" = "c/ci.yml",
     ".gitignore" = "c/gitignore",
@@ -129,7 +123,6 @@ pub(crate) const C: &[File] = files! {
     "tests/swarm.c" = "c/tests/swarm.c",
 };
 
-/// A project in Python.
 pub(crate) const PYTHON: &[File] = files! {
     ".github/workflows/ci.yml" = "python/ci.yml",
     ".gitignore" = "python/gitignore",

@@ -1,5 +1,5 @@
-//! `staya new NAME`: a project of one's own that compiles and whose test runs. What it is made of are the files in `templates`: those of
-//! a project named `my-swarm`, with the folder `/STAYA` for this repository.
+//! `staya new NAME` creates a project that compiles and has a running test. The templates are the
+//! files of a project named `my-swarm`, in which `/STAYA` stands for this repository.
 
 mod files;
 mod source;
@@ -13,31 +13,30 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Make a project of your own: a guidance law, its scenario, a test in the simulator, firmware.
+/// Create a project with your own guidance law: scenario, simulator test, firmware.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = "In Rust, unless --c or --python is said. Next: the README.md in the new folder.")]
+#[command(after_help = "The project is in Rust without --c or --python. See the README.md in the new folder.")]
 pub struct NewArgs {
-    /// Folder to make; its last part is the project's name.
+    /// Folder to create; its last part is the project's name.
     #[arg(value_name = "NAME", required_unless_present = "list")]
     folder: Option<PathBuf>,
-    /// The robot's part: see --list [default: stm32f405].
+    /// Microcontroller of the robot, see --list [default: stm32f405].
     #[arg(long, value_name = "PART", value_parser = part, conflicts_with = "python")]
     part: Option<&'static Part>,
-    /// In C, over the static library.
+    /// Use C with the static library.
     #[arg(long, conflicts_with = "python")]
     c: bool,
-    /// In Python: a law over arrays; no firmware.
+    /// Use Python: a law over arrays, without firmware.
     #[arg(long)]
     python: bool,
-    /// Where Staya's sources are: a folder, or an address for git [default: what this program was built from].
+    /// Staya's sources: a folder or a git URL [default: the sources of this program].
     #[arg(long, value_name = "PATH|URL")]
     staya: Option<String>,
-    /// List the parts, and make nothing.
+    /// List the microcontrollers and exit.
     #[arg(long, conflicts_with = "folder")]
     list: bool,
 }
 
-/// What a project is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Rust,
@@ -48,7 +47,7 @@ enum Kind {
 impl NewArgs {
     /// Runs the command.
     ///
-    /// # Errors
+    /// An invalid name, a folder that exists or cannot be created, or missing sources of Staya.
     /// A name that no package can have, a folder that is there or cannot be made, sources of Staya that are not there.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let Some(folder) = self.folder.as_deref().filter(|_| !self.list) else {
@@ -74,7 +73,7 @@ impl NewArgs {
 
 fn part(text: &str) -> Result<&'static Part, String> {
     let found = PARTS.iter().find(|part| part.name == text);
-    found.ok_or_else(|| format!("no such part; there are {}", names(&PARTS)))
+    found.ok_or_else(|| format!("unknown part; give one of {}", names(&PARTS)))
 }
 
 fn names<'a>(parts: impl IntoIterator<Item = &'a Part>) -> String {
@@ -82,51 +81,47 @@ fn names<'a>(parts: impl IntoIterator<Item = &'a Part>) -> String {
     names.join(", ")
 }
 
-/// The parts, as a table.
 fn list() -> String {
-    let mut text = String::from("part       --c  emulator  target                       is\n");
+    let mut text = String::from("part       --c  emulator  target                       description\n");
     for Part { name, title, target, is_emulated, c, .. } in &PARTS {
         let (c, emulator) = (if c.is_empty() { "no" } else { "yes" }, if *is_emulated { "QEMU" } else { "none" });
         let _ = writeln!(text, "{name:10} {c:4} {emulator:9} {target:28} {title}");
     }
-    text + "The law of any Rust project also runs on the emulated stm32f405: its folder hil.\n"
+    text + "The law of any Rust project also runs on the emulated stm32f405, see its folder hil.\n"
 }
 
-/// Words that are a project's of its own, or that no crate may be named by.
+/// Names used inside a project, or not allowed for crates.
 const TAKEN: [&str; 12] =
     ["alloc", "core", "firmware", "hil", "numpy", "proc-macro", "pytest", "serde", "std", "target", "test", "tests"];
-/// Rust's and Python's keywords that consist of small letters.
 const KEYWORDS: &str = "abstract and as assert async await become box break class const continue crate def del do dyn elif else enum \
     except extern false final finally fn for from gen global if impl import in is lambda let loop macro match mod move mut nonlocal not \
     or override pass priv pub raise ref return self static struct super trait true try type typeof union unsafe unsized use virtual \
     where while with yield";
-/// Longest name, letters.
 const LONGEST: usize = 40;
 
-/// The project's name: what cargo, C and Python all take.
+/// The project's name, which must be valid for cargo, C and Python.
 fn name(folder: &Path) -> Result<&str> {
     let last = folder.file_name().and_then(|name| name.to_str());
-    let name = last.with_context(|| format!("{}: no name; say what the project is to be called", folder.display()))?;
+    let name = last.with_context(|| format!("{}: no project name; give a folder name", folder.display()))?;
     let is_word = name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_')
         && name.len() <= LONGEST;
     ensure!(
         is_word,
-        "{name}: not the name of a package; take at most {LONGEST} of a to z, 0 to 9, - and _, a letter first"
+        "{name}: not a valid project name; give at most {LONGEST} of a to z, 0 to 9, - and _, starting with a letter"
     );
     let is_free =
         !TAKEN.contains(&name) && !name.starts_with("staya") && KEYWORDS.split_whitespace().all(|word| word != name);
-    ensure!(is_free, "{name}: this name is taken, by a language or by what the project is made of; take another one");
+    ensure!(is_free, "{name}: this name is reserved by a language or by the project; give another one");
     Ok(name)
 }
 
-/// The files of a project.
 fn files(kind: Kind, part: &Part) -> Result<Vec<File>> {
     let files = match kind {
         Kind::Rust => [RUST, part.rust].concat(),
         Kind::C if part.c.is_empty() => {
             let parts = names(PARTS.iter().filter(|part| !part.c.is_empty()));
-            bail!("no firmware in C for {}; with --c there are {parts} (docs/c.md has ESP-IDF)", part.name)
+            bail!("no C firmware for {}; give one of {parts} with --c (see docs/c.md for ESP-IDF)", part.name)
         }
         Kind::C => [C, part.c].concat(),
         Kind::Python => PYTHON.to_vec(),
@@ -134,8 +129,8 @@ fn files(kind: Kind, part: &Part) -> Result<Vec<File>> {
     Ok(files)
 }
 
-/// Lock files of a project, and those of this repository that they are: the versions of dependencies that are tested here. They hold more
-/// than a project needs; cargo drops the rest.
+/// Lock files of a project with those of this repository, so that projects start with tested
+/// versions. Cargo removes unused entries.
 fn locks(kind: Kind, part: &Part) -> Vec<(&'static str, &'static str)> {
     let firmware = part.lock.map(|lock| ("firmware/Cargo.lock", lock));
     match kind {
@@ -146,24 +141,24 @@ fn locks(kind: Kind, part: &Part) -> Vec<(&'static str, &'static str)> {
     }
 }
 
-/// Makes the folder, which must not be there, and writes the files and the lock files into it. If that fails the folder is gone again.
+/// Creates the folder, which must not exist, with all files. Removes it after an error.
 fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], source: &Source) -> Result<()> {
     let shown = folder.display();
     if let Some(parent) = folder.parent().filter(|parent| !parent.as_os_str().is_empty()) {
-        ensure!(parent.is_dir(), "{}: no such folder; make it first", parent.display());
+        ensure!(parent.is_dir(), "{}: no such folder; create it first", parent.display());
     }
     fs::create_dir(folder).map_err(|error| match error.kind() {
-        std::io::ErrorKind::AlreadyExists => anyhow!("{shown} is there already; take another name"),
-        _ => anyhow!("{shown}: {error}; take a folder that can be written to"),
+        std::io::ErrorKind::AlreadyExists => anyhow!("{shown} already exists; give another name"),
+        _ => anyhow!("{shown}: {error}; give a writable folder"),
     })?;
-    // A module in Python is called as the project is, in files as in texts.
+    // Names in paths are replaced too, for the Python module.
     let filled = files.iter().map(|(path, text)| (folder.join(source.fill(path, name)), source.fill(text, name)));
     let locks = locks.iter().filter_map(|(path, own)| Some((folder.join(path), source.lock(own)?)));
     for (path, text) in filled.chain(locks) {
         if let Err(error) = write_file(&path, &text) {
-            // It was made above, so all that is in it is this program's.
+            // This function created the folder, so all files in it are its own.
             let _ = fs::remove_dir_all(folder);
-            bail!("{}: {error}; nothing was made", path.display());
+            bail!("{}: {error}; nothing was created", path.display());
         }
     }
     Ok(())
@@ -174,29 +169,28 @@ fn write_file(path: &Path, text: &str) -> std::io::Result<()> {
     fs::write(path, text)
 }
 
-/// What to do now.
 fn next(folder: &Path, kind: Kind, part: &Part) -> String {
     let folder = folder.display();
     let rest = match kind {
         Kind::Rust => format!(
-            "  cargo test                     the law in the simulator: src/lib.rs, scenario.toml\n  \
+            "  cargo test                     test the law in the simulator: src/lib.rs, scenario.toml\n  \
              cargo run --example run -- run.staya && staya view run.staya\n  \
-             cd hil && cargo run -- ../scenario.toml --device qemu:stm32f405 --devices 2   the law on emulated parts\n  \
-             cd firmware && cargo build --release   the robot ({}): src/robot.rs, src/main.rs\n",
+             cd hil && cargo run -- ../scenario.toml --device qemu:stm32f405 --devices 2   run the law on emulated parts\n  \
+             cd firmware && cargo build --release   build the firmware ({}): src/robot.rs, src/main.rs\n",
             part.name
         ),
         Kind::C => format!(
-            "  make test                      the robot, several times, on this computer: src/robot.c\n  \
-             make firmware                  for the {}: fill in firmware/board.c\n",
+            "  make test                      test several robots on this computer: src/robot.c\n  \
+             make firmware                  build the firmware ({}): complete firmware/board.c first\n",
             part.name
         ),
         Kind::Python => String::from(
             "  python3 -m venv .venv && .venv/bin/pip install -e '.[test]'\n  \
-             .venv/bin/pytest               the law in the simulator\n  \
-             .venv/bin/python show.py       a page of a run\n",
+             .venv/bin/pytest               test the law in the simulator\n  \
+             .venv/bin/python show.py       make a page of a run\n",
         ),
     };
-    format!("{folder} is made. Next:\n  cd {folder}\n{rest}README.md there has the rest.\n")
+    format!("{folder} created. Next:\n  cd {folder}\n{rest}See README.md there.\n")
 }
 
 #[cfg(test)]

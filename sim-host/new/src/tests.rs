@@ -1,4 +1,4 @@
-//! What the command makes and refuses.
+//! Tests of the created projects and of errors.
 
 use super::*;
 use clap::Parser;
@@ -25,7 +25,7 @@ fn all_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn each_kind_has_its_files_and_no_placeholder_is_left() {
+fn every_kind_of_project_is_complete_without_placeholders() {
     let mut kinds: Vec<Vec<&str>> = vec![vec!["--c"], vec!["--c", "--part", "nrf52840"], vec!["--python"]];
     kinds.extend(PARTS.iter().map(|part| vec!["--part", part.name]));
     for kind in kinds {
@@ -51,14 +51,14 @@ fn each_kind_has_its_files_and_no_placeholder_is_left() {
 }
 
 #[test]
-fn what_is_there_stays_as_it_is() {
+fn an_existing_folder_is_unchanged() {
     let top = top();
     let folder = top.path().join("pack");
     let text = folder.to_str().expect("text");
     fs::create_dir(&folder).expect("a folder");
     fs::write(folder.join("README.md"), "mine").expect("a file");
     let error = run(&[text]).expect_err("a folder that is there");
-    assert!(error.contains(text) && error.contains("is there already"), "{error}");
+    assert!(error.contains(text) && error.contains("already exists"), "{error}");
     assert_eq!(fs::read_to_string(folder.join("README.md")).expect("a file"), "mine");
     assert_eq!(all_files(top.path()).len(), 1);
     let deep = top.path().join("none/pack");
@@ -67,19 +67,19 @@ fn what_is_there_stays_as_it_is() {
 }
 
 #[test]
-fn a_file_that_cannot_be_written_is_named_and_nothing_is_left() {
+fn a_failed_file_is_named_and_the_folder_removed() {
     let top = top();
     let folder = top.path().join("pack");
-    // The second one would have to be inside the first.
+    // The second path needs the first one to be a folder.
     let files: [File; 2] = [("a", ""), ("a/b", "")];
     let source = Source::Address(String::from("https://example.org/staya.git"));
     let error = write(&folder, "pack", &files, &[], &source).expect_err("a file in a file").to_string();
-    assert!(error.contains("a/b") && error.contains("nothing was made"), "{error}");
+    assert!(error.contains("a/b") && error.contains("nothing was created"), "{error}");
     assert!(!folder.exists());
 }
 
 #[test]
-fn names_are_those_of_packages() {
+fn project_names_must_be_valid_package_names() {
     for good in ["pack", "pack-2", "a", "swarm_of_ours"] {
         assert_eq!(name(Path::new(good)).ok(), Some(good));
         assert_eq!(name(&Path::new("some/where").join(good)).ok(), Some(good));
@@ -90,12 +90,12 @@ fn names_are_those_of_packages() {
     }
     for taken in ["match", "test", "staya-sim", "class", "serde"] {
         let error = name(Path::new(taken)).expect_err(taken).to_string();
-        assert!(error.contains("taken"), "{error}");
+        assert!(error.contains("reserved"), "{error}");
     }
 }
 
 #[test]
-fn wrong_arguments_say_what_there_is() {
+fn invalid_arguments_list_the_choices() {
     let error = run(&["pack", "--part", "stm32f103"]).expect_err("no such part");
     assert!(PARTS.iter().all(|part| error.contains(part.name)), "{error}");
     let error = run(&["pack", "--c", "--part", "esp32c3"]).expect_err("no template");
@@ -111,7 +111,7 @@ fn wrong_arguments_say_what_there_is() {
 }
 
 #[test]
-fn git_takes_the_place_of_paths() {
+fn a_git_url_replaces_paths() {
     let source = Source::Address(String::from("https://example.org/staya.git"));
     let line = "a = { path = \"/STAYA/controller/robot\", features = [\"async\"] }\n";
     assert_eq!(source.fill(line, "pack"), "a = { git = \"https://example.org/staya.git\", features = [\"async\"] }\n");

@@ -9,7 +9,7 @@ use super::font;
 /// A point of the picture.
 pub type Point = [f64; 2];
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Its colour.
@@ -34,7 +34,7 @@ impl Stroke {
     }
 }
 
-/// Where a text stands relative to its point.
+/// Alignment of a text at its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// The text begins there.
@@ -50,7 +50,7 @@ pub enum Anchor {
 pub struct Text {
     /// Where the baseline begins, has its middle, or ends: see [`Text::anchor`].
     pub at: Point,
-    /// What it says.
+    /// Content.
     pub text: String,
     /// Font size.
     pub size: f64,
@@ -133,23 +133,23 @@ pub enum Shape {
     Image {
         /// Left, top, width, height.
         area: [f64; 4],
-        /// What it shows.
+        /// Content.
         pixels: Pixels,
     },
-    /// What follows is seen only within left, top, width, height; `None`: everywhere.
+    /// Clips later shapes to left, top, width, height; `None` ends the clipping.
     Clip(Option<[f64; 4]>),
 }
 
-/// A picture in the making.
+/// A picture as a list of shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Canvas {
     /// Width.
     pub width: f64,
     /// Height.
     pub height: f64,
-    /// What the picture is about; becomes the SVG's title.
+    /// Title of the picture and of the SVG.
     pub title: String,
-    /// Its parts, the lowest first.
+    /// Shapes, the lowest first.
     pub shapes: Vec<Shape>,
 }
 
@@ -165,7 +165,7 @@ impl Canvas {
         self.lines(vec![points], stroke);
     }
 
-    /// Draws lines that look the same.
+    /// Draws lines of one style.
     pub fn lines(&mut self, lines: Vec<Vec<Point>>, stroke: Stroke) {
         if lines.iter().any(|line| !line.is_empty()) {
             self.shapes.push(Shape::Path { lines, closed: false, stroke: Some(stroke), fill: None });
@@ -195,7 +195,7 @@ impl Canvas {
         }
     }
 
-    /// Limits what follows to left, top, width, height; `None` ends that.
+    /// Clips later shapes to left, top, width, height; `None` ends the clipping.
     pub fn clip(&mut self, area: Option<[f64; 4]>) {
         self.shapes.push(Shape::Clip(area));
     }

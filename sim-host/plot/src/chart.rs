@@ -1,4 +1,4 @@
-//! Charts: what to show. The modules `layout` and `panels` say where it goes.
+//! The content of charts. The modules `layout` and `panels` arrange it.
 //!
 //! ```ignore
 //! use staya_plot::{Chart, Panels, Series};
@@ -16,7 +16,7 @@
 
 use super::colour::{Colour, MUTED};
 
-/// Values of a series; what is NaN or infinite is left out (lines have a gap there).
+/// Values of a series. NaN and infinite values are skipped; lines have gaps there.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Data {
     /// x, y; joined in this order.
@@ -29,7 +29,7 @@ pub(super) enum Data {
     Bars(Vec<[f64; 3]>),
 }
 
-/// One set of values with one look and one line in the legend.
+/// A set of values with one style and one entry in the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
     pub(super) name: String,
@@ -69,7 +69,7 @@ impl Series {
         Self::new(name, Data::Bars(bars.into_iter().collect()))
     }
 
-    /// A dashed grey line through `[x, y]`: what others found, or a goal.
+    /// A dashed grey line through `[x, y]`, for values from elsewhere or a goal.
     #[must_use]
     pub fn reference(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         Self::line(name, points).dashed().colour(MUTED)
@@ -93,14 +93,15 @@ impl Series {
         Self { colour: Some(colour), ..self }
     }
 
-    /// Takes the colour of the series before it, as a fit does of its data.
+    /// Uses the colour of the previous series, for example for a fit.
     #[must_use]
     pub fn like_previous(self) -> Self {
         Self { like_previous: true, ..self }
     }
 }
 
-/// A chart with linear axes and marks at whole 1, 2, 5 x 10^k; the legend stands above the data.
+/// A chart with linear axes and ticks at multiples of 1, 2 or 5 x 10^k; the legend is above the
+/// data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     pub(super) title: String,
@@ -116,7 +117,8 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// A chart without data, 720 x 420 units (the PNG has twice as many pixels). Labels name the unit.
+    /// Creates a chart without data, 720 x 420 units (the PNG has twice as many pixels). Labels
+    /// include the unit.
     #[must_use]
     pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
         Self {
@@ -133,7 +135,7 @@ impl Chart {
         }
     }
 
-    /// Adds a series, on top of those before.
+    /// Adds a series above the previous ones.
     #[must_use]
     pub fn with(mut self, series: Series) -> Self {
         self.series.push(series);
@@ -146,25 +148,25 @@ impl Chart {
         Self { note: note.into(), ..self }
     }
 
-    /// Shows exactly this range of y. Without it: all data, and 0 where that costs little room.
+    /// Sets the range of y. By default it fits all data, and 0 where that costs little space.
     #[must_use]
     pub fn y_range(self, low: f64, high: f64) -> Self {
         Self { y_range: Some([low, high]), ..self }
     }
 
-    /// Shows exactly this range of x. Without it: all data.
+    /// Sets the range of x. By default it fits all data.
     #[must_use]
     pub fn x_range(self, low: f64, high: f64) -> Self {
         Self { x_range: Some([low, high]), ..self }
     }
 
-    /// Makes the x axis logarithmic; values of 0 and less are left out.
+    /// Makes the x axis logarithmic; values of 0 and below are skipped.
     #[must_use]
     pub fn log_x(self) -> Self {
         Self { log_x: true, ..self }
     }
 
-    /// Makes the y axis logarithmic; values of 0 and less are left out, and so are bars.
+    /// Makes the y axis logarithmic; values of 0 and below are skipped, and bars too.
     #[must_use]
     pub fn log_y(self) -> Self {
         Self { log_y: true, ..self }

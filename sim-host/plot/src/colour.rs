@@ -1,4 +1,4 @@
-//! Colours that people with any kind of colour vision can tell apart.
+//! Colours that are distinct for all kinds of colour vision.
 
 /// A colour; `alpha` 255 is opaque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl Colour {
         Self { alpha, ..self }
     }
 
-    /// The colour at `share` (0..=1) of the way from this one to another.
+    /// The colour at `share` (0 to 1) between this one and another.
     #[must_use]
     pub fn towards(self, other: Self, share: f64) -> Self {
         let mix = |a: u8, b: u8| {
@@ -38,13 +38,13 @@ impl Colour {
 pub const WHITE: Colour = Colour::hex(0xff_ff_ff);
 /// Titles and labels.
 pub const INK: Colour = Colour::hex(0x22_22_22);
-/// Numbers on axes and remarks.
+/// Numbers on axes, and notes.
 pub const MUTED: Colour = Colour::hex(0x5c_5c_5c);
 /// Grid lines.
 pub const GRID: Colour = Colour::hex(0xe6_e6_e6);
 
-/// The palette of Okabe and Ito ("Color universal design", 2008) without its yellow, which is too
-/// pale on white; in an order in which neighbours differ in brightness too.
+/// The palette of Okabe and Ito ("Color universal design", 2008) without yellow, which is too pale
+/// on white. Neighbours differ in brightness too.
 pub const PALETTE: [Colour; 7] = [
     Colour::hex(0x00_72_b2),
     Colour::hex(0xd5_5e_00),
@@ -55,10 +55,10 @@ pub const PALETTE: [Colour; 7] = [
     Colour::hex(0x00_00_00),
 ];
 
-/// How many colours [`nth`] has.
+/// Number of distinct colours of [`nth`].
 pub const COUNT: usize = 3 * PALETTE.len();
 
-/// The colour of the `index`-th thing: the palette, then its colours darker, then paler; after that they come again.
+/// The colour of item `index`: the palette, then darker, then paler variants; then they repeat.
 #[must_use]
 pub fn nth(index: usize) -> Colour {
     let colour = PALETTE[index % PALETTE.len()];

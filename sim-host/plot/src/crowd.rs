@@ -1,30 +1,30 @@
-//! Many robots: how often each cell was entered, instead of a line per robot.
+//! Pictures of large swarms: the number of visits of each cell instead of a line per robot.
 
 use super::canvas::Pixels;
 use super::colour::Colour;
 use super::map::{Map, Raster};
 
-/// Entered once, about half as often as the busiest place (in decades), as often as that.
+/// Colours for one visit, half of the most visits (on a logarithmic scale), and the most visits.
 const RAMP: [Colour; 3] = [
     Colour::hex(0x7c_c4_ee).with_alpha(150),
     Colour::hex(0x00_72_b2).with_alpha(215),
     Colour::hex(0x08_1d_38).with_alpha(240),
 ];
 
-/// The colour of `share`, 0 (entered once) to 1 (the busiest place).
+/// The colour of `share`, 0 (one visit) to 1 (the most visits).
 pub fn colour(share: f64) -> Colour {
     if share < 0.5 { RAMP[0].towards(RAMP[1], share * 2.0) } else { RAMP[1].towards(RAMP[2], share * 2.0 - 1.0) }
 }
 
-/// How often robots entered each square of a map.
+/// Number of visits of each square of a map.
 pub struct Density {
     raster: Raster,
     entered: Vec<u32>,
 }
 
 impl Density {
-    /// Counts over ways in metres. Between two positions a robot is taken to have gone straight.
-    /// O(squares + entered squares).
+    /// Counts visits along paths in metres. Between two positions a path is straight. O(squares +
+    /// visited squares).
     pub fn new<'a>(map: &Map<'_>, ways: impl Iterator<Item = &'a [[f64; 2]]>) -> Self {
         let raster = map.raster();
         let mut entered = vec![0_u32; raster.columns as usize * raster.rows as usize];
@@ -42,12 +42,11 @@ impl Density {
         Self { raster, entered }
     }
 
-    /// The greatest count.
     pub fn most(&self) -> u32 {
         self.entered.iter().copied().max().unwrap_or(0)
     }
 
-    /// The counts as a picture, in decades; what was never entered is clear.
+    /// The counts as a picture on a logarithmic scale; unvisited squares are transparent.
     pub fn pixels(&self) -> Pixels {
         let decades = libm::log10(f64::from(self.most().max(2)));
         let pixel = |count: &u32| match count {
@@ -69,12 +68,11 @@ fn enter(raster: &Raster, entered: &mut [u32], [x, y]: [i64; 2]) {
     }
 }
 
-/// The squares on the straight way after `from`, up to `to`.
+/// The squares on the straight line after `from`, up to `to`.
 fn walk(from: [i64; 2], to: [i64; 2], mut visit: impl FnMut([i64; 2])) {
     let by = [to[0] - from[0], to[1] - from[1]];
     let steps = by[0].abs().max(by[1].abs());
     for step in 1..=steps {
-        // Rounds to the nearest square.
         let along = |axis: usize| from[axis] + (2 * by[axis] * step + steps).div_euclid(2 * steps);
         visit([along(0), along(1)]);
     }
@@ -86,17 +84,17 @@ mod tests {
     use staya_sim::terrain::Terrain;
 
     #[test]
-    fn straight_ways_enter_each_square_once() {
+    fn straight_paths_visit_each_square_once() {
         for (to, middle) in [([4, 2], [2, 1]), ([-4, 0], [-2, 0]), ([0, -4], [0, -2])] {
             let mut seen = Vec::new();
             walk([0, 0], to, |square| seen.push(square));
             assert_eq!((seen.len(), seen[1], seen[3]), (4, middle, to));
         }
-        walk([3, 3], [3, 3], |_| panic!("a robot that stands enters nothing"));
+        walk([3, 3], [3, 3], |_| panic!("a stationary robot visits no square"));
     }
 
     #[test]
-    fn counts_ways_north_up_and_forgets_what_is_outside() {
+    fn paths_are_counted_north_up_and_clipped_to_the_map() {
         let terrain = Terrain::from_cells(3, 2, vec![1; 6]).unwrap();
         let map = Map::new(&terrain, [0.0; 2]);
         let ways: [&[[f64; 2]]; 4] = [
@@ -110,8 +108,8 @@ mod tests {
         assert_eq!(density.most(), 2);
         let image = density.pixels();
         assert_eq!(image.rgba[0], [0; 4]);
-        assert!(image.rgba[5][0] < image.rgba[4][0], "busier is darker");
-        // Wild positions are far outside, not on some square.
+        assert!(image.rgba[5][0] < image.rgba[4][0], "more visits are darker");
+        // Extreme positions are far outside, not on some square.
         let wild = Density::new(&map, ways[2..3].iter().copied());
         assert!(wild.most() <= 1);
     }

@@ -1,7 +1,7 @@
-//! Robots in the plane at one moment: where they are, where they head, who is near whom, what stands in the way.
+//! Pictures of robots in the plane at one moment: positions, velocities, neighbours, obstacles.
 //!
-//! A [`Snapshot`] is one moment, [`Sheet`] is several beside each other, as in figures 7 to 12 of R. Olfati-Saber 2006
-//! (OLF). For three dimensions, [`View`] makes two of them.
+//! A [`Snapshot`] is one moment, a [`Sheet`] has several side by side, as in figures 7 to 12 of R.
+//! Olfati-Saber 2006 (OLF). [`View`] projects three dimensions to two.
 //!
 //! ```ignore
 //! use staya_plot::flock::{Obstacle, Sheet, Snapshot};
@@ -29,10 +29,11 @@ use frame::Frame;
 use staya_sim::terrain::Terrain;
 use std::sync::Arc;
 
-/// Most robots that are drawn one by one; of larger crowds each is a dot or a dart of the least size.
+/// Largest number of robots with individual sizes; in larger swarms each is a dot or a dart of the
+/// smallest size.
 pub const MOST_DISCS: usize = 3000;
 
-/// What stands in the way.
+/// An obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Obstacle {
     /// An area with these corners, metres.
@@ -44,12 +45,12 @@ pub enum Obstacle {
         /// Its radius, metres.
         radius_m: f64,
     },
-    /// A wall of no thickness between two points, metres.
+    /// A wall without thickness between two points, metres.
     Segment([[f64; 2]; 2]),
 }
 
 impl Obstacle {
-    /// Points that are around it, metres.
+    /// Corner points, metres.
     pub(crate) fn corners(&self) -> Vec<[f64; 2]> {
         match self {
             Self::Polygon(corners) => corners.clone(),
@@ -59,44 +60,44 @@ impl Obstacle {
     }
 }
 
-/// One moment. What has a coordinate that is not finite is left out.
+/// One moment. Items with a coordinate that is not finite are skipped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
-    /// Stands above it.
+    /// Title above the picture.
     pub title: String,
-    /// Where robots are, metres.
+    /// Positions, metres.
     pub positions_m: Vec<[f64; 2]>,
-    /// Their velocities, metres per second: one each, or none at all. Robots that stand are drawn without direction.
+    /// Velocities, m/s: one per robot, or none. Stationary robots have no arrow.
     pub velocities_mps: Vec<[f64; 2]>,
-    /// The speed whose arrow is the longest, metres per second, so that those of several snapshots compare; the fastest robot's if
-    /// that is more.
+    /// Speed of the longest arrow, m/s, so that several snapshots are comparable; the fastest
+    /// robot's speed if that is higher.
     pub fastest_mps: f64,
-    /// Radius of their bodies, metres; drawn to scale where that can be seen, as darts where not.
+    /// Radius of the bodies, metres. Bodies too small to see become darts.
     pub radius_m: f64,
-    /// Radii of bodies that are smaller, metres: one each, or none at all.
+    /// Radii of the bodies if they differ, metres: one per robot, or none.
     pub radii_m: Vec<f64>,
-    /// Which colour of the palette each robot has; robots without an entry have the first.
+    /// Index of each robot's colour in the palette; 0 for robots without an entry.
     pub groups: Vec<usize>,
-    /// Robots up to this far apart are joined by a line.
+    /// Robots up to this distance are joined by a line, metres.
     pub edges_within_m: Option<f64>,
-    /// What stands in the way.
+    /// Obstacles.
     pub obstacles: Vec<Obstacle>,
-    /// Where robots want to go, metres.
+    /// Goals, metres.
     pub goals_m: Vec<[f64; 2]>,
-    /// The ways that robots came, metres, one line each.
+    /// Past paths of robots, metres, one line per robot.
     pub trails_m: Vec<Vec<[f64; 2]>>,
-    /// The land under them.
+    /// Map in the background.
     pub land: Option<Arc<Terrain>>,
-    /// Least and greatest x and y that are shown; `None`: everything.
+    /// Visible range: smallest and largest x and y; `None` for everything.
     pub view_m: Option<[[f64; 2]; 2]>,
-    /// Names of the axes.
+    /// Labels of the axes.
     pub labels: [String; 2],
     /// Width and height in units.
     pub size: [f64; 2],
 }
 
 impl Default for Snapshot {
-    /// Nothing, in 420 x 400 units.
+    /// An empty snapshot of 420 x 400 units.
     fn default() -> Self {
         Self {
             title: String::new(),
@@ -119,7 +120,7 @@ impl Default for Snapshot {
 }
 
 impl Snapshot {
-    /// Draws it alone.
+    /// Draws the snapshot as a picture.
     #[must_use]
     pub fn draw(&self) -> Canvas {
         let [width, height] = self.sound_size();
@@ -128,7 +129,7 @@ impl Snapshot {
         canvas
     }
 
-    /// Draws it into left, top, width, height of a picture.
+    /// Draws the snapshot into left, top, width, height of a picture.
     fn draw_into(&self, canvas: &mut Canvas, area: [f64; 4]) {
         let frame = Frame::new(self, area);
         frame.draw(self, canvas);
@@ -141,7 +142,7 @@ impl Snapshot {
         self.size.map(|side| if side.is_nan() { 400.0 } else { side.clamp(160.0, 4000.0) })
     }
 
-    /// Least and greatest x and y of everything in it; `None` when there is nothing.
+    /// Smallest and largest x and y of all items; `None` if there are none.
     fn extent(&self) -> Option<[[f64; 2]; 2]> {
         let disc = |[x, y]: [f64; 2], r: f64| [[x - r, y - r], [x + r, y + r]];
         let robots = self.positions_m.iter().flat_map(|&at| disc(at, self.radius_m.max(0.0)));
@@ -155,7 +156,7 @@ impl Snapshot {
     }
 }
 
-/// How points in space are seen in the plane.
+/// Projection of space to the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
     /// From above: x and y.
@@ -167,21 +168,20 @@ pub enum View {
 }
 
 impl View {
-    /// A place or a velocity as it is seen.
+    /// Projects a position or a velocity.
     #[must_use]
     pub fn of(self, [x, y, z]: [f64; 3]) -> [f64; 2] {
         match self {
             Self::Plan => [x, y],
             Self::Elevation => [x, z],
             Self::Oblique => {
-                // Half of the length at 45 degrees.
                 let north = y * 0.5 * std::f64::consts::FRAC_1_SQRT_2;
                 [x + north, z + north]
             }
         }
     }
 
-    /// Names of the axes in this view.
+    /// Labels of the axes in this projection.
     #[must_use]
     pub fn labels(self) -> [String; 2] {
         match self {
@@ -202,26 +202,26 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// No snapshots yet, `columns` (1 or more) in a row. The title may be empty.
+    /// Creates an empty sheet with `columns` (at least 1) per row. The title may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>, columns: usize) -> Self {
         Self { title: title.into(), columns: columns.max(1), has_legend: false, snapshots: Vec::new() }
     }
 
-    /// Adds a snapshot; it keeps its size.
+    /// Adds a snapshot with its own size.
     #[must_use]
     pub fn with(mut self, snapshot: Snapshot) -> Self {
         self.snapshots.push(snapshot);
         self
     }
 
-    /// Says below the title what the marks mean.
+    /// Adds a legend below the title.
     #[must_use]
     pub fn with_legend(self) -> Self {
         Self { has_legend: true, ..self }
     }
 
-    /// Draws them all.
+    /// Draws all snapshots as one picture.
     #[must_use]
     pub fn draw(&self) -> Canvas {
         let most = |sides: &mut dyn Iterator<Item = f64>| sides.fold(0.0, f64::max);

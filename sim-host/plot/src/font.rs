@@ -1,4 +1,4 @@
-//! Letters for machines without fonts: Noto Sans (SIL Open Font License) as outlines.
+//! Text for computers without fonts: Noto Sans (SIL Open Font License) as outlines.
 
 use std::sync::LazyLock;
 use tiny_skia::{Path, PathBuilder};
@@ -7,7 +7,6 @@ use ttf_parser::{Face, OutlineBuilder};
 /// Height of capital letters and digits as a share of the font size.
 pub const CAPITAL: f64 = 0.714;
 
-/// Regular and bold.
 static FACES: LazyLock<[Face<'static>; 2]> = LazyLock::new(|| {
     [notosans::REGULAR_TTF, notosans::BOLD_TTF]
         .map(|bytes| Face::parse(bytes, 0).expect("a font that is compiled in and tested"))
@@ -26,7 +25,8 @@ fn advance(face: &Face<'_>, letter: char) -> u16 {
     face.glyph_hor_advance(glyph).unwrap_or(0)
 }
 
-/// The outline of a line of text that starts at the origin, y down, baseline at 0; `None` if nothing is to be seen.
+/// The outline of a line of text from the origin, y down, baseline at 0; `None` if nothing is
+/// visible.
 #[must_use]
 pub fn outline(text: &str, size: f64, bold: bool) -> Option<Path> {
     let face = &FACES[usize::from(bold)];
@@ -40,7 +40,7 @@ pub fn outline(text: &str, size: f64, bold: bool) -> Option<Path> {
     pen.path.finish()
 }
 
-/// Moves a glyph in font units, y up, to its place in the line.
+/// Moves a glyph from font units, y up, to its place in the line.
 struct Pen {
     path: PathBuilder,
     scale: f32,
@@ -79,7 +79,8 @@ impl OutlineBuilder for Pen {
     }
 }
 
-/// Shrinks a text (to 70 % at most), then shortens it, until it fits into `room`; text and size to use.
+/// Shrinks a text (to at least 70 %), then shortens it, until it fits into `room`. Returns text and
+/// size.
 #[must_use]
 pub fn fit(text: &str, size: f64, bold: bool, room: f64) -> (String, f64) {
     let full = width(text, size, bold);
@@ -126,7 +127,7 @@ mod tests {
     #[test]
     fn long_text_is_shrunk_then_shortened() {
         assert_eq!(fit("abc", 10.0, false, 100.0), ("abc".into(), 10.0));
-        let long = "a title that goes on";
+        let long = "a title that is too long";
         let room = width(long, 10.0, true) * 0.8;
         let (text, size) = fit(long, 10.0, true, room);
         assert_eq!(text, long);

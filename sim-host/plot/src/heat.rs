@@ -1,4 +1,4 @@
-//! A figure over two axes: a table of coloured squares with a scale beside it.
+//! Heat maps: coloured squares over two axes, with a scale.
 
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::colour::{INK, MUTED, WHITE};
@@ -11,34 +11,31 @@ const PAD: f64 = 14.0;
 const TITLE: f64 = 15.0;
 const LABEL: f64 = 12.5;
 const SMALL: f64 = 11.5;
-/// Width of the scale.
 const BAR: f64 = 16.0;
-/// Shades of the scale.
 const SHADES: u32 = 64;
-/// From the squares to the scale.
 const GAP: f64 = 18.0;
 
-/// Squares in columns and rows.
+/// A heat map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMap {
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// A small line below; may be empty.
+    /// A note below the title; may be empty.
     pub note: String,
-    /// What columns are.
+    /// Label of the columns.
     pub x_label: String,
-    /// What rows are.
+    /// Label of the rows.
     pub y_label: String,
-    /// The value of each column, from left to right.
+    /// Value of each column, from left to right.
     pub columns: Vec<String>,
-    /// The value of each row, from the bottom up.
+    /// Value of each row, from bottom to top.
     pub rows: Vec<String>,
-    /// The figure in each square, row by row from the bottom; `None`: there is none, and the square stays white.
+    /// Value of each square, row by row from the bottom; `None` stays white.
     pub values: Vec<Option<f64>>,
 }
 
 impl HeatMap {
-    /// Draws it, 720 x 480 units.
+    /// Draws the heat map, 720 x 480 units.
     #[must_use]
     pub fn draw(&self) -> Canvas {
         let [width, height] = [720.0, 480.0];
@@ -83,7 +80,7 @@ impl HeatMap {
         canvas
     }
 
-    /// The squares, each with its figure where that fits.
+    /// The squares, each with its value where it fits.
     fn squares(&self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4], share: &dyn Fn(f64) -> f64) {
         let [across, up] = [width / self.columns.len() as f64, height / self.rows.len() as f64];
         for (index, value) in self.values.iter().enumerate() {
@@ -103,7 +100,7 @@ impl HeatMap {
         canvas.rectangle([left, top, width, height], None, Some(Stroke::new(INK, 1.0)));
     }
 
-    /// What columns and rows are; of names that would cover each other only some.
+    /// Labels of columns and rows; overlapping ones are skipped.
     fn names(&self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4], picture: f64) {
         let [across, up] = [width / self.columns.len() as f64, height / self.rows.len() as f64];
         let widest = self.columns.iter().map(|label| font::width(label, SMALL, false)).fold(0.0, f64::max);
@@ -126,7 +123,7 @@ impl HeatMap {
     }
 }
 
-/// Three digits, or all of a whole number's.
+/// Three digits, or all digits of a whole number.
 fn short(value: f64) -> String {
     let size = value.abs();
     if size >= 1e6 || (size < 1e-3 && size > 0.0) {
@@ -165,14 +162,14 @@ mod tests {
     }
 
     #[test]
-    fn each_square_that_has_a_figure_is_coloured_and_says_it() {
+    fn each_square_with_a_value_is_coloured_and_labelled() {
         let canvas = map(3, 2, |index| (index != 4).then_some(10.25 * index as f64)).draw();
         let said = texts(&canvas);
         for figure in ["0", "10.2", "20.5", "30.8", "51.2"] {
             assert!(said.contains(&figure), "{figure} {said:?}");
         }
         assert!(!said.contains(&"41"), "{said:?}");
-        // The lowest row is the first: its squares are below the others.
+        // The first row is the lowest.
         let place = |figure: &str| {
             canvas.shapes.iter().find_map(|shape| match shape {
                 Shape::Text(text) if text.text == figure => Some(text.at[1]),
@@ -183,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_one_value_and_many_can_be_drawn() {
+    fn any_number_of_values_can_be_drawn() {
         assert!(texts(&map(2, 2, |_| None).draw()).contains(&"no data"));
         assert!(texts(&map(1, 1, |_| Some(f64::NAN)).draw()).contains(&"no data"));
         assert!(texts(&map(1, 1, |_| Some(7.0)).draw()).contains(&"7"));

@@ -1,4 +1,4 @@
-//! Where the parts of a chart go: title, note and legend above, axes around, data inside.
+//! Layout of a chart: title, note and legend above, axes around, data inside.
 
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::chart::{Chart, Data};
@@ -12,35 +12,29 @@ const TITLE: f64 = 15.0;
 const HEADLINE: f64 = 18.0;
 const LABEL: f64 = 12.5;
 const SMALL: f64 = 11.5;
-/// Free room around everything.
 const PAD: f64 = 14.0;
-/// Height of a legend row.
 const ROW: f64 = 19.0;
-/// Width of the sample of line or mark in the legend.
 const SAMPLE: f64 = 24.0;
-/// Readers' sans-serif fonts are up to this much wider than the one measured here.
+/// SVG readers' sans-serif fonts are wider than the measured one by up to this factor.
 pub const OTHER_FONTS: f64 = 1.15;
 
-/// Height that the headline over several charts takes.
 pub fn headline_height(title: &str) -> f64 {
     if title.is_empty() { 0.0 } else { PAD + HEADLINE * 1.3 }
 }
 
-/// Writes the headline over several charts.
 pub fn headline(canvas: &mut Canvas, title: &str, width: f64) {
     let baseline = PAD + HEADLINE;
     heading(canvas, title, HEADLINE, [PAD, baseline], width - 2.0 * PAD);
 }
 
-/// Writes a bold title that fits into `room`.
 pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: f64) {
     let (title, size) = font::fit(title, size, true, room / OTHER_FONTS);
     canvas.text(Text { bold: true, ..Text::new(at, size, Anchor::Start, title) });
 }
 
-/// Where a chart's plotting area begins, from its left edge.
+/// Left edge of a chart's plotting area.
 pub fn left_margin(chart: &Chart) -> f64 {
-    // Labels depend a little on the height left for the axis: assume all of it.
+    // Labels depend slightly on the height of the axis; all of it is assumed.
     let axes = Axes::new(chart, &looks(chart), [chart.size[0], chart.size[1]]);
     PAD + label_room(&chart.y_label) + axes.y.widest_label(SMALL) * OTHER_FONTS + 10.0
 }
@@ -49,7 +43,7 @@ fn label_room(label: &str) -> f64 {
     if label.is_empty() { 0.0 } else { LABEL * 1.6 }
 }
 
-/// Draws a chart into left, top, width, height of a picture, its plotting area `left` from the left.
+/// Draws a chart into left, top, width, height of a picture, with its plotting area at `left`.
 pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     let [x, y, width, height] = area;
     let looks = looks(chart);
@@ -72,7 +66,7 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     if !chart.x_label.is_empty() {
         bottom -= LABEL * 1.5;
     }
-    // However little room there is, the plotting area keeps some.
+    // The plotting area has a minimum size.
     let left = (x + left).min(right - 40.0);
     let plot = [left, top, right - left, (bottom - top).max(20.0)];
     let axes = Axes::new(chart, &looks, [plot[2], plot[3]]);
@@ -84,7 +78,6 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     series::draw(&looks, &axes, canvas, plot);
 }
 
-/// Grid, marks, numbers and names of both axes.
 fn frame(chart: &Chart, axes: &Axes, canvas: &mut Canvas, plot: [f64; 4], x_label_y: f64, y_label_x: f64) {
     let [left, top, width, height] = plot;
     let (right, bottom) = (left + width, top + height);
@@ -112,7 +105,7 @@ fn frame(chart: &Chart, axes: &Axes, canvas: &mut Canvas, plot: [f64; 4], x_labe
     }));
     canvas.lines(marks.collect(), axis);
     for tick in ticks_x {
-        // Where even the fewest numbers are too wide, those at the ends move inwards.
+        // If even the fewest numbers are too wide, the outer ones move inwards.
         let half = font::width(&tick.label, SMALL, false) / 2.0;
         let ends = [y_label_x + half, right + PAD + 10.0 - half];
         let x = at_x(&axes.x, tick.value).max(ends[0]).min(ends[1]);
@@ -136,7 +129,7 @@ fn number(at: [f64; 2], anchor: Anchor, label: &str) -> Text {
     Text { colour: MUTED, ..Text::new(at, SMALL, anchor, label) }
 }
 
-/// Rows of samples and names from `at` to `right`; answers where they end.
+/// Rows of samples and names from `at` to `right`. Returns their lower end.
 fn legend(looks: &[Look<'_>], canvas: &mut Canvas, at: [f64; 2], right: f64) -> f64 {
     let [left, mut top] = at;
     let mut x = left;
@@ -157,7 +150,7 @@ fn legend(looks: &[Look<'_>], canvas: &mut Canvas, at: [f64; 2], right: f64) -> 
     if x > left { top + ROW } else { top }
 }
 
-/// What a series looks like, `SAMPLE` wide, around `at`.
+/// A sample of a series, `SAMPLE` wide, around `at`.
 fn sample(look: &Look<'_>, canvas: &mut Canvas, [x, y]: [f64; 2]) {
     let middle = [x + SAMPLE / 2.0, y];
     let ends = vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]];

@@ -1,10 +1,9 @@
-//! Pictures as SVG and PNG, on machines without fonts or displays.
+//! Pictures as SVG and PNG, on computers without fonts or displays.
 //!
-//! [`Chart`], [`Panels`] and [`HeatMap`] draw data; [`run_pictures`] draws what happened in a run; [`flock`] draws robots in the plane at
-//! some moments. All make a
-//! [`canvas::Canvas`], a list of shapes, which is written once as SVG and once, through
-//! `tiny-skia` and letters that are compiled in, as PNG. Drawing asks for no clock and no
-//! randomness: the same data give the same bytes.
+//! [`Chart`], [`Panels`] and [`HeatMap`] draw data, [`run_pictures`] draws a run, and [`flock`]
+//! draws robots in the plane. All create a [`canvas::Canvas`], a list of shapes that is written as
+//! SVG and, through `tiny-skia` and built-in glyphs, as PNG. Drawing uses no clock and no random
+//! numbers, so equal data give equal bytes.
 
 pub mod canvas;
 pub mod chart;

@@ -1,4 +1,4 @@
-//! How the data of a chart look: colours, marks and lines.
+//! Style of the data in a chart: colours, marks and lines.
 
 use super::canvas::{Canvas, Point, Stroke};
 use super::chart::{Chart, Data, Series};
@@ -6,22 +6,20 @@ use super::colour::{self, Colour, WHITE};
 
 /// Half the width of a mark.
 const MARK: f64 = 3.4;
-/// How far series with intervals stand from each other, so that bars at the same x do not hide each other.
+/// Horizontal distance between series with intervals, so that error bars at the same x do not
+/// overlap.
 const DODGE: f64 = 4.0;
-/// A series with its colour and mark.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
-    /// What is shown.
     pub series: &'a Series,
-    /// Its colour.
     pub colour: Colour,
-    /// Which mark it has: circle, square, triangle, diamond.
+    /// Index of its mark: circle, square, triangle, diamond.
     pub mark: usize,
-    /// Added to x in the picture.
+    /// Horizontal offset in the picture.
     pub shift: f64,
 }
 
-/// The looks of a chart's series: colours and marks in turn, unless chosen.
+/// Styles of a chart's series: colours and marks in turn, unless chosen.
 pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
     let is_interval = |series: &Series| matches!(series.data, Data::Intervals(_));
     let is_own = |series: &Series| is_interval(series) && !series.like_previous;
@@ -40,7 +38,7 @@ pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
         };
         let mut shift = 0.0;
         if is_interval(series) {
-            // One that looks like the series before it stands where that one stands.
+            // A series in the style of the previous one has its offset too.
             shown += usize::from(is_own(series));
             shift = (shown as f64 - (own + 1) as f64 / 2.0) * DODGE;
         }
@@ -50,29 +48,25 @@ pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
 }
 
 impl Look<'_> {
-    /// The line of a line series.
     pub fn stroke(&self) -> Stroke {
         let stroke = Stroke::new(self.colour, 1.8);
         if self.series.dashed { stroke.dashed(6.0, 4.0) } else { stroke }
     }
 
-    /// The line between marks.
     pub fn joint(&self) -> Stroke {
         let stroke = Stroke::new(self.colour, 1.3);
         if self.series.dashed { stroke.dashed(5.0, 3.5) } else { stroke }
     }
 
-    /// The lines of error bars.
     pub fn whiskers(&self) -> Stroke {
         Stroke::new(self.colour, 1.2)
     }
 
-    /// The inside of bars: what is behind them stays visible.
+    /// Fill of bars, transparent so that items behind stay visible.
     pub fn fill(&self) -> Colour {
         self.colour.with_alpha(90)
     }
 
-    /// Draws the mark.
     pub fn mark(&self, canvas: &mut Canvas, [x, y]: Point) {
         let edge = Some(Stroke::new(WHITE, 0.7));
         let fill = Some(self.colour);
@@ -96,7 +90,7 @@ impl Look<'_> {
 mod tests {
     use super::*;
 
-    /// Where the marks of series stand beside their true place; `true`: like the previous one.
+    /// Offsets of the marks of series; `true` means "like the previous one".
     fn shifts(series: &[bool]) -> Vec<f64> {
         let chart = series.iter().fold(Chart::new("", "", ""), |chart, &like| {
             let one = Series::intervals("", [[1.0, 2.0, 1.0, 3.0]]);
@@ -106,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn error_bars_stand_side_by_side_around_their_place() {
+    fn error_bars_are_side_by_side_around_their_x() {
         let half = DODGE / 2.0;
         assert_eq!(shifts(&[false]), [0.0]);
         assert_eq!(shifts(&[false, false]), [-half, half]);

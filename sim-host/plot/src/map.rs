@@ -1,4 +1,4 @@
-//! Land as the background of a picture, and the mapping from metres to picture units.
+//! A map as the background of a picture, and the transformation from metres to picture units.
 
 use super::canvas::{Anchor, Canvas, Pixels, Point, Shape, Stroke, Text};
 use super::colour::{Colour, INK, MUTED, WHITE};
@@ -8,19 +8,19 @@ use crate::terrain::{self, shade};
 use staya_controller::grid::BLOCKED;
 use staya_sim::terrain::Terrain;
 
-/// Walls; darker than any land, and of another tone.
+/// Colour of walls, darker than the ground and of another hue.
 const WALL: Colour = Colour::hex(0x3a_3f_4a);
-/// Pixels along the longer side; a larger map is averaged.
+/// Largest number of pixels along the longer side; larger maps are averaged.
 const MAX_PIXELS: u32 = 1720;
-/// The map's longest sides in picture units, width and height.
+/// Largest width and height of the map in picture units.
 const ROOM: [f64; 2] = [860.0, 780.0];
-/// Units per cell at most: small maps stay small.
+/// Largest size of a cell, so that small maps stay small.
 const MAX_CELL: f64 = 40.0;
 const SMALL: f64 = 11.5;
 /// Height of the strip below the map.
 pub const FOOTER: f64 = 40.0;
 
-/// Land colour of a brightness as [`terrain::render`] gives it: paler, so that lines stand out.
+/// Ground colour for a brightness of [`terrain::render`], paler so that lines stand out.
 fn land(brightness: u8) -> Colour {
     if brightness == shade(BLOCKED, 1) {
         return WALL;
@@ -29,12 +29,9 @@ fn land(brightness: u8) -> Colour {
     Colour { rgb: [grey; 3], alpha: 255 }
 }
 
-/// How a map is divided into pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Raster {
-    /// Pixels from west to east.
     pub columns: u32,
-    /// Pixels from north to south.
     pub rows: u32,
     /// Cells along each side of a pixel.
     pub cells: u32,
@@ -48,7 +45,7 @@ impl Raster {
     }
 }
 
-/// Where a map lies in a picture.
+/// Position of a map in a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Map<'a> {
     terrain: &'a Terrain,
@@ -59,49 +56,49 @@ pub struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    /// A map whose top left corner will be at `corner`.
+    /// Places a map with its top left corner at `corner`.
     pub fn new(terrain: &'a Terrain, [left, top]: Point) -> Self {
         let sides = [terrain.width(), terrain.height()].map(f64::from);
         let cell = (ROOM[0] / sides[0]).min(ROOM[1] / sides[1]).min(MAX_CELL);
-        // A map of one row over thousands of columns still shows as a line.
+        // A map of one row and thousands of columns is still visible as a line.
         let [width, height] = sides.map(|side| (side * cell).max(2.0));
         Self { terrain, area: [left, top, width, height], cell }
     }
 
-    /// The same with `cell` units per cell.
+    /// Places a map with `cell` units per cell.
     pub fn of_scale(terrain: &'a Terrain, [left, top]: Point, cell: f64) -> Self {
         let [width, height] = [terrain.width(), terrain.height()].map(|side| f64::from(side) * cell);
         Self { terrain, area: [left, top, width, height], cell }
     }
 
-    /// Where a place of the world lies, north up.
+    /// Picture position of a point in metres; north is up.
     pub fn place(&self, position_m: [f64; 2]) -> Point {
         let cells: [f64; 2] =
             std::array::from_fn(|axis| (position_m[axis] - self.terrain.origin_m[axis]) / self.terrain.cell_m);
         self.place_cells(cells)
     }
 
-    /// Where a place in cells from the south-west corner lies.
+    /// Picture position of a point in cells from the south-west corner.
     pub fn place_cells(&self, [x, y]: [f64; 2]) -> Point {
         let [left, top, _, height] = self.area;
         [left + x * self.cell, top + height - y * self.cell]
     }
 
-    /// How the map is divided into pixels.
     pub fn raster(&self) -> Raster {
         Raster::new(self.terrain)
     }
 
-    /// Column and row, from the north-west, of the pixel around a place of the world.
+    /// Column and row, from the north-west, of the pixel at a point in metres.
     pub fn square(&self, position_m: [f64; 2]) -> [i64; 2] {
         let [left, top, ..] = self.area;
         let [x, y] = self.place(position_m);
         let side = self.cell * f64::from(self.raster().cells);
-        // Off the map by no more than a map's side: ways from there still come in where they should.
+        // Limited to a map's side outside of the map, so that paths still enter at the right place.
         [x - left, y - top].map(|along| libm::floor(along / side).clamp(-1e5, 1e5) as i64)
     }
 
-    /// Draws pixels of the map's [`Raster`]. Those of the last column and row may reach beyond the map.
+    /// Draws pixels of the map's [`Raster`]. Those of the last column and row may extend beyond the
+    /// map.
     pub fn image(&self, canvas: &mut Canvas, pixels: Pixels) {
         let side = self.cell * f64::from(self.raster().cells);
         let [width, height] = [pixels.width, pixels.height].map(|count| f64::from(count) * side);
@@ -110,17 +107,15 @@ impl<'a> Map<'a> {
         canvas.shapes.push(Shape::Image { area, pixels });
     }
 
-    /// Draws the land.
     pub fn ground(&self, canvas: &mut Canvas) {
         self.image(canvas, pixels(self.terrain));
     }
 
-    /// Draws a thin frame around the land.
     pub fn frame(&self, canvas: &mut Canvas) {
         canvas.rectangle(self.area, None, Some(Stroke::new(INK, 1.0)));
     }
 
-    /// Scale, shades and north, in a strip below the map from `left` to `right`.
+    /// Scale, legend of shades and north arrow below the map from `left` to `right`.
     pub fn footer(&self, canvas: &mut Canvas, left: f64, right: f64) {
         let middle = self.area[1] + self.area[3] + FOOTER / 2.0 + 3.0;
         let from = self.scale_bar(canvas, [left, middle]);
@@ -138,7 +133,7 @@ impl<'a> Map<'a> {
         canvas.text(letter);
     }
 
-    /// A bar of a round number of metres with its length; answers where the text ends.
+    /// A scale bar with a round length. Returns the end of its text.
     fn scale_bar(&self, canvas: &mut Canvas, [left, y]: Point) -> f64 {
         let per_m = self.cell / self.terrain.cell_m;
         let [_, _, width, height] = self.area;
@@ -160,7 +155,7 @@ impl<'a> Map<'a> {
         at + font::width(&label, SMALL, false) * OTHER_FONTS
     }
 
-    /// What white, grey and wall mean, if there is room and more than one of them.
+    /// Legend of white, grey and wall, if there is room and more than one of them.
     fn shades(&self, canvas: &mut Canvas, y: f64, from: f64, to: f64) {
         let classes = terrain::classes(self.terrain);
         let walls = self.terrain.cells().contains(&BLOCKED);
@@ -187,7 +182,7 @@ impl<'a> Map<'a> {
     }
 }
 
-/// The land, a pixel per cell, or per square of cells on maps beyond [`MAX_PIXELS`].
+/// The ground, one pixel per cell, or per square of cells on maps beyond [`MAX_PIXELS`].
 pub fn pixels(terrain: &Terrain) -> Pixels {
     let (width, height, brightness) = terrain::render(terrain, 1);
     let Raster { columns, rows, cells: square } = Raster::new(terrain);

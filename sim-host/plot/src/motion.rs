@@ -1,4 +1,4 @@
-//! The pictures of a run in the plane.
+//! Pictures of a run in the plane.
 
 use super::flock::{Obstacle, Sheet, Snapshot};
 use super::run::packets;
@@ -10,21 +10,18 @@ use staya_sim::world::plane::Solid;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Moments in the picture.
 const MOMENTS: usize = 4;
-/// Most robots whose ways are drawn.
 const MOST_TRAILS: usize = 100;
-/// Points of a way.
 const TRAIL_POINTS: usize = 400;
-/// Obstacles so many times as large as the place that robots go through are not shown whole.
+/// Obstacles larger than this multiple of the robots' extent are clipped.
 const LARGE: f64 = 2.0;
 
-/// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and names the
-/// files.
+/// Draws the pictures of a run into `out_dir`, which is created if needed, each as SVG and PNG.
+/// Returns the paths.
 ///
-/// - `motion`: where robots are, with their ways so far, at four moments from start to end, if the history has frames; seen
-///   from above, on their land if they have some;
-/// - `packets`: packets per second by their fate, over time.
+/// - `motion`: positions with past paths at four moments from start to end, if the history has
+///   frames; seen from above, on the map if there is one;
+/// - `packets`: packets per second by result, over time.
 ///
 /// O(samples of the history).
 ///
@@ -46,7 +43,7 @@ pub fn motion_pictures(
     Ok(files)
 }
 
-/// Four moments of a run beside each other; the title may be empty.
+/// Four moments of a run side by side; the title may be empty.
 #[must_use]
 pub fn motion_sheet(title: &str, setup: &PlaneSetup, land: Option<&Terrain>, history: &History) -> Sheet {
     let frames = history.frames();
@@ -89,7 +86,7 @@ pub fn motion_sheet(title: &str, setup: &PlaneSetup, land: Option<&Terrain>, his
     sheet
 }
 
-/// Where the places to go to are in a tick, by what the scenario says of them: from the start, or from the last order on.
+/// Goals in a tick by the scenario: those of the start, or of the last order.
 fn goals(setup: &PlaneSetup, tick: u32) -> Vec<[f64; 2]> {
     let places = (0..setup.starts.len()).flat_map(|robot| {
         let step_s = setup.group(robot).abilities.step_s;
@@ -110,12 +107,12 @@ fn drawn(solid: &Solid) -> Option<Obstacle> {
     match *solid {
         Solid::Wall(ends) => Some(Obstacle::Segment(ends)),
         Solid::Ball { center_m, radius_m } => Some(Obstacle::Disc { centre_m: [center_m[0], center_m[1]], radius_m }),
-        // Its border is a line without ends.
+        // The border of a half-space has no ends.
         Solid::Plane { .. } => None,
     }
 }
 
-/// What robots go through, with their goals and the obstacles.
+/// The extent of robots with goals and obstacles.
 fn view<'a>(
     frames: &[Frame],
     radius_m: f64,
@@ -142,7 +139,7 @@ fn view<'a>(
     is_sound.then(|| [0, 1].map(|axis| [low[axis] - margin, high[axis] + margin]))
 }
 
-/// Velocities by the difference to a neighbouring frame.
+/// Velocities as differences of neighbouring frames.
 fn velocities(frames: &[Frame], at: usize, space: &Space<f64, 3>) -> Vec<[f64; 2]> {
     let [from, to] = match frames.get(at + 1) {
         Some(_) => [at, at + 1],
@@ -158,13 +155,13 @@ fn velocities(frames: &[Frame], at: usize, space: &Space<f64, 3>) -> Vec<[f64; 2
         .collect()
 }
 
-/// From one place to another, the shortest around a torus.
+/// The vector between two points, the shortest one on a torus.
 fn way([x, y]: [f64; 2], [to_x, to_y]: [f64; 2], space: &Space<f64, 3>) -> [f64; 2] {
     let [x, y, _] = space.offset([x, y, 0.0], [to_x, to_y, 0.0]);
     [x, y]
 }
 
-/// Ways of robots; who leaves a torus on one side and comes in on the other leaves a gap in its way.
+/// Paths of robots. A robot that crosses the seam of a torus leaves a gap in its path.
 fn trails(frames: &[Frame], robots: usize, space: &Space<f64, 3>) -> Vec<Vec<[f64; 2]>> {
     let every = frames.len().div_ceil(TRAIL_POINTS).max(1);
     let thinned = || frames.iter().step_by(every).chain(frames.last());

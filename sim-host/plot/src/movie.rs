@@ -1,4 +1,4 @@
-//! A run as a moving picture (GIF): the land, what stands in the way, and robots with the ways that they came.
+//! A run as an animation (GIF): map, obstacles, and robots with past paths.
 
 mod frames;
 mod palette;
@@ -16,37 +16,35 @@ use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 use std::path::Path;
 
-/// Pictures a second at most: browsers do not show more than about that.
+/// Largest frame rate; browsers do not show more.
 const MOST_PER_SECOND: u32 = 20;
-/// The last picture stays for so long, hundredths of a second.
+/// Duration of the last frame, hundredths of a second.
 const LAST: u16 = 200;
-/// Robots that leave a way behind them.
 const MOST_WAYS: usize = 60;
-/// Robots that have colours of their own.
 const NAMED: usize = 12;
-/// Room around all ways, a share of the longer side.
+/// Margin around all paths, as a fraction of the longer side.
 const MARGIN: f64 = 0.07;
-/// Height by width, least and most.
+/// Smallest and largest ratio of height to width.
 const SHAPE: [f64; 2] = [0.5, 1.2];
 const STONE: Colour = Colour::hex(0xc9_c4_bb);
 const STONE_EDGE: Colour = Colour::hex(0x4f_48_3c);
 const INTRUDER: Colour = Colour::hex(0xa0_1c_1c);
 const EDGE: Colour = Colour::hex(0x4b_2e_83);
 
-/// How large and how long.
+/// Size and length of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// Pixels from left to right; 64 to 1920 make sense.
+    /// Width in pixels, 64 to 1920.
     pub width: u32,
-    /// Length without the last picture, seconds.
+    /// Length without the last frame, seconds.
     pub seconds: u32,
 }
 
-/// The GIF file of a run. At most 20 pictures a second, in one palette, of which each has only what has changed.
-/// O(pixels of all pictures).
+/// Encodes a run as a GIF with at most 20 frames per second and one palette. Each frame contains
+/// only changed pixels. O(pixels of all frames).
 ///
 /// # Errors
-/// The picture would have no pixels or too many.
+/// The frames would have no pixels or too many.
 pub fn of_run(scenario: &Scenario, history: &History, look: Look) -> Result<Vec<u8>, Error> {
     encode(scenario, history, look).map_err(|error| Error::new("draw", Path::new(&scenario.name))(error))
 }
@@ -55,7 +53,7 @@ fn encode(scenario: &Scenario, history: &History, look: Look) -> std::io::Result
     let chosen = choose(history.frames(), look.seconds.saturating_mul(MOST_PER_SECOND));
     let view = View::new(scenario, history.frames(), look.width);
     let mut frames = Frames::new(raster::over(None, &view.ground(scenario, history))?);
-    // The palette is that of some moments; drawing them twice costs less than keeping them.
+    // The palette comes from some sample frames; drawing these twice costs less than storing them.
     let mut samples = Vec::new();
     let every = chosen.len().div_ceil(6).max(1);
     let mut drawn = frames.clone();
@@ -98,7 +96,7 @@ fn encode(scenario: &Scenario, history: &History, look: Look) -> std::io::Result
     Ok(bytes)
 }
 
-/// At most so many frames, evenly, the first and the last one among them.
+/// At most `most` evenly spaced frames, with the first and the last one.
 fn choose(frames: &[Frame], most: u32) -> Vec<&Frame> {
     let last = frames.len().saturating_sub(1);
     let count = frames.len().min(most.max(2) as usize);
@@ -106,7 +104,7 @@ fn choose(frames: &[Frame], most: u32) -> Vec<&Frame> {
     (0..count).map(|number| &frames[at(number)]).collect()
 }
 
-/// Left, top, width, height of what is other than before; a pixel at least.
+/// Left, top, width, height of the changed part; at least one pixel.
 fn changed(before: Option<&[u8]>, now: &[u8], width: usize, height: usize) -> [usize; 4] {
     let Some(before) = before else {
         return [0, 0, width, height];
@@ -122,7 +120,7 @@ fn changed(before: Option<&[u8]>, now: &[u8], width: usize, height: usize) -> [u
     if low[0] == usize::MAX { [0, 0, 1, 1] } else { [low[0], low[1], high[0] - low[0] + 1, high[1] - low[1] + 1] }
 }
 
-/// The pixels of a part, clear where nothing has changed.
+/// The pixels of a part, transparent where unchanged.
 fn cut(before: Option<&[u8]>, now: &[u8], width: usize, [left, top, wide, high]: [usize; 4]) -> Vec<u8> {
     let rows = (top..top + high).flat_map(|row| row * width + left..row * width + left + wide);
     rows.map(|at| match before {
@@ -132,11 +130,10 @@ fn cut(before: Option<&[u8]>, now: &[u8], width: usize, [left, top, wide, high]:
     .collect()
 }
 
-/// Where metres are in the picture; a unit is a pixel.
 #[derive(Clone, Debug)]
 struct View {
     low_m: [f64; 2],
-    /// Pixels a metre.
+    /// Pixels per metre.
     scale: f64,
     size: [f64; 2],
     /// Radius of each robot's body, pixels.
@@ -144,7 +141,6 @@ struct View {
 }
 
 impl View {
-    /// Everything that robots go through and to.
     fn new(scenario: &Scenario, frames: &[Frame], width: u32) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let places = frames.iter().flat_map(|frame| &frame.samples).map(|sample| sample.position_m);
@@ -183,11 +179,10 @@ impl View {
 
     fn at(&self, place_m: [f64; 2]) -> Point {
         let [x, y] = [0, 1].map(|axis| (place_m[axis] - self.low_m[axis]) * self.scale);
-        // What is far outside stays outside; larger numbers would be of no use to who draws.
+        // Limits coordinates far outside for the renderer.
         [x.clamp(-1e5, 1e5), (self.size[1] - y).clamp(-1e5, 1e5)]
     }
 
-    /// What does not move.
     fn ground(&self, scenario: &Scenario, history: &History) -> Canvas {
         let mut canvas = Canvas::new(self.size[0], self.size[1], &scenario.name);
         canvas.rectangle([0.0, 0.0, self.size[0], self.size[1]], Some(WHITE), None);
@@ -217,7 +212,6 @@ impl View {
         canvas
     }
 
-    /// As much of the land as is seen.
     fn land(&self, terrain: &Terrain, canvas: &mut Canvas) {
         let sides = [terrain.width(), terrain.height()].map(f64::from);
         let seen_m = self.size.map(|side| side / self.scale);
@@ -238,7 +232,6 @@ impl View {
         canvas.shapes.push(Shape::Image { area: [left, bottom - high, wide, high], pixels: map::pixels(&part) });
     }
 
-    /// What moves at a moment.
     fn moving(&self, scenario: &Scenario, frame: &Frame) -> Canvas {
         let mut canvas = Canvas::new(self.size[0], self.size[1], "");
         if !scenario.formations.is_empty() {
@@ -274,7 +267,7 @@ impl View {
     }
 }
 
-/// Few robots have each their own colour, many have their group's.
+/// Few robots have individual colours, many have their group's.
 fn colour_of(scenario: &Scenario, index: usize) -> Colour {
     let group = scenario.plane.as_ref().and_then(|setup| setup.starts.get(index)?.group);
     match group {
@@ -284,14 +277,13 @@ fn colour_of(scenario: &Scenario, index: usize) -> Colour {
     }
 }
 
-/// Where robots are sent in the plane, by index.
 fn goals(scenario: &Scenario) -> Vec<(usize, [f64; 2])> {
     let starts = scenario.plane.iter().flat_map(|setup| setup.starts.iter().enumerate());
     let places = starts.flat_map(|(index, start)| start.places.iter().map(move |place| (index, place.position_m)));
     places.map(|(index, [x, y, _])| (index, [x, y])).collect()
 }
 
-/// Goals by index: places in the plane, or the cells that robots headed for at the end.
+/// Goals with robot indices: points in the plane, or the last target cells on a grid.
 fn ends(scenario: &Scenario, history: &History) -> Vec<(usize, [f64; 2])> {
     let places = goals(scenario);
     if !places.is_empty() {

@@ -1,4 +1,4 @@
-//! Charts become pictures: one by itself, or several in rows.
+//! Pictures of one chart, or of several in rows.
 
 use super::canvas::Canvas;
 use super::chart::Chart;
@@ -17,7 +17,7 @@ impl Chart {
         canvas
     }
 
-    /// Writes `<stem>.svg` and `<stem>.png` and names them; see [`Canvas::write`].
+    /// Writes `<stem>.svg` and `<stem>.png` and returns the paths; see [`Canvas::write`].
     ///
     /// # Errors
     /// The directory or a file cannot be written.
@@ -35,13 +35,13 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// No charts yet, one per row. The title may be empty.
+    /// Creates panels without charts, one per row. The title may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>) -> Self {
         Self { title: title.into(), columns: 1, charts: Vec::new() }
     }
 
-    /// Adds a chart; it keeps its size, and the axes of a column begin at the same place.
+    /// Adds a chart with its own size; the axes of a column are aligned.
     #[must_use]
     pub fn with(mut self, chart: Chart) -> Self {
         self.charts.push(chart);
@@ -80,7 +80,7 @@ impl Panels {
         canvas
     }
 
-    /// Writes `<stem>.svg` and `<stem>.png` and names them; see [`Canvas::write`].
+    /// Writes `<stem>.svg` and `<stem>.png` and returns the paths; see [`Canvas::write`].
     ///
     /// # Errors
     /// The directory or a file cannot be written.

@@ -1,4 +1,4 @@
-//! Pictures as pixels, anti-aliased.
+//! Renders pictures as anti-aliased pixels.
 
 use super::canvas::{Anchor, Canvas, Pixels, Point, Shape, Stroke, Text};
 use super::colour::{Colour, WHITE};
@@ -12,7 +12,7 @@ use tiny_skia::{
 
 /// PNG pixels per picture unit.
 pub const SCALE: f64 = 2.0;
-/// Width of the line around letters that makes a halo, as a share of the font size.
+/// Width of the stroke around letters that makes a halo, as a fraction of the font size.
 pub const HALO: f64 = 0.25;
 
 /// The PNG file of a picture on white.
@@ -25,7 +25,7 @@ pub fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
     Ok(encode_png(pixmap.width(), pixmap.height(), png::ColorType::Rgb, &rgb)?)
 }
 
-/// The PNG file of a picture in a picture.
+/// The PNG file of an image inside a picture.
 ///
 /// # Errors
 /// It has no pixels or too many.
@@ -40,7 +40,7 @@ pub fn encode_rgba(pixels: &Pixels) -> io::Result<Vec<u8>> {
     Ok(encode_png(pixels.width, pixels.height, colour, &bytes)?)
 }
 
-/// Draws a picture alone, without ground, as pixels for another picture; `scale` pixels per unit.
+/// Renders a picture without background, as pixels for another picture; `scale` pixels per unit.
 ///
 /// # Errors
 /// The picture has no pixels or too many.
@@ -57,7 +57,7 @@ pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
     Ok(Pixels { width: pixmap.width(), height: pixmap.height(), rgba })
 }
 
-/// Draws a picture over pixels that there are, or on none; a pixel per unit.
+/// Renders a picture over existing pixels, or on an empty background; one pixel per unit.
 ///
 /// # Errors
 /// The picture has no pixels or too many.
@@ -76,8 +76,9 @@ fn draw(canvas: &Canvas, scale: f64, ground: Option<Colour>) -> io::Result<Pixma
 
 fn empty(canvas: &Canvas, scale: f64) -> io::Result<Pixmap> {
     let [width, height] = [canvas.width, canvas.height].map(|side| libm::ceil(side * scale) as u32);
-    Pixmap::new(width, height)
-        .ok_or_else(|| io::Error::other(format!("a picture of {width} x {height} pixels is not possible")))
+    Pixmap::new(width, height).ok_or_else(|| {
+        io::Error::other(format!("a picture of {width} x {height} pixels is not possible; choose another size"))
+    })
 }
 
 fn onto(pixmap: Pixmap, canvas: &Canvas, scale: f64) -> Pixmap {
@@ -193,7 +194,7 @@ fn add_line(builder: &mut PathBuilder, points: &[Point], closed: bool) {
         }
     }
     match points {
-        // A line of no length: its round ends make a dot.
+        // A line of length 0: its round ends form a dot.
         [[x, y]] => builder.line_to(*x as f32, *y as f32),
         _ if closed => builder.close(),
         _ => {}

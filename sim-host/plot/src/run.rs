@@ -1,4 +1,4 @@
-//! The pictures of one run.
+//! Pictures of a run.
 
 use super::chart::{Chart, Series};
 use super::colour::{self, Colour, WHITE};
@@ -9,18 +9,17 @@ use staya_sim::record::{self, Error, History, PacketCounts, SeriesPoint};
 use staya_sim::terrain::Terrain;
 use std::path::{Path, PathBuf};
 
-/// Points of a curve above which a running mean is drawn over it.
+/// Curves with more points get a running mean.
 const NOISY: usize = 150;
-/// Points of a curve of means.
 const MEANS: usize = 100;
 
-/// Draws the pictures of one run into `out_dir`, which is made if needed, each as SVG and PNG, and
-/// names the files.
+/// Draws the pictures of a run into `out_dir`, which is created if needed, each as SVG and PNG.
+/// Returns the paths.
 ///
-/// - `trajectories`: the land at the start, the cells that change on it (`changing`), each robot's way, and the formation (`edges` between robot ids) over time,
-///   if the history has frames;
-/// - `formation`: formation error and graph distance over time, only if the run has values of them;
-/// - `packets`: packets per second by their fate, over time.
+/// - `trajectories`: the map at the start, its changing cells (`changing`), the path of each robot,
+///   and the formation (`edges` between robot ids) over time, if the history has frames;
+/// - `formation`: formation error and graph distance over time, if the run has them;
+/// - `packets`: packets per second by result, over time.
 ///
 /// O(cells + samples of the history).
 ///
@@ -47,7 +46,7 @@ pub fn run_pictures(
     Ok(files)
 }
 
-/// Formation error and graph distance over time; `None` if the run has neither.
+/// Formation error and graph distance over time; `None` without a formation.
 pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
     let clock = Clock::new(series);
     let curve = |title: &str, label: &str, colour, value: fn(&SeriesPoint) -> f64| {
@@ -66,7 +65,7 @@ pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
     Some(charts.fold(Panels::new("Formation over time"), Panels::with))
 }
 
-/// A curve; a noisy one pale, with its running mean on top.
+/// A curve; a noisy one is pale, with its running mean on top.
 fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -> Chart {
     let chart = chart.size(760.0, 300.0);
     let colour = colour::nth(index);
@@ -82,7 +81,8 @@ fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -
         .with(Series::line(format!("mean over {width} {}", clock.unit), means).colour(colour))
 }
 
-/// The mean of the points that have a value; `None` makes no gap, the pale curve shows it.
+/// Mean of the points that have a value. Points without one cause no gap here, only in the pale
+/// curve.
 fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let known: Vec<&[f64; 2]> = points.iter().filter(|[_, y]| y.is_finite()).collect();
     let count = known.len() as f64;
@@ -90,7 +90,6 @@ fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     (!known.is_empty()).then(|| sum.map(|value| value / count))
 }
 
-/// Packets per second by their fate.
 pub(super) fn packets(history: &History) -> Panels {
     let series = history.series();
     let clock = Clock::new(series);
@@ -102,7 +101,7 @@ pub(super) fn packets(history: &History) -> Panels {
     };
     let per = format!("packets per {}", clock.one);
     let ends = [series.first(), series.last()].map(|point| point.map_or(0.0, |point| clock.at(point)));
-    // From the first tick, although the first mean is a little later.
+    // From the first tick, although the first mean is slightly later.
     let chart = |title| Chart::new(title, clock.label, &per).x_range(ends[0], ends[1]).size(760.0, 300.0);
     let all = history.totals();
     let n = ticks::grouped;
@@ -131,7 +130,7 @@ pub(super) fn packets(history: &History) -> Panels {
         )
 }
 
-/// Middle, length (both in the clock's unit) and sum of some neighbouring points.
+/// Middle and length (in the clock's unit) and sum of some neighbouring points.
 fn bin(points: &[SeriesPoint], clock: &Clock) -> (f64, f64, PacketCounts) {
     let mut sum = PacketCounts::default();
     let mut ticks = 0;
@@ -141,12 +140,12 @@ fn bin(points: &[SeriesPoint], clock: &Clock) -> (f64, f64, PacketCounts) {
     }
     let length = f64::from(ticks.max(1)) * clock.per_tick;
     let start = points.first().map_or(0.0, |point| clock.at(point));
-    // A point stands for the ticks from its first one on.
+    // A point represents the ticks from its first one.
     let middle = start + (length - clock.per_tick) / 2.0;
     (middle, length, sum)
 }
 
-/// Counts in seconds; in ticks if the run is too short to tell how long a tick is.
+/// Time axis in seconds; in ticks if the run is too short to know their length.
 struct Clock {
     /// Length of a tick.
     per_tick: f64,

@@ -1,27 +1,25 @@
-//! Which range an axis shows, and where a value lies on it.
+//! Ranges of axes, and positions of values on them.
 
 use super::chart::{Chart, Data};
 use super::font;
 use super::look::Look;
 use super::ticks::{self, Tick};
 
-/// Font size by which marks are spaced.
+/// Font size that determines the distance of ticks.
 const NUMBER: f64 = 11.5;
 
-/// How far numbers may reach beyond the ends of the x axis; less than the margins there.
+/// Largest overhang of numbers at the ends of the x axis; less than the margins there.
 const OVERHANG: f64 = 24.0;
 
-/// One axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
     range: [f64; 2],
     logarithmic: bool,
-    /// Its marks.
     pub ticks: Vec<Tick>,
 }
 
 impl Axis {
-    /// Where a value lies: 0 at the beginning, 1 at the end, beyond outside.
+    /// Position of a value: 0 at the start, 1 at the end, beyond that outside.
     pub fn share(&self, value: f64) -> f64 {
         let at = |value: f64| {
             if self.logarithmic { libm::log10(value) } else { value }
@@ -30,12 +28,11 @@ impl Axis {
         (at(value) - low) / (high - low)
     }
 
-    /// Width of the widest number.
     pub fn widest_label(&self, size: f64) -> f64 {
         self.ticks.iter().map(|tick| font::width(&tick.label, size, false)).fold(0.0, f64::max)
     }
 
-    /// Whether all numbers fit beside each other on `length` units.
+    /// Whether all tick labels fit side by side on `length` units.
     fn labels_fit(&self, length: f64) -> bool {
         let span = |tick: &Tick| {
             let half = font::width(&tick.label, NUMBER, false) / 2.0;
@@ -48,19 +45,14 @@ impl Axis {
     }
 }
 
-/// Both axes of a chart.
 #[derive(Clone, Debug)]
 pub struct Axes {
-    /// From left to right.
     pub x: Axis,
-    /// From bottom to top.
     pub y: Axis,
-    /// Nothing can be shown.
     pub empty: bool,
 }
 
 impl Axes {
-    /// Axes for a plotting area of this width and height.
     pub fn new(chart: &Chart, looks: &[Look<'_>], [width, height]: [f64; 2]) -> Self {
         let extent = Extent::new(chart, looks);
         let x_range = x_range(chart, &extent);
@@ -92,11 +84,10 @@ impl Axes {
     }
 }
 
-/// The least and the greatest finite values.
 struct Extent {
     x: Option<[f64; 2]>,
     y: Option<[f64; 2]>,
-    /// Some data are marks, which need room at the ends of the x axis.
+    /// Whether some data are marks, which need space at the ends of the x axis.
     marks: bool,
     bars: bool,
 }
@@ -139,14 +130,14 @@ impl Extent {
             None => Some([value; 2]),
         };
         self.x = widen(self.x, x);
-        // What the chosen x range hides does not stretch y.
+        // Data outside of the chosen x range do not stretch y.
         if chosen(chart.x_range).is_none_or(|[low, high]| (low..=high).contains(&x)) {
             self.y = widen(self.y, y);
         }
     }
 }
 
-/// The range that the caller chose, if it is one.
+/// The range that the caller chose, if it is valid.
 fn chosen(range: Option<[f64; 2]>) -> Option<[f64; 2]> {
     range.filter(|[low, high]| low < high && low.is_finite() && high.is_finite())
 }
@@ -166,7 +157,7 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
     [low - (high - low) * share, high + (high - low) * share]
 }
 
-/// A positive range, at least a factor of 2 wide around a single value; with some room at its ends.
+/// A positive range, at least a factor of 2 around a single value, with a margin.
 fn log_range([low, high]: [f64; 2], room: bool) -> [f64; 2] {
     let low = if low > 0.0 { low } else { f64::MIN_POSITIVE.max(high / 1e3) };
     let (low, high) = (low.clamp(1e-150, 1e150), high.clamp(1e-150, 1e150));
@@ -190,7 +181,7 @@ fn y_range(chart: &Chart, extent: &Extent, most: usize) -> [f64; 2] {
         return ticks::sound(low, high);
     }
     let [low, high] = extent.y.unwrap_or([0.0, 1.0]);
-    // Zero belongs to the axis where it takes no more than half of it.
+    // Zero is included if it takes at most half of the axis.
     let (low, high) = if low > 0.0 && low <= high / 2.0 {
         (0.0, high)
     } else if high < 0.0 && high >= low / 2.0 {
@@ -198,7 +189,7 @@ fn y_range(chart: &Chart, extent: &Extent, most: usize) -> [f64; 2] {
     } else {
         (low, high)
     };
-    // A constant 0 is a line on the ground, not in the middle.
+    // A constant 0 is at the bottom, not in the middle.
     if low == 0.0 && high == 0.0 {
         return [0.0, 1.0];
     }

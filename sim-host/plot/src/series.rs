@@ -1,4 +1,4 @@
-//! The data of a chart, drawn.
+//! Draws the data of a chart.
 
 use super::canvas::{Canvas, Point, Stroke};
 use super::chart::Data;
@@ -6,7 +6,7 @@ use super::look::Look;
 use super::scale::Axes;
 use std::collections::BTreeSet;
 
-/// Lines with more points than this per unit of width are thinned.
+/// Lines with more points per unit of width are thinned.
 const POINTS_PER_UNIT: f64 = 4.0;
 
 /// The three lines of an error bar.
@@ -14,13 +14,13 @@ pub fn whisker(x: f64, top: f64, bottom: f64) -> Vec<Vec<Point>> {
     vec![vec![[x, top], [x, bottom]], vec![[x - 3.0, top], [x + 3.0, top]], vec![[x - 3.0, bottom], [x + 3.0, bottom]]]
 }
 
-/// Draws all series into a plotting area: bars lowest, then lines, then marks.
+/// Draws all series into a plotting area: bars at the bottom, then lines, then marks.
 pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]) {
     let [left, top, width, height] = plot;
     let bottom = top + height;
     let place = |look: &Look<'_>, x: f64, y: f64| -> Option<Point> {
         let at = [left + width * axes.x.share(x) + look.shift, bottom - height * axes.y.share(y)];
-        // Far outside, coordinates would lose their precision in a reader.
+        // SVG readers lose precision for coordinates far outside.
         at.iter().all(|value| value.is_finite() && value.abs() < 1e6).then_some(at)
     };
     // Lines at the edge keep their full width.
@@ -66,7 +66,7 @@ pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]
             Data::Intervals(points) => points.iter().filter_map(|[x, y, ..]| place(look, *x, *y)).collect(),
             Data::Line(_) | Data::Bars(_) => continue,
         };
-        // Marks that would cover each other to half a unit are drawn once.
+        // Marks that overlap within half a unit are drawn once.
         let mut taken = BTreeSet::new();
         for point in points.into_iter().filter(inside) {
             if taken.insert(point.map(|value| (value * 2.0) as i32)) {
@@ -87,7 +87,7 @@ fn draw_bars(
         let (Some([x, y]), Some([right, zero])) = (place(*from, *value), place(*to, 0.0)) else {
             continue;
         };
-        // An axis that does not show zero has its bars stand on its edge.
+        // Without zero on the axis, bars start at its edge.
         let zero = zero.clamp(top, top + height);
         let (upper, lower) = (y.min(zero), y.max(zero));
         let width = (right - x).abs();
@@ -100,7 +100,7 @@ fn draw_bars(
     }
 }
 
-/// Runs of neighbours that exist.
+/// Runs of consecutive existing points.
 fn connected(points: impl Iterator<Item = Option<Point>>) -> Vec<Vec<Point>> {
     let mut lines = vec![Vec::new()];
     for point in points {
@@ -114,7 +114,8 @@ fn connected(points: impl Iterator<Item = Option<Point>>) -> Vec<Vec<Point>> {
     lines
 }
 
-/// At most about `most` points that look the same: of each run of neighbours the first, lowest, highest and last.
+/// Thins a line to about `most` points without visible change: the first, lowest, highest and last
+/// of each run.
 fn thin(line: Vec<Point>, most: usize) -> Vec<Point> {
     if line.len() <= most.max(4) {
         return line;

@@ -1,4 +1,4 @@
-//! Pictures as SVG; text stays text in the reader's sans-serif font.
+//! Writes pictures as SVG. Text stays text in the reader's sans-serif font.
 
 use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text};
 use super::colour::Colour;
@@ -11,7 +11,7 @@ use std::io;
 /// The SVG file of a picture.
 ///
 /// # Errors
-/// A picture in the picture has no pixels or too many.
+/// An image inside the picture has no pixels or too many.
 pub fn text(canvas: &Canvas) -> io::Result<String> {
     let [width, height] = [canvas.width, canvas.height].map(Number);
     let mut out = format!(
@@ -24,7 +24,7 @@ pub fn text(canvas: &Canvas) -> io::Result<String> {
     let mut clips = 0;
     let mut clipped = false;
     for shape in &canvas.shapes {
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = match shape {
             Shape::Path { lines, closed, stroke, fill } => {
                 out.push_str("<path d=\"");
@@ -79,7 +79,7 @@ fn path(out: &mut String, points: &[Point], closed: bool) {
         let _ = write!(out, "{command}{} {}", Number(*x), Number(*y));
     }
     match points {
-        // A line of no length: its round ends make a dot.
+        // A line of length 0: its round ends form a dot.
         [_] => out.push_str("h0"),
         _ if closed => out.push('Z'),
         _ => {}
@@ -110,7 +110,6 @@ fn element(out: &mut String, text: &Text) -> std::fmt::Result {
     writeln!(out, ">{}</text>", Escaped(&text.text))
 }
 
-/// The attributes that say how lines and areas look.
 struct Paint(Option<Stroke>, Option<Colour>);
 
 impl Display for Paint {
@@ -144,7 +143,7 @@ fn colour(f: &mut std::fmt::Formatter<'_>, name: &str, colour: Colour) -> std::f
     Ok(())
 }
 
-/// A number with up to two decimals; infinite and undefined ones are 0, as SVG has none.
+/// A number with up to two decimals; NaN and infinity become 0, since SVG has neither.
 struct Number(f64);
 
 impl Display for Number {
@@ -158,7 +157,7 @@ impl Display for Number {
     }
 }
 
-/// Text with XML's own characters written as entities, and without those that XML forbids.
+/// Text with XML escapes, without characters that XML forbids.
 struct Escaped<'a>(&'a str);
 
 impl Display for Escaped<'_> {

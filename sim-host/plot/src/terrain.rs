@@ -1,16 +1,17 @@
-//! Pictures of land: the darker, the less passable (A. V. Kuznetsov 2017, KUZ, figure 7); walls are black.
+//! Pictures of terrain: darker is less passable (A. V. Kuznetsov 2017, KUZ, figure 7); walls are
+//! black.
 
 use staya_controller::grid::BLOCKED;
 use staya_sim::terrain::{Terrain, TerrainError, parameter_error, rows::flip_row, write};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Longest side of a picture in pixels.
+/// Largest side of a picture, pixels.
 pub const MAX_PIXELS: u32 = 16_384;
-/// Brightness of the least passable class; walls are darker still.
+/// Brightness of the least passable class; walls are darker.
 const DARKEST: u8 = 60;
 
-/// The brightness of an impassability where `classes` is the greatest one: 255 for 1, then linear, 0 for walls.
+/// Brightness of an impassability from 1 to `classes`: 255 for 1, then linear; 0 for walls.
 #[must_use]
 pub fn shade(impassability: u8, classes: u8) -> u8 {
     if impassability == BLOCKED {
@@ -21,20 +22,21 @@ pub fn shade(impassability: u8, classes: u8) -> u8 {
     255 - (u32::from(impassability - 1).min(steps) * span / steps) as u8
 }
 
-/// The greatest impassability of a terrain, at least 1.
+/// The largest impassability of a terrain, at least 1.
 #[must_use]
 pub fn classes(terrain: &Terrain) -> u8 {
     terrain.cells().iter().copied().max().unwrap_or(1).max(1)
 }
 
-/// Pixels per cell that make a picture of about `pixels` along the longer side; at least 1.
+/// Pixels per cell for a picture of about `pixels` along the longer side; at least 1.
 #[must_use]
 pub fn scale_for(terrain: &Terrain, pixels: u32) -> u32 {
     let longest = u32::from(terrain.width().max(terrain.height()));
     (pixels / longest).max(1)
 }
 
-/// A grey picture with north up: its width and height in pixels, and the brightness of each pixel, row by row from the top.
+/// Renders terrain in grey with north up. Returns width and height in pixels, and the brightness of
+/// each pixel, row by row from the top.
 ///
 /// Each cell is a square of `scale` pixels. O(pixels).
 #[must_use]
@@ -64,12 +66,13 @@ fn file_rows(terrain: &Terrain) -> impl Iterator<Item = (u16, &[u8])> {
 /// Draws a terrain into a `.png` or `.svg` file, `scale` pixels per cell.
 ///
 /// # Errors
-/// [`TerrainError::Parameter`] for another extension or a picture beyond [`MAX_PIXELS`]; [`TerrainError::Write`] when the file cannot be written.
+/// [`TerrainError::Parameter`] for another extension or a picture beyond [`MAX_PIXELS`];
+/// [`TerrainError::Write`] if the file cannot be written.
 pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainError> {
     let longest = u64::from(terrain.width().max(terrain.height()));
     if scale == 0 || longest * u64::from(scale) > u64::from(MAX_PIXELS) {
         return Err(parameter_error(
-            format!("a picture of {longest} cells with {scale} pixels each"),
+            format!("a picture of {longest} cells with {scale} pixels each is too large or empty"),
             format!("choose a scale so that the longer side has 1 to {MAX_PIXELS} pixels, or a piece of the map"),
         ));
     }
@@ -79,7 +82,7 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
         "svg" => svg(terrain, scale).into_bytes(),
         _ => {
             return Err(parameter_error(
-                format!("{} is no picture", path.display()),
+                format!("{} is not a picture format", path.display()),
                 "choose a file name that ends in .png or .svg",
             ));
         }
@@ -108,7 +111,7 @@ pub(crate) fn encode_png(
     Ok(bytes)
 }
 
-/// Cells as rectangles, neighbours of equal shade in one.
+/// Cells as rectangles; equal neighbours are merged.
 fn svg(terrain: &Terrain, scale: u32) -> String {
     let classes = classes(terrain);
     let (columns, rows) = (terrain.width(), terrain.height());
@@ -123,7 +126,7 @@ fn svg(terrain: &Terrain, scale: u32) -> String {
         for run in row.chunk_by(|a, b| a == b) {
             let grey = shade(run[0], classes);
             if grey < 255 {
-                // Writing to a string does not fail.
+                // Writing to a string cannot fail.
                 let _ = writeln!(
                     text,
                     "<rect x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"1\" fill=\"#{grey:02x}{grey:02x}{grey:02x}\"/>",

@@ -1,15 +1,15 @@
-//! Where an axis has its marks: whole multiples of 1, 2 or 5 times a power of ten.
+//! Ticks of an axis: multiples of 1, 2 or 5 times a power of ten.
 
-/// A mark on an axis.
+/// A tick of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Where.
+    /// Value.
     pub value: f64,
-    /// What is written there.
+    /// Label.
     pub label: String,
 }
 
-/// A range that an axis can have: finite, growing, wide enough to count in.
+/// A valid range of an axis: finite, rising, and wide enough for ticks.
 #[must_use]
 pub fn sound(low: f64, high: f64) -> [f64; 2] {
     // Beyond this, differences and steps would overflow.
@@ -23,7 +23,7 @@ pub fn sound(low: f64, high: f64) -> [f64; 2] {
     if high - low > 1e-9 * largest && high - low > 1e-150 {
         return [low, high];
     }
-    // Nothing changes: show some room around the value.
+    // A range of width 0 gets a margin around its value.
     let half = if largest == 0.0 { 0.5 } else { largest * 0.1 };
     [low - half, high + half]
 }
@@ -49,7 +49,7 @@ impl Step {
         Self { mantissa: 1, exponent: exponent + 1 }
     }
 
-    /// The double next to `count` steps. Through decimals, so that 3 x 0.1 is 0.3.
+    /// The double nearest to `count` steps, computed in decimals so that 3 x 0.1 is 0.3.
     fn times(self, count: i64) -> f64 {
         let digits = count * self.mantissa;
         format!("{digits}e{}", self.exponent).parse().unwrap_or(f64::NAN)
@@ -57,14 +57,14 @@ impl Step {
 
     fn index(self, value: f64, round: fn(f64) -> f64) -> i64 {
         let near = value / self.times(1);
-        // A value that is a multiple but for rounding counts as one.
+        // A value that is a multiple except for rounding counts as one.
         let whole = libm::round(near);
         let tolerance = 1e-9 + 4.0 * f64::EPSILON * whole.abs();
         (if (near - whole).abs() < tolerance { whole } else { round(near) }) as i64
     }
 }
 
-/// The range widened to whole steps; the steps are at most `most` before widening.
+/// The range widened to whole steps, at most `most` of them before widening.
 #[must_use]
 pub fn enclosing(low: f64, high: f64, most: usize) -> [f64; 2] {
     let [low, high] = sound(low, high);
@@ -72,7 +72,7 @@ pub fn enclosing(low: f64, high: f64, most: usize) -> [f64; 2] {
     [step.times(step.index(low, libm::floor)).min(low), step.times(step.index(high, libm::ceil)).max(high)]
 }
 
-/// The greatest 1, 2 or 5 x 10^k that is no more than `value`; 1 if `value` is no positive number.
+/// The largest 1, 2 or 5 x 10^k up to `value`; 1 if `value` is not a positive number.
 #[must_use]
 pub fn round_down(value: f64) -> f64 {
     if !value.is_finite() || value <= 0.0 {
@@ -86,7 +86,7 @@ pub fn round_down(value: f64) -> f64 {
         .unwrap_or(value)
 }
 
-/// Marks of an axis from `low` to `high`, both ends included, with at most `most` steps between.
+/// Ticks from `low` to `high`, both ends included, with at most `most` steps between them.
 #[must_use]
 pub fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
     let [low, high] = sound(low, high);
@@ -101,7 +101,7 @@ pub fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
         .collect()
 }
 
-/// As many decimals as the step has; k, M, G, T for thousands and more; else powers of ten.
+/// A label with the decimals of the step; k, M, G, T from thousands on; else a power of ten.
 fn label(value: f64, step: Step, largest: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -123,7 +123,8 @@ fn ten_to(power: i32) -> f64 {
     (0..power).fold(1.0, |product, _| product * 10.0)
 }
 
-/// Marks of a logarithmic axis, `low` above 0: powers of ten, and their 2- and 5-fold where there is room.
+/// Ticks of a logarithmic axis, `low` above 0: powers of ten, with their 2- and 5-fold where there
+/// is room.
 #[must_use]
 pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     let most = most.max(2);
@@ -149,7 +150,7 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     };
     let fine = [marks(&[1, 2, 5], 1), marks(&[1], 1)];
     if let Some(fits) = fine.into_iter().find(|ticks| ticks.len() <= most + 1) {
-        // Less than a decade may hold a single power of ten, or none.
+        // Less than a decade may contain at most one power of ten.
         return if fits.len() >= 2 { fits } else { linear(low, high, most) };
     }
     (2..).map(|every| marks(&[1], every)).find(|ticks| ticks.len() <= most + 1).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Where the robots went: the land, a line per robot, and the formation from early to late.
+//! Trajectories of robots: the map, a line per robot, and the formation from early to late.
 
 use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text};
 use super::colour::{self, Colour, INK, MUTED, WHITE};
@@ -13,36 +13,33 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io;
 
-/// Robots that the legend names.
 const NAMED: usize = 12;
-/// Robots above which the picture shows how often each cell was entered, no ways and no formation.
+/// Above this number of robots the picture shows the visits of each cell instead of paths and
+/// formation.
 const CROWD: usize = 200;
-/// Robots above which starts and targets would hide everything else.
+/// Above this number of robots starts and targets are omitted.
 const MAX_ENDS: usize = 2000;
-/// Points of all ways above which they are drawn as pixels in the SVG too, which bounds its size.
+/// Above this number of points, paths are pixels in the SVG too, which bounds its size.
 const MAX_POINTS: usize = 60_000;
-/// Longest side of a map, in cells, that is always shown whole.
+/// Largest side of a map, in cells, that is always shown completely.
 const SMALL_MAP: f64 = 100.0;
-/// Moments in which the formation is shown.
 const MOMENTS: usize = 8;
-/// Free room around the map.
 const PAD: f64 = 16.0;
-/// The narrowest picture, so that title and legend have room.
 const MIN_WIDTH: f64 = 460.0;
 const SMALL: f64 = 11.5;
 const ROW: f64 = 19.0;
 
-/// Points that lie closer to the last one than this (in units) are left out of a way.
+/// Points closer to the previous one (in units) are skipped.
 const NEAR: f64 = 0.25;
 
-/// A robot's way in metres, and the middle of the cell where it was sent last, if on the map.
+/// A robot's path in metres, and the centre of its last target cell if that is on the map.
 #[derive(Debug, Default)]
 struct Way {
     positions_m: Vec<[f64; 2]>,
     target_m: Option<[f64; 2]>,
 }
 
-/// Draws the picture; `changing` are cells that do not stay as `terrain` has them, by rising cell.
+/// Draws the picture; `changing` are the sorted cells that differ from `terrain` at some time.
 ///
 /// # Errors
 /// The picture would have too many pixels.
@@ -77,7 +74,7 @@ pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u
     canvas.height = top + map.area[3] + map::FOOTER + 6.0;
     canvas.clip(Some(map.area));
     map.ground(&mut canvas);
-    // Cells are by column: one rectangle for those above each other.
+    // Cells are sorted by column: one rectangle for each vertical run.
     for cells in changing.chunk_by(|below, cell| below.x == cell.x && below.y + 1 == cell.y) {
         let ([left, bottom], high) = (map.place(corner_m(terrain, cells[0])), map.cell * cells.len() as f64);
         canvas.rectangle([left, bottom - high, map.cell, high], Some(CHANGING), None);
@@ -100,10 +97,8 @@ pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u
     Ok(canvas)
 }
 
-/// Over land that changes.
 const CHANGING: Colour = colour::PALETTE[1].with_alpha(110);
 
-/// The south-west corner of a cell.
 fn corner_m(terrain: &Terrain, cell: Cell) -> [f64; 2] {
     let [x, y] = terrain.origin_m;
     [x + f64::from(cell.x) * terrain.cell_m, y + f64::from(cell.y) * terrain.cell_m]
@@ -131,7 +126,7 @@ fn note(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
     size + &part + lanes
 }
 
-/// Each robot's way, by its id. Positions that are no numbers are left out.
+/// The path of each robot by id. Invalid positions are skipped.
 fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
     let mut ways: BTreeMap<u32, Way> = BTreeMap::new();
     for frame in frames {
@@ -146,7 +141,7 @@ fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
     ways
 }
 
-/// The map, or the piece around all ways and targets where they cover only a small part of it.
+/// The map, or the part around all paths and targets if they cover little of it.
 fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain> {
     let sides = [terrain.width(), terrain.height()].map(f64::from);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -184,7 +179,7 @@ fn middle_m(terrain: &Terrain, cell: Cell) -> Option<[f64; 2]> {
     Some([x + (f64::from(cell.x) + 0.5) * terrain.cell_m, y + (f64::from(cell.y) + 0.5) * terrain.cell_m])
 }
 
-/// Colour and dashes of the `index`-th of `robots`.
+/// Colour and dashes of robot `index` of `robots`.
 fn look(index: usize, robots: usize) -> Stroke {
     let width = match robots {
         0..=NAMED => 1.9,
@@ -192,7 +187,7 @@ fn look(index: usize, robots: usize) -> Stroke {
         _ => 0.9,
     };
     let stroke = Stroke::new(colour::nth(index), width);
-    // When colours come again, dashes keep them apart.
+    // Dashes distinguish repeated colours.
     if robots <= NAMED && index >= colour::PALETTE.len() { stroke.dashed(6.0, 3.0) } else { stroke }
 }
 
@@ -224,9 +219,9 @@ fn draw_ways(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) -> i
     Ok(())
 }
 
-/// How far ways are moved apart, to the south-east, so that ways through the same cells run side by side:
-/// two thirds of a cell for all of them, or a line's width each, whichever is more. Dots, starts
-/// and targets are where the robots were.
+/// Distance by which paths are shifted apart to the south-east, so that paths through the same
+/// cells run side by side: two thirds of a cell for all paths together, or a line's width each,
+/// whichever is more. Dots, starts and targets are not shifted.
 fn lane_width(map: &Map<'_>, robots: usize) -> f64 {
     match robots {
         2..=NAMED => (map.cell * 0.67 / robots as f64).clamp(1.3, 2.2),
@@ -234,14 +229,14 @@ fn lane_width(map: &Map<'_>, robots: usize) -> f64 {
     }
 }
 
-/// A way in picture units, without points that change nothing visible.
+/// A path in picture units without invisible detail.
 fn line(map: &Map<'_>, way: &Way) -> Vec<Point> {
     let mut line: Vec<Point> = Vec::new();
     for position in &way.positions_m {
         let point = map.place(*position);
         match line[..] {
             [.., last] if close(last, point) => continue,
-            // A turn by nothing: the point before lies on the line.
+            // The previous point is on the line.
             [.., before, last] if straight(before, last, point) => {
                 line.pop();
             }
@@ -263,7 +258,8 @@ fn straight(a: Point, b: Point, c: Point) -> bool {
     along > 0.0 && cross.abs() <= 1e-6 * along
 }
 
-/// Lines in their colours, no wider than their lane, over a pale seam that keeps them apart from dark land.
+/// Lines in their colours, at most as wide as their lane, on a pale outline that separates them
+/// from dark ground.
 fn draw_lines(canvas: &mut Canvas, lines: Vec<Vec<Point>>, lane: f64) {
     let robots = lines.len();
     if robots <= NAMED {
@@ -277,7 +273,6 @@ fn draw_lines(canvas: &mut Canvas, lines: Vec<Vec<Point>>, lane: f64) {
     }
 }
 
-/// Starts and targets of a crowd as small dots.
 fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
     let mut starts = ways.values().filter_map(|way| way.positions_m.first());
     let mut targets = ways.values().filter_map(|way| way.target_m.as_ref());
@@ -290,7 +285,6 @@ fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>
     }
 }
 
-/// Colours of a crowd's starts and targets.
 const CROWD_ENDS: [(Colour, &str); 2] = [(colour::PALETTE[2], "starts"), (colour::PALETTE[1], "targets")];
 
 /// Starts as rings, targets as crosses.
@@ -308,7 +302,7 @@ fn draw_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
 }
 
 fn ring(canvas: &mut Canvas, at: Point, radius: f64, colour: Colour) {
-    // Filled, so that the way seems to begin at the ring.
+    // Filled, so that the path starts at the ring.
     canvas.circle(at, radius * 1.4, Some(WHITE), None);
     canvas.circle(at, radius, None, Some(Stroke::new(colour, radius * 0.4)));
 }
@@ -320,12 +314,12 @@ fn cross(canvas: &mut Canvas, [x, y]: Point, size: f64, colour: Colour) {
     canvas.lines(lines, Stroke::new(colour, size * 0.4));
 }
 
-/// The colour of the formation at a moment, 0 (first) to 1 (last): from light to dark.
+/// The colour of the formation at a moment, 0 (first) to 1 (last), from light to dark.
 fn moment_colour(share: f64) -> Colour {
     Colour::hex(0xb0_8c_f0).towards(Colour::hex(0x1f_06_4a), share)
 }
 
-/// Frames at about equal distances in time, with 0..=1 for how late they are.
+/// Frames at about equal intervals, with their relative time from 0 to 1.
 fn moments(frames: &[Frame]) -> Vec<(&Frame, f64)> {
     let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
         return Vec::new();
@@ -375,7 +369,6 @@ fn draw_formation(
     }
 }
 
-/// A line of the legend.
 enum Key {
     Way(Stroke),
     Start,
@@ -416,7 +409,7 @@ fn crowd_keys(density: &Density, robots: usize) -> Vec<(Key, String)> {
     keys
 }
 
-/// Rows of samples and names below `top`; answers where they end.
+/// Rows of samples and names below `top`. Returns their lower end.
 fn legend(canvas: &mut Canvas, keys: &[(Key, String)], top: f64, right: f64) -> f64 {
     let (mut x, mut top) = (PAD, top);
     for (key, name) in keys {

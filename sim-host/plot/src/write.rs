@@ -1,4 +1,4 @@
-//! A picture as files.
+//! Writes pictures as files.
 
 use super::canvas::Canvas;
 use super::{raster, svg};
@@ -6,8 +6,8 @@ use staya_sim::record::{self, Error};
 use std::path::{Path, PathBuf};
 
 impl Canvas {
-    /// Writes `<stem>.svg` and `<stem>.png` (two pixels per unit), each whole or not at all; makes the directory
-    /// if needed. The same picture gives the same bytes. Names both files.
+    /// Writes `<stem>.svg` and `<stem>.png` (two pixels per unit), each completely or not at all,
+    /// and creates the directory if needed. Equal pictures give equal bytes. Returns both paths.
     ///
     /// # Errors
     /// The directory or a file cannot be written.

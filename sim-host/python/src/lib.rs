@@ -1,7 +1,9 @@
-//! Staya for Python: the module `staya._staya`, which the package in `python/staya` puts into words. Arguments come checked from
-//! there: arrays are contiguous, of the right shape, and finite.
+//! Staya for Python: the module `staya._staya`, for which the package in `python/staya` provides
+//! the interface. The package checks all arguments: arrays are contiguous, finite and of the right
+//! shape.
 //!
-//! `simulation` runs scenarios, `behaviors` has the controller's behaviours by themselves, over all robots at once.
+//! `simulation` runs scenarios; `behaviors` has single behaviours of the controller, applied to all
+//! robots at once.
 #![cfg(feature = "module")]
 
 pub mod behaviors;
@@ -10,7 +12,6 @@ mod trace;
 
 use pyo3::prelude::*;
 
-/// The module.
 #[pymodule]
 mod _staya {
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! A scenario in motion, as Python holds it: [`Run`].
+//! A scenario in progress: [`Run`].
 
 use crate::trace::Trace;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
@@ -25,17 +25,17 @@ create_exception!(
     staya._staya,
     ScenarioError,
     PyValueError,
-    "A scenario that cannot be read or is wrong: file, line, field and remedy."
+    "An unreadable or invalid scenario, with file, line, field and remedy."
 );
 
-/// How long Python waits for its interpreter at most: then signals are looked for, Ctrl-C among them.
+/// Longest time without the interpreter lock, after which signals such as Ctrl-C are checked.
 const SLICE: Duration = Duration::from_millis(50);
-/// What no body can do anyway.
+/// A speed above that of any body.
 const FAST_MPS: f64 = 1e6;
-/// Wishes are renewed with each tick.
+/// Commanded velocities are sent again in each tick.
 const VALID: Valid = Valid::from_millis(60_000);
 
-/// A scenario in motion. Whatever is asked of it by several threads is done in turn.
+/// A scenario in progress. Calls from several threads are serialised.
 #[pyclass(frozen, module = "staya._staya")]
 pub struct Run {
     inner: Mutex<Inner>,
@@ -43,13 +43,14 @@ pub struct Run {
 
 struct Inner {
     scenario: Scenario,
-    /// The file's, with what was said otherwise.
+    /// Text of the file with overrides.
     text: String,
     engine: Box<dyn Operated>,
     tick: u32,
-    /// By hand, by rising tick.
+    /// Interventions so far, by tick.
     done: Vec<(u32, Intervention)>,
-    /// Velocities that robots are told to wish for, m/s; `None`: what their own law says. Empty: nobody was ever told.
+    /// Commanded velocities, m/s; `None` for robots that follow their own law. Empty before the
+    /// first command.
     wishes: Vec<Option<Vec3<f32>>>,
     recorder: Option<RunRecorder<Vec<u8>>>,
     trace: Option<Trace>,
@@ -57,7 +58,7 @@ struct Inner {
 }
 
 impl Inner {
-    /// Tells robots their wishes. O(robots), nothing without wishes.
+    /// Sends the commanded velocities. O(robots), nothing without commands.
     fn command(&mut self) -> PyResult<()> {
         for (index, wish) in self.wishes.iter().enumerate() {
             let wish = wish.map_or(Wish::Own, |velocity_mps| Wish::Velocity { velocity_mps, valid: VALID });
@@ -65,14 +66,13 @@ impl Inner {
             if !self.engine.command(index, wish) && !is_own && self.engine.observation(index).is_up {
                 let number = self.scenario.robots[index].id;
                 return Err(PyValueError::new_err(format!(
-                    "robot {number} goes from cell to cell and has no use for a velocity; give a scenario with [plane]"
+                    "robot {number} moves from cell to cell and accepts no velocity; give a scenario with [plane]"
                 )));
             }
         }
         Ok(())
     }
 
-    /// One tick.
     fn advance(&mut self) -> PyResult<()> {
         let began = Instant::now();
         self.command()?;
@@ -85,7 +85,6 @@ impl Inner {
         self.record()
     }
 
-    /// Puts the moment into the recording, if there is one.
     fn record(&mut self) -> PyResult<()> {
         let (Some(recorder), engine) = (&mut self.recorder, &self.engine) else {
             return Ok(());
@@ -97,7 +96,6 @@ impl Inner {
         done.map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
 
-    /// Whether `staya run` would end here.
     fn is_over(&self) -> bool {
         self.engine.is_over() || self.tick >= self.scenario.ticks
     }
@@ -109,21 +107,21 @@ impl Inner {
     }
 }
 
-/// An order as Python says it.
+/// An order in Python's form.
 #[derive(Deserialize)]
 struct Said {
     order: Intervention,
 }
 
-/// A refusal of a file's, as a person reads it who gave arguments.
+/// Converts an error of a file to one of arguments.
 fn scenario_error(error: &impl ToString) -> PyErr {
     ScenarioError::new_err(error.to_string().replace("(by --set)", "(by an argument)"))
 }
 
 #[pymethods]
 impl Run {
-    /// A scenario before its first tick: the text of the file `path`, with `settings` (`FIELD=VALUE`) for what it says. With
-    /// `record` every so many ticks are recorded.
+    /// Creates a scenario before its first tick from the text of the file `path`, with overrides
+    /// `settings` (`FIELD=VALUE`). With `record` every n-th tick is recorded.
     #[new]
     fn new(
         py: Python<'_>,
@@ -143,8 +141,9 @@ impl Run {
                 true => text.to_owned(),
                 false => with_settings(text, &path, &settings).map_err(|e| scenario_error(&e))?,
             };
-            let engine = operated(&scenario)
-                .map_err(|error| ScenarioError::new_err(format!("the robots cannot be placed: {error}")))?;
+            let engine = operated(&scenario).map_err(|error| {
+                ScenarioError::new_err(format!("the robots cannot be placed: {error}; change their starts"))
+            })?;
             let recorder =
                 record.map(|every| RunRecorder::new(Vec::new(), Path::new(&scenario.name), &scenario, every));
             let recorder = recorder.transpose().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
@@ -164,7 +163,6 @@ impl Run {
         })
     }
 
-    /// So many ticks, without Python's interpreter.
     fn step(&self, py: Python<'_>, ticks: u32) -> PyResult<()> {
         let mut left = ticks;
         self.in_slices(py, |inner| {
@@ -176,7 +174,6 @@ impl Run {
         })
     }
 
-    /// Ticks up to the end of the run, or up to `until`.
     fn run(&self, py: Python<'_>, until: Option<u32>) -> PyResult<()> {
         self.in_slices(py, |inner| {
             let goes_on = !inner.is_over() && until.is_none_or(|until| inner.tick < until);
@@ -187,7 +184,7 @@ impl Run {
         })
     }
 
-    /// Keeps columns from this moment on; see [`Trace::new`].
+    /// Starts to collect columns; see [`Trace::new`].
     fn begin_trace(&self, py: Python<'_>, every: u32) {
         let mut inner = self.lock(py);
         let mut trace = Trace::new(every, inner.scenario.robots.len());
@@ -195,58 +192,50 @@ impl Run {
         inner.trace = Some(trace);
     }
 
-    /// What was kept: the columns of its trace and of its series, by name.
+    /// Returns the columns of the trace and of the series, by name.
     fn end_trace<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut inner = self.lock(py);
-        let mut trace = inner.trace.take().ok_or_else(|| PyRuntimeError::new_err("no trace was begun"))?;
+        let mut trace = inner.trace.take().ok_or_else(|| PyRuntimeError::new_err("no trace was started"))?;
         trace.finish(&*inner.engine);
         drop(inner);
         trace.columns(py)
     }
 
-    /// Ticks done.
     #[getter]
     fn tick(&self, py: Python<'_>) -> u32 {
         self.lock(py).tick
     }
 
-    /// Ticks after which the run ends.
     #[getter]
     fn ticks(&self, py: Python<'_>) -> u32 {
         self.lock(py).scenario.ticks
     }
 
-    /// Length of a tick, seconds.
     #[getter]
     fn tick_s(&self, py: Python<'_>) -> f64 {
         self.lock(py).scenario.tick_s()
     }
 
-    /// The scenario's name.
     #[getter]
     fn name(&self, py: Python<'_>) -> String {
         self.lock(py).scenario.name.clone()
     }
 
-    /// The seed of everything random.
     #[getter]
     fn seed(&self, py: Python<'_>) -> u64 {
         self.lock(py).scenario.seed
     }
 
-    /// Whether it records.
     #[getter]
     fn records(&self, py: Python<'_>) -> bool {
         self.lock(py).recorder.is_some()
     }
 
-    /// Whether `staya run` would end here.
     #[getter]
     fn is_over(&self, py: Python<'_>) -> bool {
         self.lock(py).is_over()
     }
 
-    /// The run's fingerprint so far, 16 hex digits.
     #[getter]
     fn trace_hash(&self, py: Python<'_>) -> String {
         let mut hash = 0;
@@ -254,13 +243,12 @@ impl Run {
         format!("{hash:016x}")
     }
 
-    /// Robots' numbers, rising.
     fn ids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.scenario.robots.iter().map(|robot| robot.id.0))
     }
 
-    /// Radius, m; highest speed, m/s; of each robot in the plane.
+    /// Radius, m, and highest speed, m/s, of each robot in the plane.
     fn bodies<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<f64>>> {
         let inner = self.lock(py);
         let plane = inner.scenario.plane.as_ref()?;
@@ -268,44 +256,38 @@ impl Run {
         Some(rows(py, groups.map(|group| [group.radius_m, group.abilities.max_speed_mps])))
     }
 
-    /// World positions, metres.
     fn positions<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let inner = self.lock(py);
         rows(py, inner.robots().map(|index| inner.engine.observation(index).motion.position_m))
     }
 
-    /// World velocities, m/s.
     fn velocities<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let inner = self.lock(py);
         rows(py, inner.robots().map(|index| inner.engine.observation(index).motion.velocity_mps))
     }
 
-    /// Where robots are to go, metres; NaN: nowhere in particular.
     fn goals<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let inner = self.lock(py);
         rows(py, inner.robots().map(|index| inner.engine.goal_m(index).unwrap_or([f64::NAN; 3])))
     }
 
-    /// What robots are doing, by number.
     fn modes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).status.mode as u8))
     }
 
-    /// Whose computers run.
     fn is_up<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).is_up))
     }
 
-    /// How many robots each knows.
     fn neighbors<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         let inner = self.lock(py);
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).neighbors as u32))
     }
 
-    /// Tells robots which velocities to wish for from the next tick on, those with a mask of true; the others do what their
-    /// own law says.
+    /// Sets the preferred velocities from the next tick for robots whose mask is true; the others
+    /// follow their own law.
     fn wish(
         &self,
         py: Python<'_>,
@@ -326,13 +308,12 @@ impl Run {
         told
     }
 
-    /// Whether robots were ever told what to wish for.
     #[getter]
     fn has_wishes(&self, py: Python<'_>) -> bool {
         !self.lock(py).wishes.is_empty()
     }
 
-    /// Does what the table `order = { kind = "goal", ... }` says, before the next tick.
+    /// Does the intervention in the table `order = { kind = "goal", ... }` before the next tick.
     fn intervene(&self, py: Python<'_>, table: &str) -> PyResult<()> {
         let said = toml::from_str::<Said>(table);
         let order = said.map_err(|error| PyValueError::new_err(error.message().to_owned()))?.order;
@@ -349,12 +330,12 @@ impl Run {
         Ok(())
     }
 
-    /// The figures so far, as JSON.
     fn summary(&self, py: Python<'_>) -> PyResult<String> {
         serde_json::to_string(&self.lock(py).summary()).map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
 
-    /// The scenario that `staya run` makes the same run of, orders included; wishes are in no scenario.
+    /// The scenario with all orders, with which `staya run` repeats this run; commanded velocities
+    /// cannot be included.
     fn scenario_text(&self, py: Python<'_>) -> PyResult<String> {
         let inner = self.lock(py);
         let Scenario { seed, ticks, tick_us, .. } = inner.scenario;
@@ -366,7 +347,6 @@ impl Run {
         Ok(with_interventions(&text, tick_us, &inner.done))
     }
 
-    /// What was recorded so far, as one HTML page.
     fn page(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let inner = self.lock(py);
         let Some(recorder) = inner.recorder.clone() else {
@@ -389,7 +369,8 @@ impl Run {
         self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does it again and again, as long as it says so, without Python's interpreter but for a look at signals now and then.
+    /// Repeats `act` while it returns true, without the interpreter lock, and checks signals
+    /// regularly.
     fn in_slices(&self, py: Python<'_>, mut act: impl FnMut(&mut Inner) -> PyResult<bool> + Send) -> PyResult<()> {
         loop {
             let goes_on = py.detach(|| {
@@ -410,7 +391,6 @@ impl Run {
     }
 }
 
-/// An array of rows.
 pub(crate) fn rows<'py, const D: usize>(
     py: Python<'py>,
     rows: impl Iterator<Item = [f64; D]>,

@@ -1,4 +1,4 @@
-//! A run as columns, with the names of `trace.csv` and `series.csv`.
+//! A run as columns named as in `trace.csv` and `series.csv`.
 
 use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
@@ -6,14 +6,14 @@ use pyo3::types::PyDict;
 use staya_sim::engine::{Moment, Operated};
 use staya_sim::record::RobotRow;
 
-/// Stands for a wait: it gets on.
+/// Wait number of a robot that does not wait.
 const NO_WAIT: u8 = u8::MAX;
 
-/// Lines of robots, every so many ticks, and lines of the swarm, every tick.
+/// Lines of robots every n-th tick, and lines of the swarm every tick.
 #[derive(Debug, Default)]
 pub struct Trace {
     every: u32,
-    /// The tick of the last lines of robots.
+    /// Tick of the last lines of robots.
     last: Option<u32>,
     robots: Robots,
     swarm: Swarm,
@@ -50,13 +50,13 @@ struct Swarm {
 }
 
 impl Trace {
-    /// Of `robots` robots; `every` 0: as `staya run` has it, one sample per started thousand robots.
+    /// Creates a trace of `robots` robots. With `every` = 0 the interval is as in `staya run`, one
+    /// tick per started thousand robots.
     pub fn new(every: u32, robots: usize) -> Self {
         let usual = u32::try_from(robots.div_ceil(1000)).unwrap_or(u32::MAX).max(1);
         Self { every: if every == 0 { usual } else { every }, ..Self::default() }
     }
 
-    /// Takes the moment.
     pub fn take(&mut self, engine: &dyn Operated) {
         engine.show(&mut |moment, rows| {
             self.swarm.take(moment);
@@ -66,7 +66,6 @@ impl Trace {
         });
     }
 
-    /// Makes sure that the last moment is there.
     pub fn finish(&mut self, engine: &dyn Operated) {
         engine.show(&mut |moment, rows| {
             if self.last != Some(moment.row.tick) {
@@ -82,10 +81,10 @@ impl Trace {
         }
     }
 
-    /// The columns, by the names of the CSV files: `trace` and `series`.
+    /// The columns of `trace` and `series`, named as in the CSV files.
     ///
     /// # Errors
-    /// Python has no memory left.
+    /// Python is out of memory.
     pub fn columns<'py>(self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let both = PyDict::new(py);
         both.set_item("trace", self.robots.columns(py)?)?;
@@ -94,7 +93,7 @@ impl Trace {
     }
 }
 
-/// Gives a dictionary of the columns, in order.
+/// A dictionary of columns, in this order.
 macro_rules! columns {
     ($py:expr, $($name:literal: $column:expr),* $(,)?) => {{
         let columns = PyDict::new($py);

@@ -1,4 +1,4 @@
-//! One moment of a run in bytes: where everybody is, for pages and recordings (`PROTOCOL.md`, Frames).
+//! One moment of a run in bytes, for pages and recordings (`PROTOCOL.md`, Frames).
 
 use serde::{Deserialize, Serialize};
 use staya_sim::engine::Moment;
@@ -6,88 +6,89 @@ use staya_sim::metrics::flock::polarisation;
 use staya_sim::record::{PacketCounts, RobotRow};
 use staya_sim::scenario::Scenario;
 
-/// What frames begin with.
+/// First bytes of a frame.
 pub const MAGIC: [u8; 4] = *b"STF1";
-/// In place of a leader: there is none.
+/// Leader index of a robot without a leader.
 pub const NOBODY: u32 = u32::MAX;
-/// In place of a wait: it gets on.
+/// Wait number of a robot that does not wait.
 pub const NO_WAIT: u8 = u8::MAX;
-/// `Mode::Passive`, in which intruders are.
 const PASSIVE: u8 = 6;
 const HEAD: usize = 32;
 const HAS_Z: u32 = 1;
 const HAS_TARGETS: u32 = 2;
 
-/// Bytes that are no frame.
+/// Why bytes are not a valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// They do not begin as frames do.
-    #[error("a frame begins with {MAGIC:?}; is it of another version?")]
+    /// The first bytes are wrong.
+    #[error("this frame does not begin with {MAGIC:?}; use the program version that made it")]
     Magic,
-    /// Their length is not what their head says.
-    #[error("a frame's head asks for {expected} bytes, and there are {found}")]
+    /// The length differs from the one in the header.
+    #[error("this frame needs {expected} bytes but has {found}; make the recording again")]
     Length {
-        /// By the head.
+        /// By the header.
         expected: u64,
-        /// That there are.
+        /// Present.
         found: usize,
     },
-    /// The figures are no JSON of the known form.
-    #[error("the figures of a frame cannot be read")]
+    /// The figures are not valid JSON.
+    #[error("the figures of this frame are invalid; make the recording again")]
     Figures,
 }
 
-/// The swarm as a whole at a moment; what there is none of is `None`.
+/// Figures of the whole swarm at one moment. `None` stands for figures that the scenario does not
+/// have.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Figures {
-    /// Robots at their targets that know it.
+    /// Robots that are at their goals.
     pub arrived: usize,
-    /// Robots that have somewhere to go and do not get on.
+    /// Robots that have a goal but do not move.
     pub waiting: usize,
-    /// Of the run so far.
+    /// Collisions in the run so far.
     pub collisions: u64,
-    /// Of this tick.
+    /// Radio packets of this tick.
     pub packets: PacketCounts,
-    /// Mean distance from the places in the formation, cells.
+    /// Mean distance from the formation's places, cells.
     pub formation_error: Option<f64>,
-    /// Length of the mean of the robots' directions, 0 to 1; none when nobody moves.
+    /// Length of the mean of the robots' directions, 0 to 1; `None` if no robot moves.
     pub order: Option<f64>,
-    /// Least distance between the surfaces of two bodies, metres.
+    /// Smallest distance between the surfaces of two bodies, metres.
     pub gap_m: Option<f64>,
-    /// The run's fingerprint so far, 16 hex digits.
+    /// Trace hash so far, 16 hex digits.
     pub hash: String,
-    /// Goals 0 to 3 of goal flocks, as far as there are any, metres from the scene's origin.
+    /// Goals of the goal flocks 0 to 3, metres from the scene's origin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub goals: Vec<[f64; 3]>,
 }
 
-/// One moment. All arrays have an entry for each body: the robots by rising number, then the intruders.
+/// One moment of a run. All arrays have one entry per body: the robots by number, then the
+/// intruders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameData {
-    /// Number of the tick.
+    /// Tick number.
     pub tick: u32,
     /// Simulated time, seconds.
     pub time_s: f64,
-    /// Whether z is kept; otherwise it is 0.
+    /// Whether z is stored; otherwise it is 0.
     pub has_z: bool,
-    /// Metres from the scene's origin.
+    /// Positions, metres from the scene's origin.
     pub position_m: Vec<[f32; 3]>,
-    /// Metres per second.
+    /// Velocities, m/s.
     pub velocity_mps: Vec<[f32; 3]>,
-    /// Metres from the scene's origin, NaN for none; empty: nobody's is kept.
+    /// Goals, metres from the scene's origin, NaN for none; empty if goals are not stored.
     pub target_m: Vec<[f32; 3]>,
-    /// Index of the leader, or [`NOBODY`].
+    /// Index of the leader, or [`NOBODY`] for none.
     pub leader: Vec<u32>,
-    /// Number of the mode in the scene's words.
+    /// Index of the mode in the scene's words.
     pub mode: Vec<u8>,
-    /// Number of the wait in the scene's words, or [`NO_WAIT`].
+    /// Index of the reason to wait in the scene's words, or [`NO_WAIT`].
     pub wait: Vec<u8>,
-    /// The swarm as a whole.
+    /// Figures of the whole swarm.
     pub figures: Figures,
 }
 
-/// Makes frames of a run's moments.
+/// Converts moments of a run to frames.
 #[derive(Clone, Debug)]
 pub struct Framer {
     origin_m: [f64; 3],
@@ -96,7 +97,7 @@ pub struct Framer {
 }
 
 impl Framer {
-    /// For the runs of a scenario, measured from the origin of its [`Scene`](crate::scene::Scene).
+    /// Creates a framer for a scenario, with the origin of its [`Scene`](crate::scene::Scene).
     #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         Self {
@@ -106,13 +107,13 @@ impl Framer {
         }
     }
 
-    /// What lengths are measured from, metres.
+    /// Origin of all positions, metres.
     #[must_use]
     pub const fn origin_m(&self) -> [f64; 3] {
         self.origin_m
     }
 
-    /// A moment as a frame; `frame`'s memory is used again. O(bodies).
+    /// Converts a moment to a frame, reusing the memory of `frame`. O(bodies).
     pub fn fill(&self, frame: &mut FrameData, moment: &Moment<'_>, robots: impl Iterator<Item = RobotRow>) {
         let row = moment.row;
         (frame.tick, frame.time_s, frame.has_z) = (row.tick, row.time_s, self.has_z);
@@ -171,13 +172,14 @@ impl Framer {
 }
 
 impl FrameData {
-    /// Bodies of the frame.
+    /// Number of bodies.
     #[must_use]
     pub const fn bodies(&self) -> usize {
         self.position_m.len()
     }
 
-    /// Puts the frame's bytes into `out`, which is emptied before. Arrays that are too short are filled up. O(bodies).
+    /// Writes the bytes of the frame to `out`, which is cleared first. Short arrays are padded.
+    /// O(bodies).
     pub fn encode(&self, out: &mut Vec<u8>) {
         let figures = serde_json::to_vec(&self.figures).unwrap_or_default();
         let bodies = self.bodies();
@@ -210,7 +212,7 @@ impl FrameData {
         out.extend(figures);
     }
 
-    /// The tick and the figures of a frame, and nothing else. O(1).
+    /// Reads only the tick and the figures. O(1).
     ///
     /// # Errors
     /// [`FrameError`].
@@ -224,7 +226,7 @@ impl FrameData {
         Ok((word(4), figures.ok_or(FrameError::Figures)?))
     }
 
-    /// Reads a frame. O(bytes); memory for no more bodies than there are bytes of.
+    /// Reads a frame. O(bytes). Memory is limited by the number of bytes, not by the header.
     ///
     /// # Errors
     /// [`FrameError`].
@@ -241,7 +243,7 @@ impl FrameData {
         if expected != bytes.len() as u64 {
             return Err(FrameError::Length { expected, found: bytes.len() });
         }
-        // As many as there are bytes of.
+        // Limited by the bytes present.
         let bodies = bodies as usize;
         let mut take = |count: usize| {
             let (taken, left) = rest.split_at(count);

@@ -1,57 +1,56 @@
-//! A page with a recording inside: one HTML file that needs no server and no network.
+//! A page with a recording: one HTML file that needs no server and no network.
 //!
-//! Its modules import each other by `staya/NAME.js`; here these names stand for `data:` URLs in an import map.
+//! Its modules import each other as `staya/NAME.js`; an import map resolves these names to `data:`
+//! URLs.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write as _;
 
-/// The page's files, by name.
+/// The files of the page with their names.
 pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/web.rs"));
-/// The page itself.
 const INDEX: &str = "index.html";
 
-/// A file of the page, as a server sends it.
+/// A file of the page as a server sends it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct File {
-    /// Its name in the address; empty for the page itself.
+    /// Name in the URL; empty for the page itself.
     pub name: &'static str,
     /// Its media type.
     pub kind: &'static str,
-    /// Its contents; in HTML, `NONCE` stands for a number that is drawn for each answer.
+    /// Content. In HTML, `NONCE` must be replaced by a new random number in each response.
     pub text: String,
 }
 
-/// A page that cannot be made.
+/// Why the page cannot be assembled.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PageError {
-    /// A file of the page is not there.
-    #[error("this program was built without the page's {0}; build it from a whole copy of the sources")]
+    /// A file of the page is missing.
+    #[error("the page's file {0} is missing; build the program from complete sources")]
     File(&'static str),
-    /// The page has no place for a part.
-    #[error("the page has no mark <!-- staya:{0} -->; build the program from a whole copy of the sources")]
+    /// The page lacks a placeholder.
+    #[error("the page lacks the placeholder <!-- staya:{0} -->; build the program from complete sources")]
     Mark(&'static str),
 }
 
-/// A file of the page.
+/// The content of a file of the page; `None` for an unknown name.
 #[must_use]
 pub fn file(name: &str) -> Option<&'static str> {
     FILES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// The page with a recording inside. O(bytes).
+/// Assembles the page with a recording inside. O(bytes).
 ///
 /// # Errors
-/// The program was built without the page.
+/// [`PageError`]: the program was built from incomplete sources.
 pub fn with_recording(recording: &[u8]) -> Result<String, PageError> {
     let index = file(INDEX).ok_or(PageError::File(INDEX))?;
     assemble(index, &inside(FILES, recording))
 }
 
-/// What the marks of the page stand for, each with its name.
 type Parts = [(&'static str, String); 4];
 
-/// Everything in one file.
+/// The replacements for a page in one file.
 fn inside(files: &[(&str, &str)], recording: &[u8]) -> Parts {
     let of_kind = |end: &'static str| files.iter().filter(move |(name, _)| name.ends_with(end));
     let style = of_kind(".css").fold(String::from("<style>"), |style, (_, text)| style + "\n" + text) + "</style>";
@@ -68,7 +67,7 @@ fn inside(files: &[(&str, &str)], recording: &[u8]) -> Parts {
     ]
 }
 
-/// Each file by itself, from a server that puts a number of its own into what stands in the page.
+/// The replacements for a page whose files a server sends. The server replaces `NONCE`.
 fn beside(files: &[(&str, &str)]) -> Parts {
     let map = import_map(files, |name, _| format!("/{name}"));
     let links = files.iter().filter(|(name, _)| name.ends_with(".css"));
@@ -80,7 +79,7 @@ fn beside(files: &[(&str, &str)]) -> Parts {
     ]
 }
 
-/// Where modules are by the names that they import each other by. Neither base64 nor names can end a script.
+/// The import map. Neither base64 nor the names can contain the end of a script element.
 fn import_map(files: &[(&str, &str)], place: impl Fn(&str, &str) -> String) -> serde_json::Value {
     let modules = files.iter().filter(|(name, _)| name.ends_with(".js"));
     let imports = modules.map(|(name, text)| (format!("staya/{name}"), place(name, text).into()));
@@ -90,7 +89,7 @@ fn import_map(files: &[(&str, &str)], place: impl Fn(&str, &str) -> String) -> s
 /// The files of the page for a server.
 ///
 /// # Errors
-/// The program was built without the page.
+/// [`PageError`]: the program was built from incomplete sources.
 pub fn served() -> Result<Vec<File>, PageError> {
     let index = file(INDEX).ok_or(PageError::File(INDEX))?;
     let page = File { name: "", kind: "text/html", text: assemble(index, &beside(FILES))? };
@@ -102,7 +101,6 @@ pub fn served() -> Result<Vec<File>, PageError> {
     Ok(std::iter::once(page).chain(others).collect())
 }
 
-/// Puts the parts where the marks are.
 fn assemble(index: &str, parts: &Parts) -> Result<String, PageError> {
     let (mut page, mut rest) = (String::new(), index);
     while let Some((before, mark, behind)) = next_mark(rest) {
@@ -120,7 +118,7 @@ fn assemble(index: &str, parts: &Parts) -> Result<String, PageError> {
     }
 }
 
-/// What is before the next mark, its name, and what is behind it.
+/// Splits at the next placeholder: text before it, its name, text after it.
 fn next_mark(text: &str) -> Option<(&str, &str, &str)> {
     let (before, from) = text.split_once("<!-- staya:")?;
     let (name, behind) = from.split_once(" -->")?;
@@ -135,7 +133,7 @@ mod tests {
                         <!-- staya:recording --><!-- staya:other --><!-- staya:entry --></body>";
 
     #[test]
-    fn every_part_comes_to_its_mark() {
+    fn every_placeholder_is_replaced() {
         let files =
             [("a.css", "p { color: red }"), ("main.js", "import \"staya/b.js\";"), ("b.js", "// <!-- staya:entry -->")];
         let page = assemble(PAGE, &inside(&files, b"STAYAREC")).unwrap();
@@ -156,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_without_a_place_for_a_part_is_an_error() {
+    fn a_missing_placeholder_is_an_error() {
         let without = PAGE.replace("<!-- staya:recording -->", "");
         assert_eq!(assemble(&without, &inside(&[], b"")), Err(PageError::Mark("recording")));
     }

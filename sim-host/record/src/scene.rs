@@ -1,4 +1,4 @@
-//! What stays as it is in a run: the message `scene` of `PROTOCOL.md`.
+//! The static part of a run: the message `scene` of `PROTOCOL.md`.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -9,56 +9,57 @@ use staya_sim::scenario::Scenario;
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::{self, Shape};
 
-/// Names of the modes, by the numbers in frames.
+/// Names of the modes by the numbers in frames.
 pub const MODES: [&str; 7] = ["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"];
-/// Radius of a robot on the grid, where bodies have none: a share of a cell.
+/// Displayed radius of robots on a grid, as a fraction of a cell.
 const GRID_RADIUS: f64 = 0.35;
-/// Room around what is shown at first, a share of its longer side.
+/// Margin around the initial view, as a fraction of its longer side.
 const MARGIN: f64 = 0.08;
-/// How far beyond starts and goals obstacles are shown at first, the same.
+/// Distance from starts and goals at which obstacles are in the initial view, as a fraction of its
+/// longer side.
 const AROUND: f64 = 0.5;
 
-/// What stays as it is.
+/// The static part of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename = "scene")]
 pub struct Scene {
-    /// Of the scenario.
+    /// Name of the scenario.
     pub name: String,
-    /// Seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Length of a tick, seconds.
     pub tick_s: f64,
-    /// The tick at which the run ends at the latest.
+    /// Largest number of ticks.
     pub ticks: u32,
-    /// How bodies move.
+    /// Motion of bodies.
     pub kind: Kind,
-    /// What the page can do.
+    /// What a page can do with the run.
     pub mode: Mode,
-    /// What all lengths are measured from, metres.
+    /// Origin of all positions, metres.
     pub origin_m: [f64; 3],
-    /// What to show at first: west, south, east, north, metres.
+    /// Initial view: west, south, east, north, metres.
     pub bounds_m: [f64; 4],
-    /// Lowest and highest place to show at first, metres.
+    /// Lowest and highest position of the initial view, metres.
     pub height_m: [f64; 2],
-    /// An entry a robot, by rising number.
+    /// One entry per robot, by number.
     pub robots: Robots,
-    /// The land, if there is any.
+    /// The map, if there is one.
     pub land: Option<Land>,
-    /// What stands in the way.
+    /// Obstacles.
     pub solids: Vec<Indexed>,
-    /// Bodies that are no robots.
+    /// Bodies that are not robots.
     pub intruders: Vec<Intruder>,
-    /// The graph of the formation, if robots keep one.
+    /// Graph of the formation, if there is one.
     pub formation: Option<Formation>,
-    /// How far and how well one is heard.
+    /// Range and loss of the radio.
     pub radio: Radio,
-    /// What can be changed while it runs.
+    /// Parameters that can be changed during the run.
     pub parameters: Vec<Parameter>,
     /// Names of the numbers in frames.
     pub words: Words,
 }
 
-/// How bodies move.
+/// Motion of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -74,65 +75,66 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
-    /// Give orders.
+    /// Watch and send orders.
     Live,
-    /// Move in time.
+    /// Watch and seek.
     Recording,
-    /// Look.
+    /// Watch only.
     Watch,
 }
 
-/// What robots are like.
+/// Properties of the robots.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Robots {
-    /// Their numbers, rising.
+    /// Numbers, rising.
     pub id: Vec<u32>,
-    /// Radii of their bodies, metres.
+    /// Radii, metres.
     pub radius_m: Vec<f64>,
-    /// What they can do on easy land, m/s.
+    /// Largest speeds on easy ground, m/s.
     pub max_speed_mps: Vec<f64>,
-    /// 0 for those in no group, then groups by their order in the scenario.
+    /// Groups in the order of the scenario from 1; 0 for no group.
     pub group: Vec<u32>,
 }
 
-/// Cells that take longer or shorter to cross.
+/// A map of cells with different travel times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Land {
-    /// Cells from west to east.
+    /// Number of cells from west to east.
     pub width: u16,
-    /// Cells from south to north.
+    /// Number of cells from south to north.
     pub height: u16,
     /// Side of a cell, metres.
     pub cell_m: f64,
     /// South-west corner, metres.
     pub origin_m: [f64; 2],
-    /// The slowest cell.
+    /// Travel time of the slowest class, ticks.
     pub classes: u8,
-    /// Base64 of a byte a cell, row by row from the south-west: 0 a wall, otherwise ticks to cross it.
+    /// Base64 with one byte per cell, row by row from the south-west: 0 for a wall, otherwise the
+    /// ticks to cross it.
     pub cells: String,
 }
 
-/// A solid and its number.
+/// An obstacle with its number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Indexed {
-    /// By which orders name it.
+    /// Number in orders.
     pub index: usize,
-    /// What it is.
+    /// Its shape.
     #[serde(flatten)]
     pub solid: Solid,
 }
 
-/// What stands in the way, metres.
+/// An obstacle, metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Solid {
-    /// What somebody could also have put there.
+    /// A shape that orders can also create.
     Shape(Shape),
-    /// Everything behind a plane.
+    /// A half-space.
     HalfSpace(HalfSpace),
 }
 
-/// A half-space of obstacle.
+/// The half-space behind a plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename = "plane")]
 pub struct HalfSpace {
@@ -142,59 +144,59 @@ pub struct HalfSpace {
     pub normal: [f64; 3],
 }
 
-/// A body that is no robot; where it is, is in frames.
+/// A body that is not a robot. Its position is in the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Intruder {
     /// Radius, metres.
     pub radius_m: f64,
-    /// Whether it says where it is.
+    /// Whether it sends beacons.
     pub heard: bool,
 }
 
-/// Who keeps which distance.
+/// The graph of a formation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Formation {
-    /// Pairs of robots by index.
+    /// Pairs of neighbours, by robot index.
     pub edges: Vec<[u32; 2]>,
 }
 
-/// The radio.
+/// Radio model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Radio {
-    /// Farthest reception, metres; `None`: everywhere.
+    /// Range, metres; `None` for no limit.
     pub range_m: Option<f64>,
-    /// Share of packets that are lost.
+    /// Fraction of lost packets, 0 to 1.
     pub loss: f64,
 }
 
-/// A number that can be changed while robots run.
+/// A parameter that can be changed during the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Least value.
+    /// Smallest value.
     pub least: f64,
-    /// Greatest value.
+    /// Largest value.
     pub greatest: f64,
-    /// That of the first robot that has it.
+    /// Value of the first robot that has the parameter.
     pub value: Option<f64>,
-    /// What it is.
+    /// Description.
     pub what: String,
 }
 
 /// Names of the numbers in frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Words {
-    /// Modes.
+    /// Names of the modes.
     pub modes: Vec<String>,
-    /// What robots wait for.
+    /// Names of the reasons to wait.
     pub waits: Vec<String>,
 }
 
 impl Scene {
-    /// The scene of a scenario before its first tick. O(robots + cells).
+    /// Creates the scene of a scenario before its first tick. O(robots + cells).
     #[must_use]
     pub fn new(scenario: &Scenario, mode: Mode) -> Self {
         let setup = scenario.plane.as_ref();
@@ -229,7 +231,7 @@ impl Scene {
 }
 
 impl Radio {
-    /// As it is at the start.
+    /// The radio at the start of a scenario.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let radio = &scenario.radio;
@@ -243,18 +245,18 @@ impl From<&staya_sim::scenario::Intruder> for Intruder {
     }
 }
 
-/// Names of the waits, by the numbers in frames.
+/// Names of the reasons to wait, by the numbers in frames.
 pub fn wait_names() -> impl Iterator<Item = &'static str> {
     Wait::NAMES.iter().map(|(name, _)| *name)
 }
 
-/// What the lengths of a scenario's scene and frames are measured from, metres: near its bodies, so that `f32` is
-/// exact enough.
+/// Origin of the positions in a scenario's scene and frames, metres: close enough to the bodies for
+/// `f32`.
 #[must_use]
 pub fn origin_m(scenario: &Scenario) -> [f64; 3] {
     match &scenario.plane {
         Some(setup) if !setup.has_terrain => {
-            // Places that a person wrote stay as they are, unless that costs digits.
+            // Coordinates of the scenario stay unchanged unless that would cost precision.
             let far = setup.starts.iter().flat_map(|start| start.position_m).fold(0.0, |far: f64, x| far.max(x.abs()));
             match setup.starts.first() {
                 Some(start) if far > 1e4 => start.position_m.map(libm::round),
@@ -279,7 +281,7 @@ pub fn is_in_space(scenario: &Scenario) -> bool {
     })
 }
 
-/// The land as scenes have it, measured from `origin_m`.
+/// The map relative to `origin_m`.
 #[must_use]
 pub fn land(terrain: &Terrain, origin_m: [f64; 3]) -> Land {
     Land {
@@ -292,7 +294,7 @@ pub fn land(terrain: &Terrain, origin_m: [f64; 3]) -> Land {
     }
 }
 
-/// Solids as scenes have them, measured from `origin_m`; in the plane balls are discs.
+/// Obstacles relative to `origin_m`. In the plane balls become discs.
 #[must_use]
 pub fn solids(solids: &[plane::Solid], is_in_space: bool, origin_m: [f64; 3]) -> Vec<Indexed> {
     let flat = |at: [f64; 2]| [at[0] - origin_m[0], at[1] - origin_m[1]];
@@ -332,7 +334,7 @@ fn robots(scenario: &Scenario) -> Robots {
     robots
 }
 
-/// What is there to see: starts and goals, and obstacles near them.
+/// Extent of starts and goals with nearby obstacles.
 fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
     let mut extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
     let land = &scenario.terrain;
@@ -375,7 +377,6 @@ fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
     ([west, south, east, north], if is_in_space(scenario) { heights } else { [0.0; 2] })
 }
 
-/// A box around places, metres.
 #[derive(Clone, Copy, Debug)]
 struct Extent {
     low: [f64; 3],
@@ -390,18 +391,18 @@ impl Extent {
         }
     }
 
-    /// Its longer side on the ground; 1 at least.
+    /// Longer horizontal side, at least 1.
     fn longest(&self) -> f64 {
         (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]).max(1.0)
     }
 
-    /// The same with room around it, a share of its longer side.
+    /// The box with a margin, a fraction of its longer side.
     fn grown(&self, share: f64) -> Self {
         let by = self.longest() * share;
         Self { low: self.low.map(|low| low - by), high: self.high.map(|high| high + by) }
     }
 
-    /// The place in it that is nearest to this one.
+    /// The point of the box nearest to `at`.
     fn nearest(&self, at: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| at[axis].max(self.low[axis]).min(self.high[axis]))
     }
@@ -419,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn scenes_come_back_from_their_text_and_say_what_they_should() {
+    fn scenes_round_trip_as_json() {
         for (name, kind) in [
             ("six-robots.toml", Kind::Grid),
             ("twenty-discs.toml", Kind::Plane),
@@ -441,7 +442,7 @@ mod tests {
     }
 
     #[test]
-    fn land_solids_and_formation_are_there() {
+    fn scenes_contain_map_obstacles_and_formation() {
         let six = scene("six-robots.toml");
         let land = six.land.unwrap();
         let cells = BASE64_STANDARD.decode(&land.cells).unwrap();

@@ -1,4 +1,5 @@
-// What is seen: a map from above, or for flights a camera that orbits. Pixels are CSS pixels from the top left corner.
+// The camera: a map from above, or an orbit in space. Pixels are CSS pixels from the top left
+// corner.
 
 const FIELD_OF_VIEW = 0.8;
 const FOCUS = 1 / Math.tan(FIELD_OF_VIEW / 2);
@@ -16,11 +17,11 @@ export class Camera {
     this.distance = 10;
     this.extent = 1;
     this.matrix = new Float32Array(16);
-    // Raised with each change, for layers that redraw only then.
+    // Incremented by each change, so that layers redraw only then.
     this.version = 0;
   }
 
-  /** Shows `bounds` (x0, y0, x1, y1) and `heights` (z0, z1) between `insets`: pixels at left, top, right, bottom. */
+  /** Fits `bounds` (x0, y0, x1, y1) and `heights` (z0, z1) between `insets` in pixels: left, top, right, bottom. */
   fit(bounds, heights, space, insets) {
     const [left, top, right, bottom] = insets;
     const [x0, y0, x1, y1] = bounds;
@@ -67,7 +68,7 @@ export class Camera {
       Math.cos(this.pitch),
       Math.sin(this.pitch),
     ];
-    // Right, up and back, of the camera.
+    // Right, up and back vectors of the camera.
     const r = [cosYaw, sinYaw, 0];
     const u = [sinPitch * -sinYaw, sinPitch * cosYaw, cosPitch];
     const b = [cosPitch * sinYaw, -cosPitch * cosYaw, sinPitch];
@@ -91,7 +92,7 @@ export class Camera {
     m[15] = dot(b);
   }
 
-  /** Pixels and, behind them, the distance by which lengths shrink; null behind the camera. */
+  /** Pixels and the depth by which lengths shrink; null behind the camera. */
   project(x, y, z = 0) {
     const m = this.matrix;
     const w = m[3] * x + m[7] * y + m[11] * z + m[15];
@@ -103,12 +104,12 @@ export class Camera {
     ];
   }
 
-  /** Pixels of a metre where `project` says `w`. */
+  /** Pixels per metre at the depth `w` of `project`. */
   pixelsPerMetre(w = 1) {
     return this.space ? ((this.height / 2) * FOCUS) / w : this.scale;
   }
 
-  /** Where the plane at height `z` is seen at these pixels; null where it is not. */
+  /** The point at height `z` under a pixel; null if the plane is not visible there. */
   unproject(px, py, z = 0) {
     const nx = (2 * px) / this.width - 1,
       ny = 1 - (2 * py) / this.height;
@@ -151,7 +152,7 @@ export class Camera {
     this.update();
   }
 
-  /** Makes everything `factor` times as large, around what is seen at these pixels. */
+  /** Zooms by `factor` around a pixel. */
   zoom(factor, px = this.width / 2, py = this.height / 2) {
     if (this.space) {
       this.distance = Math.max(this.extent / 500, Math.min(ZOOM_OUT * 3 * this.extent, this.distance / factor));

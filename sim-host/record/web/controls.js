@@ -1,4 +1,4 @@
-// The bar at the top, the time line, the keyboard, layers and the legend.
+// The top bar, the time line, keyboard shortcuts, layers and the legend.
 
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, null];
 const PAN_PIXELS = 60;
@@ -7,7 +7,7 @@ const NARROW = "(max-width: 720px)";
 
 const element = (id) => document.getElementById(id);
 
-/** Seconds of a run, for people. */
+/** Formats seconds of a run. */
 export function duration(seconds) {
   if (seconds < 100) return `${seconds.toFixed(1)} s`;
   const whole = Math.floor(seconds);
@@ -95,7 +95,7 @@ export class Controls {
       { scene } = app;
     if (!scene) return;
     const [x0, y0, x1, y1] = scene.bounds_m;
-    // How long the fastest robot takes across all that there is to see.
+    // Time in which the fastest robot crosses the scene.
     const across = Math.hypot(x1 - x0, y1 - y0) / Math.max(app.fastest, 1e-3);
     app.look.trails = Number(element("trail-length").value) * across;
     app.dirty = true;
@@ -143,7 +143,7 @@ export class Controls {
         : this.is === "lost"
           ? ["lost", "Disconnected"]
           : this.is === "failed"
-            ? ["lost", "Unreadable"]
+            ? ["lost", "Damaged"]
             : !scene || !state
               ? ["", "Connecting"]
               : state.at_end && state.paused
@@ -168,7 +168,7 @@ export class Controls {
     const timeline = element("timeline");
     if (!this.scrubbing) timeline.value = frame.tick;
     timeline.setAttribute("aria-valuetext", `${text}, ${duration(frame.time)}`);
-    // The knob's middle stays half its width within the line.
+    // The centre of the knob stays half its width inside the line.
     const share = (tick) => {
       const part = (tick - state.first) / Math.max(timeline.max - state.first, 1);
       return part >= 1 ? "100%" : `calc(7px + (100% - 14px) * ${part})`;
@@ -177,7 +177,7 @@ export class Controls {
     timeline.style.setProperty("--known", share(Math.max(state.last, scene.mode === "recording" ? 0 : frame.tick)));
   }
 
-  /** Shows on the time line when something was ordered. */
+  /** Marks the orders on the timeline. */
   mark(orders) {
     const { first, last } = this.app.state;
     element("marks").replaceChildren(
@@ -193,7 +193,7 @@ export class Controls {
   scrub() {
     const { app } = this;
     this.scrubbing = true;
-    // One order for each picture at most.
+    // At most one order per frame.
     if (this.scrubWaits) return;
     this.scrubWaits = true;
     requestAnimationFrame(() => {
@@ -224,7 +224,7 @@ export class Controls {
     this.app.announce(`Speed ${select.options[next].text}`);
   }
 
-  /** On a narrow screen panels are closed until there is a robot to tell about. */
+  /** On narrow screens panels stay closed until a robot is selected. */
   showPanels() {
     if (matchMedia(NARROW).matches && element("app").classList.contains("side-closed")) this.toggleSide();
   }
@@ -307,7 +307,7 @@ export class Controls {
     event.preventDefault();
   }
 
-  /** What colours and signs mean; numbers of robots are filled in by `counts`. */
+  /** Builds the legend; `counts` fills in the numbers of robots. */
   legend() {
     const { app } = this,
       { scene, look } = app;
@@ -358,7 +358,7 @@ export class Controls {
         context.stroke();
       };
     if (look.colourBy === "mode")
-      scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word, `mode:${i}`));
+      scene.words.modes.forEach((word, i) => key(disc(look.modeColours[i]), word === "fault" ? "down" : word, `mode:${i}`));
     if (look.colourBy === "wait") {
       scene.words.waits.forEach((word, i) => key(disc(look.waitColours[i]), `waits: ${word}`, `wait:${i}`));
       key(disc(css.grey), "does not wait", "wait:255");
@@ -390,7 +390,7 @@ export class Controls {
       key(line(css.orange, [2, 2]), "packet damaged");
     }
     if (layers.known && app.selected !== null && scene.mode !== "recording")
-      key(disc("transparent", css.ghost), "where it thinks others are");
+      key(disc("transparent", css.ghost), "known positions of others");
     if (scene.land) {
       key((context) => {
         const shades = context.createLinearGradient(1, 0, 25, 0);

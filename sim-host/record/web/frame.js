@@ -1,4 +1,4 @@
-// One frame as typed arrays over the bytes that came; nothing is copied (PROTOCOL.md, "Frames").
+// A frame as typed arrays over the received bytes, without copies (PROTOCOL.md, "Frames").
 
 const HEADER = 32;
 const MAGIC = 0x31465453; // "STF1"
@@ -8,10 +8,10 @@ export const NOBODY = 0xffffffff;
 
 const text = new TextDecoder();
 
-/** `buffer` has to start with the frame; throws with the reason when it is none. */
+/** Parses a frame at the start of `buffer`; throws an error with the reason if it is invalid. */
 export function parseFrame(buffer) {
   const head = new DataView(buffer);
-  if (buffer.byteLength < HEADER || head.getUint32(0, true) !== MAGIC) throw new Error("not a frame (STF1)");
+  if (buffer.byteLength < HEADER || head.getUint32(0, true) !== MAGIC) throw new Error("not a frame (STF1); reload the page");
   const n = head.getUint32(16, true);
   const flags = head.getUint32(20, true);
   const figuresLength = head.getUint32(24, true);
@@ -25,7 +25,7 @@ export function parseFrame(buffer) {
     tx: null,
     ty: null,
     tz: null,
-    // Where each array begins in `body`, for vertex attributes.
+    // Byte offset of each array in `body`, for vertex attributes.
     at: {},
     key: `${n}:${flags}`,
   };
@@ -54,7 +54,7 @@ export function parseFrame(buffer) {
   return frame;
 }
 
-/** The bytes that standard base64 stands for. */
+/** Decodes standard base64. */
 export function fromBase64(encoded) {
   if (Uint8Array.fromBase64) return Uint8Array.fromBase64(encoded);
   const binary = atob(encoded);

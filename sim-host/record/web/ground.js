@@ -1,5 +1,5 @@
-// What is below the bodies: land, grid, solids, and what the selected robot reckons that cells of its window cost; on a
-// canvas that is drawn anew only when they or the camera change.
+// The ground: map, grid, obstacles, and the route costs in the selected robot's window. The canvas
+// is redrawn only when they or the camera change.
 
 import { fromBase64 } from "staya/frame.js";
 
@@ -8,7 +8,7 @@ const FINEST = 8;
 const CRISP_PIXELS = 5;
 const SHADE = 0.55;
 const COST_PIXELS = 30;
-// From cheap to dear, told apart by anybody and on any ground.
+// From low to high cost, in colours for all kinds of colour vision.
 const COSTS = [
   [68, 1, 84],
   [59, 82, 139],
@@ -17,7 +17,7 @@ const COSTS = [
   [253, 231, 37],
 ];
 
-/** Round steps of about `pixels`: 1, 2 or 5 times a power of ten metres. */
+/** A round step up to `metres`: 1, 2 or 5 times a power of ten. */
 export function niceStep(metres) {
   const power = 10 ** Math.floor(Math.log10(metres));
   const factor = metres / power;
@@ -48,14 +48,14 @@ export class Ground {
     this.version++;
   }
 
-  /** A robot's window, with `costs` as they came; null without one. */
+  /** Sets the route window of the selected robot, with its encoded `costs`; null for none. */
   setWindow(window) {
     if (!window && !this.window) return;
     this.window = window && { ...window, costs: new Float32Array(fromBase64(window.costs).buffer) };
     this.version++;
   }
 
-  /** After `cells` of the land changed around this one. */
+  /** Repaints the surroundings of a changed cell. */
   cellChanged(cx, cy) {
     if (this.image) this.paint(cx - 2, cy - 2, cx + 3, cy + 3);
     this.version++;
@@ -111,7 +111,7 @@ export class Ground {
     context.strokeRect(left - 0.5, top - 0.5, width + 1, height + 1);
   }
 
-  /** Blocked cells with sharp edges, a run of them at a time. */
+  /** Draws blocked cells with sharp edges, one run at a time. */
   drawWalls(camera) {
     const {
       context,
@@ -138,7 +138,7 @@ export class Ground {
     context.fill();
   }
 
-  /** Colours the image of some cells. */
+  /** Paints the image of some cells. */
   paint(x0, y0, x1, y1) {
     const {
       land: { width, height, cells, classes },
@@ -159,7 +159,7 @@ export class Ground {
       const at = Math.max(0, Math.min(height - 1, y)) * width + Math.max(0, Math.min(width - 1, x));
       return cells[at] === 0 ? 1.35 : (cells[at] - 1) / span;
     };
-    // Levels between the middles of cells, rounded so that cells show as gentle terraces.
+    // Heights between cell centres, rounded to gentle terraces.
     const smooth = (t) => t * t * (3 - 2 * t);
     const surface = (x, y) => {
       const cx = Math.floor(x),

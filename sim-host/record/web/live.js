@@ -1,10 +1,10 @@
-// The connection to a running view; it comes back by itself.
+// The connection to a running view, which reconnects by itself.
 
 import { fromBase64, parseFrame } from "staya/frame.js";
 
 const FIRST_RETRY_MS = 500;
 const LAST_RETRY_MS = 8000;
-/** The server goes away: there is nothing to come back to. */
+/** Close code of a server that has ended; there is no reconnect. */
 const OVER = 1001;
 
 export class Live {
@@ -12,7 +12,7 @@ export class Live {
     this.listener = listener;
     this.retry = FIRST_RETRY_MS;
     this.socket = null;
-    // Of this connection.
+    // Frames received in this connection.
     this.frames = 0;
   }
 
@@ -72,11 +72,11 @@ export class Live {
           break;
       }
     } catch (error) {
-      this.listener.onMessage("error", `A message of the server cannot be read: ${error.message}.`);
+      this.listener.onMessage("error", `A message of the server is invalid: ${error.message}. Reload the page.`);
     }
   }
 
-  /** The newest frame has been drawn: there is room for more. */
+  /** Confirms a drawn frame, which allows the server to send more. */
   seen() {
     this.send({ do: "seen", frames: this.frames });
   }
@@ -86,7 +86,7 @@ export class Live {
   }
 }
 
-/** Sender, receiver << 2 | fate, and so on. */
+/** Pairs of sender and (receiver << 2 | result). */
 function pairsOf(encoded) {
   return new Uint32Array(fromBase64(encoded).buffer);
 }

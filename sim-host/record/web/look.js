@@ -1,4 +1,4 @@
-// Colours and layers: what style.css says, in the forms that canvases and WebGL take.
+// Colours and layers from style.css, in the formats of canvas and WebGL.
 
 import { rgb } from "staya/ground.js";
 
@@ -66,7 +66,7 @@ function vector(hex, alpha = 1) {
   return new Float32Array([...rgb(hex).map((part) => (part / 255) * alpha), alpha]);
 }
 
-/** `#rrggbb` as bytes of a vertex attribute. */
+/** `#rrggbb` as the bytes of a vertex attribute. */
 export function packed(hex, alpha = 1) {
   const [r, g, b] = rgb(hex);
   return ((Math.round(alpha * 255) << 24) | (b << 16) | (g << 8) | r) >>> 0;
@@ -74,14 +74,14 @@ export function packed(hex, alpha = 1) {
 
 const THEME = "staya-theme";
 
-/** The theme that the user chose last, or undefined. A view has another port each time, and ports have storages of their own but no
-    cookies of their own; files have storage only. */
+/** The last chosen theme, or undefined. Views have changing ports, and storage is separate for each port while cookies
+    are not; files have storage only. */
 function chosenTheme() {
   const known = (theme) => (["dark", "light"].includes(theme) ? theme : undefined);
   try {
     return known(document.cookie.match(`${THEME}=(\\w+)`)?.[1]) ?? known(localStorage.getItem(THEME));
   } catch {
-    // Somebody does not want anything to be remembered.
+    // Storage is disabled in the browser.
     return undefined;
   }
 }
@@ -91,7 +91,7 @@ function rememberTheme(theme) {
     document.cookie = `${THEME}=${theme}; path=/; max-age=31536000; samesite=strict`;
     localStorage.setItem(THEME, theme);
   } catch {
-    // As above.
+    // Storage is disabled in the browser.
   }
 }
 
@@ -102,7 +102,8 @@ export class Look {
     this.colourBy = "mode";
     this.trails = 0;
     this.palette = new Float32Array(64);
-    // Set for each picture, as there is room: CSS pixels, and seconds of way that an arrow shows.
+    // Updated for each frame by the zoom: CSS pixels, and the seconds of travel that an arrow
+    // shows.
     this.leastRadius = 4;
     this.targetSize = 6;
     this.velocitySeconds = 1;
@@ -132,7 +133,7 @@ export class Look {
     return this.layers.targets && !this.crowded;
   }
 
-  /** After the theme, the words or what colours mean changed. */
+  /** Reads the colours again after a change of the theme, the words or the meaning of colours. */
   read() {
     document.documentElement.dataset.theme = this.dark ? "dark" : "light";
     const style = getComputedStyle(document.documentElement);

@@ -1,4 +1,4 @@
-// The page: takes what the server or the recording says, and draws.
+// The page: receives data from the server or the recording, and draws them.
 
 import { Camera } from "staya/camera.js";
 import { Controls } from "staya/controls.js";
@@ -19,8 +19,8 @@ const PLOTS_EVERY_MS = 120;
 const TOAST_MS = 6000;
 const TOP_RATIO = 2;
 const NO_WEBGL =
-  "This browser offers no WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, " +
-  "or start Chromium with --enable-unsafe-swiftshader; a current Firefox, Chrome, Edge or Safari has it.";
+  "This browser does not support WebGL2, so robots cannot be drawn. Turn on hardware acceleration in its settings, " +
+  "or start Chromium with --enable-unsafe-swiftshader; current versions of Firefox, Chrome, Edge and Safari support it.";
 
 const element = (id) => document.getElementById(id);
 
@@ -66,7 +66,7 @@ class App {
     requestAnimationFrame(turn);
   }
 
-  // What the source says.
+  // Events of the source.
 
   onScene(scene) {
     const before = this.scene;
@@ -121,7 +121,7 @@ class App {
     this.dirty = true;
   }
 
-  /** The tick at the end of the time line. */
+  /** The tick at the end of the timeline. */
   get horizon() {
     const { state, scene } = this;
     if (!state || !scene) return 1;
@@ -136,7 +136,7 @@ class App {
     this.plots.add(frame.tick, frame.figures);
   }
 
-  /** What is for the plots alone. */
+  /** Passes figures to the plots. */
   onFigures(tick, figures) {
     this.plots.add(tick, figures);
   }
@@ -178,11 +178,11 @@ class App {
       if (this.selected !== null) this.send({ do: "select", robot: this.selected });
       if (this.look.layers.links) this.send({ do: "links", on: true });
     } else if (is === "over") {
-      this.banner("What this page showed has ended in its terminal. This is the last picture of it.");
+      this.banner("The run has ended in its terminal. This is its last picture.");
     } else {
       this.banner(
         `No connection to staya view${this.scene ? "" : " yet"}. Is it still running in its terminal? Start it again and ` +
-          `open the address that it prints. The page tries again ${inSeconds > 1 ? `in ${inSeconds} s` : "now"}.`,
+          `open the printed address. The page retries ${inSeconds > 1 ? `in ${inSeconds} s` : "now"}.`,
       );
     }
     this.controls.connection(is);
@@ -193,7 +193,7 @@ class App {
     this.controls.connection("failed");
   }
 
-  // What the controls do.
+  // Actions of the controls.
 
   send(message) {
     this.source.send(message);
@@ -240,7 +240,7 @@ class App {
     return this.scene.robots.id[index] ?? index;
   }
 
-  /** The body that is seen nearest to these pixels, if it is near enough; robots only. */
+  /** The robot nearest to a pixel, if it is near enough. */
   pick(px, py, reach = 14) {
     const { motion, camera } = this,
       { current } = motion;
@@ -251,14 +251,14 @@ class App {
       m = camera.matrix;
     const n = Math.min(current.n, this.robots);
     for (let i = 0; i < n; i++) {
-      // As `camera.project`, without an array for each of many.
+      // As `camera.project`, without an array per robot.
       const [x, y, z] = motion.place(i, place);
       const w = m[3] * x + m[7] * y + m[11] * z + m[15];
       if (w <= 0) continue;
       const dx = (((m[0] * x + m[4] * y + m[8] * z + m[12]) / w + 1) / 2) * camera.width - px;
       const dy = ((1 - (m[1] * x + m[5] * y + m[9] * z + m[13]) / w) / 2) * camera.height - py;
       const middle = Math.sqrt(dx * dx + dy * dy);
-      // Of several that are hit, the one whose middle is nearest.
+      // Of several robots at this point, the one with the nearest centre.
       const far = Math.max(0, middle - this.radii[i] * camera.pixelsPerMetre(w)) + 1e-3 * middle;
       if (far < least && far <= reach) {
         best = i;
@@ -268,7 +268,7 @@ class App {
     return best;
   }
 
-  /** Where body `i` is going; null when it has no goal. */
+  /** The goal of body `i`; null for none. */
   targetOf(i) {
     const frame = this.motion.current;
     if (!frame?.tx || i >= frame.n || Number.isNaN(frame.tx[i])) return null;
@@ -316,7 +316,6 @@ class App {
     element("announce").textContent = text;
   }
 
-  // Drawing.
 
   resize() {
     const { clientWidth: width, clientHeight: height } = element("stage");
@@ -363,7 +362,7 @@ class App {
       this.controls.counts();
       this.controls.clock();
     } else {
-      // The last picture before a pause has its figures, too.
+      // The last frame before a pause gets its figures too.
       clearTimeout(this.plotLater);
       this.plotLater = setTimeout(() => {
         this.dirty = true;
@@ -374,7 +373,7 @@ class App {
 
 const app = new App();
 
-// What tests ask for.
+// Interface for tests.
 window.staya = {
   send(message) {
     app.send(message);

@@ -1,7 +1,8 @@
-// Where bodies are between two ticks: drawn a moment late, on the way from the frame before to the last one.
+// Positions between two ticks: bodies are drawn slightly late, interpolated from the previous frame
+// to the last one.
 
 const SLOWEST_MS = 2000;
-// So many times as many ticks as usual at once are no motion but a jump.
+// More ticks at once than this multiple of the usual number count as a jump.
 const JUMP = 8;
 
 export class Motion {
@@ -18,12 +19,12 @@ export class Motion {
     this.headings = new Float32Array(0);
   }
 
-  /** A frame that comes before the last one was drawn replaces it. */
+  /** Replaces a frame that was not drawn yet. */
   offer(frame) {
     this.pending = frame;
   }
 
-  /** Takes the newest frame, if there is one: "none", "next", or "jump" when it does not follow the one before. */
+  /** Takes the newest frame. Returns "none", "next", or "jump" if it does not follow the previous one. */
   advance(now, paused) {
     let news = "none";
     const frame = this.pending;
@@ -35,7 +36,7 @@ export class Motion {
       const follows = before && before.key === frame.key && ticks >= 0 && ticks <= usual;
       news = follows ? "next" : "jump";
       this.previous = follows && !paused ? before : frame;
-      // It grows at once and shrinks slowly, so that a run that gets faster is seen to move.
+      // Grows at once and shrinks slowly, so that motion stays visible when a run speeds up.
       if (ticks > 0) this.stride = Math.max(0.9 * this.stride, Math.min(ticks, usual));
       this.current = frame;
       const gap = Math.min(now - this.taken, SLOWEST_MS);
@@ -47,7 +48,7 @@ export class Motion {
     return news;
   }
 
-  /** Whether bodies still move on although no frame has come. */
+  /** Whether bodies still move without a new frame. */
   get moving() {
     return this.mix < 1;
   }
@@ -67,7 +68,7 @@ export class Motion {
     }
   }
 
-  /** Where body `i` is drawn; into `out`. */
+  /** Writes the displayed position of body `i` to `out`. */
   place(i, out) {
     const { previous: a, current: b, mix } = this;
     out[0] = a.x[i] + (b.x[i] - a.x[i]) * mix;
@@ -76,7 +77,7 @@ export class Motion {
     return out;
   }
 
-  /** The simulated time that is drawn. */
+  /** The displayed simulated time. */
   get time() {
     const { previous: a, current: b, mix } = this;
     return b ? a.time + (b.time - a.time) * mix : 0;

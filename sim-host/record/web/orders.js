@@ -1,4 +1,4 @@
-// Orders that are given in forms: parameters, the radio, new runs, restarts and saving.
+// Orders from forms: parameters, radio, new runs, restarts and saving.
 
 import { metres } from "staya/view.js";
 
@@ -69,12 +69,12 @@ export class Orders {
     element("radio-on").checked = loss < 1;
     if (loss < 1) this.loss = loss;
     element("radio-loss").value = loss;
-    // Short ranges get as much of the slider as long ones.
+    // Short and long ranges get equal parts of the slider.
     element("radio-range").value = range === null ? 1 : Math.sqrt(Math.min(range / this.farthest, 1));
     this.showRadio();
   }
 
-  /** Metres; null where nothing is too far. */
+  /** Metres; null for no limit. */
   range() {
     return number("radio-range") >= 1 ? null : Number((this.farthest * number("radio-range") ** 2).toPrecision(3));
   }
@@ -97,7 +97,7 @@ export class Orders {
     const about = document.createElement("small");
     about.textContent = what;
     label.append(title, shown, input, about);
-    // Ranges over powers of ten are set by ratios.
+    // Ranges over several powers of ten have a logarithmic scale.
     const wide = least > 0 && greatest / least >= WIDE;
     const toValue = (share) => (wide ? least * (greatest / least) ** share : least + share * (greatest - least));
     const toShare = (at) =>
@@ -122,7 +122,7 @@ export class Orders {
     return label;
   }
 
-  /** Whether sliders are about the selected robot alone. */
+  /** Whether the sliders apply to the selected robot only. */
   get only() {
     return this.app.selected !== null && element("only-selected").checked;
   }
@@ -131,7 +131,7 @@ export class Orders {
     const { app } = this;
     element("parameters-one").hidden = app.selected === null;
     if (app.selected !== null)
-      element("parameters-one").lastElementChild.textContent = `Only of robot ${app.idOf(app.selected)}`;
+      element("parameters-one").lastElementChild.textContent = `Only for robot ${app.idOf(app.selected)}`;
     const own = this.only ? app.robot?.parameters : null;
     for (const [name, { label, set, value }] of this.sliders) {
       label.hidden = Boolean(own) && own[name] === undefined;

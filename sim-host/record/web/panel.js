@@ -1,4 +1,4 @@
-// What there is to know about the selected robot.
+// Details of the selected robot.
 
 import { drawVelocities } from "staya/velocity.js";
 import { metres } from "staya/view.js";
@@ -6,7 +6,7 @@ import { metres } from "staya/view.js";
 const MOST_NEIGHBORS = 32;
 const REBOOT_S = 2;
 
-/** An element with a class and children; strings become text. */
+/** Creates an element with a class and children; strings become text. */
 function make(tag, className, ...children) {
   const made = document.createElement(tag);
   if (className) made.className = className;
@@ -22,7 +22,7 @@ export class Panel {
     this.build();
   }
 
-  /** Parts are made once, and only what changes is filled in: buttons keep the focus. */
+  /** Creates the elements once and later fills in changes only, so that buttons keep the focus. */
   build() {
     const { app } = this;
     const button = (text, title, action) => {
@@ -36,10 +36,10 @@ export class Panel {
     this.follow = button("Follow", "Keep it in the middle (c)", () => app.controls.toggleFollow());
     this.follow.id = "follow";
     this.follow.setAttribute("aria-pressed", "false");
-    this.down = button("Take down", "Its computer goes down and stays down", order("down", { for_s: null }));
+    this.down = button("Take down", "Turn the robot's computer off", order("down", { for_s: null }));
     this.reboot = button(
       "Reboot",
-      `Its computer goes down and starts anew after ${REBOOT_S} s`,
+      `Turn the robot's computer off and restart it after ${REBOOT_S} s`,
       order("down", { for_s: REBOOT_S }),
     );
     for (const each of [this.down, this.reboot]) each.classList.add("live-only");
@@ -50,17 +50,17 @@ export class Panel {
     this.plot.setAttribute("role", "img");
     this.plot.setAttribute(
       "aria-label",
-      "Velocities that others leave it, the one that it wants and the one that it chose",
+      "Permitted velocities, the preferred velocity and the chosen one",
     );
     this.key = make("p", "caption");
-    this.velocities.append(make("h3", "", "Velocities to choose among"), this.plot, this.key);
+    this.velocities.append(make("h3", "", "Permitted velocities"), this.plot, this.key);
     this.neighbors = make("section");
     this.neighborTitle = make("h3", "");
     this.rows = make("tbody");
     const head = make(
       "thead",
       "",
-      make("tr", "", ...["Robot", "far", "age", "off by"].map((text) => make("th", "", text))),
+      make("tr", "", ...["Robot", "distance", "age", "error"].map((text) => make("th", "", text))),
     );
     this.neighbors.append(this.neighborTitle, make("div", "scroll", make("table", "table", head, this.rows)));
     this.rows.addEventListener("click", (event) => {
@@ -124,17 +124,17 @@ export class Panel {
       fact("place", `${place.map((part) => part.toFixed(2)).join(", ")} m`);
       fact("speed", speed([frame.vx[i], frame.vy[i], frame.vz ? frame.vz[i] : 0]));
     }
-    if (robot.wish) fact("wants", speed(robot.wish));
+    if (robot.wish) fact("preferred speed", speed(robot.wish));
     const target = app.targetOf(i);
     if (target && i < frame.n) {
       fact(
-        "to go",
+        "distance to goal",
         metres(Math.hypot(target[0] - frame.x[i], target[1] - frame.y[i], frame.z ? target[2] - frame.z[i] : 0)),
       );
     }
     if (robot.boot !== undefined) fact("starts", String(robot.boot));
     for (const [name, value] of robot.facts ?? []) fact(name, value);
-    if (robot.sent !== undefined) fact("bytes sent, heard", `${thousands(robot.sent)}, ${thousands(robot.heard)}`);
+    if (robot.sent !== undefined) fact("bytes sent, received", `${thousands(robot.sent)}, ${thousands(robot.heard)}`);
     const { device } = robot;
     if (device) {
       if (device.instructions !== null) {
@@ -160,8 +160,8 @@ export class Panel {
     };
     this.key.replaceChildren(
       key(css.chosen, "chosen"),
-      key(css.preferred, "wanted"),
-      key(css.muted, "as it moves"),
+      key(css.preferred, "preferred"),
+      key(css.muted, "actual"),
       key(css.line, `${orca.lines.length} half-planes`),
     );
   }
@@ -169,7 +169,7 @@ export class Panel {
   showNeighbors(neighbors) {
     const { app } = this;
     const frame = app.motion.current;
-    this.neighborTitle.textContent = neighbors.length ? `Knows of ${neighbors.length}` : "Knows of nobody";
+    this.neighborTitle.textContent = neighbors.length ? `${neighbors.length} known robots` : "No known robots";
     const rows = neighbors
       .slice(0, MOST_NEIGHBORS)
       .map(({ id, index, position_m: place, age_s: age, error_m: error }) => {

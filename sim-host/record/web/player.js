@@ -1,12 +1,13 @@
-// Plays a recording: takes the page's orders and answers as a server would.
+// Plays a recording: handles the page's orders and answers like a server.
 
 import { Recording } from "staya/recording.js";
 import { fromBase64 } from "staya/frame.js";
 
-// Recordings up to this many bytes are read through once for the plots; of longer ones only what is played is plotted.
+// Recordings up to this size in bytes are read completely for the plots; of larger ones only played
+// parts are plotted.
 const READ_THROUGH = 1 << 30;
 const STATE_EVERY_MS = 500;
-// A recording starts with as many ticks a second at least.
+// Initial playback speed, ticks per second at least.
 const LEAST_TICKS = 10;
 const FASTEST_S = 8;
 
@@ -32,7 +33,7 @@ export class Player {
       this.speed = Math.max(1, 10 ** Math.round(Math.log10(LEAST_TICKS * tickS)));
     } catch (error) {
       this.listener.onFailed(
-        `The recording in this page cannot be read: ${error.message}. Make the page anew with "staya page".`,
+        `The recording in this page cannot be read: ${error.message}. Make the page again with "staya page".`,
       );
       return;
     }
@@ -70,7 +71,7 @@ export class Player {
     this.listener.onState({ type: "state", paused, speed, tick, first, last, clients: 1, at_end: tick >= last });
   }
 
-  /** Shows `tick` as soon as its block is there; of several asked for meanwhile only the last. */
+  /** Shows `tick` once its block is unpacked. Of several requests only the last counts. */
   seek(tick) {
     this.wanted = Math.max(this.recording.first, Math.min(this.recording.last, Math.round(tick)));
     this.time = null;
@@ -107,7 +108,7 @@ export class Player {
     this.tell(frame);
   }
 
-  /** What a recording knows of the selected robot. */
+  /** Sends the recorded data of the selected robot. */
   tell(frame) {
     const index = this.selected;
     if (index === null || index >= frame.n) return;
@@ -131,7 +132,7 @@ export class Player {
       return;
     }
     const tickS = this.shownScene.tick_s;
-    // As fast as it goes: every frame, but all of them within a few seconds.
+    // Without a speed limit the whole recording plays in a few seconds, with all frames.
     const rate = this.speed === null ? (this.recording.last - this.recording.first) / FASTEST_S : this.speed / tickS;
     this.time = (this.time ?? this.tick) + passed * rate;
     const ahead = this.speed === null ? Math.max(this.next, Math.floor(this.time)) : Math.floor(this.time);
@@ -145,7 +146,7 @@ export class Player {
     }
   }
 
-  /** Fills the plots from the first frame to the last, a block at a time. */
+  /** Fills the plots from the whole recording, one block at a time. */
   async readThrough() {
     if (this.recording.size > READ_THROUGH) return;
     const count = this.recording.frames.length;
@@ -159,7 +160,7 @@ export class Player {
         }
       }
     } catch {
-      // Playing comes to the damaged block and says so.
+      // Playback reports the damaged block when it reaches it.
     }
   }
 

@@ -1,8 +1,8 @@
-// Figures over time: small plots that run along.
+// Small plots of figures over time.
 
 const MOST = 2048;
 
-// What is plotted, from a frame's figures; a plot appears once one of its lines has a value.
+// Plotted figures of frames. A plot appears once one of its lines has a value.
 const PLOTS = [
   { name: "Arrived", lines: [{ of: (f) => f.arrived, colour: "ok" }], digits: 0 },
   { name: "Waiting", lines: [{ of: (f) => f.waiting, colour: "warn" }], digits: 0 },
@@ -10,14 +10,14 @@ const PLOTS = [
   { name: "Formation error", unit: "cells", lines: [{ of: (f) => f.formation_error, colour: "accent" }], digits: 2 },
   { name: "Group order", lines: [{ of: (f) => f.order, colour: "accent" }], digits: 3, greatest: 1 },
   {
-    name: "Packets arrived, lost",
+    name: "Packets delivered, lost",
     digits: 0,
     lines: [
       { of: (f) => f.packets?.delivered, colour: "ok" },
       { of: (f) => f.packets?.lost, colour: "bad" },
     ],
   },
-  { name: "Least gap", unit: "m", lines: [{ of: (f) => f.gap_m, colour: "violet" }], digits: 3 },
+  { name: "Smallest gap", unit: "m", lines: [{ of: (f) => f.gap_m, colour: "violet" }], digits: 3 },
 ];
 const LINES = PLOTS.flatMap((plot) => plot.lines);
 
@@ -52,7 +52,7 @@ export class Plots {
   }
 
   reset() {
-    // One sample for each `spacing` ticks: the last one that came.
+    // One sample for every `spacing` ticks, the last one received.
     this.samples = [];
     this.spacing = 1;
     this.first = 0;
@@ -75,7 +75,7 @@ export class Plots {
     });
   }
 
-  /** Forgets what came after `tick`: the run goes on otherwise from there. */
+  /** Drops samples after `tick`, from which the run continues differently. */
   forgetAfter(tick) {
     const keep = Math.floor(tick / this.spacing) + 1;
     if (this.samples.length > keep) {

@@ -1,4 +1,4 @@
-// Mouse, pen and fingers on the picture: the camera, the selection and the tools.
+// Mouse, pen and touch input: camera, selection and tools.
 
 const CLICK_PIXELS = 5;
 const HANDLE_PIXELS = 13;
@@ -6,11 +6,11 @@ const WHEEL = 0.0016;
 const LEAST_WALL_PIXELS = 6;
 
 const HINTS = {
-  goal: "Drag from a robot to where it shall go, or click to send the selected one",
+  goal: "Drag from a robot to its goal, or click to set the goal of the selected robot",
   move: "Drag an obstacle",
   wall: "Drag a wall",
-  circle: "Drag from the middle to the edge",
-  polygon: "Click the corners, and the first one again (or Enter) to close it",
+  circle: "Drag from the centre to the edge",
+  polygon: "Click the corners, then the first one again or press Enter",
   erase: "Click an obstacle to remove it",
   paint: "Paint cells",
 };
@@ -21,18 +21,18 @@ export class Pointer {
     this.canvas = canvas;
     this.tool = "select";
     this.paintClass = 0;
-    // Of the polygon that is being drawn.
+    // Corners of the polygon being drawn.
     this.corners = [];
     this.pointers = new Map();
     this.drag = null;
-    // Whether the click that is about to come has chosen a robot.
+    // Whether the click selected a robot.
     this.picked = false;
-    // Whether the camera has been moved by hand.
+    // Whether the user has moved the camera.
     this.touched = false;
     canvas.addEventListener("pointerdown", (event) => this.down(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
     for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => this.up(event));
-    // Only now, or the panel would slide under the finger and take the click.
+    // Opened after the click, or the panel would move under the finger and take it.
     canvas.addEventListener("click", () => {
       if (this.picked && app.selected !== null) app.controls.showPanels();
       this.picked = false;
@@ -110,7 +110,7 @@ export class Pointer {
     this.sketch(at);
   }
 
-  /** What a press begins. */
+  /** Starts the action of a press. */
   begin(event, at) {
     const { app } = this;
     const robot = app.pick(at[0], at[1]);
@@ -136,7 +136,7 @@ export class Pointer {
     return { kind: app.camera.space && !event.shiftKey && !still ? "orbit" : "pan", click: event.button === 0 };
   }
 
-  /** A goal that can be dragged here. */
+  /** A draggable goal at a pixel. */
   handle(at) {
     const { app } = this;
     const near = (place) => {
@@ -188,7 +188,7 @@ export class Pointer {
     camera.zoom(span(at) / span(before), (at[0] + other[0]) / 2, (at[1] + other[1]) / 2);
   }
 
-  /** Shows what letting go here would do; painting is done at once. */
+  /** Previews the action; painting takes effect at once. */
   sketch(at) {
     const { app, drag } = this;
     const place = app.camera.unproject(at[0], at[1], drag.heights?.[2] ?? 0);
@@ -221,7 +221,7 @@ export class Pointer {
     const { app, drag, paintClass } = this;
     const { land } = app.scene;
     const cell = [0, 1].map((axis) => Math.floor((place[axis] - land.origin_m[axis]) / land.cell_m));
-    // The cells between two moves of the pointer, too.
+    // Also the cells between two pointer events.
     const from = drag.last ?? cell;
     const steps = Math.max(Math.abs(cell[0] - from[0]), Math.abs(cell[1] - from[1]), 1);
     for (let i = 0; i <= steps; i++) {
@@ -296,7 +296,7 @@ export class Pointer {
     }
   }
 
-  /** One corner more, or the end of the polygon. */
+  /** Adds a corner or closes the polygon. */
   corner(place, at) {
     const { corners } = this;
     const near = (corner, pixels) => {
@@ -307,12 +307,12 @@ export class Pointer {
     else if (place && !near(corners.at(-1), LEAST_WALL_PIXELS)) corners.push(place);
   }
 
-  /** Makes an obstacle of the corners so far. */
+  /** Creates an obstacle from the corners. */
   close() {
     const { app, corners } = this;
     if (corners.length >= 3) {
       app.order({ kind: "solid", solid: { kind: "polygon", points_m: corners.map((corner) => corner.slice(0, 2)) } });
-    } else app.toast("A polygon has three corners at least.");
+    } else app.toast("A polygon needs at least three corners.");
     this.corners = [];
     this.cancel();
   }

@@ -1,4 +1,5 @@
-// A recording as a file: an index of its blocks, which are unpacked when they are needed (PROTOCOL.md, "Recordings").
+// A recording as a file: an index of blocks, which are uncompressed on demand (PROTOCOL.md,
+// "Recordings").
 
 import { parseFrame } from "staya/frame.js";
 
@@ -9,7 +10,7 @@ const BLOCK_HEADER = 13;
 const SCENE = 1,
   FRAMES = 2,
   ORDERS = 3;
-// Unpacked blocks that are kept, in bytes.
+// Cache of uncompressed blocks, bytes.
 const KEPT = 96 << 20;
 
 const text = new TextDecoder();
@@ -29,7 +30,7 @@ function inflated(packed) {
   return new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw")).getReader();
 }
 
-/** The first `least` bytes at least, or all if there are fewer. */
+/** At least the first `least` bytes, or all if there are fewer. */
 async function beginning(packed, least) {
   const reader = inflated(packed);
   const bytes = new Uint8Array(least);
@@ -60,7 +61,7 @@ async function unpack(block) {
   return raw;
 }
 
-/** Undoes the XOR; frames end up one after the other, each where typed arrays may begin. */
+/** Undoes the XOR. Frames are stored one after the other, aligned for typed arrays. */
 function framesOf(raw) {
   const view = new DataView(raw.buffer);
   const spans = [];
@@ -91,10 +92,10 @@ function framesOf(raw) {
 }
 
 export class Recording {
-  /** Reads the index; throws with the reason when `bytes` are no recording. */
+  /** Reads the index; throws an error with the reason if `bytes` are not a recording. */
   static async open(bytes) {
     if (bytes.length < FILE_HEADER || text.decode(bytes.subarray(0, 8)) !== MAGIC) {
-      throw new Error("this is no recording (STAYAREC)");
+      throw new Error("not a recording (STAYAREC)");
     }
     const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
     const version = view.getUint32(8, true);
@@ -127,13 +128,13 @@ export class Recording {
   constructor() {
     this.frames = [];
     this.ordersBlock = null;
-    // Why there is no more, where the file has been damaged.
+    // Why the recording ends early, if the file is damaged.
     this.damage = null;
     this.kept = new Map();
     this.scenes = new Map();
   }
 
-  /** Finds out which ticks the blocks have; what comes after a damaged one is left out. */
+  /** Reads the ticks of all blocks; blocks after a damaged one are dropped. */
   async readTicks() {
     const { frames } = this;
     for (let i = 0; i < frames.length; i++) {
@@ -158,7 +159,7 @@ export class Recording {
     throw new Error(this.damage);
   }
 
-  /** Bytes of all frames, unpacked. */
+  /** Uncompressed size of all frames, bytes. */
   get size() {
     return this.frames.reduce((sum, block) => sum + block.rawLength, 0);
   }
@@ -168,12 +169,12 @@ export class Recording {
     return this.scenes.get(block.at);
   }
 
-  /** What was ordered while it was made, `[{tick, order}]`. */
+  /** Orders given during the run, `[{tick, order}]`. */
   async orders() {
     return this.ordersBlock ? JSON.parse(text.decode(await unpack(this.ordersBlock))) : [];
   }
 
-  /** The frames of block number `index`; the latest ones used stay in memory. */
+  /** The frames of block `index`; recently used blocks are cached. */
   async unpacked(index) {
     let block = this.kept.get(index);
     if (block) this.kept.delete(index);
@@ -189,7 +190,7 @@ export class Recording {
     return block;
   }
 
-  /** The last frame at or before `tick`, with its scene; `{frame, scene, next}`, `next` the tick after it or null. */
+  /** The last frame at or before `tick` with its scene; `{frame, scene, next}`, where `next` is the following tick or null. */
   async at(tick) {
     let low = 0;
     for (let high = this.frames.length - 1; low < high;) {

@@ -1,5 +1,5 @@
-// WebGL2: bodies, velocities, targets, lines and trails, each kind in one call. A frame's bytes go to the GPU as they
-// came, once, as words of a texture.
+// WebGL2: bodies, velocities, goals, lines and trails, one draw call for each kind. The bytes of a
+// frame are uploaded once, unchanged, as a texture.
 
 import { BODIES, LINES, TARGETS, TRAILS, VELOCITIES } from "staya/shaders.js";
 import { Trails } from "staya/trails.js";
@@ -36,7 +36,7 @@ class Program {
   }
 }
 
-/** Numbers in rows of texels, as many rows as they need. */
+/** Numbers in rows of texels. */
 class Table {
   constructor(gl, internal, format, type, channels, width) {
     Object.assign(this, { gl, internal, format, type, channels, width, rows: 0 });
@@ -62,7 +62,7 @@ class Table {
 }
 
 export class Renderer {
-  /** Null where there is no WebGL2. */
+  /** Creates a renderer; null without WebGL2. */
   static on(canvas) {
     const gl = canvas.getContext("webgl2", {
       alpha: true,
@@ -79,7 +79,7 @@ export class Renderer {
     this.robots = 0;
     this.bodies = new Float32Array(0);
     this.balls = [];
-    // Without a GPU each vertex counts.
+    // Without a GPU every vertex matters.
     const named = gl.getExtension("WEBGL_debug_renderer_info");
     this.software =
       Boolean(named) &&
@@ -117,14 +117,14 @@ export class Renderer {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** `bodies`: radius and group of each robot, then of the intruders; `balls`: solids in space, [x, y, z, radius]. */
+  /** `bodies`: radius and group of each robot, then of the intruders; `balls`: obstacles in space, [x, y, z, radius]. */
   setBodies(robots, bodies, balls) {
     Object.assign(this, { robots, bodies, balls });
     this.held = [null, null];
     this.headingsOf = null;
     this.statics.store(bodies);
     this.trails.reset();
-    // Balls are drawn as bodies are, from a frame of their own.
+    // Balls are drawn like bodies, from a frame of their own.
     const n = balls.length,
       padded = (n + 3) >> 2;
     const words = new Uint32Array(3 * n + 2 * padded);
@@ -146,7 +146,7 @@ export class Renderer {
     this.canvas.height = Math.round(height * ratio);
   }
 
-  /** The table that has `frame`; if none has it, it goes to the one that does not have `keep`. */
+  /** The table with `frame`; if there is none, the one without `keep` is refilled. */
   tableOf(frame, keep) {
     let slot = this.held.indexOf(frame);
     if (slot < 0) {
@@ -164,7 +164,7 @@ export class Renderer {
     gl.depthMask(true);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl[camera.space ? "enable" : "disable"](gl.DEPTH_TEST);
-    // What is thin and soft at its edges hides nothing behind it.
+    // Thin items with soft edges hide nothing behind them.
     gl.depthMask(false);
     const frame = motion.current;
     if (!frame) return;
@@ -228,7 +228,7 @@ export class Renderer {
     return program;
   }
 
-  /** For programs that read frames. */
+  /** Starts a program that reads frames. */
   beginBodies(program, scene) {
     const { gl } = this,
       { uniforms } = this.begin(program, scene);
@@ -299,7 +299,7 @@ export class Renderer {
   }
 }
 
-/** Straight lines, refilled for each picture; colours are 0xAABBGGRR. */
+/** Straight lines, filled for each picture; colours are 0xAABBGGRR. */
 export class Lines {
   constructor() {
     this.floats = new Float32Array(64 * LINE_WORDS);

@@ -1,5 +1,5 @@
-// GLSL of the bodies and lines. Vertices fetch what they need from textures by their number, six of them a body or
-// line; that is quick on any GPU, and without one ten times as quick as instancing.
+// GLSL of bodies and lines. Vertices fetch their data from textures by index, six vertices for each
+// body or line. This is fast on any GPU, and ten times faster than instancing without one.
 
 const COMMON = `#version 300 es
 precision highp float;
@@ -20,7 +20,7 @@ int corner() {
 vec2 square() { return vec2(corner() & 1, corner() >> 1) * 2.0 - 1.0; }
 `;
 
-// A frame's words as they came; uAt says at which words its arrays begin.
+// The words of a frame; uAt gives the offset of each array.
 const FRAME = `
 uniform usampler2D uNow, uBefore;
 uniform ivec3 uAtPlace, uAtVelocity, uAtTarget;

@@ -1,4 +1,4 @@
-// Where bodies have been: snapshots in a ring of texture rows, drawn in one call.
+// Past positions of bodies: snapshots in a ring of texture rows, drawn in one call.
 
 const WIDTH = 1024;
 const SNAPSHOTS = 240;
@@ -19,7 +19,7 @@ export class Trails {
     this.valid = 0;
   }
 
-  /** Notes where bodies are drawn now. `seconds` is how long trails last. Whether there is something to draw. */
+  /** Records the displayed positions; trails last `seconds`. Returns whether there is something to draw. */
   record(motion, bodies, seconds) {
     const { gl } = this;
     const slots = Math.min(SNAPSHOTS, Math.floor(this.most / Math.max(bodies, 1)));
@@ -33,7 +33,7 @@ export class Trails {
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
       this.reset();
     }
-    // The newest snapshot moves along with the bodies until it is old enough to stay.
+    // The newest snapshot moves with the bodies until its time is over.
     this.write(motion);
     if (this.valid === 0 || motion.time - this.started >= seconds / slots) {
       this.valid = Math.min(Math.max(this.valid, 1) + 1, slots);

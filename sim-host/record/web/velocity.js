@@ -1,8 +1,9 @@
-// The velocities that a robot may choose among, drawn as the papers on ORCA do: half-planes, the wish, the choice.
+// The velocities permitted to a robot, drawn as in papers on ORCA: half-planes, preferred velocity,
+// chosen velocity.
 
 const CORNERS = 96;
 
-/** What of a convex polygon is on the allowed side. */
+/** The part of a convex polygon on the permitted side. */
 function clipped(polygon, { point, normal }) {
   const side = ([x, y]) => (x - point[0]) * normal[0] + (y - point[1]) * normal[1];
   const kept = [];
@@ -37,7 +38,7 @@ export function drawVelocities(canvas, orca, velocity, colours) {
     if (close) context.closePath();
   };
 
-  // Forbidden sides, one over the other.
+  // Forbidden half-planes.
   const frame = [
     [-reach, -reach],
     [reach, -reach],

@@ -1,5 +1,5 @@
-// What is drawn around the bodies: lines for the GPU, and on a canvas above them labels, what the selected robot knows,
-// and what a tool is about to do.
+// Decorations around the bodies: lines for the GPU, and a canvas above them with labels, the
+// selected robot's knowledge, and previews of tools.
 
 import { NOBODY } from "staya/frame.js";
 import { niceStep } from "staya/ground.js";
@@ -23,7 +23,7 @@ export class View {
     this.context = canvas.getContext("2d");
     this.below = new Lines();
     this.above = new Lines();
-    // What the pointer is doing: `{kind, ...}` or null.
+    // The action of the pointer: `{kind, ...}` or null.
     this.sketch = null;
     this.hovered = null;
   }
@@ -34,18 +34,18 @@ export class View {
     this.canvas.height = Math.round(height * ratio);
   }
 
-  /** Makes signs small, and leaves out some, where robots would be hidden by them. */
+  /** Shrinks or hides marks that would cover robots. */
   suit(look) {
     const { app } = this,
       { camera, scene } = app;
     const [x0, y0, x1, y1] = scene.bounds_m;
     const pixels = camera.pixelsPerMetre(camera.space ? camera.distance : 1);
-    // About how far robots are from each other.
+    // Approximate distance between robots, pixels.
     const apart = Math.sqrt(((x1 - x0) * (y1 - y0)) / Math.max(app.robots, 1)) * pixels;
     look.leastRadius = Math.max(0.9, Math.min(app.robots <= 200 ? 6 : 4, 0.22 * apart));
     look.targetSize = Math.max(2.5, Math.min(6, 0.3 * apart));
     look.crowded = apart < CROWDED_PIXELS;
-    // A round number of seconds in which the fastest robot goes about as far as an arrow is long.
+    // A round number of seconds in which the fastest robot travels about the length of an arrow.
     look.velocitySeconds = niceStep(
       Math.min(VECTOR_PIXELS, Math.max(0.8 * apart, 6)) / pixels / Math.max(app.fastest, 1e-6),
     );
@@ -88,7 +88,7 @@ export class View {
         if (fate === DELIVERED) {
           join(below, from, to, inks[0], 1);
         } else if (from < frame.n && to < frame.n) {
-          // A packet that dies ends on its way.
+          // The line of a lost packet ends before its receiver.
           motion.place(from, a);
           motion.place(to, b);
           for (let k = 0; k < 3; k++) b[k] = a[k] + 0.6 * (b[k] - a[k]);
@@ -108,7 +108,7 @@ export class View {
     if (target && look.layers.targets) below.add(...place, ...target, packed(look.css.selected, 0.6), 1.3, 5);
     if (!look.layers.known || !app.robot?.neighbors) return;
     for (const { index, age_s, position_m } of app.robot.neighbors) {
-      // News that are old are faint.
+      // Old positions are faint.
       const alpha = Math.max(0.2, 0.9 / (1 + age_s / (5 * app.scene.tick_s)));
       if (index !== null) join(below, index, app.selected, packed(look.css.ghost, alpha), 1.4);
       const from = index === null || index >= motion.current.n ? null : motion.place(index, [0, 0, 0]);
@@ -116,7 +116,7 @@ export class View {
     }
   }
 
-  /** The ground, what stands on it, and how high bodies are above it. */
+  /** Draws the ground, obstacles, and the heights of bodies above it. */
   spaceLines(frame) {
     const { app, below } = this;
     const { scene, motion, look } = app;
@@ -203,7 +203,7 @@ export class View {
     context.fillText(text, x, y);
   }
 
-  /** Numbers where there is room for them. */
+  /** Draws numbers where there is room. */
   drawNumbers(frame, at) {
     const { app } = this;
     const { width, height } = app.camera;
@@ -231,7 +231,7 @@ export class View {
     }
   }
 
-  /** Where the selected robot takes the others to be. */
+  /** Draws the selected robot's estimates of other positions. */
   drawGhosts() {
     const { app, context } = this;
     const { css } = app.look;
@@ -276,7 +276,7 @@ export class View {
     }
   }
 
-  /** Goals of flocks, as flags with their numbers. */
+  /** Draws the goals of flocks as numbered flags. */
   drawGoals(frame) {
     const { app, context } = this;
     (frame.figures.goals ?? []).forEach((goal, i) => {
@@ -369,7 +369,7 @@ export class View {
   }
 }
 
-/** A length with a unit that suits it. */
+/** A length with a suitable unit. */
 export function metres(length) {
   if (length >= 1000) return `${+(length / 1000).toPrecision(3)} km`;
   if (length >= 1) return `${+length.toPrecision(3)} m`;

@@ -21,7 +21,6 @@ fn main() -> ExitCode {
     staya_console::exit("staya-shell", written.map(|()| Ended::Done))
 }
 
-/// The command lines of the programs that `staya` hands commands to.
 fn programs() -> [Command; 5] {
     [
         Line::<staya_lab::cli::Command>::command(),
@@ -32,7 +31,6 @@ fn programs() -> [Command; 5] {
     ]
 }
 
-/// `staya` with the commands of all programs.
 fn whole() -> Command {
     let programs = programs();
     let commands = programs.iter().flat_map(Command::get_subcommands).filter(|command| !command.is_hide_set());

@@ -1,4 +1,4 @@
-//! What a run makes besides its results: recordings, MCAP files, moving pictures, a page that looks on.
+//! Additional outputs of a run: recordings, MCAP files, animations, a live page.
 
 use anyhow::Result;
 use clap::Args;
@@ -11,61 +11,61 @@ use staya_sim::scenario::Scenario;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-/// What to write besides.
+/// Options of additional outputs.
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Files besides the results; docs/tour.md")]
+#[command(next_help_heading = "Additional files; docs/recordings.md")]
 pub struct AlsoArgs {
-    /// Record the run for `staya page`: where everybody is, tick by tick. Each file is replaced.
+    /// Record positions in each tick, for `staya page`; replaces the file.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Record the run as MCAP, for Foxglove, Lichtblick and Rerun.
     #[arg(long, value_name = "FILE")]
     mcap: Option<PathBuf>,
-    /// Ticks from one recorded moment to the next, in both; the last tick is always recorded.
+    /// Ticks between two recorded moments, in both files; the last tick is always recorded.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     record_every: u32,
-    /// Draw the run as a moving picture.
+    /// Draw the run as an animation.
     #[arg(long, value_name = "FILE")]
     gif: Option<PathBuf>,
-    /// Its width in pixels.
+    /// Width of the animation, pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 640, value_parser = clap::value_parser!(u32).range(64..=1920))]
     gif_width: u32,
-    /// Its length in seconds; pictures follow each other at most every 0.04 s.
+    /// Length of the animation in seconds; frames are at least 0.04 s apart.
     #[arg(long, value_name = "S", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=120))]
     gif_seconds: u32,
 }
 
 impl AlsoArgs {
-    /// Whether there are files that hold nothing of what was before a checkpoint.
+    /// Whether there are files that cannot continue from a checkpoint.
     pub const fn begins_anew(&self) -> bool {
         self.record.is_some() || self.mcap.is_some()
     }
 
-    /// The MCAP file, and ticks from one of its moments to the next.
+    /// Path of the MCAP file, and ticks between its moments.
     pub fn mcap(&self) -> Option<(&Path, u32)> {
         self.mcap.as_deref().map(|path| (path, self.record_every))
     }
 }
 
-/// Looks at a run while it goes on.
+/// Observes a run.
 pub trait Observer {
-    /// Whether it wants the robots' lines of the next moment.
+    /// Whether the next moment needs the lines of robots.
     fn is_due(&mut self) -> bool;
 
-    /// Takes a moment, with the robots' lines.
+    /// Handles a moment with the lines of robots.
     ///
     /// # Errors
     /// Its file cannot be written.
     fn tick(&mut self, moment: &Moment<'_>, rows: &[RobotRow]) -> Result<()>;
 
-    /// The run is over.
+    /// Ends with the run.
     ///
     /// # Errors
     /// Its file cannot be written.
     fn finish(self: Box<Self>) -> Result<()>;
 }
 
-/// The files under way, and the observers.
+/// Open files and observers.
 pub struct Also<'a> {
     args: &'a AlsoArgs,
     scenario: &'a Scenario,
@@ -74,36 +74,36 @@ pub struct Also<'a> {
 }
 
 impl<'a> Also<'a> {
-    /// Begins the files that are asked for.
+    /// Creates the selected files.
     ///
     /// # Errors
-    /// One cannot be written.
+    /// A file cannot be written.
     pub fn begin(args: &'a AlsoArgs, scenario: &'a Scenario, observers: Vec<Box<dyn Observer>>) -> Result<Self> {
         let recording = match &args.record {
             Some(path) => Some(RunRecorder::new(create(path)?, path, scenario, args.record_every)?),
             None => None,
         };
         if let Some(path) = &args.gif {
-            // Better now than after the run.
+            // A path that cannot be written must fail before the run.
             write_atomically(path, b"")?;
         }
         Ok(Self { args, scenario, recording, observers })
     }
 
-    /// Whether the robots' lines of this moment are wanted.
+    /// Whether the lines of robots are needed for this moment.
     pub fn wants_rows(&mut self) -> bool {
-        // Every observer is asked: a page reads its messages then.
+        // Every observer is asked, since pages read their messages in this call.
         let due = self.observers.iter_mut().map(|observer| observer.is_due()).filter(|is_due| *is_due).count();
         self.recording.is_some() || due > 0
     }
 
-    /// What is written.
+    /// Paths of the additional files.
     pub fn paths(&self) -> impl Iterator<Item = PathBuf> {
         let AlsoArgs { record, mcap, gif, .. } = self.args;
         [record, mcap, gif].into_iter().flatten().cloned()
     }
 
-    /// Takes a moment.
+    /// Handles a moment.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -114,7 +114,7 @@ impl<'a> Also<'a> {
         self.observers.iter_mut().try_for_each(|observer| observer.tick(moment, rows))
     }
 
-    /// Writes what is in memory when something else went wrong; best effort.
+    /// Writes buffered data after another error, if possible.
     pub fn flush(&mut self) {
         if let Some(recording) = &mut self.recording {
             let _ = recording.flush();
@@ -124,7 +124,7 @@ impl<'a> Also<'a> {
     /// Completes the files.
     ///
     /// # Errors
-    /// One cannot be written.
+    /// A file cannot be written.
     pub fn finish(self, summary: &impl Serialize, history: &History) -> Result<()> {
         if let Some(recording) = self.recording {
             recording.finish(summary)?;

@@ -1,5 +1,5 @@
-//! Pictures a second that a page can have of a run: made, sent and read, by a client in the same process that draws nothing.
-//! `cargo xtask bench view` runs it.
+//! Measures the frames per second that a page can get from a run. The client is in the same process
+//! and draws nothing. `cargo xtask bench view` runs it.
 
 use staya_sim::engine::{Moment, simulate};
 use staya_sim::record::RobotRow;
@@ -17,24 +17,21 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
-/// Robots, and pictures a second that there should be at least.
+/// Number of robots, and the smallest acceptable number of frames per second.
 const GOALS: [(u32, f64); 3] = [(1000, 60.0), (10_000, 60.0), (100_000, 20.0)];
-/// How long pictures are made.
 const SPAN: Duration = Duration::from_secs(4);
 
-/// What was measured.
 struct Measured {
-    /// Pictures a second that the client read.
+    /// Frames per second that the client read.
     read_per_s: f64,
-    /// Their bytes a second.
     bytes_per_s: f64,
-    /// What one costs the run, seconds.
+    /// Time that one frame costs the run, seconds.
     cost_s: f64,
 }
 
 fn main() -> ExitCode {
     let mut is_met = true;
-    println!("{:>9} {:>14} {:>9} {:>22}  goal", "robots", "pictures a s", "MB/s", "costs the run, ms each");
+    println!("{:>9} {:>14} {:>9} {:>22}  goal", "robots", "frames/s", "MB/s", "cost to the run, ms/frame");
     for (robots, goal) in GOALS {
         match measure(robots) {
             Ok(Measured { read_per_s, bytes_per_s, cost_s }) => {
@@ -52,7 +49,6 @@ fn main() -> ExitCode {
     if is_met { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// A flock in a square; who moves, and how, is the same to a picture.
 fn scenario(robots: u32) -> Result<Scenario, Box<dyn Error>> {
     let side_m = f64::from(robots).sqrt() * 1.5;
     let text = format!(
@@ -78,7 +74,7 @@ fn measure(robots: u32) -> Result<Measured, Box<dyn Error>> {
         let rows: Vec<_> = rows.collect();
         let began = Instant::now();
         while began.elapsed() < SPAN {
-            // Hears what has been seen. It would not be due so often.
+            // Handles the confirmation of the last frame.
             watcher.is_due();
             let from = Instant::now();
             watcher.show(moment, rows.iter().copied(), &());
@@ -98,7 +94,7 @@ fn measure(robots: u32) -> Result<Measured, Box<dyn Error>> {
     })
 }
 
-/// Reads pictures and says so, as a page does; returns how many, and their bytes.
+/// Reads frames and confirms them like a page. Returns their number and bytes.
 fn client(watcher: &Watcher, stop: Arc<AtomicBool>) -> JoinHandle<(u32, usize)> {
     let url = watcher.server().url().replace("http:", "ws:").replace("/?", "/live?");
     std::thread::spawn(move || {

@@ -7,7 +7,7 @@ use clap::Subcommand;
 use staya::run::RunArgs;
 use staya_console::{Ended, Global};
 
-/// Commands that need a live page or MCAP.
+/// Commands with a live page or an MCAP file.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
     /// Watch a run in the browser and interact with it, or play a recording.
@@ -21,7 +21,7 @@ impl Command {
     /// Runs the command.
     ///
     /// # Errors
-    /// Those of the command.
+    /// Any error of the command.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match self {
             Self::View(args) => args.run(global),

@@ -1,4 +1,4 @@
-//! `staya view`: a run, or a recording, in the browser.
+//! `staya view` shows a run or a recording in the browser.
 
 use crate::page;
 use crate::playback::Playback;
@@ -15,11 +15,12 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Where pages are served.
+/// Options of the page's address.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct ListenArgs {
-    /// Address and port of the page; port 0: any that is free. Beyond this machine (0.0.0.0) whoever has the address that is
-    /// printed, with its token, can watch and steer the run, unencrypted.
+    /// Address and port of the page; port 0 selects a free port. With an address other than
+    /// loopback, such as 0.0.0.0, anyone with the printed address and its token can watch and
+    /// control the run; the connection is not encrypted.
     #[arg(long, value_name = "ADDRESS", default_value_t = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0))]
     pub listen: SocketAddr,
     /// Do not open a browser.
@@ -28,16 +29,16 @@ pub struct ListenArgs {
 }
 
 impl ListenArgs {
-    /// Starts serving the page, and says where.
+    /// Starts the server and prints the address.
     ///
     /// # Errors
-    /// The address cannot be listened on.
+    /// The address is not available.
     fn serve(&self, global: &Global) -> Result<Page> {
         let server = Server::start(self.listen, page::served()?)?;
         if !server.address().ip().is_loopback() {
             eprintln!(
-                "The page is open to the network: whoever learns its address can steer this run, and others on the way can \
-                 read along."
+                "The page is open to the network: anyone who knows its address can control this run, and the connection is \
+                not encrypted."
             );
         }
         let url = server.url();
@@ -51,7 +52,6 @@ impl ListenArgs {
     }
 }
 
-/// A page that is served.
 struct Page {
     server: Server,
     _way_in: Option<WayIn>,
@@ -62,33 +62,33 @@ impl Page {
         &self.server
     }
 
-    /// Ends it.
+    /// Stops the server.
     ///
     /// # Errors
-    /// It had ended by itself.
+    /// [`ServeError::Ended`] if the server had failed before.
     fn end(self) -> Result<(), ServeError> {
         if self.server.is_alive() { Ok(()) } else { Err(ServeError::Ended) }
     }
 }
 
-/// Where the page is, as with `--json`.
 #[derive(Debug, Serialize)]
 struct Served<'a> {
     url: &'a str,
 }
 
-/// Look at a run in the browser, and take hold of it; or play a recording.
+/// Watch a run in the browser and interact with it, or play a recording.
 #[derive(Args, Clone, Debug)]
 pub struct ViewArgs {
-    /// A scenario (.toml), or a recording of `staya run --record`.
+    /// Scenario (.toml), or a recording made with `staya run --record`.
     #[command(flatten)]
     source: ScenarioArgs,
     #[command(flatten)]
     listen: ListenArgs,
-    /// Begin paused.
+    /// Start paused.
     #[arg(long)]
     paused: bool,
-    /// Simulated seconds per second [default: 1, or ten ticks a second where a tick is longer].
+    /// Simulated seconds per real second [default: 1, or ten ticks per second if a tick is longer
+    /// than 0.1 s].
     #[arg(long, value_name = "X", value_parser = speed)]
     speed: Option<f64>,
 }
@@ -99,17 +99,17 @@ fn speed(text: &str) -> Result<f64, String> {
 }
 
 impl ViewArgs {
-    /// Runs the command, until Ctrl-C.
+    /// Runs the command until Ctrl-C.
     ///
     /// # Errors
-    /// A scenario or recording that cannot be read or is wrong, an address that cannot be listened on.
+    /// An unreadable or invalid scenario or recording, or an address that is not available.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let path = self.source.path();
         let stop = Stop::on_ctrl_c()?;
         let is_stopped = || stop.is_requested();
         let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
         if is_scenario {
-            // What is wrong is said of the file as it stands.
+            // Errors refer to the file without the overrides.
             self.source.load()?;
             let text = text_with(path, self.source.settings())?;
             let mut session = Session::new(text, path, &self.source.overrides(), self.paused)?;
@@ -123,29 +123,29 @@ impl ViewArgs {
             let mut playback = Playback::open(path, self.paused)?;
             if let Some(at) = playback.torn_at() {
                 let (_, last) = playback.ticks();
-                eprintln!("{}: the file ends too early, at byte {at}; it is played up to tick {last}", path.display());
+                eprintln!("{}: incomplete file (ends at byte {at}); playing up to tick {last}", path.display());
             }
             if self.speed.is_some() {
                 playback.set_speed(self.speed);
             }
             let page = self.listen.serve(global)?;
             let over = || is_stopped() || !page.server().is_alive();
-            playback.run(page.server(), &over).context("the recording cannot be played on")?;
+            playback.run(page.server(), &over).context("cannot continue the playback")?;
             page.end()?;
         }
         Ok(Ended::by(&stop))
     }
 }
 
-/// A file that leads a browser to the page: what stands in a command line, everybody on the machine can read. It is gone
-/// with this.
+/// A file that leads a browser to the page, since all users of the computer can read the arguments
+/// of a command. Removed on drop.
 struct WayIn(PathBuf);
 
 impl WayIn {
-    /// Makes it for this user alone.
+    /// Creates the file, readable only by this user.
     ///
     /// # Errors
-    /// It cannot be written, or there is one of that name.
+    /// The file cannot be written or exists.
     fn new(url: &str, port: u16) -> io::Result<Self> {
         let path = std::env::temp_dir().join(format!("staya-{}-{port}.html", std::process::id()));
         let mut options = OpenOptions::new();
@@ -165,12 +165,12 @@ impl WayIn {
 
 impl Drop for WayIn {
     fn drop(&mut self) {
-        // At worst it leads to a page that is gone.
+        // A file left behind leads to a page that no longer exists.
         let _ = std::fs::remove_file(&self.0);
     }
 }
 
-/// Opens a browser where there is one; the address has been printed in any case.
+/// Opens a browser if there is one; the address is printed in any case.
 fn open(url: &str, port: u16) -> Option<WayIn> {
     let has_screen = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
     let mut command = match std::env::consts::OS {
@@ -181,7 +181,6 @@ fn open(url: &str, port: u16) -> Option<WayIn> {
     };
     let way_in = WayIn::new(url, port).ok()?;
     let command = command.arg(&way_in.0).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    // Without a browser there is still the address.
     command.spawn().ok().map(|_| way_in)
 }
 
@@ -190,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_in_is_its_users_alone_and_goes_with_the_page() {
+    fn the_link_file_is_private_and_removed_with_the_page() {
         let url = "http://127.0.0.1:1/?token=0123abcd";
         let way_in = WayIn::new(url, 1).expect("it can be written");
         let path = way_in.0.clone();
@@ -201,7 +200,7 @@ mod tests {
             let mode = std::os::unix::fs::PermissionsExt::mode(&path.metadata().expect("it is there").permissions());
             assert_eq!(mode & 0o777, 0o600);
         }
-        // What is there already may be somebody else's.
+        // An existing file may belong to another user.
         assert!(WayIn::new(url, 1).is_err() && path.exists());
         drop(way_in);
         assert!(!path.exists());

@@ -1,4 +1,4 @@
-//! What `staya run --mcap` and `staya run --view` add to a run.
+//! Observers for `staya run --mcap` and `staya run --view`.
 
 use crate::mcap::McapWriter;
 use crate::watch::Watcher;
@@ -11,10 +11,10 @@ use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
 use std::fs::File;
 
-/// The observers that the options of a run ask for.
+/// Creates the observers that the options of a run select.
 ///
 /// # Errors
-/// A file cannot be written, or the page's address cannot be listened on.
+/// A file cannot be written, or the page's address is not available.
 pub fn of_run(args: &RunArgs, scenario: &Scenario) -> Result<Vec<Box<dyn Observer>>> {
     let mut observers: Vec<Box<dyn Observer>> = Vec::new();
     if let Some((path, every)) = args.mcap() {
@@ -33,7 +33,6 @@ pub fn of_run(args: &RunArgs, scenario: &Scenario) -> Result<Vec<Box<dyn Observe
     Ok(observers)
 }
 
-/// An MCAP file, and the latest moment.
 struct Mcap {
     writer: McapWriter<File>,
     framer: Framer,
@@ -64,7 +63,6 @@ impl Observer for Mcap {
     }
 }
 
-/// A page that shows the run while it goes on.
 struct Page(Watcher);
 
 impl Observer for Page {

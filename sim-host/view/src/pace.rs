@@ -1,68 +1,70 @@
-//! When the next tick is due.
+//! The clock that decides when the next tick is due.
 
 use std::time::{Duration, Instant};
 
-/// How long ticks may be worked on before somebody is listened to again.
+/// Longest time for ticks between two checks of the pages.
 pub const SLICE: Duration = Duration::from_millis(15);
-/// Who is behind by more does not hurry after.
+/// A larger delay is not made up for.
 const LATE: Duration = Duration::from_millis(250);
-/// Ticks a second by default where a tick is long.
+/// Default ticks per second for long ticks.
 const TICKS_A_SECOND: f64 = 10.0;
 
-/// A clock that runs some times as fast as the wall's, or stands.
+/// A clock that runs at a multiple of real time, or is paused.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     tick_s: f64,
-    /// Simulated seconds per second; `None`: as fast as it goes.
+    /// Simulated seconds per second; `None` for no limit.
     speed: Option<f64>,
     is_paused: bool,
     due: Instant,
 }
 
 impl Pace {
-    /// For ticks of `tick_s`; in real time, or ten ticks a second where that is slower.
+    /// Creates a clock for ticks of `tick_s` seconds. It starts at real time, or at ten ticks per
+    /// second if that is faster.
     #[must_use]
     pub fn new(tick_s: f64, is_paused: bool) -> Self {
         let speed = Some((tick_s * TICKS_A_SECOND).max(1.0));
         Self { tick_s, speed, is_paused, due: Instant::now() }
     }
 
-    /// Simulated seconds per second; `None`: as fast as it goes.
+    /// Simulated seconds per second; `None` for no limit.
     #[must_use]
     pub const fn speed(&self) -> Option<f64> {
         self.speed
     }
 
-    /// Whether it stands.
+    /// Whether the clock is paused.
     #[must_use]
     pub const fn is_paused(&self) -> bool {
         self.is_paused
     }
 
-    /// Lets it stand.
+    /// Pauses the clock.
     pub const fn pause(&mut self) {
         self.is_paused = true;
     }
 
-    /// Lets it go.
+    /// Continues after a pause.
     pub fn play(&mut self) {
         self.is_paused = false;
         self.due = Instant::now();
     }
 
-    /// Another speed; nonsense is none.
+    /// Sets the speed in simulated seconds per second, limited to 0.001 to 1e6. `None`, NaN or
+    /// infinity remove the limit.
     pub fn set_speed(&mut self, speed: Option<f64>) {
         self.speed = speed.filter(|speed| speed.is_finite()).map(|speed| speed.clamp(0.001, 1e6));
         self.due = Instant::now();
     }
 
-    /// Until the next tick; zero: it is due. `None`: it stands.
+    /// Time until the next tick, zero if it is due; `None` while paused.
     #[must_use]
     pub fn until_due(&self, now: Instant) -> Option<Duration> {
         (!self.is_paused).then(|| self.speed.map_or(Duration::ZERO, |_| self.due.saturating_duration_since(now)))
     }
 
-    /// A tick has been done.
+    /// Records that a tick was done.
     pub fn done(&mut self, now: Instant) {
         if let Some(speed) = self.speed {
             self.due += Duration::from_secs_f64((self.tick_s / speed).min(1e6));
@@ -78,7 +80,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_due_at_their_times_and_nobody_hurries_after_a_break() {
+    fn ticks_are_due_on_time_and_a_long_delay_is_not_made_up() {
         let mut pace = Pace::new(0.05, false);
         assert_eq!(pace.speed(), Some(1.0));
         assert_eq!(Pace::new(2.0, false).speed(), Some(20.0));

@@ -1,4 +1,4 @@
-//! A recording that pages look at and move about in.
+//! Plays a recording for pages, which can pause and seek.
 
 use crate::frame::FrameData;
 use crate::pace::Pace;
@@ -10,14 +10,13 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Least time between two frames.
+/// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
-/// Time between two states that nobody asked for.
 const STATE: Duration = Duration::from_millis(500);
-/// Rows of figures that a page is told at first.
+/// Rows of figures sent to a new page.
 const ROWS: u32 = 2000;
 
-/// What a page can ask of a recording.
+/// A request of a page.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 enum Wanted {
@@ -37,14 +36,13 @@ enum Wanted {
     Other,
 }
 
-/// A recording, and those who look at it.
+/// A recording and its pages.
 #[derive(Debug)]
 pub struct Playback {
     reader: Reader,
     first: u32,
     last: u32,
     tick: u32,
-    /// The scene that pages know.
     scene: String,
     rows: Option<String>,
     pace: Pace,
@@ -55,10 +53,10 @@ pub struct Playback {
 }
 
 impl Playback {
-    /// A recording from its beginning.
+    /// Opens a recording at its beginning.
     ///
     /// # Errors
-    /// It cannot be read, or is damaged.
+    /// The file cannot be read or is damaged.
     pub fn open(path: &Path, is_paused: bool) -> Result<Self, RecordingError> {
         let mut reader = Reader::open(path)?;
         let tick_s = reader.scene()?.tick_s;
@@ -82,27 +80,27 @@ impl Playback {
         Ok(playback)
     }
 
-    /// The byte at which the file ends too early, if it does.
+    /// The byte at which an incomplete file ends.
     #[must_use]
     pub const fn torn_at(&self) -> Option<u64> {
         self.reader.torn_at()
     }
 
-    /// First and last tick.
+    /// The first and the last tick.
     #[must_use]
     pub const fn ticks(&self) -> (u32, u32) {
         (self.first, self.last)
     }
 
-    /// How fast it goes at first: simulated seconds per second, `None` as fast as it can.
+    /// Sets the initial speed, simulated seconds per second; `None` for no limit.
     pub fn set_speed(&mut self, speed: Option<f64>) {
         self.pace.set_speed(speed);
     }
 
-    /// Plays, and serves pages, until `stop` says so.
+    /// Plays and serves pages until `stop` returns true.
     ///
     /// # Errors
-    /// The file cannot be read any more, or is damaged.
+    /// The file cannot be read or is damaged.
     pub fn run(mut self, server: &Server, stop: &dyn Fn() -> bool) -> Result<(), RecordingError> {
         while !stop() {
             let patience = self.pace.until_due(Instant::now()).unwrap_or(STATE).min(STATE / 10);
@@ -111,7 +109,7 @@ impl Playback {
                 self.hear(what, server);
                 word = server.next(Duration::ZERO);
             }
-            // What nobody could see is left out.
+            // Frames that no page could show are skipped.
             let start = Instant::now();
             while self.pace.until_due(start) == Some(Duration::ZERO) {
                 self.step();
@@ -199,7 +197,6 @@ impl Playback {
         server.say(None, state.to_string());
     }
 
-    /// Figures over the whole recording.
     fn rows(&mut self) -> Result<Option<String>, RecordingError> {
         let every = ((self.last - self.first) / ROWS).max(1);
         let mut rows = Vec::new();

@@ -1,7 +1,8 @@
-//! A run that goes on by itself, and pages that look at it: for its results, with devices, over a bridge, or of vehicles.
+//! Live pages of a run that they cannot control: with `--view` in `staya run`, hardware in the
+//! loop, the MAVLink bridge and companions.
 //!
-//! Pages cannot do anything to such a run, and cost it nothing while there are none: whoever drives it asks [`Watcher::is_due`] now and
-//! then, and makes a picture only if a page wants one.
+//! Without a page the run pays nothing: the caller polls [`Watcher::is_due`] and makes a frame only
+//! if a page wants one.
 
 use crate::frame::{FrameData, Framer, NO_WAIT, NOBODY};
 use crate::page;
@@ -18,14 +19,13 @@ use staya_sim::scenario::Scenario;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Least time between two frames.
+/// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
-/// Words of pages that are heard at a time; those that talk faster are left by the server.
+/// Page messages handled per poll; faster pages are disconnected by the server.
 const WORDS: usize = 64;
-/// Longest word of a page that only looks on, bytes.
 const LONGEST: usize = 256;
 
-/// What a page that looks on can ask for; the rest it may say, and nothing comes of it.
+/// A request of a read-only page; others are ignored.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 enum Wanted {
@@ -42,65 +42,64 @@ enum Wanted {
     Other,
 }
 
-/// What a page looks at.
 #[derive(Clone, Copy, Debug, Default)]
 struct Looks {
     robot: Option<usize>,
     links: bool,
 }
 
-/// What is known of a robot beside its row.
+/// Details of a robot beyond its row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct About {
-    /// Others as it knows them, in world coordinates; `None`: that is not known here.
+    /// Its neighbours as it knows them, in world coordinates; `None` if not available.
     pub known: Option<Vec<Known>>,
-    /// Of the device that its controller runs on.
+    /// Load of the device that runs its controller.
     pub device: Option<DeviceFigures>,
-    /// Names and values of whatever else there is, for people.
+    /// Names and values of other details, as text.
     pub facts: Vec<(&'static str, String)>,
 }
 
-/// What a step costs a device.
+/// Load of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct DeviceFigures {
-    /// Instructions of the last step; `None` before the first one, and of boards, which do not count them.
+    /// Instructions of the last step; `None` before the first step, and on boards, which do not
+    /// count them.
     pub instructions: Option<u64>,
-    /// Of the step that took most.
+    /// Instructions of the longest step.
     pub most_instructions: Option<u64>,
     /// Ticks of the device's clock in the last step.
     pub ticks: Option<u32>,
-    /// The most stack that a step touched, bytes.
+    /// Largest stack used by a step, bytes.
     pub stack: u32,
-    /// Steps in which it and its shadow differed.
+    /// Steps in which the device and its shadow differed.
     pub mismatches: u64,
-    /// Steps that it decided.
+    /// Steps decided by the device.
     pub steps: u64,
-    /// Times that it started anew.
+    /// Restarts of the device.
     pub resets: u64,
 }
 
-/// What a run knows of its robots beside their rows.
+/// Details that a run provides beyond the rows of robots.
 pub trait Insight {
-    /// Of a robot, by its index.
+    /// Details of a robot, by index.
     fn about(&self, _index: usize) -> About {
         About::default()
     }
 
-    /// Whether the row of a robot was measured; otherwise others have said so.
+    /// Whether the row of a robot is measured; otherwise it comes from beacons.
     fn is_measured(&self, _index: usize) -> bool {
         true
     }
 
-    /// Who is heard by whom, sender and receiver; `None`: that is not known here.
+    /// Pairs of sender and receiver that are in contact; `None` if not available.
     fn links(&self) -> Option<Vec<[u32; 2]>> {
         None
     }
 }
 
-/// Nothing is known.
 impl Insight for () {}
 
-/// Shows pages what comes by.
+/// Shows a run to pages.
 #[derive(Debug)]
 pub struct Watcher {
     server: Server,
@@ -114,10 +113,11 @@ pub struct Watcher {
 }
 
 impl Watcher {
-    /// Serves a page as the options of a command ask, and prints its address on standard error; `None`: no page is wanted.
+    /// Starts a page if the options of a command select one, and prints its address on standard
+    /// error.
     ///
     /// # Errors
-    /// The address cannot be listened on.
+    /// The address is not available.
     pub fn by_options(options: &WatchArgs, scenario: &Scenario) -> anyhow::Result<Option<Self>> {
         let Some(address) = options.address() else {
             return Ok(None);
@@ -127,10 +127,10 @@ impl Watcher {
         Ok(Some(watcher))
     }
 
-    /// For the run of a scenario.
+    /// Creates a watcher for the run of a scenario.
     ///
     /// # Errors
-    /// The scene has no form as JSON.
+    /// The scene cannot be encoded as JSON.
     pub fn new(server: Server, scenario: &Scenario) -> Result<Self, serde_json::Error> {
         let now = Instant::now();
         Ok(Self {
@@ -151,13 +151,13 @@ impl Watcher {
         &self.server
     }
 
-    /// Pages that look on.
+    /// Number of connected pages.
     #[must_use]
     pub fn pages(&self) -> usize {
         self.pages.len()
     }
 
-    /// Hears what pages say, a bounded number of short words, and says whether one wants a picture now.
+    /// Handles a bounded number of page messages. Returns whether a page wants a frame now.
     pub fn is_due(&mut self) -> bool {
         for _ in 0..WORDS {
             let Some(word) = self.server.next(Duration::ZERO) else { break };
@@ -166,14 +166,14 @@ impl Watcher {
         !self.pages.is_empty() && self.shown.elapsed() >= FRAME
     }
 
-    /// Looks at a tick; `robots` are asked for only if a page wants to see them now.
+    /// Offers a tick. `robots` is read only if a page wants a frame now.
     pub fn tick(&mut self, moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>) {
         if self.is_due() {
             self.show(moment, robots, &());
         }
     }
 
-    /// Shows all pages a moment. O(bodies).
+    /// Sends a frame to all pages. O(bodies).
     pub fn show(&mut self, moment: &Moment<'_>, robots: impl Iterator<Item = RobotRow>, insight: &dyn Insight) {
         self.shown = Instant::now();
         self.framer.fill(&mut self.frame, moment, robots);
@@ -222,7 +222,6 @@ impl Watcher {
         }
     }
 
-    /// Everything about one robot, at the moment of the last frame.
     fn robot(&self, index: usize, insight: &dyn Insight) -> String {
         let frame = &self.frame;
         let About { known, device, facts } = insight.about(index);

@@ -1,4 +1,4 @@
-"""`staya companion` beside vehicles of the simulation, and what it told them."""
+"""`staya companion` with simulated ArduPilot vehicles, and records of its messages."""
 
 import json
 import os
@@ -12,7 +12,7 @@ from conftest import ROOT, wait_until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from simulation import ORIGIN, Autopilot, Simulation
 
-# Of companions/crossing.toml: radius of the vehicles, and where they start and go.
+# From companions/crossing.toml: radius of the vehicles, their starts and goals.
 RADIUS = 1.0
 LINE = [((10.0 * i, 0.0), (50.0 - 10.0 * i, 0.0)) for i in range(6)]
 STARTS, GOALS = [start for start, _ in LINE], [goal for _, goal in LINE]
@@ -20,18 +20,18 @@ LINK = re.compile(r'link = "[^"]*"')
 
 
 def needs(kind):
-    """A mark: skipped, with what to do, where that vehicle's simulation is not there."""
+    """A mark that skips a test, with a remedy, if the vehicle's simulator is missing."""
     variable = f"STAYA_{kind.upper()}"
     return pytest.mark.skipif(variable not in os.environ, reason=f"no simulation: `cargo xtask autopilots --{kind} PATH` names it (docs/autopilots.md)")
 
 
 def figures(text):
-    """A line that the closing table of `cargo xtask autopilots` shows."""
+    """Adds a line to the final table of `cargo xtask autopilots`."""
     print(f"\nfigures: {text}", flush=True)
 
 
 class Companion:
-    """A running `staya companion`, its log, and the figures at its end."""
+    """A running `staya companion`, its log, and its report."""
 
     def __init__(self, staya, config, log, *arguments):
         self.log = log
@@ -41,17 +41,17 @@ class Companion:
         return self.process.wait_for(text, timeout)
 
     def finish(self):
-        """Ctrl-C; returns the report."""
+        """Stops with Ctrl-C and returns the report."""
         assert self.process.interrupt() == 130, self.process.output()
         text = self.process.output()
         return json.loads(text[text.index("\n{") if not text.startswith("{") else 0 :])
 
     def setpoints(self, number):
-        """`(time, message)` of each setpoint that went to a vehicle."""
+        """`(time, message)` of each setpoint sent to a vehicle."""
         return [(at, m) for at, m in self.messages() if m.get_type() == "SET_POSITION_TARGET_LOCAL_NED" and m.target_system == number]
 
     def messages(self):
-        """Whatever is in its log, with times; to be read when it has ended."""
+        """All logged messages with times; to be called after the end."""
         data, at = self.log.read_bytes(), 0
         codec = mavlink.MAVLink(None)
         codec.robust_parsing = True
@@ -65,7 +65,7 @@ class Companion:
 
 @pytest.fixture
 def fly(tmp_path, run, staya):
-    """Functions that make a simulation of vehicles, and start companions beside them."""
+    """Functions that create a simulation of vehicles and start companions for them."""
     return Hangar(tmp_path, run, staya)
 
 
@@ -83,7 +83,7 @@ class Hangar:
         return Simulation(vehicles)
 
     def example(self, name, edit=lambda text: text) -> Path:
-        """An example of companions/ with the links of these vehicles, and no more than these."""
+        """An example of companions/, reduced to these vehicles and with their links."""
         head, *vehicles = (ROOT / "companions" / name).read_text().split("[[vehicle]]")
         head = re.sub(r'scenario = "([^"]*)"', lambda found: f'scenario = "{ROOT / "companions" / found[1]}"', head)
         linked = [LINK.sub(f'link = "udpin:127.0.0.1:{port}"', vehicle) for (_, port), vehicle in zip(sorted(self.ports.items()), vehicles)]
@@ -99,7 +99,7 @@ class Hangar:
         return path
 
     def config(self, scenario, autopilot, rules="", air="", numbers=None) -> Path:
-        """A configuration of our own beside the vehicles with these numbers (all of them)."""
+        """A custom configuration for the vehicles with these numbers (default: all)."""
         text = f'scenario = "{scenario}"\n[origin]\nlatitude_deg = {ORIGIN[0]}\nlongitude_deg = {ORIGIN[1]}\naltitude_m = {ORIGIN[2]}\n'
         text += f"[rules]\n{rules}\n{air}\n"
         for number in numbers or sorted(self.ports):
@@ -117,7 +117,7 @@ class Hangar:
 
 
 def rates(companion, simulation, until):
-    """Setpoints a second that each vehicle got, from its first one on."""
+    """Setpoint rate of each vehicle from its first setpoint, Hz."""
     found = []
     for vehicle in simulation.vehicles:
         times = [at for at, _ in companion.setpoints(vehicle.number) if at < until]
@@ -126,7 +126,7 @@ def rates(companion, simulation, until):
 
 
 def moving(simulation, begun, timeout=60.0):
-    """Waits until all vehicles are on their way; returns when the first was."""
+    """Waits until all vehicles move. Returns the time at which the first one started."""
 
     def all_are():
         return all(any(truth.speed > 0.3 for truth in vehicle.between(begun)) for vehicle in simulation.vehicles)
@@ -136,7 +136,8 @@ def moving(simulation, begun, timeout=60.0):
 
 
 def arrive(simulation, goals, timeout, within=1.5, numbers=None):
-    """Waits until all stand at their goals by the truth; returns when that was."""
+    """Waits until all vehicles have stopped at their goals by their true positions. Returns the
+    time."""
     wanted = [(vehicle, goal) for vehicle, goal in zip(simulation.vehicles, goals) if numbers is None or vehicle.number in numbers]
 
     def all_there():
@@ -150,7 +151,7 @@ def arrive(simulation, goals, timeout, within=1.5, numbers=None):
 
 
 def least(simulation, since, until=None, only=None, room=2.0 * RADIUS):
-    """The nearest pair, in words; fails if two touched by the scenario's measure."""
+    """Text with the nearest pair. Fails if two vehicles overlapped by the scenario's radii."""
     distance, a, b, at = simulation.nearest(since, until or time.time(), only)
     assert distance > room, f"vehicles {a} and {b} came as near as {distance:.2f} m, {at - since:.1f} s after the start"
     return f"nearest pair {distance:.2f} m"

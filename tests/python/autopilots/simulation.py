@@ -1,7 +1,8 @@
-"""ArduPilot's own code in its own simulation, one process for each vehicle, and who watches them: their pilots.
+"""ArduPilot's own code in its simulator, one process per vehicle, with the vehicles' pilots.
 
-A vehicle's first serial port (MAVLink 0) is its pilot's: from here come modes, arming, parameters and faults, and here arrives what the simulation
-says of the truth (SIM_STATE), by which flights are judged. Its second one is its companion's. Both are UDP to 127.0.0.1; all others are closed.
+The first serial port of a vehicle (MAVLink 0) is its pilot's: it receives modes, arming, parameters
+and faults, and sends the true state of the simulation (SIM_STATE), by which flights are judged. The
+second port is the companion's. Both use UDP to 127.0.0.1; all other ports are closed.
 """
 
 import bisect
@@ -17,24 +18,27 @@ from pathlib import Path
 from conftest import wait_until
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-# ArduPilot's usual place near Canberra, CMAC, and the origin of the examples in companions/.
+# ArduPilot's default home near Canberra, CMAC, which is also the origin of the examples in
+# companions/.
 ORIGIN = (-35.363261, 149.165230, 584.0)
 # Custom modes.
 ROVER = {"MANUAL": 0, "HOLD": 4, "GUIDED": 15}
 COPTER = {"STABILIZE": 0, "GUIDED": 4, "LOITER": 5, "LAND": 9, "BRAKE": 17}
-# A station that ArduPilot does not take for its ground station, whose silence would be a failsafe.
+# A station that ArduPilot does not take for its ground station, whose silence would trigger a
+# failsafe.
 STATION = 250
-# Faster than real time until positions are there; a loaded machine does what it can.
+# Speed-up until positions are available, limited by the load of the machine.
 WARM_UP = 10
-# How often the truth is told, Hz.
+# Rate of the true state, Hz.
 TRUTH_HZ = 20
 READY_S = 240.0
 ARMED = 128
-# Of SYS_STATUS: GPS and AHRS, which a companion heeds too, and that it would arm.
+# Bits of SYS_STATUS: GPS and AHRS, which a companion checks too, and readiness to arm.
 TRUSTED, PREARM_CHECK = 1 << 5 | 1 << 21, 1 << 28
-# How long all must have been well: a companion wants 5 s of it, and the end of the warm-up makes GPS late.
+# Time without problems before the start: a companion needs 5 s, and the end of the warm-up delays
+# GPS.
 WELL_S = 6.0
-# Of this project, on top of what ArduPilot's own tests set: no logs on disk.
+# Parameters of this project beyond those of ArduPilot's own tests: no logs on disk.
 PARAMETERS = """
 LOG_BACKEND_TYPE 0
 LOG_DISARMED 0
@@ -42,7 +46,7 @@ LOG_DISARMED 0
 
 
 def metres_per_degree():
-    """North and east at the origin: radii of curvature of WGS 84."""
+    """Radii of curvature of WGS 84 at the origin, north and east."""
     squashed = 6.69437999014e-3
     s = math.sin(math.radians(ORIGIN[0]))
     w = 1.0 - squashed * s * s
@@ -56,7 +60,8 @@ NORTH_M, EAST_M = metres_per_degree()
 
 @dataclass(frozen=True)
 class Truth:
-    """Where a vehicle is by its simulation: metres east and north of the origin and up from its start, m/s, radians from north to east."""
+    """True state of a vehicle: metres east and north of the origin and up from its start, m/s,
+    radians from north to east."""
 
     at: float
     east: float
@@ -67,7 +72,8 @@ class Truth:
 
 
 class Autopilot:
-    """One vehicle: its process, what its pilot does, and what it has said, with the time (`time.time()`) of each."""
+    """One vehicle: its process, its pilot's actions, and received messages with their times
+    (`time.time()`)."""
 
     def __init__(self, kind, number, start, folder: Path, run, companion_port, stick_port, *, model=None, heading=90, defaults=(), parameters=""):
         self.kind, self.number, self.start = kind, number, start
@@ -93,7 +99,7 @@ class Autopilot:
         self.process = None
 
     def switch_on(self, speedup=WARM_UP):
-        """Starts the process, as a pilot switches a vehicle on."""
+        """Starts the process."""
         latitude, longitude = ORIGIN[0] + self.start[1] / NORTH_M, ORIGIN[1] + self.start[0] / EAST_M
         ports = ["--rc-in-port", self.stick_port, "--serial0", f"udpclient:127.0.0.1:{self.socket.getsockname()[1]}", "--serial1", f"udpclient:127.0.0.1:{self.companion_port}"]
         for closed in (2, 5, 6, 7, 8):
@@ -105,10 +111,10 @@ class Autopilot:
             "--speedup", speedup, *ports, cwd=self.folder,
         )
 
-    # What the watching thread does.
+    # Methods of the receiving thread.
 
     def hear(self):
-        """Takes in what has arrived."""
+        """Handles received messages."""
         while True:
             try:
                 data, self.peer = self.socket.recvfrom(4096)
@@ -139,7 +145,7 @@ class Autopilot:
             east, north = (message.lon_int / 1e7 - ORIGIN[1]) * EAST_M, (message.lat_int / 1e7 - ORIGIN[0]) * NORTH_M
             self.truth.append(Truth(now, east, north, message.alt - ORIGIN[2], math.hypot(message.vn, message.ve), message.yaw))
 
-    # What its pilot does.
+    # Actions of the pilot.
 
     def send(self, message):
         if self.peer is not None:
@@ -153,7 +159,7 @@ class Autopilot:
         self.command(511, message_id, 1e6 / hz)
 
     def set(self, name, value, timeout=10.0):
-        """Sets a parameter, again and again until the autopilot says that it is so."""
+        """Sets a parameter, with retries until the autopilot confirms it."""
 
         def is_so():
             self.send(mavlink.MAVLink_param_set_message(self.number, 1, name.encode(), value, 9))
@@ -164,7 +170,7 @@ class Autopilot:
         wait_until(is_so, timeout, f"{name} = {value} of vehicle {self.number}")
 
     def choose(self, mode, timeout=10.0):
-        """The pilot chooses a mode; returns when a heartbeat says so, and when that was."""
+        """Selects a mode. Returns the time of the heartbeat that confirms it."""
         number, asked = self.modes[mode], time.time()
 
         def is_so():
@@ -185,7 +191,7 @@ class Autopilot:
     def take_off(self, height):
         self.command(22, 0, 0, 0, 0, 0, 0, height)
 
-    # What it has said.
+    # Received messages.
 
     @property
     def is_armed(self):
@@ -197,11 +203,11 @@ class Autopilot:
 
     @property
     def height(self):
-        """Above home by its own estimate, metres."""
+        """Height above home by the vehicle's estimate, metres."""
         return self.last["GLOBAL_POSITION_INT"][1].relative_alt / 1e3
 
     def place(self, at):
-        """East, north, up at a time, between the two truths around it; None outside of what is known."""
+        """True position east, north, up at a time, interpolated; None outside of the recorded time."""
         after = bisect.bisect_left(self.truth, at, key=lambda truth: truth.at)
         if not 0 < after < len(self.truth):
             return None
@@ -213,11 +219,11 @@ class Autopilot:
         return [truth for truth in self.truth if since <= truth.at <= until]
 
     def off(self, goal):
-        """Metres along the ground to a place."""
+        """Horizontal distance to a point, metres."""
         return math.hypot(self.truth[-1].east - goal[0], self.truth[-1].north - goal[1]) if self.truth else math.inf
 
     def is_ready(self):
-        """Whether it would arm: its position is there, and its own checks are content."""
+        """Whether the vehicle can be armed: it has a position, and its own checks pass."""
         _, place = self.last.get("GLOBAL_POSITION_INT", (0, None))
         if place is None or "SYS_STATUS" not in self.last or "SIM_STATE" not in self.last:
             return False
@@ -228,7 +234,7 @@ class Autopilot:
 
 
 class Simulation:
-    """Vehicles and the thread that listens to them, as long as the `with` lasts."""
+    """Vehicles and their receiving thread, for the duration of the `with` block."""
 
     RATES = {1: 2, 24: 2, 33: 10, 108: TRUTH_HZ, 124: 2, 193: 2, 245: 4}
 
@@ -269,7 +275,8 @@ class Simulation:
             self.error = error
 
     def ready(self, vehicles=None):
-        """Waits until all would arm, as fast as the machine can; from then on time is real time."""
+        """Waits until all vehicles can be armed, at the highest speed of the machine. Then time is
+        real time."""
         vehicles = vehicles or self.vehicles
         asked = 0.0
 
@@ -294,12 +301,13 @@ class Simulation:
         self._from = [(time.time(), vehicle.boot_ms()) for vehicle in self.vehicles]
 
     def pace(self):
-        """How fast the simulation went since `ready`, of real time: the slowest vehicle's."""
+        """Speed of the slowest vehicle's simulation since `ready`, relative to real time."""
         now = time.time()
         return min((vehicle.boot_ms() - ms) / 1e3 / (now - at) for vehicle, (at, ms) in zip(self.vehicles, self._from))
 
     def nearest(self, since, until, only=None):
-        """The least distance between two vehicles by the truth, metres, with their numbers and when; `only`: of one with the others."""
+        """Smallest true distance between two vehicles, metres, with their numbers and the time;
+        with `only` between one vehicle and the others."""
         best, steps = (math.inf, 0, 0, since), int((until - since) * TRUTH_HZ)
         places = {vehicle.number: [vehicle.place(since + step / TRUTH_HZ) for step in range(steps)] for vehicle in self.vehicles}
         for a in self.vehicles:

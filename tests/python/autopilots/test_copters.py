@@ -1,4 +1,4 @@
-"""Copters of ArduPilot in its own simulation."""
+"""Copters of ArduPilot's simulator."""
 
 import time
 
@@ -6,20 +6,20 @@ from conftest import wait_until
 from flight import GOALS, STARTS, arrive, figures, fly, least, moving, needs, rates  # noqa: F401
 
 pytestmark = needs("copter")
-# Four of the six of the example: each crosses the ways of others all the same.
+# Four of the example's six vehicles; each still crosses the paths of others.
 FOUR = STARTS[:4]
 HEIGHT = 10.0
 
 
 def heights(simulation, companion, until):
-    """Lowest and highest while it steered."""
+    """Lowest and highest position under control."""
     found = []
     for vehicle in simulation.vehicles:
         found += [truth.up for truth in vehicle.between(companion.setpoints(vehicle.number)[0][0], until)]
     return min(found), max(found)
 
 
-def test_copters_cross_at_the_height_to_which_their_pilots_took_off(fly, free_port):
+def test_copters_cross_at_their_pilots_takeoff_height(fly, free_port):
     def waits(text):
         return text.replace('entry = "once"\narm = true\ntakeoff = true\naltitude_m = 10\n', 'entry = "wait"\n')
 
@@ -27,7 +27,7 @@ def test_copters_cross_at_the_height_to_which_their_pilots_took_off(fly, free_po
         config = fly.example("six-copters-crossing.toml", waits)
         assert 'entry = "wait"' in config.read_text()
         companion = fly.companion(config)
-        companion.wait_for("robot 4: the pilot steers")
+        companion.wait_for("robot 4: pilot has control")
         for vehicle in simulation.vehicles:
             vehicle.choose("GUIDED")
         for vehicle in simulation.vehicles:
@@ -80,7 +80,7 @@ def test_the_pilots_loiter_is_respected(fly, free_port):
         time.sleep(4.0)
         one = simulation[2]
         held = one.choose("BRAKE")
-        companion.wait_for("robot 2: the pilot steers")
+        companion.wait_for("robot 2: pilot has control")
         arrive(simulation, GOALS, 150, numbers=[1, 3, 4], within=6.0)
         assert one.mode == one.modes["BRAKE"], "it was taken back"
         words = least(simulation, begun)
@@ -93,7 +93,8 @@ def test_the_pilots_loiter_is_respected(fly, free_port):
 
 
 def test_copters_fly_to_goals_at_their_heights(fly, free_port):
-    """`safety = "fly"`: after the takeoff to 8 m heights belong to the scenario's goals, 5 and 20 m up, and to ORCA."""
+    """`safety = "fly"`: after the takeoff to 8 m, heights follow the scenario's goals (5 and 20 m)
+    and ORCA."""
     starts, goals = [(0.0, 0.0, 8.0), (20.0, 0.0, 8.0)], [(20.0, 0.0, 5.0), (0.0, 0.0, 20.0)]
     heights_m = [height for _, _, height in goals]
     with fly.vehicles("copter", [start[:2] for start in starts], free_port) as simulation:

@@ -1,4 +1,5 @@
-"""What fails while six rovers of ArduPilot cross: pilots act, autopilots restart, GPS and companions fail."""
+"""Failures while six ArduPilot rovers cross: pilots act, autopilots restart, GPS and companions
+fail."""
 
 import os
 import signal
@@ -8,7 +9,7 @@ from conftest import wait_until
 from flight import GOALS, LINE, STARTS, arrive, figures, fly, least, moving, needs  # noqa: F401
 
 pytestmark = needs("rover")
-# Whom it befalls, and how long after setting off: it is on its way to the others then.
+# The affected vehicle, and the delay after the start, when it is on its way to the others.
 ONE, AFTER_S = 3, 4.0
 OTHERS = [number for number in range(1, 7) if number != ONE]
 
@@ -19,7 +20,7 @@ def test_the_pilots_hold_is_respected_until_guided_is_chosen_again(fly, free_por
         begun = moving(simulation, time.time())
         time.sleep(AFTER_S)
         held = simulation[ONE].choose("HOLD")
-        companion.wait_for(f"robot {ONE}: the pilot steers")
+        companion.wait_for(f"robot {ONE}: pilot has control")
         others = arrive(simulation, GOALS, 120, numbers=OTHERS, within=4.0)
         time.sleep(5.0)
         assert simulation[ONE].mode == simulation[ONE].modes["HOLD"], "it was taken back"
@@ -29,7 +30,7 @@ def test_the_pilots_hold_is_respected_until_guided_is_chosen_again(fly, free_por
         there = arrive(simulation, GOALS, 60)
         words = least(simulation, begun)
         companion.finish()
-        # As the companion's own log has the times.
+        # Times in the companion's log.
         beat = next(at for at, m in companion.messages() if m.get_type() == "HEARTBEAT" and m.get_srcSystem() == ONE and m.custom_mode == 4)
         times = [at for at, _ in companion.setpoints(ONE)]
         last = max(at for at in times if at < guided - 0.5)
@@ -49,7 +50,7 @@ def test_an_autopilot_that_restarts_waits_for_its_pilot(fly, free_port):
         os.kill(one.process.child.pid, signal.SIGKILL)
         killed = time.time()
         last = one.truth[-1]
-        # Its simulation begins anew where the vehicle stands by then.
+        # The simulation restarts at the vehicle's position.
         one.start = (last.east, last.north)
         one.process.wait()
         one.switch_on(speedup=1)
@@ -65,7 +66,7 @@ def test_an_autopilot_that_restarts_waits_for_its_pilot(fly, free_port):
         words = least(simulation, begun)
         report = companion.finish()
         times = [at for at, _ in companion.setpoints(ONE)]
-        # Until the link is lost, the companion knows of nothing.
+        # The companion does not notice before the link timeout.
         pause = [at for at in times if killed + 3.5 < at < guided - 1.0]
         figures(f"the others were there after {others - begun:.1f} s; setpoints to it ended {max(at for at in times if at < killed + 3.5) - killed:.1f} s after its death and "
                 f"began again when its pilot had armed; it was there {there - guided:.1f} s later, {words}")
@@ -73,7 +74,7 @@ def test_an_autopilot_that_restarts_waits_for_its_pilot(fly, free_port):
         assert report["vehicles"][ONE - 1]["restarts"] == 1
 
 
-def test_a_vehicle_without_gps_stands_and_says_so(fly, free_port):
+def test_a_vehicle_without_gps_stops_and_reports_it(fly, free_port):
     with fly.vehicles("rover", STARTS, free_port) as simulation:
         companion = fly.companion(fly.example("six-rovers-crossing.toml"))
         begun = moving(simulation, time.time())
@@ -93,11 +94,11 @@ def test_a_vehicle_without_gps_stands_and_says_so(fly, free_port):
         after = [m for at, m in companion.setpoints(ONE) if at > told + 0.1]
         figures(f"said so {told - lost:.2f} s after GPS ended, stood after {stood - lost:.1f} s; the others stood after {others - begun:.1f} s, {words}, {near:.2f} m to it then")
         assert all((m.vx, m.vy, m.vz) == (0.0, 0.0, 0.0) for m in after)
-        # Where it stands by the truth, though its own estimate drifts.
+        # True position, while the vehicle's own estimate drifts.
         assert rolled is not None and abs(one.truth[-1].east - rolled[0]) < 2.0
 
 
-def test_a_vehicle_with_a_second_receiver_goes_on_when_its_first_fails(fly, free_port):
+def test_a_vehicle_with_a_second_receiver_continues_when_the_first_fails(fly, free_port):
     second = "SIM_GPS2_ENABLE 1\nGPS2_TYPE 1\nGPS_AUTO_SWITCH 1\n"
     with fly.vehicles("rover", [(0.0, 0.0)], free_port, parameters=second) as simulation:
         one = simulation[1]
@@ -111,11 +112,11 @@ def test_a_vehicle_with_a_second_receiver_goes_on_when_its_first_fails(fly, free
         doubts = [line for line in companion.process.output().splitlines() if "not trusted" in line]
         first, other = one.last["GPS_RAW_INT"][1].fix_type, one.last["GPS2_RAW"][1].fix_type
         figures(f"its first receiver (fix type {first}) fails on the way, its second has fix type {other}: there in {ended - begun:.1f} s, doubts: {doubts or 'none'}")
-        assert first < 3 <= other and not any("GPS has lost its fix" in line for line in doubts)
+        assert first < 3 <= other and not any("GPS lost its fix" in line for line in doubts)
 
 
 def test_others_keep_clear_of_a_vehicle_whose_companion_dies(fly, free_port):
-    """Each companion has a process, as on vehicles; one is killed as by a power failure."""
+    """Each companion has its own process; one is killed, as by a power failure."""
     with fly.vehicles("rover", STARTS, free_port) as simulation:
         companions = in_two_processes(fly, free_port)
         begun = moving(simulation, time.time())
@@ -129,13 +130,13 @@ def test_others_keep_clear_of_a_vehicle_whose_companion_dies(fly, free_port):
         time.sleep(30.0)
         near, *_ = simulation.nearest(killed, time.time(), only=ONE)
         companions[1].finish()
-        figures(f"killed at {speed:.2f} m/s it went on for {rolled:.1f} m and {stood - killed:.1f} s; {near:.2f} m to it from then on; "
+        figures(f"killed at {speed:.2f} m/s it continued for {rolled:.1f} m and {stood - killed:.1f} s; {near:.2f} m to it from then on; "
                 f"30 s later the others are {[round(simulation[n].off(GOALS[n - 1])) for n in OTHERS]} m from their goals")
         least(simulation, begun)
 
 
-def test_a_companion_that_pauses_goes_on(fly, free_port):
-    """The one of one vehicle, in a process of its own; the others make room meanwhile."""
+def test_a_companion_continues_after_a_pause(fly, free_port):
+    """The companion of one vehicle pauses, in its own process; the others keep clear of it."""
     with fly.vehicles("rover", STARTS, free_port) as simulation:
         companions = in_two_processes(fly, free_port)
         begun = moving(simulation, time.time())
@@ -149,8 +150,9 @@ def test_a_companion_that_pauses_goes_on(fly, free_port):
         assert paused < 0.3
 
 
-def test_vehicles_without_anybody_roll_out_and_go_on_afterwards(fly, free_port):
-    """One process for all is stopped for 5 s: for 3 of them nobody keeps vehicles apart, so how near they come is not judged."""
+def test_vehicles_without_a_controller_stop_and_continue_later(fly, free_port):
+    """A single process for all is stopped for 5 s. For 3 of these, no controller separates the
+    vehicles, so distances are not judged."""
     with fly.vehicles("rover", STARTS, free_port) as simulation:
         companion = fly.companion(fly.example("six-rovers-crossing.toml"))
         begun = moving(simulation, time.time())
@@ -164,7 +166,7 @@ def test_vehicles_without_anybody_roll_out_and_go_on_afterwards(fly, free_port):
 
 
 def pause(companion, vehicles):
-    """Stops its process for 5 s; returns the highest speed at the end of that."""
+    """Stops the process for 5 s. Returns the highest speed at the end of that time."""
     os.kill(companion.process.child.pid, signal.SIGSTOP)
     try:
         time.sleep(5.0)
@@ -174,7 +176,7 @@ def pause(companion, vehicles):
 
 
 def in_two_processes(fly, free_port):
-    """A companion for the one, and one for the others, which hear each other by UDP."""
+    """One companion for vehicle `ONE` and one for the others, connected by UDP."""
     lan, companions = [free_port(), free_port()], []
     scenario = fly.scenario(LINE)
     for mine, numbers in ((0, [ONE]), (1, OTHERS)):

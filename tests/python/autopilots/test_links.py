@@ -1,4 +1,4 @@
-"""Links to ArduPilot's own code: signed, tunnelled, refused."""
+"""Links to ArduPilot: signed, tunnelled, refused."""
 
 import secrets
 import socket
@@ -10,12 +10,12 @@ from flight import arrive, figures, fly, least, moving, needs  # noqa: F401
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 pytestmark = needs("rover")
-# Beside each other, so that nobody is in the way.
+# Side by side, so that no vehicle is in the way.
 STARTS, GOALS = [(0.0, 0.0), (0.0, 8.0)], [(12.0, 0.0), (12.0, 8.0)]
 
 
 def sign(simulation, key):
-    """Gives all vehicles a key, as a ground station does over the cable."""
+    """Gives all vehicles a key, as a ground station does by cable."""
     stamp = int((time.time() - 1420070400) * 1e5)
     for _ in range(3):
         for vehicle in simulation.vehicles:
@@ -42,7 +42,7 @@ def test_signed_links_need_the_right_key(fly, free_port, right):
             figures(f"right key: there in {ended - begun:.1f} s, {words}, {sum(link['refused'] for link in report['links'])} frames refused")
             return
         companion = fly.companion(config, "--link-key", file)
-        companion.wait_for("is refused: its messages are not signed with the key", 15)
+        companion.wait_for("messages rejected: not signed with the key", 15)
         time.sleep(5.0)
         speeds = [truth.speed for vehicle in simulation.vehicles for truth in vehicle.between(started)]
         report = companion.finish()
@@ -52,8 +52,9 @@ def test_signed_links_need_the_right_key(fly, free_port, right):
         assert not any(m.get_srcComponent() == 1 for _, m in companion.messages()), "what was not believed is in the log"
 
 
-def test_a_companion_says_that_tcp_is_refused_and_goes_on_when_it_is_not(fly, free_port):
-    """The link is TCP, as in the examples; what accepts it comes after the companion, and passes bytes on to the vehicle's port."""
+def test_a_refused_tcp_link_is_reported_and_retried(fly, free_port):
+    """The link is TCP, as in the examples. A relay starts after the companion and forwards bytes to
+    the vehicle's port."""
     with fly.vehicles("rover", STARTS[:1], free_port) as simulation:
         port = free_port()
         config = fly.config(fly.scenario([(STARTS[0], GOALS[0])]), "ardupilot-rover", 'entry = "once"\narm = true')
@@ -69,12 +70,12 @@ def test_a_companion_says_that_tcp_is_refused_and_goes_on_when_it_is_not(fly, fr
             ended = arrive(simulation, GOALS[:1], 60)
             companion.finish()
         said = companion.process.output().count("no connection: ")
-        figures(f"said once that it is refused, connected {connected - refused - 2.0:.1f} s after there was somebody; there in {ended - begun:.1f} s")
+        figures(f"refusal reported once, connected {connected - refused - 2.0:.1f} s after the relay started; arrived in {ended - begun:.1f} s")
         assert said == 1, companion.process.output()
 
 
 class Relay:
-    """Between a TCP port of this machine, where a companion connects, and a UDP port, at which a vehicle's autopilot talks."""
+    """Relays between a local TCP port for the companion and a UDP port of a vehicle's autopilot."""
 
     def __init__(self, tcp, udp):
         self.server = socket.create_server(("127.0.0.1", tcp))

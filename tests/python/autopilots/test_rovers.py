@@ -1,4 +1,4 @@
-"""Rovers of ArduPilot in its own simulation, all well."""
+"""Rovers of ArduPilot's simulator, without failures."""
 
 import math
 import time
@@ -52,8 +52,8 @@ def test_two_rovers_head_on_pass_each_other(fly, free_port, model):
 
 
 @pytest.mark.parametrize("model", ["rover-skid", "rover"])
-def test_rovers_that_stand_keep_their_heading(fly, free_port, model):
-    """Also those that turn on the spot: ArduRover made north of a velocity of nothing."""
+def test_stationary_rovers_keep_their_heading(fly, free_port, model):
+    """Includes rovers that turn on the spot: ArduRover interprets a zero velocity as north."""
     extra = ["rover-skid.parm"] if model == "rover-skid" else []
     starts, goals = [(0.0, 0.0), (14.0, 0.0)], [(14.0, -6.0), (0.0, -6.0)]
     with fly.vehicles("rover", starts, free_port, model=model, defaults=extra) as simulation:
@@ -73,12 +73,13 @@ def test_rovers_that_stand_keep_their_heading(fly, free_port, model):
 
 
 
-# A formation that holds has every place within a metre of where its leader is, once it has formed.
+# In a complete formation every vehicle is within a metre of its place relative to the leader.
 FORMED_S, WANTED_ERROR_M, WANTED_SHARE = 10.0, 1.0, 1.2
 
 
 def test_six_rovers_hold_their_formation(fly, free_port):
-    """Two rows of three with 8 m between, 160 m to the north-east; the origin is that of the example."""
+    """Two rows of three with 8 m between them, 160 m to the north-east; the origin is the
+    example's."""
     places = [(-8.0 * (i % 3), -8.0 * (i // 3)) for i in range(6)]
     starts = [(x, y) for x, y in places]
     goals = [(x + 160.0, y + 160.0) for x, y in starts]
@@ -100,7 +101,7 @@ def test_six_rovers_hold_their_formation(fly, free_port):
                     wanted = [now[0][axis] + places[number - 1][axis] for axis in (0, 1)]
                     errors[number].append(math.dist(now[number - 1][:2], wanted))
             worst = {number: max(error) for number, error in errors.items()}
-            # Alone a rover goes the straight way at its highest speed.
+            # A single rover moves straight at its highest speed.
             alone = math.dist(starts[0], goals[0]) / 2.0
             share = (until - begun) / alone
             distance, *_ = simulation.nearest(begun, until)

@@ -1,4 +1,5 @@
-//! Checkpoints as a user meets them: a run that is killed, stopped or moved goes on to the same results.
+//! Checkpoints at the command line: a killed, stopped or moved run continues with identical
+//! results.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -18,7 +19,7 @@ fn scenario(name: &str) -> String {
     folder.join(name).to_str().expect("a path in UTF-8").to_owned()
 }
 
-/// Runs `staya run` and gives what it prints on standard error.
+/// Runs `staya run`. Returns its standard error.
 fn run(arguments: &[&str]) -> String {
     let Output { status, stderr, .. } =
         staya(&[&["run", "--quiet"], arguments].concat()).output().expect("staya starts");
@@ -27,7 +28,7 @@ fn run(arguments: &[&str]) -> String {
     stderr
 }
 
-/// The files of a results folder; of the summary all but how long it took and where its files are.
+/// The files of a results folder; the summary without duration and paths.
 fn results(out: &str) -> BTreeMap<String, Vec<u8>> {
     let files = fs::read_dir(out).expect("a folder").map(|entry| {
         let path = entry.expect("it can be read").path();
@@ -60,7 +61,7 @@ fn folders<const N: usize>() -> (tempfile::TempDir, [String; N]) {
 }
 
 #[test]
-fn a_run_goes_on_in_another_process_to_the_same_results() {
+fn a_run_continues_in_another_process_with_identical_results() {
     for name in ["six-robots.toml", "six-discs.toml", "revoked.toml"] {
         let (_dir, [whole, out]) = folders();
         let path = scenario(name);
@@ -72,7 +73,7 @@ fn a_run_goes_on_in_another_process_to_the_same_results() {
     }
 }
 
-/// Robots under way for as long as `--ticks` says.
+/// Robots that are on their way for as long as `--ticks` allows.
 const LONG: &str = "name = \"long\"\nticks = 10000000\ntick_s = 0.5\n[terrain]\n\
     uniform = { width = 200, height = 200, classes = 1 }\n[robots.scattered]\ncount = 60\ntravel = 30\n\
     [radio]\nrange_m = 20\nloss = 0.3\njitter_ms = 900\n\
@@ -80,7 +81,7 @@ const LONG: &str = "name = \"long\"\nticks = 10000000\ntick_s = 0.5\n[terrain]\n
 
 #[cfg(unix)]
 #[test]
-fn a_killed_run_goes_on_and_so_does_one_that_was_stopped() {
+fn killed_and_stopped_runs_continue() {
     for signal in ["-KILL", "-INT"] {
         let (dir, [out, again, whole]) = folders();
         let path = dir.path().join("long.toml");
@@ -103,7 +104,7 @@ fn a_killed_run_goes_on_and_so_does_one_that_was_stopped() {
             assert_eq!(status.code(), Some(130));
             assert!(String::from_utf8_lossy(&stderr).contains("checkpoint at tick"));
         }
-        // Where the checkpoint is, the file says; the run lasts a little longer.
+        // The error names the tick of the checkpoint; the run lasts a little longer.
         let refused = staya(&["run", "--quiet", path, "--out", &again, "--from", &checkpoint, "--ticks", "1"]).output();
         let refused = String::from_utf8_lossy(&refused.expect("staya starts").stderr).into_owned();
         let tick = refused.split("it is at tick ").nth(1).and_then(|rest| rest.split(',').next());
@@ -116,7 +117,7 @@ fn a_killed_run_goes_on_and_so_does_one_that_was_stopped() {
 }
 
 #[test]
-fn what_is_no_checkpoint_of_this_run_is_refused_in_one_line() {
+fn checkpoints_of_other_runs_are_refused_in_one_line() {
     let (_dir, [out, other]) = folders();
     let [path, another] = ["figure-5.toml", "figure-6.toml"].map(scenario);
     run(&[&path, "--out", &out, "--ticks", "10", "--checkpoint", "5ticks"]);

@@ -1,4 +1,4 @@
-//! `staya experiment swap` and `doorway` as a user or a script meets them.
+//! `staya experiment swap` and `doorway` at the command line.
 
 use serde_json::Value;
 use std::path::Path;
@@ -18,7 +18,7 @@ fn json(arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn a_swap_is_run_drawn_and_told() {
+fn a_swap_is_run_drawn_and_printed() {
     let dir = tempfile::tempdir().expect("temporary folder");
     let out = dir.path().join("out");
     let folder = out.to_str().expect("UTF-8");
@@ -39,7 +39,7 @@ fn a_swap_is_run_drawn_and_told() {
 }
 
 #[test]
-fn a_doorway_is_run_drawn_and_told() {
+fn a_doorway_is_run_drawn_and_printed() {
     let dir = tempfile::tempdir().expect("temporary folder");
     let folder = dir.path().to_str().expect("UTF-8");
     let told = json(&["doorway", "--widths", "0.8,2", "--robots", "1", "--out", folder]);

@@ -1,4 +1,4 @@
-//! Two hundred connections that mean no good, on the port of a page that looks on: what goes on beside it stays as it is.
+//! Two hundred hostile connections to a live page do not change the run.
 
 use staya_sim::engine::simulate;
 use staya_sim::scenario::{Overrides, Scenario};
@@ -15,10 +15,9 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
-/// Connections that are open at a time.
 const CROWD: usize = 200;
 
-/// Connections that come, misbehave in one of seven ways, go and come again.
+/// Connections that misbehave in one of seven ways, close and reopen.
 struct Crowd {
     stop: Arc<AtomicBool>,
     connected: Arc<AtomicUsize>,
@@ -26,7 +25,7 @@ struct Crowd {
 }
 
 impl Crowd {
-    /// Around a page; waits until all have connected.
+    /// Opens connections to a page, and waits until all are open.
     fn around(url: &str) -> Self {
         let (stop, connected) = <(Arc<AtomicBool>, Arc<AtomicUsize>)>::default();
         let (stops, connects) = (Arc::clone(&stop), Arc::clone(&connected));
@@ -50,7 +49,7 @@ impl Crowd {
         let this = Self { stop, connected, thread: Some(thread) };
         let until = Instant::now() + Duration::from_secs(20);
         while this.connected() < CROWD {
-            assert!(Instant::now() < until, "they do not get in");
+            assert!(Instant::now() < until, "the connections were not accepted");
             std::thread::sleep(Duration::from_millis(1));
         }
         this
@@ -70,7 +69,7 @@ impl Drop for Crowd {
     }
 }
 
-/// A connection as number `number` makes it; it never reads.
+/// Opens connection `number` with its kind of misbehaviour; it never reads.
 fn misbehave(address: SocketAddr, token: &str, number: usize) -> Option<TcpStream> {
     let mut stream = TcpStream::connect(address).ok()?;
     let head = format!(
@@ -79,19 +78,19 @@ fn misbehave(address: SocketAddr, token: &str, number: usize) -> Option<TcpStrea
     );
     let garbage: Vec<u8> = (0..900_usize).map(|at| (at * (number + 7) % 251) as u8).collect();
     let words = match number % 7 {
-        // Says nothing.
+        // Sends nothing.
         0 => Vec::new(),
         // Half a handshake.
         1 => head[..head.len() / 2].to_owned().into_bytes(),
-        // No request at all.
+        // Not a request.
         2 => garbage,
         // A page that never reads.
         3 => format!("{head}\r\n").into_bytes(),
-        // A page that says no words.
+        // A page that sends invalid messages.
         4 => [format!("{head}\r\n").as_bytes(), &garbage].concat(),
-        // Somebody else's page.
+        // A page of another origin.
         5 => format!("{head}Origin: http://evil.example\r\n\r\n").into_bytes(),
-        // No token.
+        // A wrong token.
         _ => head.replacen(token, "0", 1).into_bytes().into_iter().chain(*b"\r\n").collect(),
     };
     let _ = stream.write_all(&words);
@@ -111,19 +110,19 @@ fn scenario(name: &str, overrides: &Overrides) -> Scenario {
     Scenario::load(&path, overrides).expect("a good scenario")
 }
 
-/// An honest page gets in, crowd or not, and is shown what goes on.
+/// Connects a well-behaved page despite the crowd, and checks that it gets frames.
 fn shows_an_honest_page(url: &str) -> JoinHandle<()> {
     let url = url.replace("http:", "ws:").replace("/?", "/live?");
     std::thread::spawn(move || {
         let shown = (0..200).any(|_| {
-            // Pages of the crowd may have taken all places; they are left when they do not read.
+            // Pages of the crowd may occupy all places until they are disconnected.
             std::thread::sleep(Duration::from_millis(20));
             let Ok((mut page, _)) = tungstenite::connect(&url) else { return false };
             std::iter::repeat_with(|| page.read())
                 .map_while(Result::ok)
                 .any(|message| matches!(message, Message::Binary(_)))
         });
-        assert!(shown, "it is shown nothing");
+        assert!(shown, "the page got no frame");
     })
 }
 
@@ -141,7 +140,7 @@ fn a_run_has_the_same_hash_with_two_hundred_connections() {
         })
         .expect("they can be placed")
     };
-    // Again and again until the page has seen it.
+    // Repeats the run until the page has seen it.
     let crowded = loop {
         let outcome = run(&mut watcher);
         assert_eq!((outcome.trace_hash, outcome.ticks), (alone.trace_hash, alone.ticks));
@@ -149,7 +148,7 @@ fn a_run_has_the_same_hash_with_two_hundred_connections() {
             break outcome;
         }
     };
-    honest.join().expect("an honest page is let in");
+    honest.join().expect("a well-behaved page is accepted");
     drop(crowd);
     assert_eq!(crowded, alone);
     let counts = watcher.server().counts();
@@ -159,7 +158,7 @@ fn a_run_has_the_same_hash_with_two_hundred_connections() {
     );
 }
 
-/// What a command prints on standard error, up to the address of its page.
+/// Reads standard error of a command up to the address of its page.
 fn address(child: &mut Child) -> String {
     let lines = BufReader::new(child.stderr.take().expect("it is piped")).lines();
     let mut urls = lines.map_while(Result::ok).filter(|line| line.contains("/?token="));
@@ -168,7 +167,8 @@ fn address(child: &mut Child) -> String {
 
 #[test]
 fn a_bridge_misses_no_deadline_for_two_hundred_connections() {
-    // Ticks so long that no other work of a busy machine takes as much; whoever waited for one of the crowd would wait for seconds.
+    // Ticks longer than any other work of a busy machine, but shorter than a wait for one of the
+    // crowd.
     let text = "name = \"t\"\nseed = 1\nticks = 100\ntick_s = 0.5\n[radio]\nrange_m = 50\n[plane]\nradius_m = 0.2\n\
          max_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [9, 0]\n\
          [[plane.robots.list]]\nstart_m = [9, 0.1]\ngoal_m = [0, 0]\n";
@@ -183,7 +183,7 @@ fn a_bridge_misses_no_deadline_for_two_hundred_connections() {
     let crowd = Crowd::around(&url);
     let honest = shows_an_honest_page(&url);
     let output = child.wait_with_output().expect("it ends");
-    honest.join().expect("an honest page is let in");
+    honest.join().expect("a well-behaved page is accepted");
     assert!(crowd.connected() > CROWD, "{}", crowd.connected());
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!((&report["ticks"], &report["deadlines_missed"]), (&8.into(), &0.into()), "{report}");

@@ -1,4 +1,4 @@
-//! The programs of Staya as a user or a script meets them.
+//! The programs of Staya at the command line.
 
 mod checkpoint;
 mod crossing;

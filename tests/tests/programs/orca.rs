@@ -1,4 +1,4 @@
-//! `staya orca` as a user or a script meets it.
+//! `staya orca` at the command line.
 
 use serde_json::Value;
 use std::fs;
@@ -18,7 +18,7 @@ fn json(arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn draw_leaves_four_pictures_of_the_papers_example() {
+fn draw_writes_four_pictures_of_the_papers_example() {
     let dir = tempfile::tempdir().expect("temporary folder");
     let out = dir.path().join("a/b");
     let folder = out.to_str().expect("UTF-8");
@@ -40,7 +40,7 @@ fn draw_leaves_four_pictures_of_the_papers_example() {
 }
 
 #[test]
-fn scenes_without_sense_and_folders_in_the_way_are_refused_in_one_line() {
+fn invalid_scenes_and_unwritable_folders_are_refused_in_one_line() {
     let dir = tempfile::tempdir().expect("temporary folder");
     let file = dir.path().join("file");
     fs::write(&file, "mine").expect("write");
@@ -60,7 +60,7 @@ fn scenes_without_sense_and_folders_in_the_way_are_refused_in_one_line() {
 }
 
 #[test]
-fn table_says_the_same_twice_and_for_people() {
+fn the_table_is_reproducible_and_readable() {
     let arguments = ["orca", "table", "--pairs", "500", "--seed", "7"];
     let table = json(&arguments);
     assert_eq!(table, json(&arguments));

@@ -1,4 +1,4 @@
-//! `staya run --record`, `--mcap`, `--gif` and `staya page` as a user meets them.
+//! `staya run --record`, `--mcap`, `--gif` and `staya page` at the command line.
 
 use serde_json::Value;
 use staya_record::recording::Reader;
@@ -16,14 +16,14 @@ fn scenario(name: &str) -> String {
     path.to_str().expect("UTF-8").to_owned()
 }
 
-/// The summary of a run that must succeed.
+/// Summary of a run that must succeed.
 fn run(arguments: &[&str]) -> Value {
     let ended = staya(&[&["run", "--json", "--quiet"], arguments].concat());
     assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
     serde_json::from_slice(&ended.stdout).expect("one JSON object")
 }
 
-/// The line of a command that must fail.
+/// Error line of a command that must fail.
 fn refusal(arguments: &[&str]) -> String {
     let ended = staya(arguments);
     assert_eq!(ended.status.code(), Some(1));
@@ -78,7 +78,7 @@ fn a_recording_has_every_tick_and_changes_nothing() {
 }
 
 #[test]
-fn changes_of_the_world_are_in_the_recording() {
+fn interventions_are_in_the_recording() {
     let folder = Folder::new();
     let (out, file, path) = (folder.path("out"), folder.path("run.rec"), folder.path("wall.toml"));
     let text = "name = \"wall\"\nticks = 30\ntick_s = 0.1\n[plane]\nradius_m = 0.2\nmax_speed_mps = 0.5\n\
@@ -94,7 +94,7 @@ fn changes_of_the_world_are_in_the_recording() {
 }
 
 #[test]
-fn a_page_carries_a_run_or_a_recording() {
+fn a_page_contains_a_run_or_a_recording() {
     if staya_record::page::file("index.html").is_none() {
         return;
     }
@@ -117,7 +117,7 @@ fn a_page_carries_a_run_or_a_recording() {
 }
 
 #[test]
-fn moving_pictures_and_mcap_files_are_what_they_say() {
+fn gif_and_mcap_files_are_valid() {
     let folder = Folder::new();
     let [out, gif, mcap] = ["out", "run.gif", "run.mcap"].map(|name| folder.path(name));
     run(&[
@@ -159,6 +159,6 @@ fn errors_name_the_file_the_byte_and_the_remedy() {
     assert!(missing.contains("none.rec") && missing.contains("check the name"), "{missing}");
     fs::write(&file, "a text").expect("write");
     let text = refusal(&["page", &file, "--out", &page]);
-    assert!(text.contains("byte 0: this is no recording"), "{text}");
+    assert!(text.contains("byte 0: not a recording"), "{text}");
     assert!(!PathBuf::from(page).exists());
 }

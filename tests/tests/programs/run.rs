@@ -1,4 +1,4 @@
-//! The command `staya` as a user or a script meets it: exit codes, standard output, files, errors.
+//! The command `staya`: exit codes, standard output, files, errors.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,6 @@ fn scenario(name: &str) -> String {
     folder.join(name).to_str().expect("a path in UTF-8").to_owned()
 }
 
-/// The maps that come with Staya.
 const MAPS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../maps/");
 
 fn folder() -> (tempfile::TempDir, String) {
@@ -76,7 +75,7 @@ fn json_is_one_object_with_every_promised_key() {
 }
 
 #[test]
-fn without_traces_a_run_is_the_same_and_none_of_an_earlier_run_stay() {
+fn a_run_without_traces_is_unchanged_and_removes_earlier_traces() {
     let (_dir, out) = folder();
     let run = |more: &[&str]| {
         let file = scenario("figure-5.toml");
@@ -99,7 +98,7 @@ fn without_traces_a_run_is_the_same_and_none_of_an_earlier_run_stay() {
 }
 
 #[test]
-fn a_formationless_run_says_null_and_the_command_line_overrides_the_file() {
+fn a_run_without_formation_has_null_values_and_options_override_the_file() {
     let (_dir, out) = folder();
     let path = scenario("moving-ai-20.toml");
     let base = ["run", &path, "--json", "--quiet", "--out", &out, "--ticks", "7"];
@@ -117,7 +116,7 @@ fn a_formationless_run_says_null_and_the_command_line_overrides_the_file() {
 }
 
 #[test]
-fn the_table_names_what_was_written() {
+fn the_table_names_the_written_files() {
     let (_dir, out) = folder();
     let arguments = ["run", &scenario("figure-5.toml"), "--quiet", "--out", &out];
     let Output { status, stdout, .. } = staya(&arguments).output().expect("staya starts");
@@ -129,7 +128,7 @@ fn the_table_names_what_was_written() {
 }
 
 #[test]
-fn results_go_to_a_folder_of_the_scenarios_name() {
+fn results_are_in_a_folder_with_the_scenarios_name() {
     let (dir, _) = folder();
     let arguments = ["run", &scenario("figure-5.toml"), "--quiet", "--ticks", "2"];
     let ended = staya(&arguments).current_dir(dir.path()).output().expect("staya starts");
@@ -138,7 +137,7 @@ fn results_go_to_a_folder_of_the_scenarios_name() {
 }
 
 #[test]
-fn errors_are_one_line_with_the_place_and_the_remedy() {
+fn errors_are_one_line_with_place_and_remedy() {
     let (dir, out) = folder();
     let missing = refusal(&["run", "no/such.toml", "--out", &out]);
     assert!(missing.starts_with("staya: no/such.toml: "), "{missing}");
@@ -161,7 +160,7 @@ fn errors_are_one_line_with_the_place_and_the_remedy() {
 }
 
 #[test]
-fn wrong_usage_is_told_from_failure() {
+fn invalid_usage_differs_from_failure() {
     for arguments in [
         &["run"][..],
         &["run", "a.toml", "--ticks", "0"],
@@ -180,14 +179,14 @@ fn wrong_usage_is_told_from_failure() {
         let ended = staya(arguments).output().expect("staya starts");
         assert_eq!(ended.status.code(), Some(2), "{arguments:?}");
         assert!(ended.stdout.is_empty(), "{arguments:?}");
-        // A negative number is a wrong value, not an unknown option.
+        // A negative number is an invalid value, not an unknown option.
         let stderr = text(&ended.stderr);
         assert!(!stderr.contains("unexpected argument"), "{stderr}");
     }
 }
 
 #[test]
-fn numbers_out_of_range_end_with_what_to_give() {
+fn numbers_out_of_range_are_errors_with_a_remedy() {
     for (arguments, expected) in [
         (&["route", "--runs", "0"][..], "make 1 or more"),
         (&["route", "--runs", "4294967295"], "4294967295 runs; make at most"),
@@ -205,7 +204,7 @@ fn numbers_out_of_range_end_with_what_to_give() {
 }
 
 #[test]
-fn a_file_that_cannot_be_read_is_named_once_with_the_remedy() {
+fn an_unreadable_file_is_named_once_with_a_remedy() {
     let (dir, _) = folder();
     let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
     let kinds: [(&[&str], &str); 5] = [
@@ -236,13 +235,13 @@ fn a_file_that_cannot_be_read_is_named_once_with_the_remedy() {
 }
 
 #[test]
-fn experiments_find_out_before_the_work_that_results_cannot_be_kept() {
+fn experiments_check_their_output_folder_first() {
     let (dir, _) = folder();
     let in_the_way = dir.path().join("file");
     fs::write(&in_the_way, "mine").expect("write");
     let way = in_the_way.to_str().expect("UTF-8");
     for experiment in ["route", "formation"] {
-        // With so many runs, hours would pass first.
+        // Such a number of runs would take hours.
         let most = ["experiment", experiment, "--runs", "1000000", "--out", way];
         let refused = refusal(&most);
         assert!(refused.contains(way) && refused.contains("choose another output directory"), "{refused}");
@@ -255,7 +254,7 @@ fn experiments_find_out_before_the_work_that_results_cannot_be_kept() {
 }
 
 #[test]
-fn every_command_that_offers_json_prints_one_object_and_leaves_no_probe() {
+fn every_json_command_prints_one_object_and_leaves_no_probe_file() {
     let (dir, out) = folder();
     let path = |name: &str| dir.path().join(name).to_str().expect("UTF-8").to_owned();
     let (land, picture, answers) = (path("land.yaml"), path("land.png"), path("answers"));
@@ -284,7 +283,7 @@ fn every_command_that_offers_json_prints_one_object_and_leaves_no_probe() {
     }
 }
 
-/// The folder in which a run into `out` has its files until they are complete.
+/// The folder with the incomplete results of a run into `out`.
 fn partial(out: &str) -> Option<PathBuf> {
     let out = Path::new(out);
     let found = fs::read_dir(out.parent()?).ok()?.flatten().map(|entry| entry.path());
@@ -294,14 +293,14 @@ fn partial(out: &str) -> Option<PathBuf> {
 
 #[cfg(unix)]
 #[test]
-fn a_full_disk_ends_the_run_with_the_files_name_and_the_old_results() {
+fn a_full_disk_ends_the_run_and_keeps_the_old_results() {
     let (_dir, out) = folder();
     let small = scenario("scale-small.toml");
     let first = staya(&["run", &small, "--quiet", "--ticks", "2", "--out", &out]).output().expect("staya starts");
     assert!(first.status.success());
     let before = fs::read(Path::new(&out).join("summary.json")).expect("summary.json");
     fs::write(Path::new(&out).join("notes.txt"), "mine").expect("write");
-    // Files beyond 64 KiB are refused by the system, as on a full disk.
+    // The system refuses files beyond 64 KiB, as on a full disk.
     let line = "trap '' XFSZ; ulimit -f 128; exec \"$0\" \"$@\"";
     let ended = Command::new("sh")
         .args(["-c", line])
@@ -313,9 +312,9 @@ fn a_full_disk_ends_the_run_with_the_files_name_and_the_old_results() {
     let full = text(&ended.stderr);
     let kept = partial(&out).expect("what was written");
     assert!(full.contains("trace.csv") && full.contains("free some space"), "{full}");
-    assert!(full.contains(kept.to_str().expect("UTF-8")) && full.contains("nothing has changed"), "{full}");
+    assert!(full.contains(kept.to_str().expect("UTF-8")) && full.contains("is unchanged"), "{full}");
     assert_eq!(fs::read(Path::new(&out).join("summary.json")).expect("still there"), before);
-    // The next run clears that away, and leaves what no run made.
+    // The next run removes incomplete results, but no other files.
     let next = staya(&["run", &small, "--quiet", "--ticks", "3", "--out", &out]).output().expect("staya starts");
     assert!(next.status.success());
     assert_eq!(partial(&out), None);
@@ -323,11 +322,10 @@ fn a_full_disk_ends_the_run_with_the_files_name_and_the_old_results() {
     assert_eq!(fs::read_to_string(Path::new(&out).join("notes.txt")).expect("kept"), "mine");
 }
 
-/// One robot that never gets out of its room, for as long as it takes.
+/// A robot that can never leave its room.
 const PRISON: &str = "name = \"prison\"\nticks = 4000000000\n[terrain]\nfile = \"prison.map\"\n\
                       [robots]\nlist = [{ start = [0, 0], goal = [4, 0] }]\n";
 
-/// Writes the scenario and its map into a folder.
 fn prison(dir: &Path) -> PathBuf {
     let path = dir.join("prison.toml");
     fs::write(&path, PRISON).expect("write");
@@ -336,20 +334,20 @@ fn prison(dir: &Path) -> PathBuf {
     path
 }
 
-/// Waits until a run into `out` has written something.
+/// Waits until a run into `out` has written data.
 fn wait_for_series(out: &str, child: &mut std::process::Child) {
     let patience = Instant::now() + Duration::from_secs(120);
     let written = || fs::metadata(partial(out)?.join("series.csv")).ok();
     while written().map_or(0, |m| m.len()) < 10_000 {
         assert!(Instant::now() < patience, "nothing is written");
-        assert!(child.try_wait().expect("a child").is_none(), "it ended by itself");
+        assert!(child.try_wait().expect("a child").is_none(), "the run ended early");
         thread::sleep(Duration::from_millis(10));
     }
 }
 
 #[cfg(unix)]
 #[test]
-fn a_killed_run_leaves_the_old_results_as_they_were() {
+fn a_killed_run_leaves_the_old_results_unchanged() {
     let (dir, out) = folder();
     let path = prison(dir.path());
     let path = path.to_str().expect("UTF-8");
@@ -369,12 +367,12 @@ fn a_killed_run_leaves_the_old_results_as_they_were() {
     assert!(before == all(), "the results have changed");
     let again = staya(&["run", path, "--quiet", "--ticks", "5", "--out", &out]).output().expect("staya starts");
     assert!(again.status.success());
-    assert_eq!(partial(&out), None, "what the dead run left is gone");
+    assert_eq!(partial(&out), None, "incomplete results are removed");
 }
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_ends_a_run_cleanly_and_keeps_what_it_has() {
+fn ctrl_c_ends_a_run_cleanly_and_keeps_its_results() {
     let (dir, out) = folder();
     let path = prison(dir.path());
     let mut child = staya(&["run", path.to_str().expect("UTF-8"), "--json", "--out", &out])
@@ -397,7 +395,7 @@ fn ctrl_c_ends_a_run_cleanly_and_keeps_what_it_has() {
 }
 
 #[test]
-fn robots_in_the_plane_swap_places_from_end_to_end() {
+fn a_swap_in_the_plane_runs_at_the_command_line() {
     let (_dir, out) = folder();
     let circle = scenario("swap-circle.toml");
     let arguments = ["run", &circle, "--json", "--quiet", "--out", &out];
@@ -423,7 +421,7 @@ fn robots_in_the_plane_swap_places_from_end_to_end() {
 }
 
 #[test]
-fn experiments_with_flocks_tell_tables_json_and_leave_pictures() {
+fn flock_experiments_print_tables_and_json_and_write_pictures() {
     let (dir, out) = folder();
     let json = |arguments: &[&str]| -> Value {
         let output = staya(arguments).output().expect("staya starts");

@@ -1,4 +1,4 @@
-//! `--set`, help, and commands that `staya` hands to other programs.
+//! `--set`, help, and commands of other programs.
 
 use std::process::{Command, Output, Stdio};
 
@@ -23,14 +23,14 @@ fn hash(arguments: &[&str]) -> String {
 }
 
 #[test]
-fn a_field_that_is_set_is_as_if_the_file_said_it() {
+fn an_overridden_field_equals_one_in_the_file() {
     let plain = hash(&["--ticks", "40", "--seed", "9"]);
     assert_eq!(hash(&["--set", "ticks=40", "--set", "seed=9"]), plain);
     assert_ne!(hash(&["--set", "ticks=40", "--set", "seed=9", "--set", "radio.loss=0.9"]), plain);
 }
 
 #[test]
-fn a_wrong_setting_names_field_and_remedy() {
+fn an_invalid_override_names_field_and_remedy() {
     let six = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/six-robots.toml");
     let Output { status, stdout, stderr } = staya(&["run", six, "--set", "radio.loss=7"]);
     let said = text(&stderr);
@@ -41,7 +41,7 @@ fn a_wrong_setting_names_field_and_remedy() {
 }
 
 #[test]
-fn commands_of_other_programs_are_found_and_their_help_is_their_own() {
+fn commands_of_other_programs_are_found_with_their_own_help() {
     for arguments in [&["sweep", "--help"][..], &["help", "sweep"]] {
         let Output { status, stdout, stderr } = staya(arguments);
         assert!(status.success(), "{}", text(&stderr));

@@ -1,4 +1,4 @@
-//! `staya sweep` as a user or a cluster meets it: the same rows however often it is killed and however it is divided.
+//! `staya sweep` at the command line: identical rows after any kill and for any number of shards.
 
 use serde_json::Value;
 use std::fs;
@@ -8,14 +8,13 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Runs of some hundredths of a second.
+/// A run takes some hundredths of a second.
 const SCENARIO: &str = "name = 'swap'\nticks = 200\ntick_s = 0.05\n[radio]\nrange_m = 5\n[plane]\nradius_m = 0.15\n\
     max_speed_mps = 0.5\n[plane.robots.circle]\ncount = 12\nradius_m = 2\nnoise_m = 0.05\n";
 const PLAN: &str = "name = 'p'\nscenario = 'swap.toml'\nseeds = 4\nmeasures = ['arrived', 'least_gap_m', 'packets.lost']\n\
     [axes]\nradio.loss = [0, 0.2, 0.4, 0.6]\nradio.delay_ms = [0, 50]\n";
 const RUNS: usize = 32;
 
-/// A folder with that plan.
 struct Folder(TempDir);
 
 impl Folder {
@@ -42,14 +41,13 @@ impl Folder {
         text(&stdout)
     }
 
-    /// The one line of a command that must fail.
+    /// The error line of a command that must fail.
     fn refused(&self, arguments: &[&str], code: i32) -> String {
         let Output { status, stderr, .. } = self.sweep(arguments).output().expect("staya starts");
         assert_eq!(status.code(), Some(code), "{}", text(&stderr));
         text(&stderr)
     }
 
-    /// Everything that is merged, as bytes.
     fn results(&self, out: &str) -> Vec<Vec<u8>> {
         let out = self.path(out);
         let mut pictures: Vec<_> =
@@ -62,7 +60,6 @@ impl Folder {
         files.map(|file| fs::read(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))).collect()
     }
 
-    /// Whole rows in the file of a shard so far.
     fn rows(&self, file: &str) -> usize {
         let bytes = fs::read(self.path(file)).unwrap_or_default();
         bytes.iter().filter(|&&byte| byte == b'\n').count().saturating_sub(1)
@@ -74,7 +71,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn any_number_of_shards_gives_the_bytes_of_one_machine() {
+fn any_number_of_shards_gives_identical_bytes() {
     let folder = Folder::new();
     let said = folder.done(&["plan.toml", "--out", "alone"]);
     assert!(
@@ -103,7 +100,7 @@ fn any_number_of_shards_gives_the_bytes_of_one_machine() {
         assert_eq!((&json["runs"], json["points"].as_array().map(Vec::len)), (&32.into(), Some(8)));
         assert_eq!(folder.results(&out), alone);
     }
-    // By the names of their files, from elsewhere.
+    // With explicit file names, from another folder.
     let files: Vec<String> = (1..=7).map(|index| format!("of-7/shards/{index}-of-7.csv")).collect();
     let arguments: Vec<&str> =
         ["merge", "plan.toml", "--out", "named"].into_iter().chain(files.iter().map(String::as_str)).collect();
@@ -113,7 +110,7 @@ fn any_number_of_shards_gives_the_bytes_of_one_machine() {
 
 #[cfg(unix)]
 #[test]
-fn whoever_is_killed_loses_only_the_runs_that_were_in_progress() {
+fn a_killed_process_loses_only_the_runs_in_progress() {
     let folder = Folder::new();
     folder.done(&["plan.toml", "--out", "alone"]);
     let alone = folder.results("alone");
@@ -139,7 +136,7 @@ fn whoever_is_killed_loses_only_the_runs_that_were_in_progress() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_with_place_and_remedy() {
+fn invalid_plans_are_refused_with_place_and_remedy() {
     let folder = Folder::new();
     let said = folder.refused(&["none.toml"], 1);
     assert!(said.contains("none.toml: ") && said.contains("check the name"), "{said}");
@@ -165,7 +162,7 @@ fn what_cannot_be_is_refused_with_place_and_remedy() {
         let said = folder.refused(&arguments, 1);
         assert!(said.contains(what), "{said}");
     }
-    // A changed plan does not mix with what is there, and loses nothing.
+    // Rows of a changed plan do not mix with existing ones, which are kept.
     let before = fs::read(folder.path("out/shards/1-of-4.csv")).expect("rows");
     fs::write(folder.path("plan.toml"), PLAN.replace("0.2", "0.3")).expect("room");
     for arguments in [&["plan.toml", "--out", "out", "--resume"][..], &["merge", "plan.toml", "--out", "out"]] {
@@ -180,7 +177,7 @@ fn what_cannot_be_is_refused_with_place_and_remedy() {
 }
 
 #[test]
-fn a_dry_run_says_what_it_will_cost_and_leaves_nothing() {
+fn a_dry_run_prints_the_cost_and_writes_nothing() {
     let folder = Folder::new();
     let said = folder.done(&["plan.toml", "--dry-run"]);
     for part in ["radio.loss: 4 values, 0, 0.2, 0.4, 0.6", "32 runs: 8 points", "processor time", "of rows"] {
@@ -193,7 +190,7 @@ fn a_dry_run_says_what_it_will_cost_and_leaves_nothing() {
 }
 
 #[test]
-fn scripts_name_what_they_run() {
+fn scripts_contain_their_commands() {
     let folder = Folder::new();
     let place = folder.0.path().canonicalize().expect("there").display().to_string();
     let slurm =
@@ -218,7 +215,7 @@ fn scripts_name_what_they_run() {
 }
 
 #[test]
-fn plans_that_come_with_staya_can_be_run() {
+fn included_plans_are_valid() {
     let plans = Path::new(env!("CARGO_MANIFEST_DIR")).join("../sweeps");
     let mut count = 0;
     for entry in fs::read_dir(plans).expect("plans").flatten() {

@@ -1,4 +1,4 @@
-//! Templates as options, and numbers as people write them.
+//! Template options and number parsing.
 
 use crate::{Grid, Pair, Room, System, Template, Templated, VelocityForm};
 use anyhow::{Context as _, Result, anyhow};
@@ -13,35 +13,36 @@ pub enum Kind {
     Ball,
     /// A polygon (--corners).
     Polygon,
-    /// A room with what stands in it (--room, --system).
+    /// A room with obstacles (--room, --system).
     Room,
-    /// The relative velocities that lead two robots to a collision (--place-a and so on, --form).
+    /// Relative velocities that lead two robots to a collision (--place-a and so on, --form).
     VelocityObstacle,
-    /// The same for every pair of robots, three variables (--form): half-planes for ORCA.
+    /// As velocity-obstacle, for every pair of robots, three variables (--form): half-planes for
+    /// ORCA.
     Neighbor,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Form {
-    /// The distance to the nearest border.
+    /// Distance to the nearest border.
     Distance,
-    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions, as the paper has it.
+    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions, as in the paper.
     RFunction,
 }
 
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct TemplateArgs {
-    /// What of.
+    /// Template of the function.
     #[arg(value_enum)]
     template: Kind,
-    /// Centre of a circle or a ball; zero if it is not given.
+    /// Centre of a circle or a ball [default: the origin].
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     center: Option<String>,
     /// Radius of a circle or a ball.
     #[arg(long, default_value_t = 1.0)]
     radius: f64,
-    /// Corners of a polygon; an L if it is not given.
+    /// Corners of a polygon [default: an L].
     #[arg(
         long,
         value_name = "'X,Y X,Y X,Y ...'",
@@ -49,15 +50,15 @@ pub struct TemplateArgs {
         default_value = "0,0 3,0 3,1 1,1 1,2 0,2"
     )]
     corners: String,
-    /// A room as TOML: `outline = [[x, y], ...]`, `[[circle]]` with `center` and `radius`, `[[polygon]]` with
-    /// `corners`; without, the
-    /// room of the documentation.
+    /// A room as TOML: `outline = [[x, y], ...]`, `[[circle]]` with `center` and `radius`,
+    /// `[[polygon]]` with `corners` [default: the room of the documentation].
     #[arg(long, value_name = "FILE")]
     room: Option<PathBuf>,
-    /// R-functions of rooms and of `--form r-function`: r0, r1 (least and greatest), or alpha of R_alpha.
+    /// R-functions of rooms and of `--form r-function`: r0, r1 (minimum and maximum), or alpha of
+    /// R_alpha.
     #[arg(long, default_value = "r1", value_parser = |text: &str| text.parse::<System>())]
     system: System,
-    /// How a velocity obstacle is one function.
+    /// Function that represents a velocity obstacle.
     #[arg(long, value_enum, default_value_t = Form::Distance)]
     form: Form,
     /// Position of robot A, which decides, metres.
@@ -69,22 +70,21 @@ pub struct TemplateArgs {
     /// Radii of A and B, metres.
     #[arg(long, value_name = "A,B", default_value = "1,1")]
     radii: String,
-    /// tau: no collision within this time, seconds.
+    /// tau: time horizon without collisions, seconds.
     #[arg(long, default_value_t = 2.0)]
     horizon: f64,
-    /// The least and the greatest coordinate along each axis, instead of the template's own.
+    /// Smallest and largest coordinate along each axis, instead of the template's own.
     #[arg(long, value_name = "X0,X1,Y0,Y1[,Z0,Z1]", allow_hyphen_values = true)]
     extent: Option<String>,
 }
 
 impl TemplateArgs {
-    /// The function that was asked for.
     pub fn templated(&self) -> Result<Templated> {
         let templated = self.template()?.function()?;
         let Some(extent) = &self.extent else {
             return Ok(templated);
         };
-        let wrong = "two numbers for each variable are needed";
+        let wrong = "give two numbers for each variable";
         let ends = numbers(extent).map_err(|error| anyhow!("--extent: {error}"))?;
         let (pairs, rest) = ends.as_chunks::<2>();
         let pairs = if rest.is_empty() { pairs } else { &[] };
@@ -98,7 +98,7 @@ impl TemplateArgs {
         })
     }
 
-    /// Whether ORCA's half-planes come of it.
+    /// Whether the template gives half-planes for ORCA.
     pub fn is_neighbor(&self) -> bool {
         self.template == Kind::Neighbor
     }
@@ -130,7 +130,7 @@ impl TemplateArgs {
     }
 }
 
-/// The room in a file, or that of the documentation.
+/// The room in a file, or the one of the documentation.
 pub fn room(file: Option<&Path>) -> Result<Room> {
     let Some(file) = file else {
         return Ok(Room::default());
@@ -139,28 +139,27 @@ pub fn room(file: Option<&Path>) -> Result<Room> {
     Room::read(&text).with_context(|| file.display().to_string())
 }
 
-/// Numbers with commas between them.
+/// Parses numbers separated by commas.
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let number = |word: &str| match word.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
-        _ => Err(format!("`{}` is no finite number; numbers with commas are needed, like 1.5,-2", word.trim())),
+        _ => Err(format!("`{}` is not a finite number; give numbers with commas, such as 1.5,-2", word.trim())),
     };
     text.split(',').map(number).collect()
 }
 
 fn fixed<const V: usize>(option: &str, text: &str) -> Result<[f64; V]> {
     let found = numbers(text).map_err(|error| anyhow!("{option}: {error}"))?;
-    found.try_into().map_err(|_| anyhow!("{option}: `{text}`: {V} numbers with commas are needed"))
+    found.try_into().map_err(|_| anyhow!("{option}: `{text}`: give {V} numbers with commas"))
 }
 
-/// So many nodes along the longest axis, as far apart along the others, and two at least.
+/// A grid with `resolution` nodes along the longest axis and equal steps along the others, at least
+/// two nodes each.
 pub fn grid<const V: usize>(extent: [[f64; 2]; V], resolution: u16) -> Result<Grid<V>> {
     let sides = extent.map(|[low, high]| high - low);
     let longest = sides.iter().copied().fold(0.0, f64::max);
     if !(longest > 0.0 && sides.iter().all(|side| side.is_finite())) {
-        return Err(anyhow!(
-            "the extent {extent:?} is empty: from a smaller to a larger number along each axis is needed"
-        ));
+        return Err(anyhow!("the extent {extent:?} is empty; give a smaller and a larger number for each axis"));
     }
     let nodes = sides.map(|side| {
         let steps = libm::round(side / longest * f64::from(resolution - 1));
@@ -186,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn every_template_has_a_function_without_options() {
+    fn every_template_works_without_options() {
         for (kind, at, is_plane) in [
             ("circle", [0.0; 3], true),
             ("ball", [0.0; 3], false),
@@ -205,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn options_reach_the_function_and_wrong_ones_name_the_remedy() {
+    fn options_change_the_function_and_invalid_ones_name_the_remedy() {
         let Ok(Templated::Plane(circle, extent)) = read("circle --center -1,2 --radius 0.5 --extent -2,0,1,3") else {
             panic!("no circle");
         };
@@ -214,12 +213,12 @@ mod tests {
         for (words, remedy) in [
             ("circle --center 1", "2 numbers"),
             ("ball --center 1,2", "3 numbers"),
-            ("circle --center 1,x", "`x` is no finite number"),
+            ("circle --center 1,x", "`x` is not a finite number"),
             ("circle --radius 0", "above 0"),
             ("circle --extent 1,2,3", "4 in all"),
             ("ball --extent 1,2,3,4", "6 in all"),
             ("polygon --corners 1,2", "three or more"),
-            ("room --system r2", "none of r0, r1"),
+            ("room --system r2", "not r0, r1"),
             ("room --room /nowhere.toml", "cannot read /nowhere.toml"),
             ("velocity-obstacle --horizon 0", "horizon above 0"),
         ] {

@@ -1,4 +1,4 @@
-//! `staya orca table | draw`: what ORCA forbids, looked up and drawn.
+//! `staya orca table | draw`: tables of ORCA, and drawings of forbidden velocities.
 
 use crate::orca::Sample;
 use crate::orca::pictures::{Drawing, Scene};
@@ -10,7 +10,7 @@ use staya_sim::record::prepare_dir;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Draw what ORCA forbids two robots, and measure the tables that it can be looked up in.
+/// Draw the velocities that ORCA forbids two robots, and measure its lookup tables.
 #[derive(Args, Clone, Debug)]
 pub struct OrcaArgs {
     #[command(subcommand)]
@@ -19,19 +19,19 @@ pub struct OrcaArgs {
 
 #[derive(Clone, Debug, Subcommand)]
 enum Action {
-    /// How far half-planes from the voxel templates are off the exact ones, by size.
+    /// Measure the errors of half-planes from voxel templates, by template size.
     Table(TableArgs),
-    /// Draw the velocity obstacle of two robots, the half-plane, the R-function, M-images and the template
-    /// (default: the worked example of the functional voxel paper).
+    /// Draw the velocity obstacle of two robots, the half-plane, the R-function, M-images and the
+    /// template (default: the worked example of the functional voxel paper).
     Draw(Box<DrawArgs>),
 }
 
 #[derive(Args, Clone, Copy, Debug)]
 struct TableArgs {
-    /// Pairs of robots to compare on.
+    /// Number of pairs of robots to compare.
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pairs: u32,
-    /// Equal seeds give equal pairs.
+    /// Seed; equal seeds give equal pairs.
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
@@ -54,7 +54,7 @@ struct DrawArgs {
     /// Radii of A and B, metres.
     #[arg(long, value_name = "A,B", value_parser = vector, default_value = "1,1")]
     radii: [f64; 2],
-    /// tau: no collision within this time, seconds.
+    /// tau: time horizon without collisions, seconds.
     #[arg(long, default_value_t = 2.0)]
     horizon: f64,
     /// A's share of the correction.
@@ -65,13 +65,11 @@ struct DrawArgs {
     out: PathBuf,
 }
 
-/// Two numbers with a comma.
 fn vector(text: &str) -> Result<[f64; 2]> {
-    let (x, y) =
-        text.split_once(',').ok_or_else(|| anyhow!("two numbers with a comma between them are needed, like 1.5,-2"))?;
+    let (x, y) = text.split_once(',').ok_or_else(|| anyhow!("give two numbers with a comma, such as 1.5,-2"))?;
     let number = |text: &str| {
         let text = text.trim();
-        text.parse().map_err(|_| anyhow!("`{text}` is no number"))
+        text.parse().map_err(|_| anyhow!("`{text}` is not a number; give one such as 1.5"))
     };
     Ok([number(x)?, number(y)?])
 }
@@ -80,7 +78,7 @@ impl OrcaArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A scene without sense, a picture that cannot be written.
+    /// An invalid scene, or a picture that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.action {
             Action::Table(args) => args.run(global)?,
@@ -101,10 +99,10 @@ impl TableArgs {
     }
 }
 
-/// What `draw --json` prints.
 #[derive(Debug, Serialize)]
 struct Drawn {
-    /// The least change of the relative velocity, m/s; negative when it is free already.
+    /// Smallest change of the relative velocity that avoids a collision, m/s; negative if it is
+    /// already free.
     change_mps: f64,
     point_mps: [f64; 2],
     normal: [f64; 2],
@@ -136,7 +134,7 @@ impl DrawArgs {
             });
         }
         let mut text = String::new();
-        writeln!(text, "least change u     {:.6} m/s", drawing.change_mps)?;
+        writeln!(text, "smallest change u  {:.6} m/s", drawing.change_mps)?;
         writeln!(text, "half-plane through ({:.6}, {:.6}) m/s", point.x, point.y)?;
         writeln!(text, "normal             ({:.6}, {:.6})", normal.x, normal.y)?;
         writeln!(text, "{} pictures in {}", pictures.len(), self.out.display())?;
@@ -162,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_are_the_papers_example_and_options_reach_the_scene() {
+    fn defaults_are_the_papers_example_and_options_change_the_scene() {
         let scene = |words: &[&str]| match read(words).unwrap() {
             Action::Draw(args) => args.scene(),
             Action::Table(_) => panic!("another command"),
@@ -182,10 +180,10 @@ mod tests {
     }
 
     #[test]
-    fn wrong_usage_names_the_remedy() {
+    fn invalid_usage_is_an_error_with_a_remedy() {
         let message = |words: &[&str]| read(words).unwrap_err();
-        assert!(message(&["draw", "--place-a", "1"]).contains("like 1.5,-2"));
-        assert!(message(&["draw", "--radii", "1,x"]).contains("`x` is no number"));
+        assert!(message(&["draw", "--place-a", "1"]).contains("such as 1.5,-2"));
+        assert!(message(&["draw", "--radii", "1,x"]).contains("`x` is not a number"));
         assert!(message(&["table", "--pairs", "0"]).contains("1..=10000000"));
     }
 }

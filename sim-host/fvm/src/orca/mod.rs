@@ -12,24 +12,25 @@ use staya_stats::{mean, quantile};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// Pairs of robots to compare on, from a seed: radii of 0.1 to 0.5 m, centres within 5 m and not overlapping, speeds
-/// up to 1.5 m/s (all uniform, places and velocities in discs), a horizon of 2 s, the whole correction.
+/// Random pairs of robots: radii of 0.1 to 0.5 m, centres within 5 m without overlap, speeds up to
+/// 1.5 m/s (all uniform, positions and velocities in discs), a horizon of 2 s, the whole
+/// correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// Number of pairs.
     pub pairs: u32,
-    /// Equal seeds give equal pairs.
+    /// Seed; equal seeds give equal pairs.
     pub seed: u64,
 }
 
-/// Errors of one kind.
+/// Statistics of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// Over all pairs.
+    /// Mean.
     pub mean: f64,
-    /// What 99 of 100 pairs do not exceed.
+    /// 99th percentile.
     pub p99: f64,
-    /// The greatest.
+    /// Maximum.
     pub max: f64,
 }
 
@@ -46,20 +47,19 @@ pub struct Report {
     pub nodes: [usize; 2],
     /// Angles between normals, degrees.
     pub angle_deg: Errors,
-    /// Differences of the demanded changes of velocity, in (R_A + R_B) / tau.
+    /// Differences of the required changes of velocity, in (R_A + R_B) / tau.
     pub distance: Errors,
 }
 
 /// A vector in the plane.
 type V = Vec2<f64>;
 
-/// Purpose of random numbers.
 const PAIRS: u32 = 0x0045_0201;
 
 const PARAMS: Params<f64> = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
 
 impl Sample {
-    /// The pairs: own velocity and neighbour.
+    /// Own velocity and neighbour of each pair.
     fn draw(&self) -> Vec<(Vec2<f64>, MovingBall<V>)> {
         (0..self.pairs)
             .map(|pair| {
@@ -117,7 +117,6 @@ impl Errors {
     }
 }
 
-/// The table for people.
 impl fmt::Display for Report {
     fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(

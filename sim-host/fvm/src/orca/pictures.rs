@@ -1,5 +1,5 @@
-//! The pictures of the functional voxel paper: velocity obstacle and half-plane (figures 3 to 5), the R-function, its
-//! M-images (figure 6), and what the voxel template keeps instead.
+//! Pictures of the functional voxel paper: velocity obstacle and half-plane (figures 3 to 5), the
+//! R-function, its M-images (figure 6), and the voxel template.
 
 use super::V;
 use super::view::{
@@ -13,27 +13,28 @@ use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 use staya_sim::record::Error;
 use std::path::{Path, PathBuf};
 
-/// Forbidden by the cone beyond the perpendiculars, by the disc, and permitted by the half-plane.
+/// Colours: forbidden by the cone beyond the perpendiculars, forbidden by the disc, permitted by
+/// the half-plane.
 const CONE: Colour = PALETTE[1];
 const DISC: Colour = PALETTE[4];
 const ALLOWED: Colour = PALETTE[2];
 
-/// Two robots as the paper's section "analytic representation" has them; metres, m/s and seconds.
+/// Two robots as in the paper's section "analytic representation"; metres, m/s and seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
-    /// Places of robot A, who decides, and of robot B.
+    /// Positions of robot A, which decides, and of robot B.
     pub places_m: [[f64; 2]; 2],
-    /// Their velocities.
+    /// Velocities of A and B.
     pub velocities_mps: [[f64; 2]; 2],
-    /// Their radii.
+    /// Radii of A and B.
     pub radii_m: [f64; 2],
-    /// tau.
+    /// tau, the time horizon.
     pub horizon_s: f64,
-    /// A's share of the correction.
+    /// A's share of the correction, 0 to 1.
     pub share: f64,
 }
 
-/// The paper's worked example: A takes the whole correction.
+/// The paper's worked example, in which A takes the whole correction.
 impl Default for Scene {
     fn default() -> Self {
         Self {
@@ -46,50 +47,49 @@ impl Default for Scene {
     }
 }
 
-/// A scene that makes sense, with what follows from it.
+/// A valid scene with derived values.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawing {
     obstacle: VelocityObstacle<f64>,
     neighbor: MovingBall<V>,
-    /// Velocities of A and B, and of A relative to B.
     own: V,
     relative: V,
     params: Params<f64>,
-    /// What A is permitted.
+    /// Velocities permitted to A.
     pub plane: HalfPlane<f64>,
-    /// The least change of the relative velocity, m/s: into the half-plane's normal, negative when it is free already.
+    /// Smallest change of the relative velocity along the half-plane's normal, m/s; negative if it
+    /// is already free.
     pub change_mps: f64,
 }
 
 impl Scene {
-    /// Computes what is to be drawn.
+    /// Validates the scene and computes the derived values.
     ///
     /// # Errors
-    /// A number that is not finite, a radius or time that is not above 0, robots that overlap.
+    /// A number that is not finite, a radius or horizon that is not above 0, or robots that
+    /// overlap.
     pub fn drawing(&self) -> anyhow::Result<Drawing> {
         let vector = |[x, y]: [f64; 2]| V::new(x, y);
         let [place, other_place] = self.places_m.map(vector);
         let [own, other] = self.velocities_mps.map(vector);
         let sound = [place, other_place, own, other].iter().all(|v| v.is_finite());
         if !(sound && self.share.is_finite()) {
-            bail!("places, velocities and the share must be finite numbers");
+            bail!("places, velocities and the share must be finite; give finite numbers");
         }
         let positive = |x: f64| x.is_finite() && x > 0.0;
         if !self.radii_m.into_iter().chain([self.horizon_s]).all(positive) {
-            bail!("radii and the horizon must be above 0");
+            bail!("radii and the horizon must be above 0; give positive numbers");
         }
         let radii_m = self.radii_m.iter().sum();
         let neighbor = MovingBall { offset_m: other_place - place, velocity_mps: other, radii_m, tie: V::ZERO };
         let apart = neighbor.offset_m.norm();
         let obstacle = VelocityObstacle::new(neighbor.offset_m, radii_m, self.horizon_s);
         let obstacle = obstacle.with_context(|| {
-            format!(
-                "the robots are {apart} m apart and overlap, so there is no cone; give places more than {radii_m} m apart"
-            )
+            format!("the robots are {apart} m apart and overlap; give places more than {radii_m} m apart")
         })?;
         let params = Params { horizon_s: self.horizon_s, separation_s: self.horizon_s, share: self.share };
         let whole = Params { share: 1.0, ..params };
-        let out_of_range = "the numbers are out of range";
+        let out_of_range = "the numbers are out of range; give smaller ones";
         Ok(Drawing {
             obstacle,
             neighbor,
@@ -103,7 +103,7 @@ impl Scene {
 }
 
 impl Drawing {
-    /// Draws everything into `dir`, each picture as SVG and PNG, and names the files.
+    /// Draws all pictures into `dir`, each as SVG and PNG. Returns the paths.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -115,7 +115,6 @@ impl Drawing {
         Ok(files)
     }
 
-    /// A view of disc, origin and velocities with some of the cone behind.
     fn view(&self, left: f64, top: f64, side: f64) -> View {
         let (tip, radius) = self.obstacle.disc();
         let unit = V::new(1.0, 1.0) * radius;
@@ -130,7 +129,6 @@ impl Drawing {
         View { corner: (low + high) * 0.5 - V::new(extent, extent) * 0.5, side: extent, area: [left, top, side] }
     }
 
-    /// A view of the disc and what is around it.
     fn near(&self, left: f64, top: f64) -> View {
         let (tip, radius) = self.obstacle.disc();
         let middle = tip + self.obstacle.ahead() * (0.5 * radius);
@@ -138,7 +136,7 @@ impl Drawing {
         View { corner: middle - V::new(half, half), side: 2.0 * half, area: [left, top, SMALL_SIDE] }
     }
 
-    /// FVM figures 3 to 5: the obstacle's parts, the velocities and the half-plane.
+    /// FVM figures 3 to 5: parts of the obstacle, velocities and half-plane.
     fn velocities(&self) -> Canvas {
         let mut canvas = canvas("The velocities that avoid robot B", 1, SIDE, 190.0);
         let view = self.view(LEFT + 6.0, TOP, SIDE);
@@ -164,7 +162,6 @@ impl Drawing {
         canvas
     }
 
-    /// Legs, disc, perpendiculars.
     fn outline(&self, canvas: &mut Canvas, view: &View) {
         let (tip, radius) = self.obstacle.disc();
         let far = 3.0 * view.side + tip.norm();
@@ -192,7 +189,7 @@ impl Drawing {
         let ends = [point - border, point + border].map(|end| view.place(end));
         canvas.line(ends.to_vec(), Stroke::new(ALLOWED, 2.2));
         let of_b = self.neighbor.velocity_mps;
-        // Away from the change.
+        // Labels are on the side away from the change.
         let aside = self.plane.normal * -self.change_mps;
         for (name, to, away, colour) in
             [("v_B", of_b, of_b, MUTED), ("v_A", self.own, aside, PALETTE[0]), ("v_A - v_B", self.relative, aside, INK)]
@@ -258,7 +255,7 @@ impl Drawing {
         canvas
     }
 
-    /// The change to the nearest border (positive inside) and its normal, for a relative velocity.
+    /// Change to the nearest border (positive inside) and its normal, for a relative velocity.
     fn nearest(&self, relative: V) -> Option<(f64, V)> {
         let whole = Params { share: 1.0, ..self.params };
         let own = relative + self.neighbor.velocity_mps;
@@ -266,7 +263,7 @@ impl Drawing {
         Some((plane.penetration(own), plane.normal))
     }
 
-    /// FVM figure 6: the components of the normal (eq. 16) to the R-function's graph in each point.
+    /// FVM figure 6: the components of the normal (eq. 16) to the R-function's graph at each point.
     fn m_images(&self) -> Canvas {
         let mut canvas = canvas("M-images of the R-function", 4, SMALL_SIDE, 0.0);
         let names = ["cos alpha4", "cos beta4", "cos gamma4", "cos delta4"];
@@ -284,8 +281,8 @@ impl Drawing {
         canvas
     }
 
-    /// The plane through the function's values at a point and at its neighbours to the right and above, with
-    /// coefficients of length 1.
+    /// The plane through the function's values at a point and its neighbours to the right and
+    /// above, normalised.
     fn local_equation(&self, at: V, step: f64) -> [f64; 4] {
         let value = |at: V| self.obstacle.value(at);
         let here = value(at);
@@ -296,7 +293,7 @@ impl Drawing {
         equation.map(|c| c / libm::sqrt(squares))
     }
 
-    /// What the voxel template keeps: the normal to the nearest border; and where it errs.
+    /// The voxel template, which stores the normal to the nearest border, and its errors.
     fn template(&self) -> Canvas {
         let mut canvas = canvas("The normal to the nearest border, as the template has it", 3, SMALL_SIDE, 0.0);
         let look_up = |at: V| {
@@ -346,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn scenes_without_sense_are_refused_with_the_remedy() {
+    fn invalid_scenes_are_errors_with_a_remedy() {
         let refusal = |scene: Scene| scene.drawing().unwrap_err().to_string();
         let base = Scene::default();
         let near = Scene { places_m: [[0.0, 0.0], [0.5, 0.0]], ..base };
@@ -359,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn the_local_equation_gives_back_the_half_planes_angle() {
+    fn the_local_equation_has_the_half_planes_angle() {
         // Eq. 17, where the disc is nearest.
         let drawing = Scene::default().drawing().unwrap();
         let [a, b, _, _] = drawing.local_equation(drawing.relative, 1e-6);
@@ -369,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_scenes_give_equal_pictures_also_far_from_the_origin_and_without_motion() {
+    fn equal_scenes_give_equal_pictures() {
         let odd = Scene { places_m: [[1e6, 0.0], [1e6, -7.0]], velocities_mps: [[0.0; 2]; 2], ..Scene::default() };
         for scene in [Scene::default(), odd] {
             let drawing = scene.drawing().unwrap();

@@ -1,25 +1,26 @@
-//! So much a second, and no more.
+//! Rate limits.
 
-/// Counts what is done against what may be: in any second at most so much, and as much at once after a while without (the leaky bucket as a meter, also
-/// called GCRA). Times are microseconds of any clock that does not go back.
+/// A rate limit with a burst of a tenth of a second (the leaky bucket as a meter, also called
+/// GCRA).
+///
+/// Times are microseconds of any clock that never goes back.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     each_us: u64,
-    /// When everything taken so far will be made up for.
+    /// Time at which all units taken so far are paid for.
     even_us: u64,
 }
 
-/// How much may come at once, as the time in which it is made up for.
+/// Largest burst, as the time that pays for it.
 const AT_ONCE_US: u64 = 100_000;
 
 impl Budget {
-    /// At most so many a second; 0 counts as 1.
+    /// A limit of `count` units per second; 0 counts as 1.
     #[must_use]
     pub fn per_second(count: u32) -> Self {
         Self { each_us: 1_000_000 / u64::from(count.max(1)), even_us: 0 }
     }
 
-    /// Takes one, if there is one.
     pub fn take(&mut self, now_us: u64) -> bool {
         let even_us = self.even_us.max(now_us);
         if even_us - now_us > AT_ONCE_US {

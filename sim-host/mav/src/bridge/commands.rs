@@ -1,13 +1,13 @@
-//! COMMAND_LONG and COMMAND_INT: each is carried out or refused, and answered.
+//! COMMAND_LONG and COMMAND_INT: every command is executed or refused, and always answered.
 //!
 //! | answer | when |
 //! | --- | --- |
-//! | UNSUPPORTED | these vehicles have no such command (nor a takeoff, those that do not fly) |
-//! | DENIED | it makes no sense: a parameter that is needed is no number, out of range, or nothing can be there |
-//! | TEMPORARILY_REJECTED | not now: not armed, in the wrong mode, in the air, on the way |
-//! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | its place comes in a form that is too coarse, or unknown |
+//! | UNSUPPORTED | the vehicle does not have this command (a ground vehicle has no takeoff) |
+//! | DENIED | the command is invalid: a required parameter is NaN or out of range, or the place is inside an obstacle |
+//! | TEMPORARILY_REJECTED | not now: disarmed, in the wrong mode, in the air, or moving |
+//! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | the frame is unknown, or its coordinates are too coarse |
 //!
-//! Parameters that a command does not use may be anything, NaN included.
+//! Parameters that a command does not use may have any value, NaN included.
 
 use super::model::FlightMode;
 use super::params::Meaning;
@@ -19,16 +19,14 @@ use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 use staya_mavlink::mavlink_core::MessageData as _;
 
-/// Highest that a vehicle is sent, metres above the ground.
 const HIGHEST_M: f32 = 1000.0;
 
-/// Who is slower stands, m/s.
+/// A slower vehicle counts as stationary, m/s.
 const STANDING_MPS: f64 = 0.05;
 
-/// A result other than accepted.
+/// Any MAV_RESULT except accepted.
 pub(super) type Refusal = u8;
 
-/// A place in a message.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spot {
     pub(super) frame: u8,
@@ -37,15 +35,14 @@ pub(super) struct Spot {
     pub(super) z: f32,
 }
 
-/// A command of either message.
 struct Command {
     id: u16,
     params: [f32; 7],
-    /// Of COMMAND_INT only.
+    /// Only in a COMMAND_INT.
     spot: Option<Spot>,
 }
 
-/// A whole number that is needed.
+/// Reads a required whole number from 0 to `most`.
 fn whole(x: f32, most: f32) -> Result<u32, Refusal> {
     let is_one = (0.0..=most).contains(&x) && libm::truncf(x) == x;
     if is_one { Ok(x as u32) } else { Err(MAV_RESULT_DENIED) }
@@ -71,7 +68,7 @@ impl Vehicle {
     }
 
     fn answer(&mut self, from: Sender, command: &Command, out: &mut Out) {
-        // What follows from a command comes after its answer.
+        // The acknowledgement is sent before the messages that the command causes.
         let mut after = Out::default();
         let result = self.execute(command, &mut after);
         let result = result.err().unwrap_or(MAV_RESULT_ACCEPTED);
@@ -105,7 +102,6 @@ impl Vehicle {
                 self.set_mode(number, out)
             }
             MAV_CMD_NAV_TAKEOFF => {
-                // Heights are above the ground.
                 let frame = command.spot.map(|spot| spot.frame);
                 let is_known =
                     matches!(frame, None | Some(MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT));
@@ -155,7 +151,7 @@ impl Vehicle {
         }
     }
 
-    /// The number of a message that there is.
+    /// The id of a message that these vehicles can send.
     fn stream_id(&self, number: f32) -> Result<u32, Refusal> {
         let id = whole(number, 16_777_215.0)?;
         if self.streams.has(id) { Ok(id) } else { Err(MAV_RESULT_UNSUPPORTED) }
@@ -172,7 +168,7 @@ impl Vehicle {
     }
 
     fn arm(&mut self, arms: bool, forced: bool, out: &mut Out) -> Result<(), Refusal> {
-        // Who goes dead on his way is hit by those who count on his going on.
+        // Disarming a moving vehicle would make others run into it.
         let [vx, vy, vz] = self.sample.velocity_mps;
         let moves = vx * vx + vy * vy + vz * vz > STANDING_MPS * STANDING_MPS;
         if !arms && !forced && (moves || self.is_in_air()) {
@@ -194,11 +190,11 @@ impl Vehicle {
     fn set_mode(&mut self, number: u32, out: &mut Out) -> Result<(), Refusal> {
         let mode = FlightMode::from_number(number, self.model.flies);
         let mode = mode.ok_or(MAV_RESULT_DENIED)?;
-        // Nobody leaves a formation by himself.
+        // A robot cannot leave its formation alone.
         if mode == FlightMode::Return && self.model.in_formation {
             return Err(MAV_RESULT_DENIED);
         }
-        // Who has a mission has it flown in this mode, as with ArduPilot.
+        // AUTO flies the mission if there is one, as ArduPilot does.
         if mode == FlightMode::Auto && self.is_armed && !self.mission.is_empty() {
             return self.start_mission(out);
         }
@@ -206,7 +202,7 @@ impl Vehicle {
         Ok(())
     }
 
-    /// The older message for it, which nobody answers.
+    /// SET_MODE, the older message. The protocol defines no answer to it.
     pub(super) fn set_mode_message(&mut self, wanted: &SET_MODE_DATA, out: &mut Out) {
         let is_custom = wanted.base_mode & MAV_MODE_FLAG_CUSTOM_MODE_ENABLED != 0;
         let result = match is_custom {
@@ -214,7 +210,7 @@ impl Vehicle {
             false => Err(MAV_RESULT_DENIED),
         };
         if result.is_err() {
-            let text = "no such mode";
+            let text = "unknown mode";
             self.text(out, super::vehicle::Kind::News, MAV_SEVERITY_WARNING, text);
         }
     }
@@ -237,7 +233,7 @@ impl Vehicle {
 
     fn reposition(&mut self, command: &Command, out: &mut Out) -> Result<(), Refusal> {
         let [speed_mps, flags, ..] = command.params;
-        // Degrees as floats are off by a metre.
+        // Degrees as 32-bit floats are off by a metre.
         let spot = command.spot.ok_or(MAV_RESULT_COMMAND_INT_ONLY)?;
         let place = self.global_place(spot)?;
         let flags = if flags.is_nan() { 0 } else { whole(flags, 255.0)? };
@@ -250,7 +246,7 @@ impl Vehicle {
         if self.mode != FlightMode::Guided && !changes_mode {
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
         }
-        // -1, NaN and 0: as fast as ever.
+        // -1, NaN and 0 keep the present speed.
         if speed_mps > 0.0 {
             self.change_speed(speed_mps, out)?;
         }
@@ -261,7 +257,7 @@ impl Vehicle {
         Ok(())
     }
 
-    /// "Go there now" by an item of no mission.
+    /// A mission item outside an upload, by which older clients say "go there now".
     pub(super) fn guided_item(
         &mut self,
         from: Sender,
@@ -297,16 +293,16 @@ impl Vehicle {
         Ok(())
     }
 
-    /// East, north, up of a place on the Earth.
+    /// East, north, up of a geographic position, metres.
     fn global_place(&self, spot: Spot) -> Result<[f64; 3], Refusal> {
         let origin = &self.model.origin;
-        // Heights above home are heights above the ground, which is at the origin's.
+        // Home is on the ground at the origin, so heights above home are heights above the ground.
         let above_m = match spot.frame {
             MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
             MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => origin.place().altitude_m,
             _ => return Err(MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME),
         };
-        // Who does not fly has no use for a height, and may not know it.
+        // A ground vehicle ignores the height, which may be NaN.
         let z = match (self.model.flies, spot.z.is_nan()) {
             (true, true) => return Err(MAV_RESULT_DENIED),
             (true, false) => f64::from(spot.z) + above_m,
@@ -320,7 +316,6 @@ impl Vehicle {
         if is_low && is_above_ground { Ok(place_m) } else { Err(MAV_RESULT_DENIED) }
     }
 
-    /// The place of a mission's item.
     pub(super) fn item_place(&self, item: &super::mission::Item) -> Option<[f64; 3]> {
         self.item_place_of(Spot { frame: item.frame, x: item.x, y: item.y, z: item.z })
     }
@@ -334,7 +329,7 @@ impl Vehicle {
         self.global_place(spot).ok()
     }
 
-    /// What is wrong with a mission's item; 0: nothing.
+    /// Why a mission item is invalid, as a MAV_MISSION_RESULT; 0 if it is valid.
     pub(super) fn item_fault(&self, item: &super::mission::Item) -> u8 {
         let is_known = match item.command {
             MAV_CMD_NAV_WAYPOINT => true,
@@ -367,19 +362,18 @@ impl Vehicle {
         if self.mission.is_empty() {
             return Err(MAV_RESULT_DENIED);
         }
-        // Item 0 is no goal, and after the last one it begins anew.
+        // Item 0 is home, not a goal. A completed mission restarts.
         if self.mission.current() == 0 || self.mission.is_complete() {
             self.mission.set_current(1);
         }
         self.enter(FlightMode::Auto, out);
         self.is_on_mission = true;
-        // Instead of the scenario's behaviour.
+        // Replaces the behaviour that AUTO would start.
         out.actions.clear();
         self.begin_item(out);
         Ok(())
     }
 
-    /// Goes on to another item of the mission.
     pub(super) fn set_current_item(&mut self, seq: u16, out: &mut Out) -> Result<(), Refusal> {
         if !self.mission.set_current(seq.max(1)) || seq >= self.mission.len() {
             return Err(MAV_RESULT_DENIED);

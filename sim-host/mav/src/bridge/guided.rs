@@ -1,4 +1,4 @@
-//! Setpoints, and what robots say to each other: nobody answers them.
+//! Setpoints, and the dialect's orders to a formation. The protocol defines no answers to them.
 
 use super::model::FlightMode;
 use super::params::Meaning;
@@ -15,14 +15,13 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// What a setpoint says, in metres east, north, up.
 #[derive(Clone, Copy, Debug)]
 struct Setpoint {
     place_m: Option<[f64; 3]>,
     velocity_mps: Option<[f64; 3]>,
 }
 
-/// Which of its numbers a setpoint means.
+/// The fields of a setpoint that its type mask leaves in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Used {
     place: bool,
@@ -32,19 +31,18 @@ struct Used {
 }
 
 impl Used {
-    /// What a type mask leaves; the answer to one that cannot be followed says why.
+    /// Decodes a type mask. The error is the text for the operator.
     const fn new(mask: u16, flies: bool) -> Result<Self, &'static str> {
         const PLACE: u16 = 0b11;
         const VELOCITY: u16 = 0b11 << 3;
         const ACCELERATION: u16 = 0b111 << 6;
         let is_force = mask & POSITION_TARGET_TYPEMASK_FORCE_SET != 0;
         if mask & ACCELERATION != ACCELERATION || is_force {
-            return Err("setpoint: accelerations are not for these vehicles");
+            return Err("setpoint: acceleration is unsupported");
         }
-        // Half of a place is none.
         let (place, velocity) = (mask & PLACE, mask & VELOCITY);
         if !(place == 0 || place == PLACE) || !(velocity == 0 || velocity == VELOCITY) {
-            return Err("setpoint: x and y go together");
+            return Err("setpoint: use both x and y, or neither");
         }
         let used = Self {
             place: place == 0,
@@ -52,7 +50,7 @@ impl Used {
             velocity: velocity == 0,
             velocity_z: flies && mask & POSITION_TARGET_TYPEMASK_VZ_IGNORE == 0,
         };
-        if used.place || used.velocity { Ok(used) } else { Err("setpoint: neither place nor velocity") }
+        if used.place || used.velocity { Ok(used) } else { Err("setpoint: no position and no velocity") }
     }
 }
 
@@ -62,13 +60,12 @@ impl Vehicle {
             MAV_FRAME_LOCAL_NED => (false, false),
             MAV_FRAME_LOCAL_OFFSET_NED => (true, false),
             MAV_FRAME_BODY_NED | MAV_FRAME_BODY_OFFSET_NED => (true, true),
-            _ => return self.refuse("setpoint: no such frame here", out),
+            _ => return self.refuse("setpoint: unsupported frame", out),
         };
         let used = match Used::new(target.type_mask, self.model.flies) {
             Ok(used) => used,
             Err(text) => return self.refuse(text, out),
         };
-        // From forward, right, down to east, north, up.
         let turned = |xyz: [f32; 3]| {
             let [x, y, z] = xyz.map(f64::from);
             let yaw = f64::from(if is_turned { self.yaw } else { 0.0 });
@@ -95,7 +92,7 @@ impl Vehicle {
         let ground_m = match target.coordinate_frame {
             MAV_FRAME_GLOBAL | MAV_FRAME_GLOBAL_INT => 0.0,
             MAV_FRAME_GLOBAL_RELATIVE_ALT | MAV_FRAME_GLOBAL_RELATIVE_ALT_INT => origin.place().altitude_m,
-            _ => return self.refuse("setpoint: no such frame here", out),
+            _ => return self.refuse("setpoint: unsupported frame", out),
         };
         let used = match Used::new(target.type_mask, self.model.flies) {
             Ok(used) => used,
@@ -107,7 +104,7 @@ impl Vehicle {
             let mut place = Global::from_e7(target.lat_int, target.lon_int, 0);
             place.altitude_m = origin.place().altitude_m;
             let Some([x, y, _]) = origin.to_enu_m(&place) else {
-                return self.refuse("setpoint: there is no such place", out);
+                return self.refuse("setpoint: invalid position", out);
             };
             let up = f64::from(target.alt) + ground_m - origin.place().altitude_m;
             place_m = Some([x, y, if used.place_z { up } else { here[2] }]);
@@ -126,17 +123,17 @@ impl Vehicle {
 
     fn follow(&mut self, setpoint: Setpoint, out: &mut Out) {
         if self.mode != FlightMode::Guided || !self.is_armed {
-            return self.refuse("setpoint: not armed and GUIDED", out);
+            return self.refuse("setpoint: arm and select GUIDED first", out);
         }
         let is_number = |v: Option<[f64; 3]>| v.is_none_or(|v| v.iter().all(|x| x.is_finite()));
         if !is_number(setpoint.place_m) || !is_number(setpoint.velocity_mps) {
-            return self.refuse("setpoint: no number", out);
+            return self.refuse("setpoint: a value is NaN", out);
         }
         if self.model.in_formation {
-            return self.refuse("setpoint: in formation; send STAYA_GOAL", out);
+            return self.refuse("setpoint: in formation; use STAYA_GOAL", out);
         }
         if self.model.grid.is_some() && setpoint.velocity_mps.is_some() {
-            return self.refuse("setpoint: cell by cell there are no velocities", out);
+            return self.refuse("setpoint: no velocities on a grid", out);
         }
         let timeout_s = self.parameters.get(Meaning::SetpointTimeout).unwrap_or(0.0);
         let valid = Duration::from_micros((timeout_s * 1e6) as i32);
@@ -156,11 +153,11 @@ impl Vehicle {
         };
         match wish {
             Some(wish) => out.actions.push(Action::Wish(wish)),
-            None => self.refuse("setpoint: no room there", out),
+            None => self.refuse("setpoint: obstacle or out of range", out),
         }
     }
 
-    /// What robots are told by whoever commands the swarm: handed on to the controller as if it had heard them.
+    /// Passes an order from the operator to the controller as if it had arrived by radio.
     pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
         let Some((boot, sequence, message)) = order(message) else {
             return;
@@ -170,7 +167,7 @@ impl Vehicle {
         out.actions.push(Action::Tell(header, message));
     }
 
-    /// The dialect has no answers to orders: a text says once that one has arrived as a whole.
+    /// Reports once as a text that an order is complete, since the dialect has no acknowledgements.
     fn confirm(&mut self, header: Header, message: &Message, out: &mut Out) {
         if matches!(message, Message::Template(_)) && !self.model.in_formation {
             return self.refuse("STAYA_TEMPLATE: not in a formation", out);
@@ -181,7 +178,7 @@ impl Vehicle {
     }
 }
 
-/// Boot, sequence and the controller's own form of an order; `None` for what is none.
+/// Boot counter, sequence number and content of an order; `None` for any other message.
 fn order(message: &MavMessage) -> Option<(u8, u16, Message)> {
     let to = |system: u8| RobotId(system.into());
     Some(match message {
@@ -235,16 +232,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn masks_of_clients_mean_what_they_do() {
+    fn type_masks_of_common_clients_decode_as_intended() {
         let used = |place, velocity| Used { place, place_z: true, velocity, velocity_z: true };
         for (mask, expected) in [(0xDF8, used(true, false)), (0xDC7, used(false, true)), (0xDC0, used(true, true))] {
             let found = Used::new(mask, true).expect("a good mask");
             assert_eq!((found.place, found.velocity), (expected.place, expected.velocity));
         }
-        // MAVSDK's velocity with a yaw.
         let found = Used::new(2503, false).expect("a good mask");
         assert_eq!((found.velocity, found.place, found.velocity_z), (true, false, false));
-        // Nothing, half a place, half a velocity, accelerations, forces.
+        // Empty, half a position, half a velocity, accelerations, forces.
         for mask in [0xDFF, 0xDFA, 0xDCF, 0xC38, 0xFF8] {
             assert!(Used::new(mask, true).is_err(), "{mask:#x}");
         }

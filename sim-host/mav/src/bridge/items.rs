@@ -1,4 +1,4 @@
-//! A vehicle goes from item to item of its mission.
+//! Mission execution, item by item.
 
 use super::mission::{Item, MAV_MISSION_INVALID_PARAM2};
 use super::model::FlightMode;
@@ -8,24 +8,25 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// Waits for so many seconds where it is.
+/// Waits in place for a number of seconds.
 const NAV_DELAY: u16 = 93;
-/// What is for a camera or a gimbal, by name: mounts, triggers, gimbal managers, pictures, videos. Here are none, and a mission goes on without.
+/// Commands to cameras and gimbals: mounts, triggers, gimbal managers, pictures, videos. These
+/// vehicles have neither, so a mission skips them.
 const OF_CAMERAS: [u16; 9] = [204, 205, 206, 1000, 1001, 2000, 2001, 2500, 2501];
 
 impl Item {
-    /// Seconds to wait, at the place or without one.
     fn wait_s(&self) -> f32 {
         let [wait_s, ..] = self.params;
         if wait_s.is_finite() { wait_s } else { 0.0 }
     }
 
-    /// Whether it is done where the vehicle happens to be; its place, if it has one, means nothing.
+    /// Whether the item takes effect wherever the vehicle is; its coordinates, if any, are ignored.
     pub(super) fn has_no_place(&self) -> bool {
         matches!(self.command, NAV_DELAY | MAV_CMD_DO_CHANGE_SPEED) || OF_CAMERAS.contains(&self.command)
     }
 
-    /// What is wrong with one that has no place; 0: nothing. Speeds below 0 leave it as it is.
+    /// Why an item without a place is invalid, as a MAV_MISSION_RESULT; 0 if it is valid. A
+    /// negative speed means "unchanged" and is valid.
     pub(super) fn fault(&self) -> u8 {
         let [first, second, ..] = self.params;
         match self.command {
@@ -37,7 +38,8 @@ impl Item {
 }
 
 impl Vehicle {
-    /// Sends it to the present item's place. What is done at once is done, and the item after it begins: at most as many as there are.
+    /// Starts the current item. Items that finish at once are followed by the next, at most once
+    /// through the mission.
     pub(super) fn begin_item(&mut self, out: &mut Out) {
         self.there_since_us = None;
         loop {
@@ -58,7 +60,7 @@ impl Vehicle {
                 NAV_DELAY => return out.actions.push(Action::Wish(Wish::Hold)),
                 MAV_CMD_DO_CHANGE_SPEED => self.limit_speed(item.params[1], out),
                 command if OF_CAMERAS.contains(&command) => {
-                    self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, "no camera, no gimbal: left out");
+                    self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, "no camera or gimbal: item skipped");
                 }
                 _ => {
                     return match self.item_place(&item).and_then(|place| self.goal(place)) {
@@ -73,13 +75,12 @@ impl Vehicle {
         }
     }
 
-    /// The present item is done: whether there is another one.
+    /// Completes the current item. Returns whether there is a next one.
     fn finish_item(&mut self, out: &mut Out) -> bool {
         let seq = self.mission.current();
         out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
         let goes_on = self.mission.set_current(seq + 1);
         if !goes_on {
-            // It stays where it is.
             self.mission.complete();
             self.is_on_mission = false;
             out.actions.push(Action::Wish(Wish::Hold));
@@ -88,20 +89,20 @@ impl Vehicle {
         goes_on
     }
 
-    /// The speed of an item; one beyond the body's is the body's.
+    /// Applies a speed item, limited to the speed of the body.
     fn limit_speed(&mut self, speed_mps: f32, out: &mut Out) {
         let most_mps = self.model.max_speed_mps;
         if speed_mps > most_mps {
-            let text = format!("mission wants {speed_mps} m/s, has {most_mps}");
+            let text = format!("mission speed {speed_mps} m/s limited to {most_mps}");
             self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, &text);
         }
         if speed_mps > 0.0 {
-            // On the grid there are no speeds, and nothing to change.
+            // A grid has no speeds, so a refusal changes nothing.
             let _ = self.change_speed(speed_mps.min(most_mps), out);
         }
     }
 
-    /// It has landed: the mission's last item, if it was one.
+    /// Completes the mission if this landing was its last item.
     pub(super) fn finish_landing(&mut self, out: &mut Out) {
         if core::mem::take(&mut self.is_landing_item) {
             self.mission.complete();
@@ -110,7 +111,7 @@ impl Vehicle {
         }
     }
 
-    /// The next item, when it has been at the present one for long enough.
+    /// Starts the next item once the vehicle has waited long enough at the current one.
     pub(super) fn go_on_with_mission(&mut self, out: &mut Out) {
         let Some(item) = self.mission.item(self.mission.current()).copied() else {
             return;
@@ -142,7 +143,6 @@ impl Vehicle {
         }
     }
 
-    /// Takes an item of an upload in.
     pub(super) fn take_item(&mut self, from: Sender, seq: u16, item: Item, out: &mut Out) -> MavMessage {
         let mut mission = core::mem::take(&mut self.mission);
         let now_us = self.now_us;
@@ -153,23 +153,23 @@ impl Vehicle {
         });
         self.mission = mission;
         if fault != MAV_MISSION_ACCEPTED {
-            // The acknowledgement has no room for which one it was.
+            // MISSION_ACK cannot say which item was invalid.
             let text = format!("mission item {seq}: {}", self.fault_in_words(&item, fault));
             self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
         }
         answer
     }
 
-    /// Why an item is refused, short enough for a STATUSTEXT behind its number.
+    /// Why an item is invalid, short enough for a STATUSTEXT with the item number in front.
     fn fault_in_words(&self, item: &Item, fault: u8) -> String {
         match fault {
-            MAV_MISSION_UNSUPPORTED if self.model.in_formation => String::from("robot is in formation"),
-            MAV_MISSION_UNSUPPORTED => format!("no command {} here", item.command),
-            MAV_MISSION_UNSUPPORTED_FRAME => format!("frame {} is unknown", item.frame),
-            MAV_MISSION_INVALID_PARAM1 => String::from("param1, the wait, is wrong"),
-            MAV_MISSION_INVALID_PARAM2 => String::from("param2, the speed, is wrong"),
-            MAV_MISSION_INVALID_PARAM7 => String::from("param7, height, is no number"),
-            _ => String::from("no room at its place"),
+            MAV_MISSION_UNSUPPORTED if self.model.in_formation => String::from("not in a formation"),
+            MAV_MISSION_UNSUPPORTED => format!("unsupported command {}", item.command),
+            MAV_MISSION_UNSUPPORTED_FRAME => format!("unsupported frame {}", item.frame),
+            MAV_MISSION_INVALID_PARAM1 => String::from("param1 (wait) invalid"),
+            MAV_MISSION_INVALID_PARAM2 => String::from("param2 (speed) invalid"),
+            MAV_MISSION_INVALID_PARAM7 => String::from("param7 (height) is NaN"),
+            _ => String::from("obstacle or off the map"),
         }
     }
 }

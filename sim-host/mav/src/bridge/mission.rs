@@ -1,41 +1,38 @@
-//! A vehicle's mission: a list of goals, and the protocol by which it comes and goes.
+//! The mission of a vehicle: a list of goals, and the protocol that transfers it.
 //!
-//! As with ArduPilot, item 0 is the place that the client takes for home: it is kept, and never gone to.
+//! As with ArduPilot, item 0 is home: it is stored but never flown to.
 
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// Items that a vehicle has room for.
+/// Capacity of a mission, in items.
 pub const ITEMS: u16 = 128;
-/// An item's second parameter is wrong.
+/// The second parameter of an item is invalid.
 pub(super) const MAV_MISSION_INVALID_PARAM2: u8 = 7;
-/// After so long an item is asked for again, microseconds.
+/// Timeout after which a missing item is requested again, microseconds.
 const PATIENCE_US: u64 = 700_000;
-/// So often an item is asked for.
+/// Requests per item before the transfer fails.
 const TRIES: u8 = 6;
 
-/// One item, as in MISSION_ITEM_INT: 1e-7 degrees, or 1e-4 metres in local frames.
+/// One mission item as in MISSION_ITEM_INT: positions in 1e-7 degrees, or 1e-4 metres in local
+/// frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Item {
-    /// What is to be done.
+    /// MAV_CMD number.
     pub command: u16,
-    /// How x, y, z are meant.
+    /// MAV_FRAME of x, y and z.
     pub frame: u8,
-    /// Whether the mission goes on by itself.
+    /// 1 if the mission continues after this item without a command.
     pub autocontinue: u8,
-    /// Parameters 1 to 4.
     pub params: [f32; 4],
-    /// Parameter 5.
     pub x: i32,
-    /// Parameter 6.
     pub y: i32,
-    /// Parameter 7.
     pub z: f32,
 }
 
 impl Item {
-    /// How many units of x and y are one of the older message.
+    /// Integer units per unit of MISSION_ITEM's x and y.
     const fn scale(frame: u8) -> f64 {
         match frame {
             MAV_FRAME_LOCAL_NED | MAV_FRAME_LOCAL_OFFSET_NED => 1e4,
@@ -43,7 +40,7 @@ impl Item {
         }
     }
 
-    /// Of the newer message.
+    /// Reads a MISSION_ITEM_INT.
     #[must_use]
     pub const fn from_int(item: &MISSION_ITEM_INT_DATA) -> Self {
         Self {
@@ -57,7 +54,7 @@ impl Item {
         }
     }
 
-    /// Of the older message; a place that is no number is one that no check lets pass.
+    /// Reads a MISSION_ITEM. A position that is not finite becomes one that fails validation.
     #[must_use]
     pub fn from_float(item: &MISSION_ITEM_DATA) -> Self {
         let int = |x: f32| match x.is_finite() {
@@ -119,7 +116,6 @@ impl Item {
     }
 }
 
-/// Items on their way in.
 #[derive(Clone, Debug, PartialEq)]
 struct Upload {
     from: Sender,
@@ -129,44 +125,42 @@ struct Upload {
     tries: u8,
 }
 
-/// The mission and what of it is done.
+/// A mission and its progress.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mission {
     items: Vec<Item>,
-    /// The item that is next, or under way.
+    /// The item that is next or in progress.
     current: u16,
-    /// Its last item was done, or begun if that is to return.
+    /// Whether the last item is completed, or started if it is a return.
     is_complete: bool,
     upload: Option<Upload>,
 }
 
 impl Mission {
-    /// Items, home included.
     #[must_use]
     pub fn len(&self) -> u16 {
-        // At most ITEMS.
+        // At most `ITEMS`.
         self.items.len() as u16
     }
 
-    /// Whether there is nothing to go to.
+    /// Whether the mission has no goal.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.items.len() < 2
     }
 
-    /// The number of the item that is next.
     #[must_use]
     pub const fn current(&self) -> u16 {
         self.current
     }
 
-    /// An item.
+    /// Item `seq`; `None` beyond the last one.
     #[must_use]
     pub fn item(&self, seq: u16) -> Option<&Item> {
         self.items.get(usize::from(seq))
     }
 
-    /// Goes on to another item; whether there is such one.
+    /// Makes item `seq` the current one. Returns whether it exists.
     pub fn set_current(&mut self, seq: u16) -> bool {
         let is_there = seq < self.len();
         if is_there {
@@ -175,18 +169,17 @@ impl Mission {
         is_there
     }
 
-    /// Takes note that it is gone through.
     pub const fn complete(&mut self) {
         self.is_complete = true;
     }
 
-    /// Whether it was gone through since it was loaded, or since somebody chose an item.
+    /// Whether the mission was completed since it was loaded or an item was last selected.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.is_complete
     }
 
-    /// A client begins to send a mission.
+    /// Handles MISSION_COUNT, which starts an upload. Returns the answer.
     pub fn count(&mut self, from: Sender, told: &MISSION_COUNT_DATA, now_us: u64) -> MavMessage {
         if told.mission_type != MAV_MISSION_TYPE_MISSION {
             return ack(from, told.mission_type, MAV_MISSION_UNSUPPORTED);
@@ -205,7 +198,8 @@ impl Mission {
         request(from, 0)
     }
 
-    /// A client sends an item; `fault` says what is wrong with it, 0 for nothing.
+    /// Handles one uploaded item and returns the answer. `fault` validates the item: a
+    /// MAV_MISSION_RESULT, 0 if valid.
     pub fn take(
         &mut self,
         from: Sender,
@@ -220,7 +214,7 @@ impl Mission {
         };
         let next = upload.items.len() as u16;
         if seq == next {
-            // Home may be anything.
+            // Home is never flown to, so it needs no validation.
             let fault = if seq == 0 { 0 } else { fault(&item) };
             if fault != 0 {
                 self.upload = None;
@@ -230,7 +224,7 @@ impl Mission {
         }
         let next = upload.items.len() as u16;
         if next < upload.count {
-            // Also when an item came twice: its client may have missed what was asked.
+            // A repeated item is answered too: the request for the next one may have been lost.
             (upload.asked_us, upload.tries) = (now_us, 1);
             return request(from, next);
         }
@@ -240,7 +234,7 @@ impl Mission {
         ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_ACCEPTED)
     }
 
-    /// Asks again for what did not come, and gives up at last.
+    /// Requests an overdue item again, or cancels the upload after the last try.
     pub fn poll(&mut self, now_us: u64) -> Option<MavMessage> {
         let upload = self.upload.as_mut()?;
         if now_us.saturating_sub(upload.asked_us) < PATIENCE_US {
@@ -257,7 +251,7 @@ impl Mission {
         Some(request(from, upload.items.len() as u16))
     }
 
-    /// A client wants to know how many items there are. Of other kinds than missions there are none.
+    /// Answers MISSION_REQUEST_LIST. Lists other than missions (fences, rally points) are empty.
     #[must_use]
     pub fn list(&self, from: Sender, mission_type: u8) -> MavMessage {
         let is_known = mission_type == MAV_MISSION_TYPE_MISSION;
@@ -269,7 +263,7 @@ impl Mission {
         })
     }
 
-    /// A client wants to know an item.
+    /// Answers a request for item `seq`, as MISSION_ITEM_INT or MISSION_ITEM.
     #[must_use]
     pub fn tell(&self, from: Sender, seq: u16, mission_type: u8, as_int: bool) -> MavMessage {
         let item = self.item(seq);
@@ -284,9 +278,9 @@ impl Mission {
         }
     }
 
-    /// Forgets all items.
+    /// Handles MISSION_CLEAR_ALL and returns the answer.
     pub fn clear(&mut self, from: Sender, mission_type: u8) -> MavMessage {
-        // 255: of all kinds.
+        // 255 means all lists.
         if matches!(mission_type, MAV_MISSION_TYPE_MISSION | 255) {
             *self = Self::default();
         }
@@ -307,7 +301,7 @@ const fn request(to: Sender, seq: u16) -> MavMessage {
     })
 }
 
-/// The end of a transfer.
+/// MISSION_ACK, which ends a transfer.
 #[must_use]
 pub const fn ack(to: Sender, mission_type: u8, result: u8) -> MavMessage {
     MavMessage::MISSION_ACK(MISSION_ACK_DATA {
@@ -332,7 +326,7 @@ mod tests {
         Item { command: MAV_CMD_NAV_WAYPOINT, x, ..Item::default() }
     }
 
-    /// The item that was asked for, or the negative of what ended the transfer.
+    /// The number of the requested item, or the negative result if the transfer ended.
     fn wanted(answer: &MavMessage) -> i32 {
         match answer {
             MavMessage::MISSION_REQUEST_INT(request) => request.seq.into(),
@@ -350,14 +344,14 @@ mod tests {
     }
 
     #[test]
-    fn a_mission_comes_item_by_item_and_is_read_back() {
+    fn an_uploaded_mission_reads_back_unchanged() {
         let mut mission = Mission::default();
         assert_eq!(wanted(&mission.count(GCS, &count(3), 0)), 0);
         assert_eq!(give(&mut mission, 0), 1);
         assert_eq!(give(&mut mission, 0), 1, "doubled");
         assert_eq!(give(&mut mission, 2), 1, "too early");
         assert_eq!(give(&mut mission, 1), 2);
-        assert!(mission.is_empty(), "nothing counts before the last item");
+        assert!(mission.is_empty(), "the mission is replaced only after its last item");
         assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_ACCEPTED));
         assert_eq!((mission.len(), mission.current()), (3, 1));
         assert_eq!(give(&mut mission, 2), ended(MAV_MISSION_INVALID_SEQUENCE));
@@ -372,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_come_is_asked_for_again_and_given_up() {
+    fn a_missing_item_is_requested_again_until_the_upload_fails() {
         let mut mission = Mission::default();
         let _ = mission.count(GCS, &count(2), 0);
         assert_eq!(mission.poll(PATIENCE_US - 1), None);
@@ -388,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn too_many_another_kind_another_client_and_bad_items_are_refused() {
+    fn uploads_that_are_too_long_or_invalid_or_from_another_client_are_refused() {
         let mut mission = Mission::default();
         let fences = MISSION_COUNT_DATA { mission_type: 1, ..count(2) };
         let refused = ended(MAV_MISSION_UNSUPPORTED);
@@ -401,7 +395,6 @@ mod tests {
         assert_eq!(wanted(&mission.count(other, &count(2), 0)), refused);
         let taken = mission.take(other, 0, item(0), 0, |_| 0);
         assert_eq!(wanted(&taken), ended(MAV_MISSION_INVALID_SEQUENCE));
-        // The same client may begin anew.
         assert_eq!(wanted(&mission.count(GCS, &count(2), 0)), 0);
         let home = mission.take(GCS, 0, item(0), 0, |_| MAV_MISSION_UNSUPPORTED);
         assert_eq!(wanted(&home), 1, "home may be anything");
@@ -411,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn items_of_the_older_message_are_the_same() {
+    fn both_item_messages_describe_the_same_item() {
         for (frame, x) in [(MAV_FRAME_GLOBAL, 12.5), (MAV_FRAME_LOCAL_NED, -3.25)] {
             let float = MISSION_ITEM_DATA { frame, x, y: 7.0, z: 1.5, seq: 4, ..MISSION_ITEM_DATA::DEFAULT };
             let kept = Item::from_float(&float);

@@ -1,8 +1,10 @@
-//! The simulated swarm seen from outside: every robot is a MAVLink vehicle, for ground stations and scripts.
+//! The MAVLink bridge of the simulation: every simulated robot appears as a vehicle to ground
+//! stations and scripts.
 //!
-//! [`Vehicle`] is one robot's side of the protocol, without sockets or a clock; [`Swarm`] runs a scenario in real time between vehicles and lines.
-//! An operator's wish reaches the robot's controller ([`Commanded`](staya_controller::agent::Commanded)), where the safety layer stays behind
-//! it; nobody's state is changed from outside.
+//! [`Vehicle`] is one robot's side of the protocol, without sockets or a clock. [`Swarm`] runs a
+//! scenario in real time and connects its vehicles to the links. An operator's command becomes a
+//! goal of the robot's controller ([`Commanded`](staya_controller::agent::Commanded)), so the
+//! safety layer still applies; no command changes the state of a robot directly.
 
 mod budget;
 mod commands;

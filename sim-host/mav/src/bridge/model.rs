@@ -1,4 +1,4 @@
-//! What a robot is as a vehicle: the world that it knows, what it can do, and its flight modes.
+//! Description of a robot as a vehicle: its world, its capabilities and its flight modes.
 
 use crate::geo::Origin;
 use staya_controller::agent::SafetyKind;
@@ -10,27 +10,27 @@ use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 
-/// What all vehicles of a scenario have in common.
+/// Properties shared by all vehicles of a scenario.
 #[derive(Clone, Debug)]
 pub struct VehicleModel {
-    /// It can leave the ground, which is z = 0.
+    /// Whether the vehicles can fly. The ground is z = 0.
     pub flies: bool,
-    /// It moves from cell to cell of this land, and knows no velocities.
+    /// The map, if the vehicles move from cell to cell; such vehicles accept no velocities.
     pub grid: Option<Terrain>,
-    /// It keeps its place in a formation on the grid, and has no goal of its own.
+    /// Whether the vehicles form a team on the grid and so have no goals of their own.
     pub in_formation: bool,
-    /// Highest speed, m/s, of the fastest; 0 on the grid.
+    /// Highest speed of the fastest vehicle, m/s; 0 on a grid.
     pub max_speed_mps: f32,
-    /// Radius of the body, metres, of the largest; 0 on the grid.
+    /// Radius of the largest body, metres; 0 on a grid.
     pub radius_m: f32,
-    /// Where the scenario is on the Earth.
+    /// Geographic position of the scenario's origin.
     pub origin: Origin,
-    /// What does not move.
+    /// Static obstacles.
     pub solids: Vec<Solid>,
 }
 
 impl VehicleModel {
-    /// The vehicles of a scenario.
+    /// Describes the vehicles of `scenario`.
     #[must_use]
     pub fn new(scenario: &Scenario, origin: Origin) -> Self {
         let on_grid = scenario.plane.is_none();
@@ -50,7 +50,7 @@ impl VehicleModel {
         }
     }
 
-    /// The cell of the grid at a place; `None` off the map, for a wall and without a grid.
+    /// The grid cell at a position in metres; `None` off the map, inside a wall, or without a grid.
     #[must_use]
     pub fn cell(&self, [x, y, _]: [f64; 3]) -> Option<Cell> {
         let land = self.grid.as_ref()?;
@@ -63,7 +63,7 @@ impl VehicleModel {
         (land.get(cell) != BLOCKED).then_some(cell)
     }
 
-    /// Whether a body has room at a place.
+    /// Whether a vehicle fits at a position in metres.
     #[must_use]
     pub fn has_room(&self, place_m: [f64; 3]) -> bool {
         if self.grid.is_some() {
@@ -74,26 +74,26 @@ impl VehicleModel {
     }
 }
 
-/// Who decides where a vehicle goes. Clients know the modes by the numbers that ArduPilot gives them: those of a rover, or of a
-/// copter where the vehicle flies.
+/// The source of a vehicle's goals. The numbers and names are ArduPilot's: those of Copter for
+/// flying vehicles, of Rover otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlightMode {
-    /// Its own behaviour in the scenario, or its mission once that was started.
+    /// The behaviour of the scenario, or the mission once it is started.
     Auto,
     /// The operator.
     Guided,
-    /// Nobody: it stays where it is.
+    /// No goal: the vehicle stays where it is.
     Hold,
-    /// Home, and there it stays, or lands.
+    /// Home; a flying vehicle lands there.
     Return,
-    /// Down to the ground; there its motors go off.
+    /// Lands here, then disarms.
     Land,
 }
 
 impl FlightMode {
     const ALL: [Self; 5] = [Self::Auto, Self::Guided, Self::Hold, Self::Return, Self::Land];
 
-    /// Its number.
+    /// The custom mode number in MAVLink.
     #[must_use]
     pub const fn number(self, flies: bool) -> u32 {
         match (self, flies) {
@@ -101,7 +101,7 @@ impl FlightMode {
             (Self::Guided, false) => 15,
             (Self::Hold, false) => 4,
             (Self::Return, false) => 11,
-            // A rover has no such mode, and never is in it.
+            // Unused: ground vehicles never enter this mode.
             (Self::Land, _) => 9,
             (Self::Auto, true) => 3,
             (Self::Guided, true) => 4,
@@ -110,14 +110,14 @@ impl FlightMode {
         }
     }
 
-    /// The mode of a number; `None` for one that these vehicles do not have.
+    /// The mode with this number; `None` if these vehicles do not have it.
     #[must_use]
     pub fn from_number(number: u32, flies: bool) -> Option<Self> {
         let mut modes = Self::ALL.into_iter();
         modes.find(|mode| mode.number(flies) == number && (flies || *mode != Self::Land))
     }
 
-    /// Its name, as ArduPilot's users know it.
+    /// The name that ArduPilot uses.
     #[must_use]
     pub const fn name(self, flies: bool) -> &'static str {
         match self {
@@ -131,27 +131,27 @@ impl FlightMode {
     }
 }
 
-/// What a vehicle knows of itself at a moment.
+/// A robot's own state after one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// Simulated time, microseconds.
     pub time_us: u64,
     /// East, north, up, metres.
     pub position_m: [f64; 3],
-    /// The same, m/s.
+    /// East, north, up, m/s.
     pub velocity_mps: [f64; 3],
-    /// On the grid.
+    /// The cell on the grid.
     pub cell: Cell,
-    /// What the controller is doing.
+    /// Mode of the controller.
     pub mode: Mode,
-    /// The wish that it follows.
+    /// Goal that the controller follows.
     pub wish: Wish<f32>,
-    /// Whether its computer runs.
+    /// Whether the onboard computer runs.
     pub is_up: bool,
 }
 
 impl Sample {
-    /// What the engine says of it.
+    /// Copies an observation of the simulator at `time_us`.
     #[must_use]
     pub fn new(time_us: u64, observation: &Observation) -> Self {
         Self {
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_of_modes_lead_back_and_no_rover_lands() {
+    fn mode_numbers_round_trip_and_rovers_have_no_land_mode() {
         for flies in [false, true] {
             for mode in FlightMode::ALL {
                 let found = FlightMode::from_number(mode.number(flies), flies);

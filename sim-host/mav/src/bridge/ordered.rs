@@ -1,29 +1,29 @@
-//! What a vehicle was last told of a formation, to say once that it has it.
+//! The orders that a vehicle last received, so that each is confirmed once.
 
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message};
 
-/// Which order: by whom, in which of their starts, and its version.
+/// Sender of an order, its boot counter, and the order's version.
 type Order = Option<(RobotId, u8, u8)>;
 
-/// The last orders.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ordered {
     goal: Order,
     template: Order,
-    /// Parts of the template that have come, a bit each.
+    /// Received parts of the template, one bit each.
     parts: u64,
 }
 
 impl Ordered {
-    /// Hears an order; words for the operator if it is one that was not there as a whole before. O(1).
+    /// Records an order. Returns the confirmation for the operator the first time that an order is
+    /// complete. O(1).
     pub(super) fn hear(&mut self, header: Header, message: &Message) -> Option<String> {
         let order = |version| Some((header.sender, header.boot, version));
         match message {
             Message::Goal(goal) => {
                 let order = order(goal.version);
                 let is_new = core::mem::replace(&mut self.goal, order) != order;
-                is_new.then(|| format!("goal: cell {}, {}", goal.target.x, goal.target.y))
+                is_new.then(|| format!("goal: cell ({}, {})", goal.target.x, goal.target.y))
             }
             Message::Template(part) => {
                 let order = order(part.version);
@@ -34,7 +34,7 @@ impl Ordered {
                 let had_all = self.parts & all == all;
                 self.parts |= 1_u64.checked_shl(part.part.into()).unwrap_or(0);
                 let is_new = !had_all && self.parts & all == all;
-                is_new.then(|| format!("place {} of a new formation", u16::from(part.slot) + 1))
+                is_new.then(|| format!("new formation: place {}", u16::from(part.slot) + 1))
             }
             _ => None,
         }

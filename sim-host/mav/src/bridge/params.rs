@@ -1,4 +1,4 @@
-//! A vehicle's parameters: the controller's own, and how long a velocity setpoint holds.
+//! MAVLink parameters of a vehicle: those of the controller, and the timeout of velocity setpoints.
 
 use super::model::VehicleModel;
 use staya_controller::agent::Parameter;
@@ -6,19 +6,18 @@ use staya_controller::names::Named as _;
 use staya_mavlink::constants::MAV_PARAM_TYPE_REAL32;
 use staya_mavlink::dialect::PARAM_VALUE_DATA;
 
-/// How long a velocity setpoint holds, by default: as an ArduPilot rover does it, simulated seconds.
+/// Default timeout of a velocity setpoint, simulated seconds; equal to ArduPilot Rover's.
 const SETPOINT_TIMEOUT_S: f32 = 3.0;
 
-/// What a parameter changes.
+/// The setting behind a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
-    /// Something in the controller.
+    /// A setting of the controller.
     Controller(Parameter),
-    /// How long a velocity setpoint holds, simulated seconds.
+    /// Timeout of velocity setpoints, simulated seconds.
     SetpointTimeout,
 }
 
-/// One parameter.
 #[derive(Clone, Debug, PartialEq)]
 struct Entry {
     name: &'static str,
@@ -27,11 +26,11 @@ struct Entry {
     range: [f32; 2],
 }
 
-/// All parameters of a vehicle, as clients see them: by rising name.
+/// All parameters of a vehicle, sorted by name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
     entries: Vec<Entry>,
-    /// What is told next to who asked for all, and how many are still to be told.
+    /// Next parameter to list, and the number still to list.
     next: usize,
     left: usize,
 }
@@ -39,13 +38,13 @@ pub struct Parameters {
 /// Why a parameter was not set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NotSet {
-    /// There is no such one.
+    /// No parameter has this name.
     Unknown,
-    /// It is not within these limits.
+    /// The value is outside these limits.
     OutOf([f32; 2]),
 }
 
-/// The name that clients know a parameter by; at most 16 letters.
+/// Name of a parameter in MAVLink, at most 16 characters.
 const fn name(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Radius => "RADIUS_M",
@@ -93,7 +92,8 @@ const fn name(parameter: Parameter) -> &'static str {
 }
 
 impl Parameters {
-    /// Those that a robot has: `value` says what they are.
+    /// Creates the parameters that a robot has. `value` returns the present value, or `None` if the
+    /// robot lacks the setting.
     #[must_use]
     pub fn new(model: &VehicleModel, value: impl Fn(Parameter) -> Option<f32>) -> Self {
         let own = Parameter::NAMES.iter().filter_map(|&(_, parameter)| {
@@ -104,7 +104,7 @@ impl Parameters {
             }
             let [mut least, mut greatest] = parameter.range();
             match parameter {
-                // Whoever thinks that he is smaller than he is hits others.
+                // A radius below the real one would cause collisions.
                 Parameter::Radius => least = model.radius_m,
                 Parameter::Speed => greatest = model.max_speed_mps,
                 _ => {}
@@ -128,24 +128,25 @@ impl Parameters {
         Self { entries, next: 0, left: 0 }
     }
 
-    /// How many there are.
+    /// Number of parameters.
     #[must_use]
     pub const fn count(&self) -> usize {
         self.entries.len()
     }
 
-    /// Somebody wants to be told all of them. Whoever asks while they are being told does not make them more: he gets those that he missed at the end.
+    /// Starts listing all parameters. A request during a listing restarts the count, so the client
+    /// also gets the ones it missed; each parameter is sent once per request.
     pub const fn list(&mut self) {
         self.left = self.count();
     }
 
-    /// Whether some are still to be told.
+    /// Whether parameters remain to be listed.
     #[must_use]
     pub const fn is_listing(&self) -> bool {
         self.left > 0
     }
 
-    /// The next one to tell.
+    /// The next parameter of the listing.
     pub fn next_listed(&mut self) -> Option<PARAM_VALUE_DATA> {
         self.left = self.left.checked_sub(1)?;
         let told = self.message(self.next);
@@ -153,7 +154,7 @@ impl Parameters {
         told
     }
 
-    /// Where a parameter is, by the name of a message.
+    /// Index of the parameter with this name, as the field `param_id` has it.
     #[must_use]
     pub fn find(&self, id: &[u8; 16]) -> Option<usize> {
         let end = id.iter().position(|letter| *letter == 0);
@@ -161,21 +162,21 @@ impl Parameters {
         self.entries.iter().position(|entry| entry.name.as_bytes() == id)
     }
 
-    /// The value of what a parameter changes.
+    /// Value of a setting; `None` if the vehicle lacks it.
     #[must_use]
     pub fn get(&self, meaning: Meaning) -> Option<f32> {
         let mut entries = self.entries.iter();
         Some(entries.find(|entry| entry.meaning == meaning)?.value)
     }
 
-    /// Changes a value; what it changes is the answer.
+    /// Sets a parameter by index. Returns the setting that changed.
     ///
     /// # Errors
-    /// [`NotSet`]; nothing was changed.
+    /// [`NotSet`]; the value is unchanged.
     pub fn set(&mut self, index: usize, value: f32) -> Result<Meaning, NotSet> {
         let entry = self.entries.get_mut(index).ok_or(NotSet::Unknown)?;
         let [least, greatest] = entry.range;
-        // Also for what is no number.
+        // NaN fails this test too.
         if !(least..=greatest).contains(&value) {
             return Err(NotSet::OutOf(entry.range));
         }
@@ -183,30 +184,29 @@ impl Parameters {
         Ok(entry.meaning)
     }
 
-    /// The same by what it changes.
+    /// Sets a parameter by its setting. Returns the setting that changed.
     ///
     /// # Errors
-    /// [`NotSet`]; nothing was changed.
+    /// [`NotSet`]; the value is unchanged.
     pub fn set_meaning(&mut self, meaning: Meaning, value: f32) -> Result<Meaning, NotSet> {
         let mut entries = self.entries.iter();
         let index = entries.position(|entry| entry.meaning == meaning);
         self.set(index.ok_or(NotSet::Unknown)?, value)
     }
 
-    /// The value that holds after all; where it is.
+    /// Overwrites a value with the one that the controller uses. Returns its index.
     pub fn set_back(&mut self, meaning: Meaning, value: f32) -> Option<usize> {
         let index = self.entries.iter().position(|entry| entry.meaning == meaning)?;
         self.entries[index].value = value;
         Some(index)
     }
 
-    /// A parameter as clients are told it.
+    /// PARAM_VALUE of the parameter at `index`.
     #[must_use]
     pub fn message(&self, index: usize) -> Option<PARAM_VALUE_DATA> {
         let entry = self.entries.get(index)?;
         Some(PARAM_VALUE_DATA {
             param_value: entry.value,
-            // Some dozens.
             param_count: self.entries.len() as u16,
             param_index: index as u16,
             param_id: entry.name.into(),
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn names_fit_and_lead_back() {
+    fn parameter_names_fit_and_find_their_index() {
         let parameters = all();
         assert_eq!(parameters.count(), Parameter::NAMES.len() + 1);
         for index in 0..parameters.count() {
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn who_asks_again_and_again_gets_each_once_a_round() {
+    fn repeated_list_requests_send_each_parameter_once_per_round() {
         let mut parameters = all();
         assert_eq!(parameters.next_listed(), None);
         let count = parameters.count() as u16;
@@ -265,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_its_range_changes_nothing() {
+    fn a_value_out_of_range_is_not_set() {
         let mut parameters = all();
         let speed = parameters.find(&padded("SPEED_MPS")).expect("it is there");
         let limit = model().max_speed_mps;
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn on_the_grid_there_is_nothing_of_bodies() {
+    fn a_grid_robot_has_no_body_parameters() {
         let parameters = Parameters::new(&on_grid(), |_| Some(1.0));
         let is_there = |name| parameters.find(&padded(name)).is_some();
         assert!(is_there("BEACON_S") && is_there("ROUTE_A3"));

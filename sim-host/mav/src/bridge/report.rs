@@ -1,50 +1,50 @@
-//! What came of a bridge.
+//! Statistics of a bridge run.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// A line's part of the figures.
+/// Statistics of one link.
 #[derive(Clone, Debug, Serialize)]
 pub struct LineReport {
-    /// As it was opened.
+    /// The endpoint, as opened.
     pub endpoint: String,
-    /// Frames, and their bytes, that came in.
+    /// Frames received.
     pub frames_in: u64,
-    /// See there.
+    /// Bytes received.
     pub bytes_in: u64,
-    /// Frames that went out, once for each peer, and their bytes.
+    /// Frames sent, counted once for each peer.
     pub frames_out: u64,
-    /// See there.
+    /// Bytes sent.
     pub bytes_out: u64,
     /// Frames that could not be sent.
     pub lost_out: u64,
-    /// Frames for which there was no room when they came in.
+    /// Received frames that were dropped because the queue was full.
     pub lost_in: u64,
     /// Bytes that belong to no frame.
     pub junk_bytes: u64,
-    /// Bytes that went out in a second, on average.
+    /// Average send rate, bytes per second.
     pub bytes_out_per_s: f64,
 }
 
-/// Frames that were refused, by reason.
+/// Rejected frames by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Refused {
     /// Without a signature.
     pub unsigned: u64,
-    /// Signed with another key, or changed on the way.
+    /// With the signature of another key, or damaged.
     pub forged: u64,
-    /// Heard before, or too old.
+    /// Received before, or too old.
     pub replayed: u64,
     /// With a timestamp too far ahead of the clock.
     pub ahead: u64,
-    /// Of a sender that is not known, when there was no room for another one.
+    /// From an unknown sender while the table of senders was full.
     pub no_room: u64,
-    /// Signed and new, but no timestamp was left to sign an answer with.
+    /// Valid, but no timestamp is left to sign an answer with.
     pub unanswerable: u64,
 }
 
 impl Refused {
-    /// All of them.
+    /// Sum over all reasons.
     #[must_use]
     pub const fn total(&self) -> u64 {
         let Self { unsigned, forged, replayed, ahead, no_room, unanswerable } = *self;
@@ -52,49 +52,51 @@ impl Refused {
     }
 }
 
-/// What came of it. Of the frames that came in over all lines, each is counted once: `frames_in` is `frames_heard`, `frames_ignored`,
-/// `frames_refused`, `lost_in` and `frames_waiting` together.
+/// Statistics of a bridge run. `frames_in` over all links equals `frames_heard` + `frames_ignored`
+/// + `frames_refused` + `lost_in` + `frames_waiting`.
 #[derive(Clone, Debug, Serialize)]
 pub struct BridgeReport {
-    /// Robots, each a vehicle.
+    /// Number of vehicles, one for each robot.
     pub vehicles: usize,
-    /// Ticks done.
+    /// Simulated ticks.
     pub ticks: u32,
     /// Simulated time, seconds.
     pub sim_seconds: f64,
-    /// Time on the wall, seconds.
+    /// Real time, seconds.
     pub wall_seconds: f64,
-    /// Ticks that were due by the clock on the wall while an earlier one was not done; the simulation is behind by as many.
+    /// Ticks that became due before the previous one was finished. The simulation is late by this
+    /// number of ticks.
     pub deadlines_missed: u32,
-    /// The longest from when a tick was due until its work was done, seconds.
+    /// Longest time from when a tick was due to the end of its work, seconds.
     pub slowest_seconds: f64,
-    /// Frames for one or more of the vehicles, and heartbeats.
+    /// Frames for at least one vehicle, and heartbeats.
     pub frames_heard: u64,
-    /// Frames for vehicles that there are none of, or of messages that are not known here.
+    /// Frames for unknown vehicles or with unknown messages.
     pub frames_ignored: u64,
-    /// Frames refused for their signature, or for having none; those of the future among them.
+    /// Frames rejected for a missing or invalid signature, those with a future timestamp included.
     pub frames_refused: u64,
-    /// Why they were.
+    /// Rejected frames by reason.
     pub refused: Refused,
-    /// Frames refused for a timestamp too far ahead of the clock.
+    /// Frames rejected for a timestamp too far ahead of the clock.
     pub frames_ahead: u64,
-    /// Frames that had come in and whose turn had not come at the end.
+    /// Frames still queued at the end.
     pub frames_waiting: u64,
-    /// Whether too few timestamps are left to sign with, so that nothing is obeyed any more: a new key is needed.
+    /// Whether the signing timestamps are used up, so that the bridge refuses all commands until it
+    /// has a new key.
     pub is_exhausted: bool,
     /// Answers to commands, by result.
     pub commands: BTreeMap<&'static str, u64>,
-    /// What each line carried.
+    /// Statistics of each link.
     pub lines: Vec<LineReport>,
-    /// Overlaps of bodies, summed over ticks.
+    /// Overlaps between bodies, summed over ticks.
     pub collisions: u64,
-    /// Least distance between the surfaces of two bodies, metres; null: on the grid, or nobody came near.
+    /// Smallest distance between the surfaces of two bodies, metres; null on a grid, or if no two
+    /// bodies came near.
     pub least_gap_m: Option<f64>,
-    /// 16 hex digits; that of `staya run` when nobody commanded.
+    /// Trace hash, 16 hex digits; equal to that of `staya run` if no command arrived.
     pub trace_hash: String,
 }
 
-/// A result's name.
 pub(super) const fn name(result: u8) -> &'static str {
     use staya_mavlink::constants::*;
     match result {

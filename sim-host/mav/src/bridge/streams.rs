@@ -1,33 +1,32 @@
-//! How often a vehicle says what of itself.
+//! Message streams: the rate of each telemetry message.
 
 use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
 
-/// Shortest time between two messages of a kind, microseconds.
+/// Shortest interval of a stream, microseconds.
 const SHORTEST_US: u64 = 1000;
-/// One message, again and again.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stream {
     id: u32,
-    /// By default; 0: not at all.
+    /// Default interval; 0 for off.
     default_us: u64,
-    /// Now.
     every_us: u64,
     due_us: u64,
 }
 
-/// Messages that come by themselves.
+/// The telemetry streams of one vehicle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Streams(Vec<Stream>);
 
-/// Microseconds between two messages at a rate, 0 for none.
+/// Interval in microseconds; 0 for a rate of 0.
 fn every(rate_hz: f64) -> u64 {
     if rate_hz > 0.0 { (1e6 / rate_hz) as u64 } else { 0 }
 }
 
 impl Streams {
-    /// The defaults: `position_hz` of each kind of position, half of that for the attitude, the rest about once a second. `phase` from 0
-    /// to 1: vehicles with different ones do not all speak at once.
+    /// Creates the default streams: each position message at `position_hz`, attitude at half of
+    /// that, the others at about 1 Hz. `phase` from 0 to 1 shifts the first messages, so that
+    /// vehicles do not all send at once.
     #[must_use]
     pub fn new(position_hz: f64, phase: f64) -> Self {
         let second = every(1.0);
@@ -56,13 +55,13 @@ impl Streams {
         Self(streams.into())
     }
 
-    /// Whether there is such a message.
+    /// Whether the vehicle can send message `id`.
     #[must_use]
     pub fn has(&self, id: u32) -> bool {
         self.0.iter().any(|stream| stream.id == id)
     }
 
-    /// Calls `send` for each message that is due. One that is late is sent once.
+    /// Calls `send` for each message that is due. An overdue message is sent once.
     pub fn each_due(&mut self, now_us: u64, mut send: impl FnMut(u32)) {
         for stream in &mut self.0 {
             if stream.every_us == 0 || now_us < stream.due_us {
@@ -74,7 +73,7 @@ impl Streams {
         }
     }
 
-    /// Time between two messages, microseconds; -1: not sent; `None` when there is no such message.
+    /// Interval of a message, microseconds; -1 if it is off, `None` if the vehicle cannot send it.
     #[must_use]
     pub fn interval_us(&self, id: u32) -> Option<i32> {
         let stream = self.0.iter().find(|stream| stream.id == id)?;
@@ -84,7 +83,8 @@ impl Streams {
         })
     }
 
-    /// As SET_MESSAGE_INTERVAL says it: -1 ends the stream, 0 is the default. Whether that can be.
+    /// Applies SET_MESSAGE_INTERVAL: -1 for off, 0 for the default. Returns whether the interval is
+    /// possible.
     pub fn set_interval(&mut self, id: u32, interval_us: f32, now_us: u64) -> bool {
         let Some(stream) = self.0.iter_mut().find(|stream| stream.id == id) else {
             return false;
@@ -98,7 +98,7 @@ impl Streams {
         } else {
             return false;
         };
-        // Without its heartbeat it would be lost.
+        // A client would take a vehicle without heartbeats for lost.
         if id == HEARTBEAT_DATA::ID && wanted != stream.default_us {
             return false;
         }
@@ -106,10 +106,10 @@ impl Streams {
         true
     }
 
-    /// As REQUEST_DATA_STREAM says it: all messages of a group; 0 ends them.
+    /// Applies REQUEST_DATA_STREAM to all messages of a group; 0 turns them off.
     pub fn set_group(&mut self, group: u8, rate_hz: u16, now_us: u64) {
         let ids: &[u32] = match group {
-            // All: what says how it moves and how it is, not what hardly changes.
+            // Group 0 is "all": motion and status, but not messages that rarely change.
             0 => &[
                 SYS_STATUS_DATA::ID,
                 GPS_RAW_INT_DATA::ID,

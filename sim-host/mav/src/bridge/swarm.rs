@@ -1,7 +1,8 @@
-//! The simulation in real time between its vehicles and the lines to their clients.
+//! Runs the simulation in real time and connects its vehicles to the links.
 //!
-//! A tick is done when its time has come. Between two ticks frames are taken in and what is due is sent, so that answers do not wait for
-//! ticks and rates are those of the clock on the wall, whatever `speed` the simulation has. Setpoints and missions count simulated time.
+//! A tick runs when it is due. Between ticks the bridge handles received frames and sends due
+//! messages, so answers do not wait for ticks. Message rates follow the real clock whatever the
+//! `speed` of the simulation; setpoints and missions follow simulated time.
 
 use super::budget::Budget;
 use super::model::{Sample, VehicleModel};
@@ -25,52 +26,52 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Largest number that a vehicle can have.
 const LAST_SYSTEM: u32 = 254;
-/// What is due is looked for at least so often.
+/// Longest wait before due messages are checked.
 const GLANCE: Duration = Duration::from_millis(4);
-/// Frames taken in between two ticks however little time the ticks leave.
+/// Frames handled between two ticks even if the ticks leave no time.
 const AT_LEAST: usize = 8;
-/// Parameters that all vehicles together list in a second, and at once.
+/// Listed parameters per second, over all vehicles.
 const PARAMETERS_PER_S: u32 = 2000;
-/// With fewer timestamps left nothing is obeyed any more: it could not be answered.
+/// With fewer timestamps left to sign with, commands are refused because they could not be
+/// answered.
 const RESERVE: u64 = 1 << 16;
-/// How often it is said that there are none left.
+/// Interval of the warning that timestamps are used up.
 const COMPLAIN_US: u64 = 10_000_000;
 
-/// How to run it.
+/// Options of a bridge run.
 #[derive(Debug)]
 pub struct Options {
-    /// Lines to clients, one or more.
+    /// Links to clients, at least one.
     pub endpoints: Vec<Endpoint>,
-    /// Simulated seconds in a second; more than 0.
+    /// Simulated seconds per real second, above 0.
     pub speed: f64,
-    /// Ticks after which to end; `None`: never.
+    /// Ticks to simulate; `None` runs until stopped.
     pub ticks: Option<u32>,
-    /// Positions a second, of each kind and vehicle.
+    /// Rate of each position message of each vehicle, Hz.
     pub position_hz: f64,
-    /// Whether robots go their own ways from the start; otherwise they wait, disarmed.
+    /// Whether robots follow the scenario from the start; otherwise they wait, disarmed.
     pub starts_armed: bool,
-    /// Where the scenario is on the Earth.
+    /// Geographic position of the scenario's origin.
     pub origin: Origin,
-    /// Signs what goes out, and refuses what comes in without a good signature.
+    /// Key that signs sent frames. Received frames need a valid signature.
     pub signing: Option<Signing>,
-    /// Where all frames are kept.
+    /// Path of the telemetry log.
     pub tlog: Option<PathBuf>,
 }
 
-/// Why there is no bridge.
+/// Why a bridge cannot start or continue.
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
-    /// A number that no MAVLink system has.
+    /// A robot's number is not a valid MAVLink system id.
     #[error(
         "robot {0} cannot be a MAVLink vehicle: numbers are 1 to {LAST_SYSTEM}; give the scenario fewer robots, or other numbers"
     )]
     Number(u32),
-    /// The scenario's robots have no room.
-    #[error("the robots cannot be placed: {0}")]
+    /// The robots do not fit into the scenario.
+    #[error("the robots cannot be placed: {0}; change their starts")]
     Misplaced(#[from] Misplaced),
-    /// A line cannot be opened.
+    /// A link cannot be opened.
     #[error(transparent)]
     Line(#[from] OpenError),
     /// The log cannot be written.
@@ -78,16 +79,15 @@ pub enum BridgeError {
     Log(#[from] TlogError),
 }
 
-/// Who looks at the swarm after each tick, and is quick about it.
+/// A callback that observes the swarm after each tick. It delays the next tick, so it must be fast.
 pub type Onlooker<'a> = dyn FnMut(&Moment<'_>, &mut dyn Iterator<Item = RobotRow>) + 'a;
 
-/// The swarm with all that belongs to it.
+/// A running bridge.
 pub struct Swarm {
     engine: Box<dyn Operated>,
     vehicles: Vec<Vehicle>,
-    /// Starts of each computer, as last seen.
     boots: Vec<u8>,
-    /// Frames of each vehicle; wraps.
+    /// Next sequence number of each vehicle; wraps.
     sequences: Vec<u8>,
     model: Arc<VehicleModel>,
     lines: Lines,
@@ -98,7 +98,7 @@ pub struct Swarm {
     began: Instant,
     missed: u32,
     slowest: Duration,
-    /// Which vehicle speaks first.
+    /// Vehicle that sends first in the next round.
     first: usize,
     listing: Budget,
     complained_us: Option<u64>,
@@ -110,7 +110,7 @@ pub struct Swarm {
 }
 
 impl Swarm {
-    /// A scenario before its first tick, and its lines open.
+    /// Loads a scenario before its first tick and opens the links.
     ///
     /// # Errors
     /// [`BridgeError`].
@@ -126,7 +126,6 @@ impl Swarm {
         for (index, number) in numbers.into_iter().enumerate() {
             let sample = Sample::new(0, &engine.observation(index));
             let vehicle = Vehicle::new(
-                // At most 254.
                 number as u8,
                 Arc::clone(&model),
                 Parameters::new(&model, |parameter| engine.parameter(index, parameter)),
@@ -170,23 +169,24 @@ impl Swarm {
         })
     }
 
-    /// The lines, to say where they listen.
+    /// The open links.
     #[must_use]
     pub const fn lines(&self) -> &Lines {
         &self.lines
     }
 
-    /// Runs until the ticks are used up or `is_over`, which is asked at least every few milliseconds and told the ticks done.
+    /// Runs until the ticks are used up or `is_over` returns true. `is_over` receives the number of
+    /// finished ticks and is called every few milliseconds.
     ///
     /// # Errors
-    /// When the log cannot be written.
+    /// [`BridgeError::Log`] if the log cannot be written.
     pub fn run(self, is_over: impl FnMut(u32) -> bool) -> Result<BridgeReport, BridgeError> {
         self.run_watched(is_over, &mut |_, _| {})
     }
 
-    /// The same, with somebody who looks on.
+    /// Runs like [`Swarm::run`], and calls `onlooker` after each tick.
     ///
-    /// # Errors
+    /// [`BridgeError::Log`] if the log cannot be written.
     /// When the log cannot be written.
     pub fn run_watched(
         mut self,
@@ -205,7 +205,7 @@ impl Swarm {
                 self.slowest = self.slowest.max(done - due);
                 due += tick;
                 if let Some(late) = done.checked_duration_since(due) {
-                    // What came late is not made up for: the clock starts anew.
+                    // Late ticks are not made up for.
                     let others = late.as_nanos() / tick.as_nanos().max(1);
                     self.missed =
                         self.missed.saturating_add(1).saturating_add(u32::try_from(others).unwrap_or(u32::MAX));
@@ -221,7 +221,7 @@ impl Swarm {
         Ok(self.report())
     }
 
-    /// Takes in what comes, for a moment, but hardly beyond `due`.
+    /// Handles received frames for a short time, barely beyond `due`.
     fn listen(&mut self, due: Instant) -> Result<(), BridgeError> {
         if let Some(signing) = &mut self.options.signing {
             signing.advance_to(timestamp());
@@ -245,9 +245,8 @@ impl Swarm {
         u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
     }
 
-    /// One frame that came in; how many messages it was answered with.
+    /// Handles one received frame. Returns the number of answers.
     fn take(&mut self, received: &Received) -> Result<usize, BridgeError> {
-        // Lines hand on whole frames only.
         let Some(frame) = RawFrame::new(&received.frame) else {
             self.ignored += 1;
             return Ok(0);
@@ -271,7 +270,7 @@ impl Swarm {
             return Ok(0);
         };
         self.lines.believe(received.line, received.peer);
-        // Only what was believed: others would fill the disk.
+        // Frames with an invalid signature are not logged: they could fill the disk.
         if let Some(log) = &mut self.log {
             log.add(&received.frame)?;
         }
@@ -282,7 +281,7 @@ impl Swarm {
         let mut answers = 0;
         let (from, now_us) = (frame.sender(), self.now_us());
         let system = message.target_system_id().unwrap_or(0);
-        // A heartbeat is for nobody; the rest that names nobody is for all.
+        // Heartbeats have no target. Other messages without a target are for all vehicles.
         let is_for_some = !matches!(message, MavMessage::HEARTBEAT(_));
         let mut is_heard = false;
         for index in 0..self.vehicles.len() {
@@ -298,7 +297,7 @@ impl Swarm {
         Ok(answers)
     }
 
-    /// Sends what is due, every vehicle in turn, until the next tick is due.
+    /// Sends due messages, one vehicle after the other, until the next tick is due.
     fn speak(&mut self, due: Instant) -> Result<(), BridgeError> {
         let now_us = self.now_us();
         self.complain(now_us)?;
@@ -318,7 +317,7 @@ impl Swarm {
         Ok(())
     }
 
-    /// Says that there are too few timestamps to sign with, while there are some.
+    /// Warns that signing timestamps are running out, while some are left to sign the warning.
     fn complain(&mut self, now_us: u64) -> Result<(), BridgeError> {
         let is_early = |last: u64| now_us.saturating_sub(last) < COMPLAIN_US;
         if !self.is_exhausted() || self.complained_us.is_some_and(is_early) {
@@ -336,7 +335,6 @@ impl Swarm {
         self.options.signing.as_ref().is_some_and(|signing| signing.left() < RESERVE)
     }
 
-    /// One tick, and what the vehicles see of it.
     fn tick(&mut self) -> Result<(), BridgeError> {
         self.engine.advance();
         self.ticks += 1;
@@ -358,13 +356,14 @@ impl Swarm {
         Ok(())
     }
 
-    /// What vehicle `index` wants done and sent; how many messages these are.
+    /// Applies the actions and sends the messages of vehicle `index`. Returns the number of
+    /// messages.
     fn carry_out(&mut self, index: usize) -> Result<usize, BridgeError> {
         let mut refused = Vec::new();
         for action in self.out.actions.drain(..) {
             match action {
                 Action::Tell(header, message) => self.engine.tell(index, header, &message),
-                // The vehicle wishes only what its robot can do, and has looked at the range.
+                // The vehicle has already checked what its robot can do.
                 Action::Wish(wish) => {
                     let _ = self.engine.command(index, wish);
                 }
@@ -392,15 +391,14 @@ impl Swarm {
             };
             *sequence = sequence.wrapping_add(1);
             let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-            // Every message fits into the longest frame.
             if encode_message(sender, &message, &mut frame).is_err() {
                 continue;
             }
             if let Some(signing) = &mut self.options.signing {
                 match signing.sign(&mut frame) {
-                    // There is room: it is counted in the longest frame.
+                    // The buffer has room for a signed frame.
                     Ok(signature) => drop(frame.extend_from_slice(&signature)),
-                    // Better nothing than something that is not signed.
+                    // An unsigned frame must not be sent.
                     Err(_) => continue,
                 }
             }
@@ -414,7 +412,6 @@ impl Swarm {
         Ok(answers)
     }
 
-    /// The figures; nothing comes in any more while they are added up.
     fn report(mut self) -> BridgeReport {
         let wall_seconds = self.began.elapsed().as_secs_f64();
         self.lines.close();
@@ -458,9 +455,10 @@ impl Swarm {
     }
 }
 
-/// How many parameters a second the slowest line carries beside everything else: a serial one, a third of it.
+/// Parameters per second that the slowest link carries: a third of a serial line, the rest is for
+/// telemetry.
 fn parameters_per_s(endpoints: &[Endpoint]) -> u32 {
-    /// Bits of a PARAM_VALUE with its signature: 10 for each byte.
+    /// Size of a signed PARAM_VALUE on a serial line: 10 bits per byte.
     const BITS: u32 = 10 * 50;
     let serial = endpoints.iter().filter_map(|endpoint| match endpoint {
         Endpoint::Serial(port) => Some((port.baud / BITS / 3).max(1)),

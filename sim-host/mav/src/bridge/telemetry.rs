@@ -1,4 +1,4 @@
-//! What a vehicle says of itself, and how often.
+//! Telemetry messages of a vehicle.
 
 use super::model::FlightMode;
 use super::vehicle::Vehicle;
@@ -8,11 +8,11 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
 
-/// "Not known", in fields that have a value for that.
+/// MAVLink's value for "not known".
 const UNKNOWN: u16 = u16::MAX;
 
 impl Vehicle {
-    /// A message about itself, by its number; `None` when there is no such one.
+    /// Telemetry message `id`; `None` if the vehicle cannot send it.
     pub(super) fn telemetry(&self, id: u32) -> Option<MavMessage> {
         let sample = &self.sample;
         let time_boot_ms = (self.uptime_us() / 1000) as u32;
@@ -21,7 +21,7 @@ impl Vehicle {
         let [vx, vy, vz] = velocity.map(|v| v as f32);
         let speed_mps = libm::hypot(velocity[0], velocity[1]);
         let cm = |v: f64| libm::round(v * 100.0) as i16;
-        // 0 to 360 degrees, in hundredths.
+        // 0 to 360 degrees, in units of 0.01 degrees.
         let heading = libm::round(f64::from(self.yaw).to_degrees() * 100.0) as i32;
         let heading = heading.rem_euclid(36_000) as u16;
         let place = |at_m: [f64; 3]| {
@@ -33,7 +33,7 @@ impl Vehicle {
             HEARTBEAT_DATA::ID => self.heartbeat(),
             SYS_STATUS_DATA::ID => self.sys_status(),
             SYSTEM_TIME_DATA::ID => MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA {
-                // The time of day is not known here.
+                // The simulation has no time of day.
                 time_unix_usec: 0,
                 time_boot_ms,
             }),
@@ -78,7 +78,7 @@ impl Vehicle {
             MISSION_CURRENT_DATA::ID => MavMessage::MISSION_CURRENT(MISSION_CURRENT_DATA {
                 seq: self.mission.current(),
                 total: self.mission.len().saturating_sub(1),
-                // MISSION_STATE: none, under way, complete, not started.
+                // MISSION_STATE: 1 none, 2 not started, 3 active, 5 complete.
                 mission_state: match () {
                     () if self.mission.is_empty() => 1,
                     () if self.is_on_mission || self.is_landing_item => 3,
@@ -105,7 +105,7 @@ impl Vehicle {
                 throttle: 0,
             }),
             BATTERY_STATUS_DATA::ID => MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
-                // There is no model of a battery, and so nothing is known of it.
+                // The simulation has no battery model.
                 current_consumed: -1,
                 energy_consumed: -1,
                 temperature: i16::MAX,
@@ -158,7 +158,7 @@ impl Vehicle {
         MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: self.mode.number(flies),
             mavtype: if flies { MAV_TYPE_QUADROTOR } else { MAV_TYPE_GROUND_ROVER },
-            // The modes are ArduPilot's: see `FlightMode`.
+            // Mode numbers are ArduPilot's, see `FlightMode`.
             autopilot: MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode,
             system_status: match (self.is_armed, self.sample.mode) {
@@ -180,7 +180,7 @@ impl Vehicle {
         MavMessage::SYS_STATUS(SYS_STATUS_DATA {
             onboard_control_sensors_present: present,
             onboard_control_sensors_enabled: present,
-            // There is no fence, and so none is broken: MAVProxy reads an unset bit as a breach.
+            // MAVProxy reads an unset bit as a fence breach. There is no fence.
             onboard_control_sensors_health: (present & !unsound) | MAV_SYS_STATUS_GEOFENCE,
             voltage_battery: UNKNOWN,
             current_battery: -1,

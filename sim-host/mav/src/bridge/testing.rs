@@ -1,4 +1,4 @@
-//! Vehicles for tests.
+//! Test fixtures for vehicles.
 
 use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
@@ -13,7 +13,6 @@ use staya_mavlink::frame::Sender;
 use staya_sim::terrain::Terrain;
 use std::sync::Arc;
 
-/// A ground station.
 pub(super) const GCS: Sender = Sender { system: 255, component: 190, sequence: 0 };
 
 pub(super) fn origin() -> Origin {
@@ -21,7 +20,6 @@ pub(super) fn origin() -> Origin {
     Origin::new(place).expect("a place")
 }
 
-/// Discs in the plane.
 pub(super) fn model() -> VehicleModel {
     VehicleModel {
         flies: false,
@@ -54,7 +52,7 @@ pub(super) fn sample() -> Sample {
     }
 }
 
-/// Vehicle 7, and what the last call made of it.
+/// Vehicle 7 with the output of the last call.
 pub(super) struct Bench {
     pub(super) vehicle: Vehicle,
     pub(super) sample: Sample,
@@ -80,7 +78,6 @@ impl Bench {
         }
     }
 
-    /// The vehicle gets a message at a moment; what comes of it replaces what came before.
     pub(super) fn give(&mut self, message: MavMessage) -> &Out {
         self.out = Out::default();
         let now_us = self.vehicle.now_us;
@@ -88,7 +85,6 @@ impl Bench {
         &self.out
     }
 
-    /// A command with these parameters; its result.
     pub(super) fn command(&mut self, command: u16, params: [f32; 7]) -> u8 {
         let [param1, param2, param3, param4, param5, param6, param7] = params;
         self.give(MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
@@ -107,13 +103,12 @@ impl Bench {
         self.result()
     }
 
-    /// A command whose place is in whole numbers; its result.
     pub(super) fn command_int(&mut self, command: COMMAND_INT_DATA) -> u8 {
         self.give(MavMessage::COMMAND_INT(COMMAND_INT_DATA { target_system: 7, target_component: 1, ..command }));
         self.result()
     }
 
-    /// The result that was answered; there is exactly one answer, and it comes first.
+    /// The result of the only acknowledgement, which is the first message.
     pub(super) fn result(&self) -> u8 {
         let acks = self.out.messages.iter().filter_map(|message| match message {
             MavMessage::COMMAND_ACK(ack) => Some(ack.result),
@@ -125,7 +120,6 @@ impl Bench {
         acks[0]
     }
 
-    /// A tick later.
     pub(super) fn tick(&mut self, change: impl FnOnce(&mut Sample)) -> &Out {
         self.sample.time_us += 100_000;
         change(&mut self.sample);
@@ -135,7 +129,6 @@ impl Bench {
         &self.out
     }
 
-    /// What the controller was told to wish at last.
     pub(super) fn wish(&self) -> Option<Wish<f32>> {
         let mut actions = self.out.actions.iter().rev();
         actions.find_map(|action| match action {
@@ -144,7 +137,6 @@ impl Bench {
         })
     }
 
-    /// Texts that were sent.
     pub(super) fn texts(&self) -> Vec<String> {
         let texts = self.out.messages.iter().filter_map(|message| match message {
             MavMessage::STATUSTEXT(text) => Some(text.text.to_str().unwrap_or("?").to_owned()),

@@ -1,8 +1,8 @@
-//! One robot as a MAVLink vehicle: frames and moments in, answers and wishes out; no sockets, no clock. Read [`Vehicle::receive`]
-//! first.
+//! One robot as a MAVLink vehicle, without sockets or a clock. Start with [`Vehicle::receive`].
 //!
-//! What a client says becomes a [`Action`] for the robot's controller, or is refused. Commands are answered always
-//! (`commands`), setpoints never (`guided`), as the protocol has it; what was wrong with them is said as STATUSTEXT.
+//! A client's message becomes an [`Action`] for the robot's controller, or is refused. Commands
+//! (`commands`) are always answered, setpoints (`guided`) never, as the protocol demands; a
+//! STATUSTEXT says why a setpoint was refused.
 
 use super::files;
 use super::mission::{Item, Mission};
@@ -23,32 +23,32 @@ use std::sync::Arc;
 
 mod tuning;
 
-/// Texts of one kind come at most once in this time, microseconds.
+/// Shortest interval between texts of one kind, microseconds.
 const TEXT_EVERY_US: u64 = 2_000_000;
 
-/// What is to be done to the robot.
+/// An action for the robot's controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Its controller gets a wish.
+    /// Sets the goal.
     Wish(Wish<f32>),
-    /// Its controller hears a message.
+    /// Delivers a message as if it had arrived by radio.
     Tell(Header, Message),
-    /// Its controller gets a parameter.
+    /// Sets a parameter.
     Set(Parameter, f32),
 }
 
-/// What comes of a moment.
+/// The output of one call.
 #[derive(Clone, Debug, Default)]
 pub struct Out {
-    /// To send, in this order.
+    /// Messages to send, in this order.
     pub messages: Vec<MavMessage>,
-    /// To do, in this order, before the next tick.
+    /// Actions to perform in this order before the next tick.
     pub actions: Vec<Action>,
-    /// How commands were answered.
+    /// Results of the commands answered in this call.
     pub results: Vec<u8>,
 }
 
-/// One robot as clients see it.
+/// The vehicle that clients see for one robot.
 #[derive(Clone, Debug)]
 pub struct Vehicle {
     pub(super) system: u8,
@@ -57,31 +57,30 @@ pub struct Vehicle {
     pub(super) parameters: Parameters,
     pub(super) mission: Mission,
     pub(super) sample: Sample,
-    /// When its computer started, simulated time.
+    /// Simulated time at which the onboard computer started.
     started_us: u64,
-    /// Where it was then.
+    /// Position at the start.
     pub(super) home_m: [f64; 3],
-    /// Where its front points, radians from north to the east.
+    /// Heading, radians from north to east.
     pub(super) yaw: f32,
     pub(super) mode: FlightMode,
     pub(super) is_armed: bool,
     starts_armed: bool,
-    /// Its mission is under way, since this simulated time at the present item's place.
+    /// Whether the mission is active, and since when the vehicle is at the current item, simulated
+    /// time.
     pub(super) is_on_mission: bool,
     pub(super) there_since_us: Option<u64>,
-    /// It lands because an item of its mission says so.
+    /// Whether it lands because of a mission item.
     pub(super) is_landing_item: bool,
-    /// What it was last told of a formation.
     pub(super) ordered: Ordered,
-    /// When a text of each kind was last sent, and the time now.
+    /// Time of the last text of each kind.
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
 }
 
-/// What a text is about.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
-    /// Each is news.
+    /// Not limited in rate.
     News,
     Parameter,
     Setpoint,
@@ -94,7 +93,8 @@ impl Kind {
 }
 
 impl Vehicle {
-    /// A robot that has just started, disarmed unless `starts_armed`. `streams` says what it sends.
+    /// Creates a vehicle that has just started, disarmed unless `starts_armed`. `streams` are its
+    /// telemetry messages.
     #[must_use]
     pub fn new(
         system: u8,
@@ -111,7 +111,6 @@ impl Vehicle {
             parameters,
             mission: Mission::default(),
             started_us: sample.time_us,
-            // Home is on the ground of those that fly.
             home_m: [x, y, 0.0],
             sample,
             yaw: 0.0,
@@ -128,19 +127,19 @@ impl Vehicle {
         }
     }
 
-    /// Its MAVLink system.
+    /// MAVLink system id.
     #[must_use]
     pub const fn system(&self) -> u8 {
         self.system
     }
 
-    /// What the robot must be told at its start.
+    /// Action to perform at the start of the robot.
     #[must_use]
     pub const fn first_deed(&self) -> Option<Action> {
         if self.starts_armed { None } else { Some(Action::Wish(Wish::Off)) }
     }
 
-    /// Its computer has started anew: it has forgotten all but its mission.
+    /// Resets the vehicle after its onboard computer restarted. Only the mission is kept.
     pub fn restart(&mut self, parameters: Parameters, sample: Sample, out: &mut Out) {
         let fresh = Self::new(
             self.system,
@@ -154,10 +153,10 @@ impl Vehicle {
         (self.mission, self.home_m) = (old.mission, old.home_m);
         (self.now_us, self.yaw) = (old.now_us, old.yaw);
         out.actions.extend(self.first_deed());
-        self.text(out, Kind::News, MAV_SEVERITY_WARNING, "started anew");
+        self.text(out, Kind::News, MAV_SEVERITY_WARNING, "restarted");
     }
 
-    /// Takes note of where the robot is after a tick, and what happened in it.
+    /// Records the robot's state and events after a tick.
     pub fn observe(&mut self, sample: Sample, events: &[Event], now_us: u64, out: &mut Out) {
         let before = core::mem::replace(&mut self.sample, sample);
         self.now_us = now_us;
@@ -172,7 +171,7 @@ impl Vehicle {
             && sample.wish == Wish::Hold
             && self.mode == FlightMode::Guided
         {
-            let text = "no setpoint any more: holding";
+            let text = "setpoint timed out: holding";
             self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, text);
         }
         for event in events {
@@ -189,32 +188,32 @@ impl Vehicle {
             }
             Event::ModeChanged { to: Mode::Arrived, .. } => self.text(out, Kind::News, INFO, "arrived"),
             Event::NeighborLost(id) => {
-                let text = format!("robot {id} is not heard any more");
+                let text = format!("robot {id} is lost");
                 self.text(out, Kind::Neighbor, INFO, &text);
             }
             Event::NeighborRebooted(id) => {
-                let text = format!("robot {id} has started anew");
+                let text = format!("robot {id} has restarted");
                 self.text(out, Kind::Neighbor, INFO, &text);
             }
             Event::DuplicateId(id) => {
-                let text = format!("two robots have number {id}");
+                let text = format!("two robots use number {id}");
                 self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
             }
             Event::Overclaimed { id, claim } => {
-                let text = format!("robot {id} claims {claim}");
+                let text = format!("robot {id} reports implausible {claim}");
                 self.text(out, Kind::Neighbor, MAV_SEVERITY_WARNING, &text);
             }
-            Event::NobodyHeard => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "nobody is heard any more"),
+            Event::NobodyHeard => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "contact to all robots lost"),
             Event::Muted => {
-                let text = "robot is mute: it needs a new key";
+                let text = "robot cannot send: give it a new key";
                 self.text(out, Kind::Neighbor, MAV_SEVERITY_ERROR, text);
             }
-            Event::NoRoute => self.text(out, Kind::Route, MAV_SEVERITY_WARNING, "no way is open"),
+            Event::NoRoute => self.text(out, Kind::Route, MAV_SEVERITY_WARNING, "no open route to the goal"),
             _ => {}
         }
     }
 
-    /// Says something; texts of one kind not too often.
+    /// Sends a text. All kinds but `News` are limited in rate.
     pub(super) fn text(&mut self, out: &mut Out, kind: Kind, severity: u8, text: &str) {
         if !matches!(kind, Kind::News) {
             let last = &mut self.texts[kind as usize];
@@ -231,7 +230,7 @@ impl Vehicle {
         }));
     }
 
-    /// Sends what is due at `now_us`, and asks for what did not come.
+    /// Sends due telemetry, and requests overdue mission items.
     pub fn poll(&mut self, now_us: u64, out: &mut Out) {
         self.now_us = now_us;
         if !self.sample.is_up {
@@ -243,24 +242,24 @@ impl Vehicle {
         out.messages.extend(self.mission.poll(now_us));
     }
 
-    /// Whether parameters that somebody asked to be listed are still to be sent.
+    /// Whether parameters of a listing remain to be sent.
     #[must_use]
     pub const fn is_listing(&self) -> bool {
         self.parameters.is_listing()
     }
 
-    /// Sends one of them.
+    /// Sends the next parameter of the listing.
     pub fn list_one(&mut self, out: &mut Out) {
         out.messages.extend(self.parameters.next_listed().map(MavMessage::PARAM_VALUE));
     }
 
-    /// Says that soon nothing can be said any more, since there is no timestamp left to sign with.
+    /// Warns that the signing timestamps are nearly used up.
     pub fn say_exhausted(&mut self, out: &mut Out) {
-        let text = "no timestamp to sign with: take a new key";
+        let text = "signing timestamps used up: give a new key";
         self.text(out, Kind::News, MAV_SEVERITY_ERROR, text);
     }
 
-    /// Takes a message of somebody else in: for this vehicle, or for all.
+    /// Handles a message for this vehicle or for all vehicles.
     pub fn receive(&mut self, from: Sender, message: &MavMessage, now_us: u64, out: &mut Out) {
         self.now_us = now_us;
         if !self.sample.is_up || !self.is_for_me(message) {
@@ -298,7 +297,7 @@ impl Vehicle {
                     ..ping.clone()
                 }));
             }
-            // Only a question is answered.
+            // A TIMESYNC with a time is an answer.
             MavMessage::TIMESYNC(sync) if sync.tc1 == 0 => {
                 out.messages.push(MavMessage::TIMESYNC(TIMESYNC_DATA {
                     tc1: i64::try_from(self.sample.time_us).map_or(i64::MAX, |us| us * 1000),
@@ -310,12 +309,11 @@ impl Vehicle {
         }
     }
 
-    /// Missions, and what robots say to each other.
     fn receive_goals(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
         let now_us = self.now_us;
         let answer = match message {
             MavMessage::MISSION_COUNT(told) => {
-                // What is under way is not taken from under its feet.
+                // An upload would replace the items of the active mission.
                 if self.is_on_mission && told.mission_type == MAV_MISSION_TYPE_MISSION {
                     self.stop_mission(out);
                 }
@@ -327,7 +325,7 @@ impl Vehicle {
             MavMessage::MISSION_ITEM(item) if item.current < 2 => {
                 self.take_item(from, item.seq, Item::from_float(item), out)
             }
-            // How clients of old say "go there now": an item of no mission.
+            // Older clients send a mission item outside an upload for "go there now".
             MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, &Item::from_int(item), out),
             MavMessage::MISSION_ITEM(item) => self.guided_item(from, item.current, &Item::from_float(item), out),
             MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
@@ -339,7 +337,7 @@ impl Vehicle {
             }
             MavMessage::MISSION_SET_CURRENT(wanted) => {
                 if self.set_current_item(wanted.seq, out).is_err() {
-                    let text = "no such mission item";
+                    let text = "unknown mission item";
                     self.text(out, Kind::News, MAV_SEVERITY_WARNING, text);
                 }
                 return out.messages.extend(self.telemetry(MISSION_CURRENT_ID));
@@ -353,7 +351,7 @@ impl Vehicle {
         let system = message.target_system_id();
         let component = message.target_component_id();
         let is_mine = system.is_none_or(|system| system == 0 || system == self.system);
-        // What goes to everybody would make everybody the same: not that.
+        // Broadcasts must not configure all vehicles alike.
         let is_private = matches!(
             message,
             MavMessage::PARAM_SET(_)
@@ -363,29 +361,26 @@ impl Vehicle {
                 | MavMessage::FILE_TRANSFER_PROTOCOL(_)
         );
         let is_addressed = !is_private || system == Some(self.system);
-        // 0: all components. There is one here.
+        // 0 addresses all components; this vehicle has one.
         let is_here = component.is_none_or(|to| to == 0 || to == MAV_COMP_ID_AUTOPILOT1);
         is_mine && is_addressed && is_here
     }
 
-    /// Microseconds since its computer started, simulated.
     pub(super) const fn uptime_us(&self) -> u64 {
         self.sample.time_us.saturating_sub(self.started_us)
     }
 
-    /// Whether it is off the ground.
     pub(super) fn is_in_air(&self) -> bool {
         let low_m = 0.02_f64.max(f64::from(self.tolerance_m()));
         self.model.flies && self.sample.position_m[2] > low_m
     }
 
-    /// How near is there, metres.
+    /// Distance at which a goal counts as reached, metres.
     pub(super) fn tolerance_m(&self) -> f32 {
         let tolerance = Meaning::Controller(Parameter::Tolerance);
         self.parameters.get(tolerance).unwrap_or(0.0)
     }
 
-    /// Changes the mode, whoever wants it, and does what the mode begins with.
     pub(super) fn enter(&mut self, mode: FlightMode, out: &mut Out) {
         if mode != self.mode {
             let text = format!("mode {}", mode.name(self.model.flies));
@@ -396,7 +391,6 @@ impl Vehicle {
         self.begin(out);
     }
 
-    /// What the mode begins with.
     pub(super) fn begin(&mut self, out: &mut Out) {
         let [x, y, z] = self.sample.position_m;
         let wish = match self.mode {
@@ -404,7 +398,7 @@ impl Vehicle {
             FlightMode::Auto if self.is_on_mission => return self.begin_item(out),
             FlightMode::Auto => Wish::Own,
             FlightMode::Guided | FlightMode::Hold => Wish::Hold,
-            // At its present height; it lands when it is there.
+            // At the present height; it lands on arrival.
             FlightMode::Return => {
                 let [home_x, home_y, _] = self.home_m;
                 self.goal([home_x, home_y, z]).unwrap_or(Wish::Hold)
@@ -414,9 +408,9 @@ impl Vehicle {
         out.actions.push(Action::Wish(wish));
     }
 
-    /// The wish to be at a place; `None` for one that no number or no body has room for.
+    /// The goal for a position; `None` if it is not finite, too far, or inside an obstacle.
     pub(super) fn goal(&self, [x, y, z]: [f64; 3]) -> Option<Wish<f32>> {
-        // Who does not fly keeps his height.
+        // A ground vehicle keeps its height.
         let place_m = [x, y, if self.model.flies { z } else { self.sample.position_m[2] }];
         let is_near = place_m.iter().all(|m| m.abs() <= FAR_M);
         if !is_near || !self.model.has_room(place_m) {
@@ -428,7 +422,7 @@ impl Vehicle {
         Some(Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_metres(place_m)?), valid: None })
     }
 
-    /// Whether it is at a place, by what it knows of its own.
+    /// Whether the vehicle is within `near_m` of a position, by its own estimate.
     pub(super) fn is_at(&self, place_m: [f64; 3], near_m: f64) -> bool {
         if self.model.grid.is_some() {
             return self.model.cell(place_m) == Some(self.sample.cell);
@@ -440,7 +434,7 @@ impl Vehicle {
         all <= near_m * near_m
     }
 
-    /// What follows from where it is now: the end of a return or a landing, the next item of a mission.
+    /// Continues a return, a landing or a mission from the present position.
     fn go_on(&mut self, out: &mut Out) {
         if !self.is_armed {
             return;
@@ -465,7 +459,6 @@ impl Vehicle {
     }
 }
 
-/// MISSION_CURRENT.
 const MISSION_CURRENT_ID: u32 = 42;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! `staya bridge SCENARIO`: the simulated swarm for ground stations and scripts, by MAVLink.
+//! `staya bridge SCENARIO` connects a simulated swarm to ground stations and scripts over MAVLink.
 
 use crate::Endpoint;
 use crate::bridge::{BridgeReport, Options, Refused, Swarm};
@@ -14,13 +14,15 @@ use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 
-/// Run a scenario in real time, each robot a MAVLink vehicle that ground stations and scripts see and command.
+/// Run a scenario in real time with each robot as a MAVLink vehicle for ground stations and
+/// scripts.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct BridgeArgs {
-    /// The scenario, a .toml file, with at most 254 robots.
+    /// Scenario, a .toml file with at most 254 robots.
     scenario: PathBuf,
-    /// Line to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or serial:PORT,baud=N; may be repeated.
+    /// Link to clients: udpout:HOST:PORT, udpin:HOST:PORT, tcpin:HOST:PORT, tcpout:HOST:PORT or
+    /// serial:PORT,baud=N; may be repeated.
     #[arg(long, value_name = "LINE", default_value = "udpout:127.0.0.1:14550")]
     mavlink: Vec<Endpoint>,
     #[command(flatten)]
@@ -28,42 +30,46 @@ pub struct BridgeArgs {
     /// Simulated seconds per second of real time.
     #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
-    /// End after this many simulated seconds [default: at Ctrl-C].
+    /// Stop after this many simulated seconds [default: run until Ctrl-C].
     #[arg(long, value_name = "S", value_parser = seconds)]
     seconds: Option<f64>,
-    /// End after this many ticks instead.
+    /// Stop after this many ticks instead.
     #[arg(long, value_name = "N", conflicts_with = "seconds", value_parser = clap::value_parser!(u32).range(1..))]
     ticks: Option<u32>,
-    /// Positions per second, of each vehicle and each kind, until a client asks for another rate.
+    /// Position messages per second and vehicle, until a client requests another rate.
     #[arg(long, value_name = "HZ", default_value_t = 10.0, value_parser = rate)]
     rate: f64,
-    /// Robots wait, disarmed, for the operator, instead of following the scenario until they get a command.
+    /// Start disarmed and wait for the operator, instead of following the scenario until a command
+    /// arrives.
     #[arg(long)]
     disarmed: bool,
-    /// Where on the Earth the scenario's origin is: degrees north, degrees east, metres above the sea.
+    /// Geographic position of the scenario's origin: degrees north, degrees east, metres above sea
+    /// level.
     #[arg(long, value_name = "LAT,LON,ALT", default_value = "47.397742,8.545594,488", value_parser = origin)]
     origin: Origin,
-    /// Sign what is sent, and refuse what is not signed with this key: a file with 64 hex digits, or "passphrase: WORDS".
+    /// Sign sent messages and reject those without a valid signature; a file with 64 hex digits, or
+    /// "passphrase: WORDS".
     #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
-    /// With a key: refuse frames whose timestamp is more than this many seconds ahead of the clock.
+    /// With --key: reject messages whose timestamp is more than this many seconds ahead of the
+    /// clock.
     #[arg(long, value_name = "S", default_value_t = 60.0, requires = "key", value_parser = lead)]
     lead: f64,
-    /// Write what is sent and what is believed to a log that MAVExplorer and mavlogdump read.
+    /// Write sent and accepted messages to a log for MAVExplorer and mavlogdump.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
     /// Seed of all random numbers, instead of the scenario's.
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Say something else in a field of the scenario, as in radio.loss=0.3 or plane.orca.horizon_s=3; as often as needed.
+    /// Override a scenario field, for example radio.loss=0.3 or plane.orca.horizon_s=3; may be
+    /// repeated.
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     settings: Vec<Setting>,
 }
 
-/// A number within limits.
 fn within(text: &str, least: f64, most: f64) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
-    value.filter(|value| (least..=most).contains(value)).ok_or_else(|| format!("a number from {least} to {most}"))
+    value.filter(|value| (least..=most).contains(value)).ok_or_else(|| format!("give a number from {least} to {most}"))
 }
 
 fn speed(text: &str) -> Result<f64, String> {
@@ -88,10 +94,10 @@ fn origin(text: &str) -> Result<Origin, String> {
         Ok(&[latitude_deg, longitude_deg, altitude_m]) => Some(Place { latitude_deg, longitude_deg, altitude_m }),
         _ => None,
     };
-    place.and_then(Origin::new).ok_or_else(|| "three numbers: -90 to 90, -180 to 180, metres".into())
+    place.and_then(Origin::new).ok_or_else(|| "give LAT,LON,ALT: -90 to 90 degrees, -180 to 180 degrees, metres".into())
 }
 
-/// The lines as they were given, and where those are that listen.
+/// The links as given, with the local address of those that listen.
 fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
     let named = endpoints.iter().enumerate().map(|(line, endpoint)| {
         let local = swarm.lines().local(line);
@@ -100,10 +106,9 @@ fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
     named.collect::<Vec<_>>().join(", ")
 }
 
-/// Tells people something beside the results.
 fn say(remark: Option<&str>) {
     if let Some(remark) = remark {
-        // Standard error may be closed; it is only a remark.
+        // Standard error may be closed; a remark may be lost.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
 }
@@ -112,7 +117,8 @@ impl BridgeArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A scenario or key that cannot be read or is wrong, too many robots, a line that cannot be opened, a log that cannot be written.
+    /// An unreadable or invalid scenario or key, too many robots, a link that cannot be opened, or
+    /// a log that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let overrides = Overrides { seed: self.seed, ticks: None };
         let scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
@@ -128,7 +134,6 @@ impl BridgeArgs {
             Some(path) => {
                 let file = KeyFile::read(path)?;
                 say(file.remark.as_deref());
-                // Timestamps count tens of microseconds.
                 Some(Signing::new(file.key, 0, timestamp()).with_lead((self.lead * 1e5) as u64))
             }
             None => None,
@@ -147,10 +152,10 @@ impl BridgeArgs {
         let swarm = Swarm::new(&scenario, options)?;
         let count = scenario.robots.len();
         let lines = lines(&swarm, &self.mavlink);
-        // What has no end of its own has no progress.
+        // A run without an end shows no progress.
         let mut progress = ticks.map(|ticks| Progress::new(&scenario.name, ticks.into(), global));
         if progress.is_none() && !global.quiet {
-            say(Some(&format!("{count} vehicles at {lines}; Ctrl-C ends")));
+            say(Some(&format!("{count} vehicles at {lines}; press Ctrl-C to stop")));
         }
         let mut shown = None;
         let mut page = Watcher::by_options(&self.page, &scenario)?;
@@ -176,7 +181,7 @@ impl BridgeArgs {
         } else {
             print(&table(&scenario.name, &report)?)?;
         }
-        // Without an end of its own, Ctrl-C is how it ends.
+        // A run without an end is stopped by Ctrl-C, so that is not an interruption.
         Ok(match ticks {
             None => Ended::Done,
             Some(_) => Ended::by(&stop),
@@ -184,7 +189,6 @@ impl BridgeArgs {
     }
 }
 
-/// The figures for a reader.
 fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
     let mut text = String::new();
     writeln!(text, "{name}")?;
@@ -192,10 +196,10 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
     line("vehicles", report.vehicles.to_string())?;
     line(
         "simulated",
-        format!("{} s in {} ticks, {:.1} s on the wall", report.sim_seconds, report.ticks, report.wall_seconds),
+        format!("{} s in {} ticks, {:.1} s of real time", report.sim_seconds, report.ticks, report.wall_seconds),
     )?;
     let (missed, ticks, slowest) = (report.deadlines_missed, report.ticks, report.slowest_seconds);
-    line("deadlines", format!("{missed} missed in {ticks} ticks, {slowest:.4} s at most until one was done"))?;
+    line("deadlines", format!("{missed} missed in {ticks} ticks, slowest tick {slowest:.4} s"))?;
     let commands = report.commands.iter();
     let commands: Vec<_> = commands.map(|(result, count)| format!("{count} {result}")).collect();
     let commands = match commands.is_empty() {
@@ -205,16 +209,16 @@ fn table(name: &str, report: &BridgeReport) -> Result<String, std::fmt::Error> {
     line("commands", commands)?;
     let Refused { unsigned, forged, replayed, ahead, no_room, unanswerable } = report.refused;
     let (heard, ignored, refused) = (report.frames_heard, report.frames_ignored, report.frames_refused);
-    line("frames", format!("{heard} heard, {ignored} for nobody here, {} still waiting", report.frames_waiting))?;
+    line("frames", format!("{heard} handled, {ignored} for other systems, {} still queued", report.frames_waiting))?;
     line(
-        "frames refused",
+        "frames rejected",
         format!(
-            "{refused}: {unsigned} unsigned, {forged} forged, {replayed} replayed, {ahead} too far ahead, {no_room} of new \
-             senders without room, {unanswerable} that could not be answered"
+            "{refused}: {unsigned} unsigned, {forged} forged, {replayed} replayed, {ahead} with future timestamps, \
+            {no_room} from new senders with the table full, {unanswerable} not answerable"
         ),
     )?;
     if report.is_exhausted {
-        line("signing", String::from("no timestamp is left, nothing is obeyed: give the swarm a new key"))?;
+        line("signing", String::from("timestamps used up, commands are refused; give the swarm a new key"))?;
     }
     line("collisions", report.collisions.to_string())?;
     line("trace hash", report.trace_hash.clone())?;

@@ -1,4 +1,4 @@
-//! `staya companion CONFIG.toml`: the controller beside autopilots.
+//! `staya companion CONFIG.toml` controls vehicles with real autopilots.
 
 mod page;
 
@@ -12,25 +12,27 @@ use staya_console::{Ended, Global, Stop, print, print_json};
 use staya_view::watch::Watcher;
 use std::path::PathBuf;
 
-/// Steer ArduPilot or PX4 vehicles as a swarm.
+/// Control ArduPilot or PX4 vehicles as a swarm.
 #[derive(Args, Clone, Debug)]
 pub struct CompanionArgs {
-    /// The configuration, a .toml file; docs/autopilots.md lists its fields, companions/ has examples.
+    /// Configuration, a .toml file; docs/autopilots.md lists its fields, companions/ has examples.
     config: PathBuf,
     /// Show the messages that would be sent, and send nothing.
     #[arg(long)]
     dry_run: bool,
-    /// End after this many seconds [default: at Ctrl-C].
+    /// Stop after this many seconds [default: run until Ctrl-C].
     #[arg(long, value_name = "N", value_parser = seconds)]
     seconds: Option<f64>,
-    /// Write all messages of all links that are believed to a log, for mavlogdump, MAVExplorer or QGroundControl; at 256 MiB it gets `.1` behind its name, and a new one
-    /// begins.
+    /// Write sent and accepted messages of all links to a log for mavlogdump, MAVExplorer or
+    /// QGroundControl; at 256 MiB the file is renamed to FILE.1 and a new one begins.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
-    /// Seal packets between companions with the key in this file, and hear only sealed ones; instead of air.key.
+    /// Encrypt packets between companions with the key in this file, and accept only encrypted
+    /// ones; overrides air.key.
     #[arg(long, value_name = "FILE")]
     key: Option<PathBuf>,
-    /// Sign all messages on the links with the key in this file, and hear only signed ones; instead of link_key.
+    /// Sign all messages on the links with the key in this file, and accept only signed ones;
+    /// overrides link_key.
     #[arg(long, value_name = "FILE")]
     link_key: Option<PathBuf>,
     #[command(flatten)]
@@ -40,14 +42,15 @@ pub struct CompanionArgs {
 fn seconds(text: &str) -> Result<f64, String> {
     let seconds = text.parse::<f64>().ok();
     let seconds = seconds.filter(|s| (0.0..=1e6).contains(s));
-    seconds.ok_or_else(|| String::from("give seconds, 0 to 1000000"))
+    seconds.ok_or_else(|| String::from("give a number of seconds from 0 to 1000000"))
 }
 
 impl CompanionArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A configuration that cannot be read or is wrong, links that cannot be opened, a log that cannot be written.
+    /// An unreadable or invalid configuration, a link that cannot be opened, or a log that cannot
+    /// be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let mut config = Config::load(&self.config)?;
         for (given, kept) in [(&self.key, &mut config.key), (&self.link_key, &mut config.link_key)] {

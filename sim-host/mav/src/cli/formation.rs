@@ -1,4 +1,4 @@
-//! `staya formation SHAPE --to LINE`: another shape and another goal for a formation that is under way.
+//! `staya formation SHAPE --to LINE` sends a new shape and goal to a formation.
 
 use crate::Endpoint;
 use crate::formation::station::{Given, Members, Places, give, numbers};
@@ -13,10 +13,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-/// Tell a swarm in formation, over MAVLink, to take another shape and to go to another place.
+/// Send a new shape or goal to a formation over MAVLink.
 ///
-/// The robots that are heard at the line, or some of them, get the places of the shape, each one that is near. Exit code 1 if one of
-/// them does not say that it has its orders. Who is ordered in several calls is in several formations.
+/// All robots that answer on the link, or those selected with --robots, receive nearby places of
+/// the shape. Exit code 1 if a robot does not confirm its orders. Robots that receive their orders
+/// in separate calls form separate formations.
 #[derive(Args, Clone, Debug)]
 #[command(
     allow_negative_numbers = true,
@@ -25,35 +26,38 @@ use std::time::{Duration, SystemTime};
         staya formation wedge --to udpout:127.0.0.1:14551 --goal 60,40"
 )]
 pub struct FormationArgs {
-    /// line, column, wedge, grid, circle, or a .toml file with `places` and `edges` as in a scenario's table robots.formation.
+    /// line, column, wedge, grid, circle, or a .toml file with `places` and `edges` as in the
+    /// scenario table robots.formation.
     shape: String,
-    /// Where the swarm is: udpout:HOST:PORT, udpin:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or serial:PORT,baud=N.
+    /// Link to the swarm: udpout:HOST:PORT, udpin:HOST:PORT, tcpout:HOST:PORT, tcpin:HOST:PORT or
+    /// serial:PORT,baud=N.
     #[arg(long, value_name = "LINE")]
     to: Endpoint,
-    /// Which robots: numbers and ranges, as in 3,5,8-12 [default: all that are heard].
+    /// Robots to command: numbers and ranges, as in 3,5,8-12 [default: all that answer].
     #[arg(long, value_name = "NUMBERS", value_parser = robots)]
     robots: Option<Numbers>,
-    /// Who gets which place: nearest (the least sum of squared ways), or number (by rising numbers, the first in front).
+    /// Assignment of places: nearest (smallest sum of squared distances), or number (in order of
+    /// robot numbers, first in front).
     #[arg(long, value_name = "BY", default_value = "nearest", value_parser = places)]
     places: Places,
-    /// Where the front of the formation is to go, a cell of the grid: east, north [default: where robots were going].
+    /// Goal of the front of the formation, a grid cell: east, north [default: the robots' present
+    /// goal].
     #[arg(long, value_name = "X,Y", value_parser = cell)]
     goal: Option<Cell>,
-    /// Cells between neighbours; not with a file.
+    /// Cells between neighbours; without effect on a shape from a file.
     #[arg(long, value_name = "CELLS", default_value_t = 3, value_parser = clap::value_parser!(i16).range(1..=100))]
     spacing: i16,
-    /// Where the formation looks: E, NE, N, NW, W, SW, S or SE.
+    /// Heading of the formation: E, NE, N, NW, W, SW, S or SE.
     #[arg(long, value_name = "DIRECTION", default_value = "E", value_parser = heading)]
     heading: Dir,
-    /// How long to wait for robots and their answers, seconds.
+    /// Time to wait for robots and their answers, seconds.
     #[arg(long, value_name = "S", default_value_t = 8.0, value_parser = seconds)]
     wait: f64,
-    /// Sign the orders: the file with the key that the bridge has.
+    /// Sign the orders with the bridge's key in this file.
     #[arg(long, value_name = "FILE")]
     key: Option<std::path::PathBuf>,
 }
 
-/// What the robots are to be.
 enum Wanted {
     Shape(Shape),
     Graph(Graph),
@@ -63,11 +67,10 @@ fn cell(text: &str) -> Result<Cell, String> {
     let numbers: Result<Vec<i16>, _> = text.split(',').map(|part| part.trim().parse()).collect();
     match numbers.as_deref() {
         Ok(&[x, y]) => Ok(Cell::new(x, y)),
-        _ => Err(String::from("two whole numbers, as in 60,40")),
+        _ => Err(String::from("give two whole numbers, as in 60,40")),
     }
 }
 
-/// A set that clap takes for one value.
 type Numbers = BTreeSet<u8>;
 
 fn robots(text: &str) -> Result<Numbers, String> {
@@ -77,7 +80,11 @@ fn robots(text: &str) -> Result<Numbers, String> {
         let number = |text: &str| text.trim().parse::<u8>().ok().filter(|robot| (1..=254).contains(robot));
         match (number(first), number(last)) {
             (Some(first), Some(last)) if first <= last => robots.extend(first..=last),
-            _ => return Err(format!("`{part}`: numbers from 1 to 254 and rising ranges of them, as in 3,5,8-12")),
+            _ => {
+                return Err(format!(
+                    "`{part}` is not a robot number or range; give numbers from 1 to 254, as in 3,5,8-12"
+                ));
+            }
         }
     }
     Ok(robots)
@@ -87,7 +94,7 @@ fn places(text: &str) -> Result<Places, String> {
     match text {
         "nearest" => Ok(Places::Nearest),
         "number" => Ok(Places::Number),
-        _ => Err(String::from("nearest or number")),
+        _ => Err(String::from("give nearest or number")),
     }
 }
 
@@ -103,21 +110,22 @@ fn heading(text: &str) -> Result<Dir, String> {
         ("SE", Dir::SouthEast),
     ];
     let found = names.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
-    found.map(|(_, heading)| heading).ok_or_else(|| String::from("one of E, NE, N, NW, W, SW, S, SE"))
+    found.map(|(_, heading)| heading).ok_or_else(|| String::from("give one of E, NE, N, NW, W, SW, S, SE"))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
-    value.filter(|value| (1.0..=600.0).contains(value)).ok_or_else(|| String::from("a number from 1 to 600"))
+    value.filter(|value| (1.0..=600.0).contains(value)).ok_or_else(|| String::from("give a number from 1 to 600"))
 }
 
 impl FormationArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A shape or file that is none, a line that cannot be opened, nobody there, robots that did not answer or objected.
+    /// An unknown shape or an invalid file, a link that cannot be opened, no robot found, or robots
+    /// that did not answer or refused.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        // A file is read before anybody is looked for.
+        // The file is read before robots are searched.
         let wanted = match Shape::from_name(&self.shape) {
             Some(shape) => Wanted::Shape(shape),
             None => Wanted::Graph(self.read(Path::new(&self.shape))?),
@@ -130,13 +138,13 @@ impl FormationArgs {
             Some(path) => {
                 let file = KeyFile::read(path)?;
                 file.remark.iter().for_each(|remark| eprintln!("staya: {remark}"));
-                // Another stream than a bridge's own.
+                // Link id 2; the bridge uses another one.
                 Some(Signing::new(file.key, 2, timestamp()))
             }
             None => None,
         };
         let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
-        // Each call is another start of the station: robots forget what earlier ones counted.
+        // Every call gets a new boot counter, so robots accept its version 1.
         let order = Order { goal: self.goal, to_all: true, boot: (since.as_millis() / 100) as u8, version: 1 };
         let members = Members { robots: self.robots.clone(), places: self.places, heading: self.heading };
         let wait = Duration::from_secs_f64(self.wait);
@@ -154,10 +162,10 @@ impl FormationArgs {
             })
             .collect();
         if let Some((robot, objection)) = given.objections.first() {
-            bail!("robot {robot}: {objection}; give the scenario [robots.formation]");
+            bail!("robot {robot}: {objection}; add [robots.formation] to the scenario");
         }
         if !silent.is_empty() {
-            bail!("no word that they have their orders from robots {}; call again", numbers(&silent));
+            bail!("robots {} did not confirm their orders; run the command again", numbers(&silent));
         }
         Ok(Ended::Done)
     }
@@ -165,7 +173,7 @@ impl FormationArgs {
     fn read(&self, path: &Path) -> Result<Graph> {
         if path.extension().is_none_or(|extension| extension != "toml") {
             let names = Shape::NAMES.map(|(name, _)| name).join(", ");
-            bail!("`{}` is no shape: give {names}, or a .toml file", self.shape);
+            bail!("`{}` is not a shape; give {names}, or a .toml file", self.shape);
         }
         let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
         Graph::parse(&text).with_context(|| path.display().to_string())
@@ -173,10 +181,10 @@ impl FormationArgs {
 
     fn table(&self, given: &Given) -> String {
         let goal = self.goal.map_or_else(String::new, |goal| {
-            format!(", {} head for cell {}, {}", given.heading_for_goal.len(), goal.x, goal.y)
+            format!(", {} robots head for cell ({}, {})", given.heading_for_goal.len(), goal.x, goal.y)
         });
         format!(
-            "{}: {} of {} robots have their places{goal} ({} frames sent)\n",
+            "{}: {} of {} robots confirmed their places{goal} ({} frames sent)\n",
             self.shape,
             given.placed.len(),
             given.robots.len(),
@@ -190,7 +198,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_and_headings_are_read() {
+    fn cells_headings_and_robot_ranges_parse() {
         assert_eq!(cell("60, -4"), Ok(Cell::new(60, -4)));
         assert_eq!((heading("nw"), heading("S")), (Ok(Dir::NorthWest), Ok(Dir::South)));
         for bad in ["", "1", "1,2,3", "a,b", "40000,0"] {

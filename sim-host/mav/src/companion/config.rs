@@ -1,4 +1,4 @@
-//! What stands in `CONFIG.toml`: every field is documented here, and listed in docs/autopilots.md.
+//! The companion's `CONFIG.toml`. docs/autopilots.md lists the fields too.
 
 use super::kind::Kind;
 use super::medium::MediumSetup;
@@ -14,27 +14,26 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Where the fields are listed.
 const LIST: &str = "docs/autopilots.md";
-/// MAVLink systems that vehicles can be.
+/// Number of MAVLink system ids for vehicles.
 const SYSTEMS: u32 = 254;
-/// Largest window of routes.
+/// Largest routing window, cells.
 const RADIUS: u8 = 16;
 
-/// A whole file.
+/// The whole file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ConfigFile {
-    /// What the swarm does: a scenario with `[plane]`.
+    /// The behaviour of the swarm: a scenario with `[plane]`.
     scenario: PathBuf,
-    /// Where the scenario's (0, 0) is.
+    /// Geographic position of the scenario's (0, 0).
     origin: OriginTable,
-    /// How companions in other processes are reached.
+    /// Network to companions in other processes.
     #[serde(default)]
     air: AirTable,
-    /// A key file: with it all messages on all links are signed, and only signed ones are heard. Default: none.
+    /// Key file: sign all messages on all links, and accept only signed ones. Default: none.
     link_key: Option<PathBuf>,
-    /// By what rules vehicles are steered.
+    /// Rules of control.
     #[serde(default)]
     rules: RulesTable,
     /// The vehicles of this process.
@@ -46,11 +45,9 @@ struct ConfigFile {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct OriginTable {
-    /// Degrees north.
     latitude_deg: f64,
-    /// Degrees east.
     longitude_deg: f64,
-    /// Metres above sea level, for swarms in space. Default: 0.
+    /// Metres above sea level, for flying swarms. Default: 0.
     #[serde(default)]
     altitude_m: f64,
 }
@@ -59,19 +56,20 @@ struct OriginTable {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct AirTable {
-    /// `GROUP:PORT`, IPv4: packets go to all who have joined the group.
+    /// `GROUP:PORT`, an IPv4 multicast group shared by all companions.
     multicast: Option<String>,
-    /// Own address on the network of the group. Default: the system chooses.
+    /// Own address in the group's network. Default: chosen by the system.
     interface: Option<Ipv4Addr>,
-    /// `HOST:PORT`: where packets of `peers` arrive.
+    /// `HOST:PORT` at which packets of `peers` arrive.
     bind: Option<String>,
     /// `HOST:PORT` of each other companion.
     peers: Vec<String>,
-    /// Whether packets go through the vehicles' MAVLink links, as TUNNEL messages to everybody. Default: false.
+    /// Send packets over the MAVLink links, as broadcast TUNNEL messages. Default: false.
     tunnel: bool,
-    /// A key file: with it packets are sealed, and only sealed ones are heard. Default: none.
+    /// Key file: encrypt packets, and accept only encrypted ones. Default: none.
     key: Option<PathBuf>,
-    /// With a key: how long the old one is heard too when the file changes, seconds; the new one is spoken after half of that. Default: 60.
+    /// With a key: time for which the old key stays valid after the file changes, seconds. The new
+    /// key is used for sending after half of it. Default: 60.
     overlap_s: Option<f64>,
 }
 
@@ -79,27 +77,32 @@ struct AirTable {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct RulesTable {
-    /// Who puts vehicles into GUIDED or OFFBOARD: `"wait"` (the pilot; the default) or `"once"` (the companion, once after its start).
+    /// Selection of GUIDED or OFFBOARD: `"wait"` (the pilot; the default) or `"once"` (the
+    /// companion, once after its start).
     entry: Entry,
-    /// With `"once"`: whether it also arms. Default: false.
+    /// With `"once"`: also arm. Default: false.
     arm: bool,
-    /// With `arm`: whether it also takes off, to `altitude_m`. Default: false.
+    /// With `arm`: also take off to `altitude_m`. Default: false.
     takeoff: bool,
-    /// Height above home that what flies takes off to, metres, and keeps if the scenario is in the plane. Default: none, vertical velocities are the agent's.
+    /// Takeoff height above home, metres. It is also the flight height if the scenario is in the
+    /// plane. Default: none; the controller commands vertical velocities.
     altitude_m: Option<f64>,
-    /// Positions that are older are stale, and the vehicle is told to stop, seconds. Default: 1.
+    /// Age at which a position is stale and the vehicle is stopped, seconds. Default: 1.
     stale_s: f64,
-    /// An autopilot silent for longer is gone, seconds. Default: 3.
+    /// Timeout of an autopilot's heartbeat, seconds. Default: 3.
     link_lost_s: f64,
-    /// Setpoints a second. Default: 20.
+    /// Setpoint rate, Hz. Default: 20.
     setpoint_hz: f64,
-    /// Positions a second that the autopilot is asked for. Default: 10.
+    /// Position rate requested from the autopilot, Hz. Default: 10.
     position_hz: f64,
-    /// Time that a vehicle needs to follow a velocity, seconds: it brakes so much earlier. Default: 0.5.
+    /// Time constant with which a vehicle follows a velocity, seconds; braking starts earlier by
+    /// this time. Default: 0.5.
     lag_s: f64,
-    /// Vehicles farther from the origin are not steered, metres. Default: 10000.
+    /// Largest distance from the origin, metres; vehicles beyond it are not controlled. Default:
+    /// 10000.
     reach_m: f64,
-    /// How far a vehicle whose position is old or not to be believed may be from it at most, metres: others keep so much more room after a while. Default: 10.
+    /// Largest position error of a vehicle with stale or untrusted telemetry, metres; other
+    /// vehicles keep up to this much more distance. Default: 10.
     error_m: f64,
 }
 
@@ -125,77 +128,79 @@ impl Default for RulesTable {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct VehicleTable {
-    /// Its number in the scenario.
+    /// Robot number in the scenario.
     robot: u32,
-    /// Its MAVLink system id. Default: the same number.
+    /// MAVLink system id. Default: the robot number.
     system: Option<u32>,
-    /// The line to its autopilot, as in `udpin:127.0.0.1:14550`. Several vehicles may share one.
+    /// Link to the autopilot, for example `udpin:127.0.0.1:14550`. Several vehicles may share one.
     link: String,
     /// `"ardupilot-rover"`, `"ardupilot-copter"`, `"px4-copter"` (or `"px4"`), `"px4-rover"`.
     autopilot: Kind,
-    /// `[latitude, longitude]` in degrees to go to instead of the scenario's goal; for guidance "waypoint".
+    /// `[latitude, longitude]` in degrees, a goal that replaces the scenario's; for guidance
+    /// "waypoint".
     goal_deg: Option<[f64; 2]>,
-    /// Instead of that of `rules`.
+    /// Replaces `altitude_m` of `rules`.
     altitude_m: Option<f64>,
 }
 
-/// A vehicle of this process.
+/// A vehicle controlled by this process.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VehicleSetup {
-    /// Its number.
+    /// Robot number.
     pub robot: RobotId,
-    /// Its place in [`Scenario::robots`].
+    /// Index in [`Scenario::robots`].
     pub index: usize,
     /// Its MAVLink system id, 1 to 254.
     pub system: u8,
-    /// Number of its line in [`Config::lines`].
+    /// Index of its link in [`Config::lines`].
     pub line: usize,
-    /// What drives it.
+    /// Autopilot.
     pub kind: Kind,
-    /// By what rules.
+    /// Rules of control.
     pub rules: Rules,
 }
 
-/// A checked configuration.
+/// A validated configuration.
 #[derive(Clone, Debug)]
 pub struct Config {
-    /// What the swarm does; goals on the Earth are already metres.
+    /// The scenario, with geographic goals converted to metres.
     pub scenario: Scenario,
-    /// What bodies are: `scenario.plane`.
+    /// The bodies: `scenario.plane`.
     pub plane: PlaneSetup,
-    /// Where that is.
+    /// Geographic position of the scenario's (0, 0).
     pub origin: Origin,
-    /// How packets of other processes come and go.
+    /// Network to companions in other processes.
     pub air: MediumSetup,
-    /// Where the key of packets is.
+    /// File with the key of packets.
     pub key: Option<PathBuf>,
-    /// How long two keys of packets are good when the file changes.
+    /// Time for which the old packet key stays valid after the file changes.
     pub overlap: Duration,
-    /// Where the key of links is.
+    /// File with the key of links.
     pub link_key: Option<PathBuf>,
-    /// The lines to autopilots, each once.
+    /// Links to autopilots, without duplicates.
     pub lines: Vec<Endpoint>,
-    /// The vehicles, by rising number of their robots.
+    /// Vehicles sorted by robot number.
     pub vehicles: Vec<VehicleSetup>,
-    /// How long a vehicle needs to follow a velocity, seconds.
+    /// Time constant with which vehicles follow a velocity, seconds.
     pub lag_s: f64,
-    /// Vehicles farther from the origin are not steered, metres.
+    /// Largest distance from the origin at which vehicles are controlled, metres.
     pub reach_m: f64,
-    /// How far a vehicle may be from where it was known to be last, metres.
+    /// Largest position error of a vehicle with stale or untrusted telemetry, metres.
     pub error_m: f64,
 }
 
 impl Config {
-    /// Reads and checks a file and the scenario that it names.
+    /// Reads and validates a file and the scenario that it names.
     ///
     /// # Errors
-    /// [`ScenarioError`], naming file, line, field and remedy.
+    /// [`ScenarioError`] with file, line, field and remedy.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 
-    /// As [`Config::load`], of a text that stands (or might stand) in the file `path`.
+    /// Validates `text` as if it was read from `path`, which resolves relative paths and appears in
+    /// errors.
     ///
     /// # Errors
     /// See [`Config::load`].
@@ -209,11 +214,12 @@ impl Config {
         });
         let origin = origin.ok_or_else(|| {
             let remedy = "give latitude_deg from -90 to 90 and longitude_deg from -180 to 180";
-            source.error("origin", "this is no place on the Earth", remedy)
+            source.error("origin", "not a position on the Earth", remedy)
         })?;
         check_rules(&source, &file.rules)?;
         let mut scenario = Scenario::load(&source.folder().join(&file.scenario), &Overrides::default())?;
-        // A vehicle that does not know well where it is says that it is so much larger, and jumps when it knows again.
+        // A vehicle with an uncertain position reports a radius that is larger by the error, and
+        // its position jumps once telemetry is good again.
         scenario.claims.max_radius_m += file.rules.error_m as f32;
         scenario.claims.slack_m += file.rules.error_m as f32;
         check_scenario(&source, &scenario)?;
@@ -243,8 +249,8 @@ impl Config {
 }
 
 fn no_plane(source: &Source<'_>) -> ScenarioError {
-    let remedy = "name one with [plane]: autopilots follow velocities";
-    source.error("scenario", "its robots go from cell to cell", remedy)
+    let remedy = "give a scenario with [plane]; autopilots follow velocities";
+    source.error("scenario", "its robots move from cell to cell", remedy)
 }
 
 fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), ScenarioError> {
@@ -257,20 +263,20 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         return refused(what, "give it tick_s = 0.5 or less; 0.1 is good");
     }
     if !plane.orders.is_empty() {
-        let what = String::from("[[plane.order]] has no meaning here");
-        return refused(what, "leave it out: orders come from an operator, as packets");
+        let what = String::from("[[plane.order]] is not supported on real vehicles");
+        return refused(what, "remove it; an operator sends orders as packets");
     }
     if !plane.intruders.is_empty() {
-        let what = String::from("[[plane.intruder]] has no meaning here");
-        return refused(what, "leave it out: whoever comes is real");
+        let what = String::from("[[plane.intruder]] is not supported on real vehicles");
+        return refused(what, "remove it; intruders are simulated only");
     }
     if plane.torus_m.is_some() {
-        let what = String::from("vehicles do not come in on one side when they leave on the other");
-        return refused(what, "leave plane.torus_m out");
+        let what = String::from("plane.torus_m is not supported on real vehicles");
+        return refused(what, "remove plane.torus_m");
     }
     if scenario.eyes.is_some() {
-        let what = String::from("autopilots do not tell whom their vehicles see");
-        return refused(what, "leave plane.eyes out");
+        let what = String::from("autopilots report no detections of other vehicles");
+        return refused(what, "remove plane.eyes");
     }
     if scenario.route.params.radius > RADIUS {
         let what = format!("route.radius {} is too large", scenario.route.params.radius);
@@ -292,27 +298,28 @@ fn check_rules(source: &Source<'_>, rules: &RulesTable) -> Result<(), ScenarioEr
         within(source, &format!("rules.{field}"), value, low, high, unit)?;
     }
     if rules.arm && rules.entry != Entry::Once {
-        let what = "with entry \"wait\" the pilot arms";
-        return Err(source.error("rules.arm", what, "give rules.entry = \"once\", or leave it out"));
+        let what = "only the pilot arms with entry \"wait\"";
+        return Err(source.error("rules.arm", what, "give rules.entry = \"once\", or remove it"));
     }
     if rules.takeoff && !rules.arm {
-        let what = "what is not armed does not take off";
-        return Err(source.error("rules.takeoff", what, "give rules.arm = true, or leave it out"));
+        let what = "a takeoff needs an armed vehicle";
+        return Err(source.error("rules.takeoff", what, "give rules.arm = true, or remove it"));
     }
     Ok(())
 }
 
 fn address(source: &Source<'_>, field: &str, text: &str) -> Result<SocketAddr, ScenarioError> {
     text.parse().map_err(|_| {
-        let remedy = "write an address and a port, as in 192.168.1.7:14999";
-        source.error(field, format!("`{text}` is no address"), remedy)
+        let remedy = "give an address and a port, as in 192.168.1.7:14999";
+        source.error(field, format!("`{text}` is not an address"), remedy)
     })
 }
 
 fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioError> {
-    let clash = |field: &str, remedy: &str| Err(source.error(field, "it is not clear how packets go", remedy));
+    let clash =
+        |field: &str, remedy: &str| Err(source.error(field, "the network to other companions is ambiguous", remedy));
     if table.bind.is_some() == table.peers.is_empty() {
-        return clash("air.peers", "give bind and peers together, or none of them");
+        return clash("air.peers", "give bind and peers together, or neither");
     }
     match (&table.multicast, &table.bind, table.tunnel) {
         (None, None, false) => Ok(MediumSetup::Here),
@@ -324,8 +331,8 @@ fn air(source: &Source<'_>, table: &AirTable) -> Result<MediumSetup, ScenarioErr
                     Ok(MediumSetup::Multicast { group, interface: table.interface.unwrap_or(Ipv4Addr::UNSPECIFIED) })
                 }
                 _ => {
-                    let what = format!("`{group}` is no IPv4 multicast group");
-                    let remedy = "take one of your own, as in 239.255.77.1:14999";
+                    let what = format!("`{group}` is not an IPv4 multicast group");
+                    let remedy = "give one such as 239.255.77.1:14999";
                     Err(source.error("air.multicast", what, remedy))
                 }
             }
@@ -347,7 +354,7 @@ fn rules(table: &RulesTable, vehicle: &VehicleTable, safety: SafetyKind) -> Rule
         arm: table.arm,
         takeoff: table.takeoff && vehicle.autopilot.flies(),
         altitude_m: vehicle.altitude_m.or(table.altitude_m).filter(|_| vehicle.autopilot.flies()),
-        // In space heights are what robots give each other room by.
+        // Flying robots avoid each other by height too, so the height is the controller's.
         keeps_altitude: safety != SafetyKind::Fly,
         stale: Duration::from_secs_f64(table.stale_s),
         link_lost: Duration::from_secs_f64(table.link_lost_s),
@@ -357,7 +364,7 @@ fn rules(table: &RulesTable, vehicle: &VehicleTable, safety: SafetyKind) -> Rule
     }
 }
 
-/// The lines, each once, and who is at them; goals on the Earth go into the scenario.
+/// Collects the links, assigns vehicles to them, and writes geographic goals into the scenario.
 fn vehicles(
     source: &Source<'_>,
     file: &ConfigFile,
@@ -374,7 +381,7 @@ fn vehicles(
             return Err(source.error(&field("robot"), what, remedy));
         };
         let endpoint = table.link.parse::<Endpoint>().map_err(|error| {
-            let remedy = "for instance udpin:127.0.0.1:14550, tcpout:127.0.0.1:5760 or serial:/dev/ttyACM0,baud=57600";
+            let remedy = "give a link, for example udpin:127.0.0.1:14550, tcpout:127.0.0.1:5760 or serial:/dev/ttyACM0,baud=57600";
             source.error(&field("link"), format!("`{}`: {}", error.text, error.what), remedy)
         })?;
         let line = lines.iter().position(|known| *known == endpoint);
@@ -384,18 +391,18 @@ fn vehicles(
         });
         let system = table.system.unwrap_or(table.robot);
         if system == 0 || system > SYSTEMS {
-            let what = format!("{system} is no vehicle's MAVLink system");
+            let what = format!("{system} is not a MAVLink system id of a vehicle");
             return Err(source.error(&field("system"), what, "give 1 to 254"));
         }
         let system = system as u8;
         for known in &vehicles {
             if known.index == index {
-                let what = format!("robot {} is there twice", table.robot);
-                return Err(source.error(&field("robot"), what, "give each vehicle its own"));
+                let what = format!("robot {} is listed twice", table.robot);
+                return Err(source.error(&field("robot"), what, "give each vehicle its own number"));
             }
             if (known.line, known.system) == (line, system) {
-                let what = format!("system {system} is there twice on this link");
-                let remedy = "give each vehicle its own (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
+                let what = format!("system {system} is used twice on this link");
+                let remedy = "give each vehicle its own id (ArduPilot: SYSID_THISMAV, PX4: MAV_SYS_ID)";
                 return Err(source.error(&field("system"), what, remedy));
             }
         }
@@ -408,7 +415,7 @@ fn vehicles(
         }
         let rules = rules(&file.rules, table, scenario.safety(index).kind());
         if file.rules.takeoff && table.autopilot.flies() && rules.altitude_m.is_none() {
-            let what = "it is not said how high it takes off";
+            let what = "the takeoff height is missing";
             return Err(source.error("rules.takeoff", what, "give altitude_m"));
         }
         if let Some(goal) = table.goal_deg {
@@ -418,7 +425,7 @@ fn vehicles(
     }
     if vehicles.is_empty() {
         let remedy = "add [[vehicle]] with robot, link and autopilot";
-        return Err(source.error("vehicle", "there is none", remedy));
+        return Err(source.error("vehicle", "no vehicle is listed", remedy));
     }
     vehicles.sort_by_key(|vehicle| vehicle.robot);
     Ok((lines, vehicles))
@@ -442,12 +449,12 @@ fn assign_goal(
             Ok(())
         }
         (None, _) => {
-            let what = "this is no place near the origin";
+            let what = "not a position near the origin";
             Err(source.error(field, what, "give [latitude, longitude] in degrees"))
         }
         (_, None) => {
-            let what = "the scenario gives this robot no goal of its own that could be replaced";
-            Err(source.error(field, what, "leave it out, or take guidance \"waypoint\""))
+            let what = "this robot's guidance in the scenario has no goal to replace";
+            Err(source.error(field, what, "remove it, or use guidance \"waypoint\""))
         }
     }
 }

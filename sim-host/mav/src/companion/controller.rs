@@ -1,4 +1,5 @@
-//! The agent beside an autopilot: what it senses comes from telemetry and the scenario's land, what it commands is a velocity.
+//! The controller of one vehicle. Telemetry and the scenario's map are its inputs, a velocity is
+//! its output.
 
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
@@ -14,29 +15,29 @@ use staya_sim::scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A vehicle as its telemetry has it, in metres and m/s east, north, up.
+/// State of a vehicle from telemetry, in metres and m/s east, north, up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Body {
-    /// Where.
+    /// Position.
     pub position_m: [f64; 3],
-    /// How fast.
+    /// Velocity.
     pub velocity_mps: [f64; 3],
-    /// How far from there it may be, metres; 0 as long as its telemetry is fresh and believed.
+    /// Largest position error, metres; 0 while telemetry is fresh and trusted.
     pub error_m: f64,
 }
 
-/// How a vehicle that heads for a place is kept from overshooting.
+/// Limits the speed near a goal so that the vehicle does not overshoot.
 #[derive(Clone, Copy, Debug)]
 struct Brake {
     place_m: [f64; 3],
     tolerance_m: f64,
 }
 
-/// What the scenario wants, unless the pilot has the vehicle.
+/// The scenario's guidance, unless the pilot controls the vehicle.
 type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
 type ControllerAgent<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
-/// An agent with its land.
+/// An agent with its map and its senses.
 pub struct Controller<W> {
     index: usize,
     ground: Arc<PlaneGround>,
@@ -48,17 +49,15 @@ pub struct Controller<W> {
     brake: Option<Brake>,
     max_acceleration_mps2: f64,
     lag_s: f64,
-    /// Of its own body, metres.
     radius_m: f64,
-    /// What it commanded last, if it steers.
     commanded_mps: Option<[f64; 3]>,
-    /// When and where it stepped last.
     stepped: Option<(Instant, Position, [f64; 3])>,
 }
 
 impl<W: Wire> Controller<W> {
-    /// Of robot number `index` of the scenario, whose robots are on `ground`; `boot` differs from start to start. Others that fall silent get as much more
-    /// room as the scenario says, and at least `error_m` metres: an autopilot without its companion goes on for a while.
+    /// Creates the controller of robot `index` of the scenario on the map `ground`. `boot` must
+    /// differ between starts. Lost neighbours get the margin of the scenario, but at least
+    /// `error_m` metres, because an autopilot whose companion died keeps moving for a while.
     #[must_use]
     pub fn new(
         scenario: &Scenario,
@@ -70,11 +69,11 @@ impl<W: Wire> Controller<W> {
     ) -> Self {
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
         let config = AgentConfig { boot, seed: scenario.seed, claims: scenario.claims, ..ground.config(index, tick) };
-        // Nobody wishes places here, so neither speed nor tolerance counts.
+        // No operator sends goals here, so speed and tolerance are unused.
         let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
         let mut agent =
             Box::new(Agent::new(&config, guidance, with_room(scenario.safety(index), error_m).safety(), wire));
-        // A law that has no use for its task says so; the scenario was checked for that.
+        // A law that takes no task refuses it; the scenario was validated for that.
         let _ = agent.assign(&ground.task(index, 0));
         let plane = scenario.plane.as_ref();
         let group = plane.map(|plane| plane.group(index));
@@ -82,7 +81,7 @@ impl<W: Wire> Controller<W> {
         let brake = group.zip(places).and_then(|(group, places)| {
             let place = match group.guidance.kind() {
                 kind if kind.is_on_grid() => None,
-                // The end of its way.
+                // The last waypoint.
                 GuidanceKind::Waypoint => places.last(),
                 _ => places.first(),
             };
@@ -106,66 +105,69 @@ impl<W: Wire> Controller<W> {
         }
     }
 
-    /// How it speaks.
+    /// The wire format of the agent.
     pub const fn wire_mut(&mut self) -> &mut W {
         self.agent.wire_mut()
     }
 
-    /// What the robot does.
+    /// Mode of the agent.
     #[must_use]
     pub fn mode(&self) -> Mode {
         self.agent.mode()
     }
 
-    /// Whom it follows; 0: nobody.
+    /// Robot that this one follows; 0 for none.
     #[must_use]
     pub const fn leader(&self) -> RobotId {
         self.agent.leader()
     }
 
-    /// What it waits for, if it does not get on.
+    /// Why the robot waits, if it does.
     #[must_use]
     pub const fn wait(&self) -> Option<Wait> {
         self.out.wait
     }
 
-    /// Where it is to go, metres, if that is a place.
+    /// Goal, metres; `None` if the guidance has none.
     #[must_use]
     pub fn goal_m(&self) -> Option<[f64; 3]> {
         self.brake.map(|brake| brake.place_m)
     }
 
-    /// Whom it knew at its last step, and where. O(neighbours).
+    /// Neighbours and their positions at the last step. O(neighbours).
     #[must_use]
     pub fn known(&self) -> Vec<Known> {
         let stepped = self.stepped.iter();
         stepped.flat_map(|&(now, own, own_m)| engine::known(self.agent.neighbors(), own, own_m, now)).collect()
     }
 
-    /// How many others it knows.
+    /// Number of known neighbours.
     #[must_use]
     pub fn neighbors(&self) -> usize {
         self.agent.neighbors().len()
     }
 
-    /// The radius of a robot that it knows, metres.
+    /// Radius of a known neighbour, metres.
     #[cfg(test)]
     pub fn known_radius_m(&self, robot: u32) -> Option<f32> {
         self.agent.neighbors().iter().find(|known| known.id.0 == robot).map(|known| known.radius_m)
     }
 
-    /// One step of the agent. One that does not steer (the pilot does, or telemetry is stale) says by its beacons where it is and that others must make way;
-    /// the radius that it says has its error in it, so that they stay clear of wherever it can be.
+    /// Runs one step of the agent.
+    ///
+    /// A vehicle that is not controlled (the pilot flies it, or its telemetry is stale) still sends
+    /// beacons: they say that it does not give way, and its radius includes the position error so
+    /// that others stay clear.
     pub fn step(&mut self, body: &Body, steers: bool, inbox: &[u8], now: Duration) -> &Outputs<f32> {
         let [x, y, z] = body.position_m;
-        // In the plane heights are told apart by nobody, and altitudes differ by metres between two receivers.
+        // In the plane heights have no meaning, and altitudes of two receivers differ by metres.
         let position_m = [x, y, if self.is_in_space { z } else { 0.0 }];
         let velocity_mps = self.own_velocity(body.velocity_mps);
         let mut inputs = self.ground.sense_at(self.index, position_m, velocity_mps, &mut self.senses);
         inputs.inbox = inbox;
         let wish = if steers { Wish::Own } else { Wish::Off };
         if *self.agent.guidance().wish() != wish {
-            // Both are possible for any guidance.
+            // Every guidance accepts both commands.
             let _ = self.agent.guidance_mut().command(wish);
         }
         let plane = match &mut inputs.surroundings {
@@ -178,9 +180,9 @@ impl<W: Wire> Controller<W> {
         }
         let [least, greatest] = Parameter::Radius.range();
         let radius_m = (self.radius_m + body.error_m) as f32;
-        // Any agent has a radius.
+        // Every agent has a radius.
         let _ = self.agent.set_parameter(Parameter::Radius, radius_m.clamp(least, greatest));
-        // The robot's clock wraps; steps are far closer to each other.
+        // The agent's clock wraps; steps are much closer to each other.
         let now = Instant::from_micros(now.as_micros() as u32);
         self.stepped = Some((now, inputs.state.position, position_m));
         self.agent.step_into(&inputs, now, &mut self.workspace, &mut self.out);
@@ -188,7 +190,7 @@ impl<W: Wire> Controller<W> {
         &self.out
     }
 
-    /// What it commands: east, north, up, m/s.
+    /// Commanded velocity east, north, up, m/s.
     #[must_use]
     pub fn velocity_mps(&self) -> [f64; 3] {
         match self.out.command {
@@ -197,8 +199,9 @@ impl<W: Wire> Controller<W> {
         }
     }
 
-    /// The velocity that the vehicle is about to have: what it was told, within what it can change while it follows. Acceleration is
-    /// limited from there, or a vehicle that lags would never get going.
+    /// The velocity that the vehicle will soon have: the last command, limited to what it can reach
+    /// from the measured velocity. Acceleration is limited from there; limited from the measured
+    /// velocity, a lagging vehicle would never speed up.
     fn own_velocity(&self, measured_mps: [f64; 3]) -> [f64; 3] {
         let Some(commanded) = self.commanded_mps else {
             return measured_mps;
@@ -211,8 +214,8 @@ impl<W: Wire> Controller<W> {
     }
 }
 
-/// How fast a vehicle may be that should stand at a place: it brakes with half of what it could, and reaches the place so slowly that it stands
-/// within the tolerance although it lags.
+/// Largest speed from which the vehicle stops within the tolerance of its goal despite its lag. It
+/// brakes with half of its acceleration.
 fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag_s: f64) -> f64 {
     let way = [0, 1, 2].map(|axis| brake.place_m[axis] - position_m[axis]);
     let distance_m = way.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -220,7 +223,7 @@ fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag
         return f64::INFINITY;
     }
     let slow = brake.tolerance_m / (2.0 * lag_s);
-    // v^2 / 2a plus what it goes on while it lags is the way that is left.
+    // With half of the acceleration a: v^2 / a + v lag = remaining distance, solved for v.
     let by_lag = acceleration_mps2 * lag_s / 2.0;
     let fast = if acceleration_mps2.is_finite() {
         (by_lag * by_lag + acceleration_mps2 * distance_m).sqrt() - by_lag
@@ -230,7 +233,7 @@ fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag
     slow.max(fast)
 }
 
-/// The same, but those who were lost get at least `error_m` metres of room.
+/// Gives lost neighbours a margin of at least `error_m` metres.
 fn with_room(mut safety: SafetySetup, error_m: f64) -> SafetySetup {
     if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut safety {
         inflation.max_m = inflation.max_m.max(error_m as f32);

@@ -1,8 +1,8 @@
-//! What differs from autopilot to autopilot.
+//! Differences between autopilots.
 
 use serde::{Deserialize, Serialize};
 
-/// An autopilot and what it drives.
+/// An autopilot and its type of vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Kind {
     /// ArduPilot Rover.
@@ -11,37 +11,37 @@ pub enum Kind {
     /// ArduPilot Copter.
     #[serde(rename = "ardupilot-copter")]
     ArduCopter,
-    /// PX4 on something that flies.
+    /// PX4 on a flying vehicle.
     #[serde(rename = "px4-copter", alias = "px4")]
     Px4Copter,
-    /// PX4 on something that drives.
+    /// PX4 on a ground vehicle.
     #[serde(rename = "px4-rover")]
     Px4Rover,
 }
 
-/// PX4's main mode OFFBOARD, as it stands in the third byte of a heartbeat's custom mode.
+/// PX4's main mode OFFBOARD, the third byte of the custom mode in a heartbeat.
 const OFFBOARD: u32 = 6;
 
 impl Kind {
-    /// Whether it has to take off before it takes velocities.
+    /// Whether the vehicle must take off before it follows velocities.
     #[must_use]
     pub const fn flies(self) -> bool {
         matches!(self, Self::ArduCopter | Self::Px4Copter)
     }
 
-    /// Whether the mode for outside control is refused, and left again, without a stream of setpoints.
+    /// Whether the autopilot accepts and keeps external control only while setpoints arrive.
     #[must_use]
     pub const fn needs_stream(self) -> bool {
         self.is_px4()
     }
 
-    /// Whether it is PX4 and not ArduPilot.
+    /// Whether this is PX4 rather than ArduPilot.
     #[must_use]
     pub const fn is_px4(self) -> bool {
         matches!(self, Self::Px4Copter | Self::Px4Rover)
     }
 
-    /// The mode for outside control, as `MAV_CMD_DO_SET_MODE` asks for it.
+    /// Number of the external control mode in `MAV_CMD_DO_SET_MODE`.
     #[must_use]
     pub const fn outside_control(self) -> u32 {
         match self {
@@ -51,7 +51,7 @@ impl Kind {
         }
     }
 
-    /// Whether a heartbeat's custom mode is that mode.
+    /// Whether a custom mode is the external control mode.
     #[must_use]
     pub const fn is_outside_control(self, custom_mode: u32) -> bool {
         let mode = if self.needs_stream() { (custom_mode >> 16) & 0xFF } else { custom_mode };
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn modes_are_those_of_the_autopilots() {
+    fn external_control_modes_have_the_autopilots_numbers() {
         assert!(Kind::ArduRover.is_outside_control(15));
         assert!(!Kind::ArduRover.is_outside_control(4));
         assert!(Kind::ArduCopter.is_outside_control(4));

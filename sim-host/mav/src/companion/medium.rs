@@ -1,6 +1,7 @@
-//! Packets between companions: the agents' own frames, as the radio of a robot would carry them.
+//! Packets between companions: the same frames that robots exchange by radio.
 //!
-//! Over a LAN a datagram is what one agent says in one step. Through MAVLink it is one or more TUNNEL messages of up to 128 bytes to everybody.
+//! On a LAN a datagram contains the frames of one agent in one step. Over MAVLink they become one
+//! or more broadcast TUNNEL messages with up to 128 bytes each.
 
 use socket2::{Domain, Protocol, Socket, Type};
 use staya_controller::wire::Wire;
@@ -9,62 +10,62 @@ use std::collections::VecDeque;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 
-/// The private payload type of TUNNEL messages that carry frames of Staya (private ones are 32768 and above).
+/// Payload type of Staya's TUNNEL messages. Private types start at 32768.
 const PAYLOAD_TYPE: u16 = 0xD53A;
-/// Datagrams read at a time, and own ones that are remembered.
+/// Datagrams read per call, and own datagrams remembered.
 const AT_A_TIME: usize = 256;
 
-/// How packets go to companions of other processes.
+/// The network to companions in other processes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MediumSetup {
-    /// There are none.
+    /// No network.
     Here,
-    /// To all who have joined a group.
+    /// IPv4 multicast.
     Multicast {
-        /// The group.
+        /// Group address and port.
         group: SocketAddrV4,
-        /// Own address on its network; unspecified: the system chooses.
+        /// Own address in the network of the group; unspecified lets the system choose.
         interface: Ipv4Addr,
     },
-    /// To each of a list.
+    /// Unicast to listed peers.
     Peers {
-        /// Where packets arrive.
+        /// Own address and port.
         bind: SocketAddr,
-        /// Who gets them.
+        /// Addresses of the other companions.
         peers: Vec<SocketAddr>,
     },
-    /// Through the autopilots' links.
+    /// TUNNEL messages over the autopilots' links.
     Tunnel,
 }
 
-/// Why packets cannot come and go.
+/// Why the network to other companions is unavailable.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot exchange packets with other companions over {over}: {source}")]
+#[error("cannot exchange packets with other companions over {over}: {source}; check the addresses in [air]")]
 pub struct MediumError {
-    /// Group or own address.
+    /// Address of the group or own address.
     over: String,
-    /// Why.
+    /// Cause.
     source: io::Error,
 }
 
-/// The way to other companions.
+/// The network to companions in other processes.
 #[derive(Debug)]
 pub struct Medium {
     socket: Option<UdpSocket>,
     to: Vec<SocketAddr>,
-    /// The last datagrams: a group gives them back.
+    /// The last datagrams sent, since a multicast group returns them to the sender.
     sent: VecDeque<Vec<u8>>,
 }
 
 impl Medium {
-    /// Opens it.
+    /// Opens the network.
     ///
     /// # Errors
-    /// When an address cannot be had.
+    /// [`MediumError`] if an address is unavailable.
     pub fn open(setup: &MediumSetup) -> Result<Self, MediumError> {
         let medium = |socket, to| Self { socket, to, sent: VecDeque::new() };
         match setup {
-            // Through the autopilots' links packets go with the other messages.
+            // Tunnelled packets need no socket.
             MediumSetup::Here | MediumSetup::Tunnel => Ok(medium(None, Vec::new())),
             MediumSetup::Multicast { group, interface } => match join(*group, *interface) {
                 Ok(socket) => Ok(medium(Some(socket), vec![SocketAddr::V4(*group)])),
@@ -83,7 +84,7 @@ impl Medium {
         }
     }
 
-    /// Sends what an agent says; what the network does not take is lost, as on a radio.
+    /// Sends the frames of one agent. Datagrams that the network refuses are lost, as on a radio.
     pub fn send(&mut self, frames: &[u8]) {
         let Some(socket) = &self.socket else { return };
         for to in &self.to {
@@ -97,7 +98,7 @@ impl Medium {
         }
     }
 
-    /// Gives what has arrived to `heard`, datagram by datagram, but not own ones; at most 256.
+    /// Passes received datagrams to `heard`, at most 256 and without the own ones.
     pub fn receive(&mut self, mut heard: impl FnMut(&[u8])) {
         let Some(socket) = &self.socket else { return };
         let mut buffer = [0; 2048];
@@ -107,14 +108,14 @@ impl Medium {
                     Some(own) => drop(self.sent.remove(own)),
                     None => heard(&buffer[..len]),
                 },
-                // Nothing there, or news of a datagram that nobody took.
+                // No datagram, or an ICMP error of an earlier one.
                 Err(_) => return,
             }
         }
     }
 }
 
-/// A socket of a group that other processes of this machine may join too.
+/// Opens a multicast socket that other processes on this computer can open too.
 fn join(group: SocketAddrV4, interface: Ipv4Addr) -> io::Result<UdpSocket> {
     let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))?;
     socket.set_reuse_address(true)?;
@@ -131,7 +132,8 @@ fn join(group: SocketAddrV4, interface: Ipv4Addr) -> io::Result<UdpSocket> {
     Ok(socket.into())
 }
 
-/// What an agent says as TUNNEL messages to everybody; frames are not torn apart. What is longer than 128 bytes by itself is left out: no frame is.
+/// Packs the frames of an agent into broadcast TUNNEL messages, whole frames only. A frame above
+/// 128 bytes would be left out; none is that long.
 pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
     let mut parts = Vec::<Vec<u8>>::new();
     let mut rest = frames;
@@ -140,7 +142,7 @@ pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
         if wire.next_frame(&mut rest).is_none() {
             break;
         }
-        // With its delimiters.
+        // The frame with its delimiters.
         let frame = &before[..before.len() - rest.len()];
         match parts.last_mut() {
             Some(part) if part.len() + frame.len() <= 128 => part.extend_from_slice(frame),
@@ -163,7 +165,7 @@ pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
         .collect()
 }
 
-/// The frames in a TUNNEL message, if it is one of ours.
+/// The frames in a TUNNEL message; `None` if it is not one of Staya's.
 #[must_use]
 pub fn tunnelled(message: &TUNNEL_DATA) -> Option<&[u8]> {
     let frames = message.payload.get(..message.payload_length.into())?;

@@ -1,8 +1,10 @@
-//! The controller beside autopilots: one agent per vehicle, position and velocity from its telemetry, velocity setpoints to it.
+//! The companion: one controller per vehicle with a real autopilot. Telemetry gives its position
+//! and velocity; velocity setpoints are its output.
 //!
-//! What the swarm does is a scenario in the plane, the same file that `staya run` simulates; [`Config`] adds where on the Earth that is, and which robot is
-//! which vehicle. [`OffboardStateMachine`] is what a companion owes its autopilot, [`Controller`] the agent beside it, [`Medium`] carries packets
-//! between companions, and [`run`] is the loop around all of them.
+//! The behaviour of the swarm is a scenario in the plane, the same file that `staya run` simulates.
+//! [`Config`] adds the geographic position and assigns vehicles to robots. [`OffboardStateMachine`]
+//! speaks MAVLink to one autopilot, [`Controller`] is the agent, [`Medium`] connects companions,
+//! and [`run`] is the main loop.
 
 mod config;
 mod controller;

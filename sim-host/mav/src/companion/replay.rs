@@ -1,4 +1,4 @@
-//! Replays recorded flights of ArduPilot's own code: one vehicle's side, fed into its state machine.
+//! Replays recorded flights of ArduPilot's simulator into the state machine of one vehicle.
 
 use super::kind::Kind;
 use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules};
@@ -11,12 +11,11 @@ use std::io::Read as _;
 use std::path::Path;
 use std::time::Duration;
 
-/// The recorder's own station.
+/// System id of the recording ground station.
 const STATION: u8 = 250;
-/// Between two polls.
 const STEP: Duration = Duration::from_millis(10);
 
-/// How long the frame at the beginning of `bytes` is, by its header.
+/// Length of the frame at the start of `bytes`, by its header.
 fn frame_len(bytes: &[u8]) -> usize {
     const SIGNED: u8 = 1;
     match *bytes {
@@ -26,7 +25,7 @@ fn frame_len(bytes: &[u8]) -> usize {
     }
 }
 
-/// What autopilots said, and when, from the first frame on.
+/// Messages of the autopilots, with times relative to the first one.
 pub struct Recording(Vec<(Duration, Vec<u8>)>);
 
 impl Recording {
@@ -47,7 +46,7 @@ impl Recording {
             let at = Duration::from_micros(micros - *first.get_or_insert(micros));
             let (frame, behind) = frames.split_at(frame_len(frames));
             rest = behind;
-            // What the dialect does not have is left out.
+            // Messages outside the dialect are skipped.
             if RawFrame::new(frame).is_some_and(|frame| frame.sender().component == AUTOPILOT) {
                 all.push((at, frame.to_vec()));
             }
@@ -55,13 +54,13 @@ impl Recording {
         Self(all)
     }
 
-    /// The frames of the vehicles' autopilots.
+    /// All frames of the vehicles' autopilots.
     pub fn frames(self) -> Vec<(Duration, Vec<u8>)> {
         let vehicle = |frame: &[u8]| RawFrame::new(frame).is_some_and(|frame| frame.sender().system < STATION);
         self.0.into_iter().filter(|(_, frame)| vehicle(frame)).collect()
     }
 
-    /// What the autopilot of `system` said.
+    /// The messages of autopilot `system`.
     pub fn of(&self, system: u8) -> impl Iterator<Item = (Duration, MavMessage)> {
         self.0.iter().filter_map(move |(at, frame)| {
             let frame = RawFrame::new(frame).filter(|frame| frame.sender().system == system)?;
@@ -69,7 +68,8 @@ impl Recording {
         })
     }
 
-    /// Feeds the messages of `system` into a state machine that is polled meanwhile; `look` sees it after each poll, with what it has sent.
+    /// Feeds the messages of `system` into a polled state machine. `look` receives the state
+    /// machine and the sent messages after each poll.
     pub fn replay(
         &self,
         system: u8,
@@ -101,7 +101,7 @@ mod tests {
         matches!(message, MavMessage::SET_POSITION_TARGET_LOCAL_NED(_))
     }
 
-    /// What the autopilot says of its landing, by time.
+    /// The autopilot's landed state at a time.
     fn landed_at(recording: &Recording, system: u8, at: Duration) -> Option<u8> {
         let said = recording.of(system).take_while(|(then, _)| *then <= at);
         let landed = said.filter_map(|(_, message)| match message {
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pilots_takeoff_is_not_taken_away() {
+    fn the_companion_waits_for_the_pilots_takeoff_to_end() {
         let recording = Recording::load("copters-pilot-takeoff");
         for system in 1..=4 {
             let mut first = None;
@@ -122,7 +122,7 @@ mod tests {
                     first.get_or_insert((now, fix));
                 }
             });
-            let (at, fix) = first.expect("it steers once the takeoff is over");
+            let (at, fix) = first.expect("setpoints start after the takeoff");
             assert_eq!(landed_at(&recording, system, at), Some(2), "system {system} at {at:?}");
             let [_, _, down] = fix.velocity_ned_mps;
             assert!(down.abs() < 0.5, "system {system} climbs at {} m/s", -down);
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn after_its_own_takeoff_it_steers_until_the_pilot_lands() {
+    fn after_its_own_takeoff_the_companion_has_control_until_the_pilot_lands() {
         let recording = Recording::load("copter-crossing");
         let rules = Rules { entry: Entry::Once, arm: true, takeoff: true, altitude_m: Some(10.0), ..RULES };
         let mut setpoints = Vec::new();
@@ -142,13 +142,13 @@ mod tests {
         let (first, last) = (setpoints[0], setpoints[setpoints.len() - 1]);
         assert_eq!(landed_at(&recording, 1, first.0), Some(2), "{first:?}");
         assert!((9.0..=10.5).contains(&first.1), "{first:?}");
-        // LAND was chosen with the heartbeat at 69.991 s.
+        // The pilot selected LAND with the heartbeat at 69.991 s.
         assert!((69.9..=70.0).contains(&last.0.as_secs_f64()), "{last:?}");
         let rate = (setpoints.len() - 1) as f64 / (last.0 - first.0).as_secs_f64();
         assert!((19.5..=20.5).contains(&rate), "{rate} setpoints a second");
     }
 
-    /// North and east of a place, metres, near ArduPilot's usual one.
+    /// Position north and east of ArduPilot's default home, metres.
     fn north_east_m(offboard: &OffboardStateMachine) -> [f64; 2] {
         let place = offboard.fix().expect("a position").place;
         let origin = Origin::new(Global { latitude_deg: -35.363_262, longitude_deg: 149.165_237, altitude_m: 584.0 });
@@ -162,9 +162,10 @@ mod tests {
 
     const ROVER: Rules = Rules { entry: Entry::Once, arm: true, ..RULES };
 
-    /// The fix was lost between 6.0 and 7.0 s, which is as often as this vehicle said so; the autopilot's own failsafe came at 14.2 s.
+    /// The recorded vehicle reports its GPS at 1 Hz and lost it between 6.0 and 7.0 s. Its own
+    /// failsafe triggered at 14.2 s.
     #[test]
-    fn a_lost_gps_ends_steering_and_is_believed_again_after_a_while() {
+    fn a_lost_gps_ends_control_and_regains_trust_later() {
         let recording = Recording::load("rovers-gps-lost");
         let (mut states, mut doubts, mut start, mut lost, mut end) = (Vec::new(), Vec::new(), None, None, None);
         recording.replay(3, Kind::ArduRover, ROVER, |now, offboard, sent, events| {
@@ -179,7 +180,7 @@ mod tests {
             }
             if (7.05..46.0).contains(&seconds) {
                 let sure = north_east_m(offboard);
-                assert!(off(*lost.get_or_insert(sure), sure) < 1e-6, "{seconds}: {sure:?} is not to be believed");
+                assert!(off(*lost.get_or_insert(sure), sure) < 1e-6, "{seconds}: {sure:?} must not be trusted");
                 assert!(offboard.fresh_fix(now).is_none(), "{seconds}");
             }
             if (7.05..14.2).contains(&seconds) {
@@ -195,15 +196,15 @@ mod tests {
         assert_eq!(doubts.len(), 1, "{doubts:?}");
         assert_eq!(doubts[0].1, Doubt::Gps);
         assert!((7.0..7.1).contains(&doubts[0].0), "{doubts:?}");
-        let [start, lost, end] = [start, lost, end].map(|place| place.expect("it was there"));
+        let [start, lost, end] = [start, lost, end].map(|place| place.expect("recorded"));
         let from_start = |place: [f64; 2]| [place[0] - start[0], place[1] - start[1]];
-        // What the simulation says of the truth at 7.0 s (SIMSTATE), and at the end.
+        // True positions of the simulator (SIMSTATE) at 7.0 s and at the end.
         assert!(off(from_start(lost), [3.12, 5.85]) < 0.3, "{lost:?}");
         assert!(off(from_start(end), [-0.68, 14.09]) < 0.3, "{end:?}");
     }
 
     #[test]
-    fn vehicles_that_are_well_are_believed_throughout() {
+    fn healthy_vehicles_are_always_trusted() {
         for name in ["rovers-crossing", "rovers-pilot-hold"] {
             let recording = Recording::load(name);
             for system in 1..=6 {
@@ -216,12 +217,12 @@ mod tests {
     }
 
     #[test]
-    fn after_a_restart_the_last_place_is_known_until_there_is_a_new_one() {
+    fn after_a_restart_the_last_position_is_kept_until_a_new_one_arrives() {
         let recording = Recording::load("rovers-restart");
         let (mut steered, mut last) = (Vec::new(), None);
         recording.replay(3, Kind::ArduRover, ROVER, |now, offboard, _, _| {
             let seconds = now.as_secs_f64();
-            // Killed at about 6.9 s; a position that is to be believed came at 55 s.
+            // Killed at about 6.9 s; the next trusted position arrived at 55 s.
             if (8.0..54.9).contains(&seconds) {
                 assert!(offboard.fresh_fix(now).is_none(), "{seconds}");
                 let known = north_east_m(offboard);
@@ -231,7 +232,10 @@ mod tests {
                 steered.push(seconds);
             }
         });
-        assert!(steered.iter().all(|seconds| *seconds < 8.0 || *seconds >= 77.9), "only by the pilot's choice");
+        assert!(
+            steered.iter().all(|seconds| *seconds < 8.0 || *seconds >= 77.9),
+            "only after the pilot selects the mode"
+        );
         assert!(steered.iter().any(|seconds| *seconds < 2.0) && steered.iter().any(|seconds| *seconds > 78.0));
     }
 }

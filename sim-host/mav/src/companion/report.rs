@@ -1,4 +1,4 @@
-//! What came of it.
+//! Report of a companion run.
 
 use super::kind::Kind;
 use super::offboard::{OffboardCounters, State};
@@ -7,66 +7,66 @@ use serde::Serialize;
 use staya_controller::robot::Mode;
 use std::fmt::{self, Write as _};
 
-/// A vehicle at the end.
+/// One vehicle at the end of the run.
 #[derive(Clone, Debug, Serialize)]
 pub struct VehicleReport {
-    /// Its number in the scenario.
+    /// Robot number in the scenario.
     pub robot: u32,
-    /// Its MAVLink system.
+    /// MAVLink system id.
     pub system: u8,
-    /// What drives it.
+    /// Autopilot.
     pub autopilot: Kind,
-    /// What its companion did last.
+    /// State of the companion.
     pub state: State,
-    /// What its agent did last.
+    /// Mode of the agent.
     pub agent: Mode,
-    /// Whether it was at its goal when it was last steered.
+    /// Whether the vehicle was at its goal when it was last controlled.
     pub has_arrived: bool,
-    /// Metres east, north, up of the origin; null: it never had a position.
+    /// Metres east, north, up of the origin; null if no position ever arrived.
     pub position_m: Option<[f64; 3]>,
-    /// What happened.
+    /// Counters.
     #[serde(flatten)]
     pub tally: OffboardCounters,
-    /// Packets of others that were heard.
+    /// Packets accepted from other robots.
     pub packets_heard: u64,
-    /// Packets that were refused: damaged, repeated, replayed, forged or without a seal.
+    /// Packets rejected: damaged, repeated, replayed, forged or unencrypted.
     pub packets_refused: u64,
-    /// Other robots that it knows.
+    /// Number of known neighbours.
     pub neighbors: usize,
 }
 
-/// A line to autopilots.
+/// Statistics of one link.
 #[derive(Clone, Debug, Serialize)]
 pub struct LineReport {
-    /// As it was opened.
+    /// The endpoint, as opened.
     pub link: String,
-    /// What it carried.
+    /// Traffic counters.
     #[serde(flatten)]
     pub counts: Counts,
-    /// Why it has no connection; null: it has one, or needs none.
+    /// Why the link is not connected; null if it is, or needs no connection.
     pub trouble: Option<String>,
-    /// Frames refused for want of a signature that is right and new.
+    /// Frames rejected for a missing, wrong or replayed signature.
     pub refused: u32,
-    /// No timestamp is left to sign with: nothing more was sent on it.
+    /// Whether the signing timestamps are used up, so that the link sends no more.
     pub is_exhausted: bool,
 }
 
-/// The figures of `staya companion`.
+/// Report of `staya companion`.
 #[derive(Clone, Debug, Serialize)]
 pub struct CompanionReport {
-    /// Of the scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// How long it ran.
+    /// Duration of the run, seconds.
     pub seconds: f64,
-    /// Ended by Ctrl-C or a signal.
+    /// Whether Ctrl-C or a signal ended the run.
     pub interrupted: bool,
-    /// Nothing was sent.
+    /// Whether nothing was sent.
     pub dry_run: bool,
-    /// By rising number.
+    /// Vehicles sorted by robot number.
     pub vehicles: Vec<VehicleReport>,
-    /// As opened.
+    /// Links in the order of the configuration.
     pub links: Vec<LineReport>,
-    /// Why the log is not complete; null: it is, or there is none.
+    /// Why the log is incomplete; null if it is complete or there is none.
     pub log_error: Option<String>,
 }
 
@@ -90,7 +90,7 @@ impl fmt::Display for CompanionReport {
             let tally = &vehicle.tally;
             writeln!(
                 f,
-                "             {} positions, {} setpoints, {} hand-overs, {} stops, {} restarts; {} packets heard, {} refused",
+                "             {} positions, {} setpoints, {} hand-overs, {} stops, {} restarts; {} packets received, {} rejected",
                 tally.positions,
                 tally.setpoints,
                 tally.hand_overs,
@@ -102,10 +102,10 @@ impl fmt::Display for CompanionReport {
         }
         for LineReport { link, counts, trouble, refused, is_exhausted } in &self.links {
             let trouble = trouble.as_ref().map_or_else(String::new, |why| format!("; no connection: {why}"));
-            let mute = if *is_exhausted { "; no timestamp left to sign with: mute, a new key is needed" } else { "" };
+            let mute = if *is_exhausted { "; timestamps used up, nothing is sent; give a new key" } else { "" };
             writeln!(
                 f,
-                "  {link}: {} frames in, {} out, {} bytes of junk, {} lost, {refused} refused{trouble}{mute}",
+                "  {link}: {} frames in, {} out, {} junk bytes, {} lost, {refused} rejected{trouble}{mute}",
                 counts.frames_in,
                 counts.frames_out,
                 counts.junk_bytes,
@@ -113,7 +113,7 @@ impl fmt::Display for CompanionReport {
             )?;
         }
         if let Some(error) = &self.log_error {
-            writeln!(f, "  {error}: what is there is not all")?;
+            writeln!(f, "  {error}; the log is incomplete")?;
         }
         Ok(())
     }

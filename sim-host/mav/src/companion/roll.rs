@@ -1,4 +1,5 @@
-//! A key that changes while a companion runs: its file is read again when it changes, and for a while both keys are good.
+//! Key change while a companion runs: the key file is read again when it changes, and both keys are
+//! valid for a while.
 
 use staya_controller::auth::Key;
 use staya_sim::key::KeyFile;
@@ -8,22 +9,22 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::Duration;
 
-/// How often the file is looked at.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// What to do with a key.
+/// A step of a key change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Turn {
-    /// Hear it too.
+    /// Accept the new key too.
     Hear(Key),
-    /// Speak it, and hear the one before.
+    /// Send with the new key, still accept the old one.
     Speak,
-    /// Hear the one before no more.
+    /// Accept the old key no more.
     Forget,
 }
 
-/// When which turn of a roll is due: all hear the new key from the start, speak it after half of the overlap and hear nothing else after all of it. So
-/// nobody goes unheard whose file changes within half of the overlap of the first one's.
+/// Schedule of a key change. Every companion accepts the new key at once, sends with it after half
+/// of the overlap, and drops the old key after all of it. So companions stay in contact if their
+/// files change within half of the overlap of each other.
 #[derive(Clone, Debug)]
 pub struct Roll {
     generation: u16,
@@ -32,13 +33,14 @@ pub struct Roll {
 }
 
 impl Roll {
-    /// None under way. `has_old`: the key before the present one is heard since the start, and forgotten when the overlap is over.
+    /// Creates a schedule without a key change. With `has_old` the previous key is accepted from
+    /// the start and dropped after the overlap.
     #[must_use]
     pub fn new(overlap: Duration, has_old: bool) -> Self {
         Self { generation: has_old.into(), overlap, due: has_old.then_some((overlap, Turn::Forget)) }
     }
 
-    /// A new key has come.
+    /// Starts the change to a new key.
     #[must_use]
     pub fn begin(&mut self, now: Duration, key: Key) -> Turn {
         self.generation = self.generation.saturating_add(1);
@@ -46,7 +48,7 @@ impl Roll {
         Turn::Hear(key)
     }
 
-    /// What is to be done now, if anything.
+    /// Returns the next step, if it is due.
     #[must_use]
     pub fn turn(&mut self, now: Duration) -> Option<Turn> {
         let (_, turn) = self.due.take_if(|(at, _)| now >= *at)?;
@@ -56,7 +58,7 @@ impl Roll {
         Some(turn)
     }
 
-    /// Lets a robot's format do it.
+    /// Applies a step to a robot's wire format.
     pub fn apply(&self, turn: &Turn, wire: &mut HostWire) {
         match (wire, turn) {
             (HostWire::Sealed(sealed), Turn::Hear(key)) => sealed.ring_mut().hear_key(self.generation, key),
@@ -65,18 +67,19 @@ impl Roll {
             (HostWire::Signed(signed), Turn::Hear(key)) => signed.signing_mut().hear(key.clone()),
             (HostWire::Signed(signed), Turn::Speak) => signed.signing_mut().speak(),
             (HostWire::Signed(signed), Turn::Forget) => signed.signing_mut().forget(),
-            // Without a key.
+            // Formats without a key.
             (HostWire::Postcard(_) | HostWire::Mavlink(_), _) => {}
         }
     }
 }
 
-/// Looks at a key file from a thread of its own, so that a disk that hangs holds nobody up.
+/// Watches a key file in its own thread, so that a hanging disk does not block the controllers.
 #[derive(Debug)]
 pub struct KeyWatch(Receiver<Result<Key, String>>);
 
 impl KeyWatch {
-    /// Tells of every key in the file that is not the one before, beginning with `key`; of an error once.
+    /// Starts to watch `path`. Each key that differs from the previous one (first `key`) is
+    /// reported, each error once.
     #[must_use]
     pub fn start(path: PathBuf, mut key: Key) -> Self {
         let (sender, receiver) = channel();
@@ -101,12 +104,12 @@ impl KeyWatch {
                 }
             }
         };
-        // Without a thread the key stays as it is.
+        // If the thread cannot start, the key stays.
         let _ = thread::Builder::new().name("key".into()).spawn(watch);
         Self(receiver)
     }
 
-    /// What it found since it was asked last.
+    /// The next key or error, if there is one.
     pub fn news(&self) -> Option<Result<Key, String>> {
         self.0.try_recv().ok()
     }
@@ -131,7 +134,8 @@ mod tests {
         by.decode(frame).map(drop)
     }
 
-    /// Two companions whose files change up to half of the overlap apart hear each other all the time; who stays with the old key is out.
+    /// Two companions whose files change up to half of the overlap apart stay in contact. A
+    /// companion with the old key is locked out.
     #[test]
     fn companions_hear_each_other_while_the_key_changes() {
         let folder = tempfile::tempdir().unwrap();
@@ -163,9 +167,8 @@ mod tests {
         }
     }
 
-    /// Who starts in the middle hears the old key too, if it lies beside the new one.
     #[test]
-    fn who_starts_in_the_middle_hears_both() {
+    fn a_companion_started_during_a_change_accepts_both_keys() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: old\n").unwrap();
@@ -180,7 +183,7 @@ mod tests {
             let mut started = seal.wire(format);
             let mut roll = Roll::new(OVERLAP, seal.has_old());
             assert_eq!(hears(&mut started, &mut late, 1), Ok(()), "{format:?}");
-            assert_eq!(hears(&mut late, &mut started, 1), Err(DecodeError::Forged), "until its file changes");
+            assert_eq!(hears(&mut late, &mut started, 1), Err(DecodeError::Forged), "its file has not changed yet");
             assert_eq!(roll.turn(OVERLAP / 2), None);
             let turn = roll.turn(OVERLAP).unwrap();
             roll.apply(&turn, &mut started);
@@ -189,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_changes_is_news_once_and_a_broken_one_too() {
+    fn a_changed_or_broken_key_file_is_reported_once() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: old\n").unwrap();

@@ -1,4 +1,5 @@
-//! The loop around companions: frames in, steps of agents and duties when they are due, frames out.
+//! The main loop of companions: receives frames, runs the agents and state machines when they are
+//! due, sends frames.
 
 mod machine;
 mod shown;
@@ -31,57 +32,55 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use vehicle::{Vehicle, is_within};
 
-/// Longest wait for a frame when packets may come from the LAN meanwhile, and else.
+/// Longest wait for a frame: with a LAN to poll, and without.
 const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(20)];
-/// Setpoints to stand, and the time between them, at the end.
+/// Zero-velocity setpoints at the end, and their interval.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
-/// With so few timestamps left to sign with, ground stations are told: afterwards nobody can be.
+/// Ground stations are warned when only this number of signing timestamps is left.
 const FEW_TIMESTAMPS: u64 = 1000;
-/// Between two looks at whether lines are connected.
 const LOOK: Duration = Duration::from_secs(1);
-/// How old positions may be in a dry run at least.
+/// Smallest age limit of positions in a dry run.
 const SELDOM: Duration = Duration::from_secs(3);
 
-/// What the command line says.
+/// Options of the command line.
 #[derive(Debug, Default)]
 pub struct Options {
-    /// Show what would be sent, and send nothing.
+    /// Show the messages that would be sent, and send nothing.
     pub dry_run: bool,
-    /// Show no changes of state.
+    /// Do not show changes of state.
     pub quiet: bool,
-    /// End after so long; `None`: when asked to.
+    /// Duration in seconds; `None` runs until stopped.
     pub seconds: Option<f64>,
-    /// Where all messages of all links go that are believed.
+    /// Log of all sent and accepted messages.
     pub tlog: Option<Tlog>,
 }
 
-/// Why companions cannot go on.
+/// Why companions cannot start or continue.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// A line cannot be opened.
+    /// A link cannot be opened.
     #[error(transparent)]
     Line(#[from] OpenError),
-    /// The LAN cannot be used.
+    /// The LAN is unavailable.
     #[error(transparent)]
     Medium(#[from] MediumError),
-    /// The key of packets cannot be used.
+    /// The key of packets is unusable.
     #[error(transparent)]
     Seal(#[from] SealError),
-    /// The key of links cannot be had.
+    /// The key of links is unusable.
     #[error(transparent)]
     Key(#[from] KeyError),
-    /// What would be sent cannot be shown.
+    /// Standard output cannot be written during a dry run.
     #[error("cannot write to standard output: {0}")]
     Output(io::Error),
 }
 
-/// A line to autopilots.
 struct Link {
     name: String,
-    /// Why it has no connection, as far as that was told.
+    /// Last reported reason for a missing connection.
     trouble: Option<String>,
-    /// Whether it was told that its timestamps come to their end.
+    /// Whether the low number of timestamps was reported.
     is_end_told: bool,
 }
 
@@ -89,33 +88,33 @@ struct Companions<'a> {
     origin: Origin,
     reach_m: f64,
     tick: Duration,
-    /// Between two looks at what others may have said.
+    /// Longest wait for a frame.
     glance: Duration,
     is_tunnel: bool,
     machine: Box<dyn Machine>,
     links: Vec<Link>,
-    /// When to look at them again.
     next_look: Duration,
     vehicles: Vec<Vehicle>,
-    /// One for each line, with a key for links.
+    /// One for each link, if there is a key of links.
     signing: Option<Vec<Signing>>,
     wire: AnyWire,
-    /// Of the packets' key.
+    /// Key changes of the packets' key.
     roll: Roll,
     options: &'a Options,
-    /// Why the log is incomplete.
     log_error: Option<TlogError>,
-    /// Why nothing more can be shown of a dry run.
     output_error: Option<io::Error>,
     has_said_farewell: bool,
 }
 
-/// Runs the companions of a configuration until the time is over or `is_wanted` says no. `look` is called again
-/// and again between two duties, and must be quick. Nothing else ends it, and whatever does, steered vehicles are
-/// told to stand: a log that cannot be written is told on standard error, to the vehicles' ground stations, and in the report.
+/// Runs the companions of a configuration until the time is over or `is_wanted` returns false.
+/// `look` observes them between two steps and must be fast.
+///
+/// No other error ends the run. A log that cannot be written is reported on standard error, to the
+/// ground stations and in the report. At any end, controlled vehicles are told to stop.
 ///
 /// # Errors
-/// What cannot be opened at the start, and a dry run that cannot be shown; an autopilot that is not there is none.
+/// [`RunError`] if something cannot be opened at the start, or standard output fails in a dry run.
+/// An absent autopilot is not an error.
 pub fn run(
     config: &Config,
     options: &mut Options,
@@ -127,7 +126,7 @@ pub fn run(
     let remarks =
         [seal.as_ref().and_then(|seal| seal.remark.as_ref()), link_key.as_ref().and_then(|file| file.remark.as_ref())];
     for remark in remarks.into_iter().flatten() {
-        // A closed standard error must not stop it.
+        // A closed standard error must not stop the run.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
     let host = Host {
@@ -147,7 +146,7 @@ pub fn run(
     }
 }
 
-/// A dry run asks for no positions: those that come anyway are good for longer.
+/// A dry run cannot request a position rate, so it accepts older positions.
 fn rules(setup: &VehicleSetup, options: &Options) -> Rules {
     let Rules { stale, .. } = setup.rules;
     let stale = if options.dry_run { stale.max(SELDOM) } else { stale };
@@ -224,7 +223,8 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// Goes on until the time is over or nobody wants it; returns for how many seconds, and whether it was interrupted.
+    /// Runs until the time is over or `is_wanted` returns false. Returns the duration in seconds
+    /// and whether it was interrupted.
     fn run(&mut self, is_wanted: impl Fn() -> bool, look: &mut dyn FnMut(&Sight<'_>)) -> (f64, bool) {
         let limit = self.options.seconds.map(Duration::from_secs_f64);
         let mut interrupted = false;
@@ -243,13 +243,13 @@ impl<'a> Companions<'a> {
         self.machine.now()
     }
 
-    /// Waits for a frame until something is due, then does all that is.
+    /// Waits for a frame until something is due, then does the due work.
     fn turn(&mut self) {
         let now = self.now();
         let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.offboard.due(now));
         let due = self.vehicles.iter().map(due).min().unwrap_or_default();
         let mut wait = due.saturating_sub(now).min(self.glance);
-        // What has come in meanwhile, but not what a flood would bring in.
+        // Limited, so that a flood of frames does not block the loop.
         for _ in 0..1024 {
             let Some(received) = self.machine.receive(wait) else {
                 break;
@@ -272,21 +272,21 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// Follows the file of the packets' key.
+    /// Reads the key file's changes and applies due steps.
     fn roll_key(&mut self, now: Duration) {
         let turn = match self.machine.new_key() {
             None => self.roll.turn(now),
             Some(Ok(key)) => Some(self.roll.begin(now, key)),
-            Some(Err(error)) => return self.say(&format!("staya: {error}; the key before stays")),
+            Some(Err(error)) => return self.say(&format!("staya: {error}; the previous key stays in use")),
         };
         let Some(turn) = turn else { return };
         for vehicle in &mut self.vehicles {
             self.roll.apply(&turn, vehicle.controller.wire_mut());
         }
         self.say(match turn {
-            Turn::Hear(_) => "staya: a new key: hears it, and speaks the old one",
-            Turn::Speak => "staya: speaks the new key, and hears the old one too",
-            Turn::Forget => "staya: the old key is over",
+            Turn::Hear(_) => "staya: new key: accepted; sending with the old key",
+            Turn::Speak => "staya: new key: sending with it; the old key is still accepted",
+            Turn::Forget => "staya: old key no longer accepted",
         });
     }
 
@@ -302,9 +302,9 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// From now on there is none: flying goes on without it.
+    /// Ends the log; the vehicles are controlled without it.
     fn log_fails(&mut self, error: TlogError) {
-        self.say(&format!("staya: {error}; goes on without a log"));
+        self.say(&format!("staya: {error}; continuing without a log"));
         self.log_error = Some(error);
         for index in 0..self.vehicles.len() {
             self.send(index, &status_text("staya: the log cannot be written", true));
@@ -337,7 +337,7 @@ impl<'a> Companions<'a> {
         self.machine.believe(received.line, received.peer);
         let (sender, now) = (frame.sender(), self.now());
         if let MavMessage::TUNNEL(tunnel) = &message {
-            // What others say through the links. Own packets may come back.
+            // Packets of other companions. Own packets may return.
             let is_own = sender.component == COMPONENT
                 && self.vehicles.iter().any(|vehicle| vehicle.setup.system == sender.system);
             if let Some(frames) = tunnelled(tunnel).filter(|_| !is_own) {
@@ -357,14 +357,13 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// The agent's step, if it is due.
     fn step(&mut self, index: usize) {
         let (now, tick) = (self.now(), self.tick);
         let vehicle = &mut self.vehicles[index];
         if now < vehicle.next_step {
             return;
         }
-        // The agent's clock goes in whole ticks, whatever the system's timers do; what was slept through is left out.
+        // The agent's clock advances by whole ticks. Missed ticks are skipped.
         let missed = now.saturating_sub(vehicle.next_step).as_micros() / tick.as_micros().max(1);
         let moment = vehicle.next_step + tick * u32::try_from(missed).unwrap_or(u32::MAX);
         vehicle.next_step = moment + tick;
@@ -373,17 +372,17 @@ impl<'a> Companions<'a> {
         let is_news = is_far && !vehicle.is_far;
         vehicle.is_far = is_far;
         if is_news {
-            self.tell(index, "is too far from the origin (rules.reach_m): not steered");
+            self.tell(index, "too far from the origin (rules.reach_m)");
         }
         let vehicle = &mut self.vehicles[index];
-        // Who has no place in the swarm's world has nothing to say.
+        // Outside the map of the swarm the vehicle sends no beacons.
         let Some(body) = body else {
             vehicle.inbox.clear();
             return;
         };
         let steers = vehicle.offboard.state() == State::Steering && !is_far;
         if let AnyWire::Signed(signed) = vehicle.controller.wire_mut() {
-            // So that who starts later does not take it for a recording.
+            // A companion that starts later must not take the packet for a replay.
             signed.signing_mut().advance_to(key::timestamp());
         }
         let out = vehicle.controller.step(&body, steers, &vehicle.inbox, moment);
@@ -406,7 +405,7 @@ impl<'a> Companions<'a> {
         self.speak(index, &said);
     }
 
-    /// To all other robots, here and elsewhere.
+    /// Delivers frames to all other robots in this and other processes.
     fn speak(&mut self, index: usize, said: &[u8]) {
         if said.is_empty() {
             return;
@@ -426,7 +425,6 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// The duties, if they are due.
     fn poll(&mut self, index: usize) {
         let now = self.now();
         let mut messages = Vec::new();
@@ -443,7 +441,7 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// Sends a message to a vehicle's autopilot, or shows it.
+    /// Sends a message to a vehicle's autopilot; a dry run shows it.
     fn send(&mut self, index: usize, message: &MavMessage) {
         let vehicle = &mut self.vehicles[index];
         let sender = Sender { system: vehicle.setup.system, component: COMPONENT, sequence: vehicle.sequence };
@@ -459,16 +457,15 @@ impl<'a> Companions<'a> {
         let (line, peer) = (vehicle.setup.line, vehicle.peer);
         if let Some(signing) = self.signing_of(line) {
             signing.advance_to(key::timestamp());
-            // What cannot be signed would not be heard.
+            // Autopilots reject unsigned frames.
             let Ok(signature) = signing.sign(&mut frame) else { return };
-            // There is room: see `MAX_FRAME_LEN`.
+            // The buffer has room for a signature.
             let _ = frame.extend_from_slice(&signature);
         }
         self.machine.send(line, peer, &frame);
         self.log(&frame);
     }
 
-    /// Tells those to stand that are steered.
     fn say_farewell(&mut self) {
         self.has_said_farewell = true;
         let (times, pause) = FAREWELLS;
@@ -486,7 +483,7 @@ impl<'a> Companions<'a> {
 
 impl Drop for Companions<'_> {
     fn drop(&mut self) {
-        // What should never happen does not make vehicles go on.
+        // Vehicles must stop even after a panic.
         if !self.has_said_farewell {
             self.say_farewell();
         }

@@ -1,4 +1,4 @@
-//! The key with which agents speak to each other, and the number of the start that goes with it.
+//! The key of packets between agents, and the counter of starts that belongs to it.
 
 use super::roll::{KeyWatch, Roll, Turn};
 use staya_controller::auth::Key;
@@ -11,62 +11,63 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Why agents cannot speak with a key.
+/// Why the key of packets is unusable.
 #[derive(Debug, thiserror::Error)]
 pub enum SealError {
-    /// The key cannot be had.
+    /// The key file is unusable.
     #[error(transparent)]
     Key(#[from] KeyError),
-    /// The number of starts cannot be read.
-    #[error("cannot read the number of starts in {}: {source}; {}", .path.display(), read_remedy(.source))]
+    /// The counter of starts cannot be read.
+    #[error("cannot read the counter of starts in {}: {source}; {}", .path.display(), read_remedy(.source))]
     Read {
-        /// Where it is kept.
+        /// Path of the counter.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: std::io::Error,
     },
-    /// There is no file. To begin anew at 0 unasked would make what was recorded of earlier starts good again, and others deaf to this one.
+    /// The counter is missing. A counter that restarts at 0 would make recorded packets valid
+    /// again, and other robots would reject the new ones.
     #[error(
-        "there is no {}, which counts how often this key was used here; if it never was, make it: `echo 0 > {}`; else write a number into it that is \
-         greater than it ever was, or take a new key",
+        "{} is missing, it counts how often this computer used the key; if the key is unused here, run `echo 0 > {}`; else write a \
+        number into it that is greater than all earlier ones, or give a new key",
         .path.display(), .path.display()
     )]
     Missing {
-        /// Where it should be.
+        /// Path of the counter.
         path: PathBuf,
     },
-    /// There is no number, or one that no start can have, or its line has no end: it was torn.
+    /// The counter is not a valid number, or its line is incomplete.
     #[error(
-        "{} does not hold a line with a number of starts below 1048576; write one into it that is greater than it ever was, or take a new key and remove it",
+        "{} is not a counter of starts below 1048576; write a number into it that is greater than all earlier ones, or give a new key and remove it",
         .path.display()
     )]
     NoNumber {
-        /// Where it is kept.
+        /// Path of the counter.
         path: PathBuf,
     },
-    /// The number of starts cannot be stored.
-    #[error("cannot store the number of starts in {}: {source}; {}", .path.display(), write_remedy(.source))]
+    /// The counter cannot be stored.
+    #[error("cannot store the counter of starts in {}: {source}; {}", .path.display(), write_remedy(.source))]
     Write {
-        /// Where it is kept.
+        /// Path of the counter.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: std::io::Error,
     },
 }
 
-/// A key and the number of this start, which no later one on this machine will have: [`Sealed`] says why.
+/// A key and the counter of this start, which is unique on this computer; see [`Sealed`].
 #[derive(Clone, Debug)]
 pub struct Seal {
     path: PathBuf,
     key: Key,
-    /// The one before, from the file with `.old` behind its name.
+    /// The previous key, from the file with `.old` appended to its name.
     old: Option<Key>,
     starts: u32,
-    /// What its owner should know of the key's file.
+    /// A warning about the key file.
     pub remark: Option<String>,
 }
 
-/// Puts `text` in the place of a file: after a power failure there is the old one or the new one, whole.
+/// Replaces a file atomically: after a power failure it has the old or the new content.
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     let mut name = path.as_os_str().to_owned();
     name.push(".new");
@@ -75,7 +76,7 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     file.write_all(text.as_bytes())?;
     file.sync_all()?;
     std::fs::rename(&new, path)?;
-    // The rename itself; what is no Unix has no way to ask for it.
+    // Makes the rename itself durable, which only Unix supports.
     #[cfg(unix)]
     if let Some(folder) = path.parent() {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -85,11 +86,11 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
 }
 
 impl Seal {
-    /// Reads the key in `path`, the one before if there is a file of the same name with `.old` behind it, and the number of starts in that with `.starts`,
-    /// where the next one is left.
+    /// Reads the key in `path`, the previous key in the file with `.old` appended if it exists, and
+    /// the counter of starts in the file with `.starts` appended. Stores the next counter there.
     ///
     /// # Errors
-    /// [`SealError`], naming the file and the remedy.
+    /// [`SealError`] with file and remedy.
     pub fn read(path: &Path) -> Result<Self, SealError> {
         let KeyFile { key, remark } = KeyFile::read(path)?;
         let beside = |ending| {
@@ -115,11 +116,11 @@ impl Seal {
         Ok(Self { path: file, key, old, starts, remark })
     }
 
-    /// What an agent speaks in a format, so that only who has the key is heard, or the one before.
+    /// The wire format of an agent, encrypted with this key; the previous key is accepted too.
     #[must_use]
     pub fn wire(&self, format: Format) -> HostWire {
         let wire = HostWire::keyed(format, self.old.as_ref().unwrap_or(&self.key), self.starts, 0, key::timestamp());
-        let mut wire = wire.expect("the number of starts was looked at when it was read");
+        let mut wire = wire.expect("the counter of starts was validated when read");
         if self.has_old() {
             let mut roll = Roll::new(Duration::ZERO, false);
             for turn in [roll.begin(Duration::ZERO, self.key.clone()), Turn::Speak] {
@@ -129,13 +130,13 @@ impl Seal {
         wire
     }
 
-    /// Whether there is a key before this one.
+    /// Whether there is a previous key.
     #[must_use]
     pub const fn has_old(&self) -> bool {
         self.old.is_some()
     }
 
-    /// Watches the key's file from now on.
+    /// Starts to watch the key file.
     #[must_use]
     pub fn watch(&self) -> KeyWatch {
         KeyWatch::start(self.path.clone(), self.key.clone())
@@ -159,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn who_has_the_key_is_heard_once() {
+    fn a_packet_with_the_key_is_accepted_once() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
@@ -178,42 +179,42 @@ mod tests {
             let frame = listener.next_frame(&mut rest).unwrap();
             assert!(listener.decode(frame).is_err(), "without the key");
             let mut stranger = HostWire::new(format);
-            assert!(stranger.decode(frame).is_ok(), "sound as it is");
+            assert!(stranger.decode(frame).is_ok(), "a plain packet is valid");
         }
     }
 
     #[test]
-    fn a_number_that_cannot_be_stored_is_an_error_and_the_old_one_stays() {
+    fn a_counter_that_cannot_be_stored_is_an_error_and_stays_unchanged() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
         let kept = folder.path().join("swarm.key.starts");
         std::fs::write(&kept, "7\n").unwrap();
-        // In the way of the new file.
+        // A folder in place of the temporary file.
         std::fs::create_dir(folder.path().join("swarm.key.starts.new")).unwrap();
         assert!(matches!(Seal::read(&path), Err(SealError::Write { .. })));
         assert_eq!(std::fs::read_to_string(&kept).unwrap(), "7\n");
     }
 
     #[test]
-    fn each_start_has_a_number_of_its_own() {
+    fn each_start_has_its_own_counter() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("swarm.key");
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
         let kept = folder.path().join("swarm.key.starts");
-        let error = Seal::read(&path).expect_err("nobody has said that it was never used").to_string();
-        assert!(error.contains("swarm.key.starts, which counts") && error.contains("echo 0 >"), "{error}");
+        let error = Seal::read(&path).expect_err("the counter is missing").to_string();
+        assert!(error.contains("swarm.key.starts is missing") && error.contains("echo 0 >"), "{error}");
         assert!(!kept.exists());
         std::fs::write(&kept, "0\n").unwrap();
         let starts = (0..3).map(|_| Seal::read(&path).unwrap().starts);
         assert_eq!(starts.collect::<std::vec::Vec<_>>(), [0, 1, 2]);
         assert_eq!(std::fs::read_to_string(&kept).unwrap(), "3\n");
-        // The last is torn: it may have been 17.
+        // The last one lacks its line end: it may have been 17.
         for wrong in ["", "\n", "many\n", "-1\n", "1048576\n", "1"] {
             std::fs::write(&kept, wrong).unwrap();
             let error = Seal::read(&path).expect_err(wrong).to_string();
-            assert!(error.contains("swarm.key.starts does not hold"), "{error}");
-            assert_eq!(std::fs::read_to_string(&kept).unwrap(), wrong, "it is left as it is");
+            assert!(error.contains("swarm.key.starts is not a counter"), "{error}");
+            assert_eq!(std::fs::read_to_string(&kept).unwrap(), wrong, "the file is unchanged");
         }
         std::fs::remove_file(&kept).unwrap();
         std::fs::create_dir(&kept).unwrap();

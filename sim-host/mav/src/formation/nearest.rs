@@ -1,10 +1,10 @@
-//! Who gets which place: so that robots go little, and not across each other.
+//! Assignment of places to robots with short paths that do not cross.
 //!
-//! Source: M. Turpin, N. Michael, V. Kumar 2014, CAPT: concurrent assignment and planning of trajectories for multiple robots,
-//! International Journal of Robotics Research 33(1), section 4: of all assignments the one with the least sum of squared ways has
-//! no two robots that come together if all go straight at their own constant speeds and arrive at once. That sum differs
-//! between assignments by the products of positions and places alone, so that neither where the places are in the world nor how
-//! long a cell is makes a difference.
+//! Source: M. Turpin, N. Michael, V. Kumar 2014, CAPT: concurrent assignment and planning of
+//! trajectories for multiple robots, International Journal of Robotics Research 33(1), section 4.
+//! With the smallest sum of squared distances, no two robots collide if all move straight at
+//! constant speeds and arrive at the same time. Assignments differ in that sum only by products of
+//! positions and places, so neither the offset nor the scale of the places matters.
 
 use super::Graph;
 use pathfinding::kuhn_munkres::kuhn_munkres;
@@ -12,13 +12,13 @@ use pathfinding::matrix::Matrix;
 use staya_controller::agent::TEMPLATE;
 use staya_controller::grid::Cell;
 
-/// Positions count as so many steps across the swarm: products of them and of places fit 64 bits by far.
+/// Resolution of positions across the swarm. Products of positions and places fit into 64 bits.
 const STEPS: f64 = 1e6;
 
 impl Graph {
-    /// The same formation with its places in the order of robots at `positions` (east and north, in any unit and from anywhere), so
-    /// that the sum of their squared ways is the least. Who has no neighbour with a smaller number, whom it would follow, gets one
-    /// more edge to the nearest that has room. O(n^3).
+    /// Reorders the places for robots at `positions` (east and north, any unit and origin) so that
+    /// the sum of squared distances is minimal. A robot without a neighbour of a smaller number,
+    /// which it would follow, gets an extra edge to the nearest one with capacity. O(n^3).
     #[must_use]
     pub fn nearest(&self, positions: &[[f64; 2]]) -> Self {
         let count = self.robots().min(positions.len());

@@ -1,4 +1,4 @@
-//! A ground station that gives a formation its orders and hears who has them.
+//! A ground station that sends orders to a formation and collects the confirmations.
 
 use super::{Graph, GraphError, Order, STATION, orders};
 use crate::{Endpoint, Lines, OpenError};
@@ -12,93 +12,90 @@ use staya_mavlink::wire::MAX_ROBOT;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
-/// Our own heartbeat comes so often, and orders are repeated so often.
+/// Interval of own heartbeats and of repeated orders.
 const EVERY: Duration = Duration::from_millis(500);
-/// Robots say that they are there once a second: after the first one, the others have so long.
+/// Robots send heartbeats at 1 Hz, so after the first one the others follow within this time.
 const GATHER: Duration = Duration::from_millis(1500);
-/// Frames sent at once; a peer's queue has room for more.
+/// Frames sent in one burst, less than the capacity of a peer's queue.
 const AT_ONCE: usize = 100;
-/// A glance at what comes in.
+/// Longest wait for frames per turn.
 const GLANCE: Duration = Duration::from_millis(20);
 
-/// What became of the orders.
+/// Confirmations of the orders.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Given {
-    /// Robots that the formation is of.
+    /// Robots of the formation.
     pub robots: BTreeSet<u8>,
-    /// Who has said that it has its place.
+    /// Robots that confirmed their places.
     pub placed: BTreeSet<u8>,
-    /// Who has said that it has the goal.
+    /// Robots that confirmed the goal.
     pub heading_for_goal: BTreeSet<u8>,
-    /// What robots objected, with their numbers.
+    /// Refusals, with robot numbers.
     pub objections: Vec<(u8, String)>,
-    /// Frames of orders sent, repeated ones included.
+    /// Frames of orders sent, repetitions included.
     pub frames: usize,
 }
 
-/// Why nothing was sent.
+/// Why no orders were sent.
 #[derive(Debug, thiserror::Error)]
 pub enum StationError {
-    /// The line cannot be opened.
+    /// The link cannot be opened.
     #[error(transparent)]
     Line(#[from] OpenError),
-    /// There is no such formation.
+    /// The formation is invalid.
     #[error(transparent)]
     Graph(#[from] GraphError),
-    /// Nobody is there.
+    /// No robot was found.
     #[error(
-        "no robot is heard at {0}: run `staya bridge SCENARIO --mavlink udpin:HOST:PORT` there, or give it more time (--wait), or its key (--key)"
+        "{0}: no robot found; start `staya bridge SCENARIO --mavlink udpin:HOST:PORT` there, or give more time (--wait) or the key (--key)"
     )]
     Nobody(String),
-    /// Robots that were asked for and are not there.
+    /// Some of the selected robots were not found.
     #[error(
-        "robots {missing} are not heard at {line}, but {heard}: give those that are there (--robots), or it more time (--wait)"
+        "{line}: robots {missing} not found, only {heard}; select other robots (--robots) or give more time (--wait)"
     )]
     Missing {
-        /// They.
+        /// Robots not found.
         missing: String,
-        /// Where.
+        /// The link.
         line: String,
-        /// Who is there.
+        /// Robots found.
         heard: String,
     },
-    /// Nobody knows who is near what.
-    #[error(
-        "robots {0} do not say where they are (GLOBAL_POSITION_INT): give it more time (--wait), or `--places number`"
-    )]
+    /// Some robots sent no position, which the nearest places need.
+    #[error("robots {0} sent no position (GLOBAL_POSITION_INT); give more time (--wait), or `--places number`")]
     Nowhere(String),
-    /// A file's formation is for another number of robots.
-    #[error("the formation is for {0} robots, and {1} are to keep it: say which (--robots)")]
+    /// The formation in the file has another number of robots.
+    #[error("the formation is for {0} robots, but {1} are selected; select others (--robots)")]
     Count(usize, usize),
 }
 
-/// Who gets which place.
+/// Assignment of places to robots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Places {
-    /// Robots by rising numbers, the first one in front.
+    /// In the order of robot numbers, the first in front.
     Number,
-    /// So that robots go little and not across each other, see [`Graph::nearest`].
+    /// Short paths that do not cross, see [`Graph::nearest`].
     #[default]
     Nearest,
 }
 
-/// Which robots take part in what.
+/// Selection of robots and their places.
 #[derive(Clone, Debug, Default)]
 pub struct Members {
-    /// Their numbers; `None`: all that are heard.
+    /// Selected robots; `None` for all that are found.
     pub robots: Option<BTreeSet<u8>>,
-    /// Who of them gets which place.
+    /// Assignment of places.
     pub places: Places,
-    /// Where the formation looks; `Stay`: east.
+    /// Heading of the formation; `Stay` means east.
     pub heading: Dir,
 }
 
-/// A line to a swarm.
 struct Station<'a> {
     lines: Lines,
     signing: Option<&'a mut Signing>,
     heard: BTreeSet<u8>,
-    /// Where robots say that they are: degrees of longitude and latitude by 1e7.
+    /// Position of each robot: longitude and latitude, 1e-7 degrees.
     at: BTreeMap<u8, [i32; 2]>,
     greeted: Option<Instant>,
     sequence: u8,
@@ -111,14 +108,15 @@ impl Station<'_> {
         if let Some(signing) = &mut self.signing {
             match signing.sign(&mut frame) {
                 Ok(signature) => frame.extend_from_slice(&signature),
-                // Better nothing than something that is not signed.
+                // An unsigned frame must not be sent.
                 Err(_) => return,
             }
         }
         self.lines.send(0, &frame);
     }
 
-    /// Says that we are there, when that is due: who does not hear us does not speak to us.
+    /// Sends a heartbeat if it is due: a listening link sends only to peers from which it received
+    /// frames.
     fn greet(&mut self) {
         if self.greeted.is_some_and(|at| at.elapsed() < EVERY) {
             return;
@@ -126,7 +124,7 @@ impl Station<'_> {
         self.greeted = Some(Instant::now());
         let sender = Sender { system: STATION, component: 190, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
-        // 8: no autopilot.
+        // 8 means "not an autopilot".
         let beat =
             HEARTBEAT_DATA { mavtype: MAV_TYPE_GCS, autopilot: 8, mavlink_version: 3, ..HEARTBEAT_DATA::DEFAULT };
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
@@ -135,7 +133,6 @@ impl Station<'_> {
         }
     }
 
-    /// Takes in what has come, for a glance.
     fn listen(&mut self) {
         self.greet();
         let until = Instant::now() + GLANCE;
@@ -162,7 +159,7 @@ impl Station<'_> {
     }
 
     fn note(&mut self, robot: u8, severity: u8, text: &str) {
-        if text.starts_with("place ") && text.ends_with(" of a new formation") {
+        if text.starts_with("new formation: place ") {
             self.given.placed.insert(robot);
         } else if text.starts_with("goal: cell ") {
             self.given.heading_for_goal.insert(robot);
@@ -174,7 +171,8 @@ impl Station<'_> {
         }
     }
 
-    /// Waits for the robots that are wanted, or for all that there are, and for where they are if that counts.
+    /// Waits for the selected robots, or for all, and for their positions if the assignment needs
+    /// them.
     fn gather(&mut self, endpoint: &Endpoint, wanted: &Members, until: Instant) -> Result<BTreeSet<u8>, StationError> {
         let mut first = None;
         loop {
@@ -209,7 +207,7 @@ impl Station<'_> {
         Ok(robots)
     }
 
-    /// Where robots are, east and north in a common unit from some place near them.
+    /// Positions of the robots relative to one of them, east and north in a common unit.
     fn positions(&self, robots: &BTreeSet<u8>) -> Vec<[f64; 2]> {
         let at: Vec<_> = robots.iter().filter_map(|robot| self.at.get(robot)).collect();
         let Some(&&[lon, lat]) = at.first() else {
@@ -225,7 +223,7 @@ impl Station<'_> {
     }
 }
 
-/// Numbers as people write them: 1 to 4, 7.
+/// Formats numbers as ranges: "1 to 4, 7".
 #[must_use]
 pub fn numbers(robots: &BTreeSet<u8>) -> String {
     let mut runs: Vec<[u8; 2]> = Vec::new();
@@ -243,10 +241,11 @@ pub fn numbers(robots: &BTreeSet<u8>) -> String {
     runs.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// Gives the swarm at `endpoint` these orders, again and again until every robot has said that it has them or `wait` is over.
+/// Sends the orders to the swarm at `endpoint` until every robot has confirmed them or `wait` is
+/// over.
 ///
 /// # Errors
-/// See [`StationError`]. Robots that do not answer are none: see [`Given`].
+/// [`StationError`]. Robots without a confirmation are not an error: see [`Given`].
 pub fn give(
     endpoint: &Endpoint,
     signing: Option<&mut Signing>,
@@ -271,7 +270,7 @@ pub fn give(
     let numbers: Vec<u8> = robots.iter().copied().collect();
     let frames = orders(&graph, &numbers, &order)?;
     station.given.robots = robots;
-    // Whoever was found at the last moment is told at least once.
+    // Robots found at the last moment receive their orders at least once.
     let until = until.max(Instant::now() + EVERY * 2);
     while Instant::now() < until {
         for chunk in frames.chunks(AT_ONCE) {

@@ -6,7 +6,7 @@ fn places(graph: &Graph) -> Vec<(i16, i16)> {
 }
 
 #[test]
-fn shapes_are_what_their_names_say() {
+fn shapes_have_their_expected_places() {
     let of = |shape: Shape, count| places(&shape.graph(count, 3).expect("room"));
     assert_eq!(of(Shape::Line, 5), [(0, 0), (0, 3), (0, -3), (0, 6), (0, -6)]);
     assert_eq!(of(Shape::Column, 3), [(0, 0), (-3, 0), (-6, 0)]);
@@ -16,9 +16,10 @@ fn shapes_are_what_their_names_say() {
     assert_eq!(of(Shape::Circle, 1), [(0, 0)]);
 }
 
-/// Every robot of every shape hears all parts of a template with its own place, and neighbours at the places that they have.
+/// Every robot of every shape receives all parts of a template, with its own place and its
+/// neighbours' places.
 #[test]
-fn every_shape_of_every_number_is_told_consistently() {
+fn orders_of_every_shape_and_size_are_consistent() {
     for (name, shape) in Shape::NAMES {
         for count in [1, 2, 3, 6, 25, 254] {
             let graph = shape.graph(count, 3).expect(name);
@@ -65,16 +66,16 @@ fn a_heading_turns_the_shape() {
 }
 
 #[test]
-fn a_file_is_read_and_what_is_wrong_with_it_is_said() {
+fn a_file_parses_and_its_errors_are_reported() {
     let text = "places = [[0, 0], [-3, 3], [-3, -3]]\nedges = [[1, 2], [3, 1], [1, 3]]";
     let graph = Graph::parse(text).expect("a formation");
     assert_eq!((graph.robots(), graph.edges.as_slice()), (3, &[(0, 1), (0, 2)][..]));
     for (text, piece) in [
         ("places = [[1, 0]]\nedges = []", "first place is not [0, 0]"),
         ("places = []\nedges = []", "first place"),
-        ("places = [[0, 0], [3, 0]]\nedges = [[1, 3]]", "[1, 3] joins no two robots"),
+        ("places = [[0, 0], [3, 0]]\nedges = [[1, 3]]", "[1, 3] does not connect two robots"),
         ("places = [[0, 0], [3, 0]]\nedges = [[0, 1]]", "numbers from 1 to 2"),
-        ("places = [[0, 0], [3, 0]]\nedges = []", "robot 1 to robot 2"),
+        ("places = [[0, 0], [3, 0]]\nedges = []", "robot 2 is not connected to robot 1"),
         ("places = [[0, 0], [0, 0]]\nedges = [[1, 2]]", "places 1 and 2 would share a cell"),
         ("places = [[0, 0], [40000, 0]]\nedges = [[1, 2]]", "robot 2 would be off any map"),
         ("places = [[0, 0]]\nedge = []", "unknown field `edge`"),
@@ -91,14 +92,15 @@ fn a_file_is_read_and_what_is_wrong_with_it_is_said() {
     assert_eq!(Shape::Line.graph(255, 3), Err(GraphError::Count(255)));
     assert_eq!(Shape::Line.graph(0, 3), Err(GraphError::Count(0)));
     assert_eq!(Shape::Column.graph(254, 100), Err(GraphError::Far(101)));
-    // 45 degrees bring cells that touch together.
+    // A turn by 45 degrees moves touching cells together.
     let graph = Shape::Grid.graph(9, 1).expect("room");
     assert!(matches!(graph.turned(Dir::NorthEast), Err(GraphError::Shared(..))));
 }
 
-/// Robots in a column that form a line by numbers go across each other; by what is near they do not.
+/// Robots in a column that form a line in order of numbers cross each other; with nearest places
+/// they do not.
 #[test]
-fn near_places_are_shorter_and_nobody_crosses_anybody() {
+fn nearest_places_have_shorter_paths_without_crossings() {
     use staya_controller::rand::Rng;
     let squared = |[x, y]: [f64; 2]| x * x + y * y;
     for (name, shape) in Shape::NAMES {
@@ -114,14 +116,15 @@ fn near_places_are_shorter_and_nobody_crosses_anybody() {
             let to = |graph: &Graph, robot: usize| [graph.places[robot].x, graph.places[robot].y].map(f64::from);
             for a in 0..count {
                 for b in 0..a {
-                    // Who goes straight and evenly meets nobody: the two ways do not turn the pair around.
+                    // Robots on straight paths at constant speeds do not meet if the paths keep the
+                    // direction between them.
                     let (pa, pb) = (to(&near, a), to(&near, b));
                     let off = [at[a][0] - at[b][0], at[a][1] - at[b][1]];
                     let dot = off[0] * (pa[0] - pb[0]) + off[1] * (pa[1] - pb[1]);
                     assert!(dot > -0.1, "{name} {count}: {a} and {b} by {dot}");
                 }
             }
-            // Everybody but the first has somebody to follow, and the orders fit.
+            // Every robot but the first follows another one, and the orders fit.
             for robot in 1..count as u16 {
                 assert!(near.edges.iter().any(|&(_, larger)| larger == robot), "{name} {count}: {robot}");
             }
@@ -153,21 +156,21 @@ fn near_places_are_shorter_and_nobody_crosses_anybody() {
 }
 
 #[test]
-fn where_and_how_large_the_swarm_is_makes_no_difference_to_who_is_near() {
+fn offset_and_scale_of_positions_do_not_change_the_assignment() {
     let graph = Shape::Wedge.graph(5, 3).expect("room");
     let at = [[0.0, 9.0], [-7.0, 2.0], [4.0, 1.0], [1.0, -5.0], [3.0, 8.0]];
     let near = graph.nearest(&at);
     assert_ne!(near.places, graph.places);
     let moved = at.map(|[x, y]| [7e8 + 90.0 * x, -3e8 + 90.0 * y]);
     assert_eq!(graph.nearest(&moved), near);
-    // All at one place: any will do.
+    // With all robots at one place any assignment is valid.
     assert_eq!(graph.nearest(&[[1.0, 2.0]; 5]).robots(), 5);
 }
 
-/// From each shape to each other one: the way of all, in cells beside the formation's own, and pairs that come within a cell of
-/// each other if all go straight and arrive at once. `--nocapture` prints the table of `docs/bridge.md`.
+/// For each pair of shapes: total path length in cells, and pairs of robots that come within a cell
+/// of each other on straight paths. `--nocapture` prints the table of `docs/bridge.md`.
 #[test]
-fn from_shape_to_shape_near_places_are_shorter_and_nobody_comes_near_anybody() {
+fn changes_between_shapes_have_shorter_paths_with_nearest_places() {
     for count in [6, 12, 40] {
         let (mut ways, mut meetings) = ([0.0, 0.0], [0, 0]);
         for (from_name, from) in Shape::NAMES {

@@ -11,7 +11,7 @@ fn origin(latitude_deg: f64, longitude_deg: f64, altitude_m: f64) -> Origin {
 
 /// East and north by PROJ 9 (`+proj=cart` and `+proj=topocentric` on WGS 84).
 #[test]
-fn tangent_plane_is_that_of_proj() {
+fn the_tangent_plane_equals_that_of_proj() {
     let moscow = (55.75, 37.62, 156.0);
     let canberra = (-35.363_262, 149.165_237, 584.0);
     let date_line = (0.0, 180.0, 0.0);
@@ -31,13 +31,13 @@ fn tangent_plane_is_that_of_proj() {
         let found = origin.to_enu_m(&place(latitude, longitude, from.2 + 7.5)).unwrap();
         assert!((found[0] - east).abs() < 1e-4, "{found:?} {east}");
         assert!((found[1] - north).abs() < 1e-4, "{found:?} {north}");
-        assert!((found[2] - 7.5).abs() < 1e-9, "level flight keeps its height");
+        assert!((found[2] - 7.5).abs() < 1e-9, "level flight has a constant height");
     }
 }
 
 proptest! {
     #[test]
-    fn there_and_back_is_less_than_a_millimetre_off(
+    fn round_trips_are_exact_to_a_millimetre(
         latitude in -89.9..89.9, longitude in -180.0..180.0, altitude in -400.0..9000.0,
         x in -100000.0..100000.0, y in -100000.0..100000.0, z in -500.0..5000.0,
     ) {
@@ -49,7 +49,7 @@ proptest! {
     }
 
     #[test]
-    fn numbers_of_messages_are_within_their_step(latitude in -90.0..90.0, longitude in -180.0..180.0) {
+    fn message_integers_round_to_one_step(latitude in -90.0..90.0, longitude in -180.0..180.0) {
         let [lat, lon, alt] = place(latitude, longitude, 12.3456).to_e7();
         let back = Global::from_e7(lat, lon, alt);
         prop_assert!((back.latitude_deg - latitude).abs() <= 0.51e-7);
@@ -59,7 +59,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_no_place_is_refused() {
+fn invalid_positions_are_refused() {
     for [latitude, longitude, altitude] in
         [[90.1, 0.0, 0.0], [0.0, -180.1, 0.0], [f64::NAN, 0.0, 0.0], [0.0, f64::INFINITY, 0.0], [0.0, 0.0, 1e6]]
     {
@@ -68,14 +68,14 @@ fn what_is_no_place_is_refused() {
         assert_eq!(origin(0.0, 0.0, 0.0).to_enu_m(&place), None);
     }
     let here = origin(55.0, 37.0, 0.0);
-    assert_eq!(here.to_enu_m(&place(-55.0, -143.0, 0.0)), None, "the other side");
+    assert_eq!(here.to_enu_m(&place(-55.0, -143.0, 0.0)), None, "other side of the Earth");
     assert_eq!(here.to_global([f64::NAN, 0.0, 0.0]), None);
     assert_eq!(here.to_global([0.0, FAR_M * 1.001, 0.0]), None);
     assert!(here.to_global([FAR_M, -FAR_M, 0.0]).is_some());
 }
 
 #[test]
-fn north_east_down_is_east_north_up_turned() {
+fn ned_and_enu_are_inverse() {
     assert_eq!(ned([1.0, 2.0, 3.0]), [2.0, 1.0, -3.0]);
     assert_eq!(enu(ned([1.0, 2.0, 3.0])), [1.0, 2.0, 3.0]);
 }

@@ -32,7 +32,7 @@ fn pair(listening: &str, calling: &str) -> (Lines, Lines) {
     (listening, open(&format!("{calling}:127.0.0.1:{port}")))
 }
 
-/// Sends until it arrives: a connection takes its time, a datagram may be lost.
+/// Sends until the frame arrives: a connection takes time, and a datagram may be lost.
 fn arrives(from: &Lines, to: &Lines, x: i16) -> Received {
     let began = Instant::now();
     while began.elapsed() < PATIENCE {
@@ -54,7 +54,7 @@ fn both_ways(listening: &Lines, calling: &Lines) {
     listening.send(0, &framed(7));
     let answer = calling.receive(PATIENCE).expect("an answer");
     assert_eq!(goal(&answer), 7);
-    // What was written is counted a moment after it can be read.
+    // A frame is counted shortly after it can be read.
     let bytes = 2 * framed(6).len() as u64;
     let began = Instant::now();
     while listening.counts(0).bytes_out < bytes && began.elapsed() < PATIENCE {
@@ -66,19 +66,19 @@ fn both_ways(listening: &Lines, calling: &Lines) {
 }
 
 #[test]
-fn datagrams_go_both_ways() {
+fn datagrams_pass_in_both_directions() {
     let (listening, calling) = pair("udpin", "udpout");
     both_ways(&listening, &calling);
 }
 
 #[test]
-fn connections_carry_both_ways() {
+fn connections_pass_frames_in_both_directions() {
     let (listening, calling) = pair("tcpin", "tcpout");
     both_ways(&listening, &calling);
 }
 
 #[test]
-fn connection_that_ended_is_made_anew() {
+fn a_closed_connection_is_opened_again() {
     let (listening, calling) = pair("tcpin", "tcpout");
     arrives(&calling, &listening, 1);
     let address = listening.local(0).expect("an address");
@@ -88,7 +88,7 @@ fn connection_that_ended_is_made_anew() {
 }
 
 #[test]
-fn frames_come_out_of_pieces_and_junk() {
+fn frames_are_found_in_pieces_and_junk() {
     let listening = open("tcpin:127.0.0.1:0");
     let address = listening.local(0).expect("an address");
     let mut socket = TcpStream::connect(address).expect("a connection");
@@ -107,7 +107,7 @@ fn frames_come_out_of_pieces_and_junk() {
 }
 
 #[test]
-fn everybody_who_was_heard_is_told() {
+fn every_known_peer_receives_frames() {
     let listening = open("udpin:127.0.0.1:0");
     let port = listening.local(0).expect("an address").port();
     let callers: Vec<_> = (0..3).map(|_| open(&format!("udpout:127.0.0.1:{port}"))).collect();
@@ -125,9 +125,10 @@ fn datagrams(socket: &UdpSocket) -> usize {
     std::iter::from_fn(|| socket.recv(&mut buffer).ok()).count()
 }
 
-/// The attack: one byte, or one frame that is not believed, from many ports (or addresses that are not the sender's) makes each a receiver of everything.
+/// The attack: one byte, or one unauthenticated frame, from many (possibly spoofed) ports would
+/// make each of them a receiver of all frames.
 #[test]
-fn nothing_is_sent_to_who_was_not_believed() {
+fn unknown_senders_receive_nothing() {
     let listening = open("udpin:127.0.0.1:0");
     let address = listening.local(0).expect("an address");
     let strangers: Vec<_> = (0..64).map(|_| UdpSocket::bind("127.0.0.1:0").expect("a port")).collect();
@@ -136,7 +137,7 @@ fn nothing_is_sent_to_who_was_not_believed() {
         stranger.send_to(b"x", address).expect("sent");
         stranger.send_to(&framed(1), address).expect("sent");
     }
-    // One more, who is.
+    // A peer that becomes known.
     let friend = open(&format!("udpout:{address}"));
     friend.send(0, &framed(77));
     let mut heard = 0;
@@ -155,18 +156,18 @@ fn nothing_is_sent_to_who_was_not_believed() {
     assert_eq!(strangers.iter().map(datagrams).sum::<usize>(), 0);
 }
 
-/// The attack: connections that stay, until there are no descriptors or threads left.
+/// The attack: idle connections use up all descriptors or threads.
 #[test]
-fn callers_that_say_nothing_make_room_and_the_port_stays() {
+fn silent_connections_are_closed_for_new_ones() {
     let listening = open("tcpin:127.0.0.1:0");
     let address = listening.local(0).expect("an address");
     let friend = open(&format!("tcpout:{address}"));
     arrives(&friend, &listening, 1);
     let idle: Vec<_> = (0..2 * CONNECTIONS).map(|_| TcpStream::connect(address).expect("a queue")).collect();
-    // A newcomer after all of them.
+    // A new connection after all others.
     let late = open(&format!("tcpout:{address}"));
     assert_eq!(goal(&arrives(&late, &listening, 2)), 2);
-    // The older ones are closed, and who was believed is still there.
+    // Older connections are closed; the known peer stays.
     let ended = |mut socket: &TcpStream| {
         let _ = socket.set_read_timeout(Some(Duration::from_millis(1)));
         matches!(socket.read(&mut [0; 1]), Ok(0))
@@ -178,7 +179,7 @@ fn callers_that_say_nothing_make_room_and_the_port_stays() {
 }
 
 #[test]
-fn absent_peer_stops_nobody() {
+fn an_absent_peer_does_not_block() {
     let unused = UdpSocket::bind("127.0.0.1:0").expect("a port");
     let address = unused.local_addr().expect("an address");
     drop(unused);
@@ -194,7 +195,7 @@ fn absent_peer_stops_nobody() {
 }
 
 #[test]
-fn peer_that_does_not_read_costs_frames_not_time() {
+fn a_peer_that_does_not_read_loses_frames_without_blocking() {
     let listening = open("tcpin:127.0.0.1:0");
     let address = listening.local(0).expect("an address");
     let mut socket = TcpStream::connect(address).expect("a connection");
@@ -204,13 +205,13 @@ fn peer_that_does_not_read_costs_frames_not_time() {
     for _ in 0..400_000 {
         listening.send(0, &framed(1));
     }
-    assert!(listening.counts(0).lost_out > 0, "some found no room");
+    assert!(listening.counts(0).lost_out > 0, "some frames were dropped");
     assert!(began.elapsed() < PATIENCE);
     drop(socket);
 }
 
 #[test]
-fn taken_port_is_an_error_that_names_it() {
+fn a_port_in_use_is_an_error_with_its_name() {
     let listening = open("udpin:127.0.0.1:0");
     let address = listening.local(0).expect("an address");
     let again = format!("udpin:{address}").parse().expect("a line");
@@ -219,7 +220,7 @@ fn taken_port_is_an_error_that_names_it() {
 }
 
 #[test]
-fn a_connection_that_is_refused_is_known_until_there_is_one() {
+fn a_refused_connection_is_reported_until_it_succeeds() {
     let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     drop(listener);

@@ -1,28 +1,29 @@
-//! Which rank has which part of the world: blocks of even load, by recursive bisection.
+//! Division of the world into blocks of equal load by recursive bisection.
 //!
-//! Source: M. J. Berger, S. H. Bokhari, A Partitioning Strategy for Nonuniform Problems on Multiprocessors (1987). Where the cuts are
-//! changes no result, only the work; so they are found from samples, and need not follow every robot.
+//! Source: M. J. Berger, S. H. Bokhari, A Partitioning Strategy for Nonuniform Problems on
+//! Multiprocessors (1987). The cuts influence the load but not the results, so samples of robots
+//! suffice.
 
 use serde::{Deserialize, Serialize};
 
-/// A robot that stands for some, with what they cost.
+/// A robot that represents several, with their load.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sample {
     pub(super) place_m: [f64; 2],
     pub(super) load: f64,
 }
 
-/// The world in blocks, one a rank.
+/// The division of the world into one block per rank.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Cut {
-    /// One block.
+    /// A single block.
     Rank(usize),
-    /// What lies below a place along an axis, and the rest.
+    /// A cut at a position along an axis, with the blocks below and above.
     At { axis: usize, place_m: f64, below: Box<Cut>, above: Box<Cut> },
 }
 
 impl Cut {
-    /// Cuts for so many ranks, each with about the same load.
+    /// Divides the world into `ranks` blocks of about equal load.
     pub(super) fn new(samples: &mut [Sample], ranks: usize) -> Self {
         Self::bisect(samples, 0, ranks.max(1))
     }
@@ -36,7 +37,7 @@ impl Cut {
             let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
             high - low
         };
-        // Rows of a map lie side by side in memory: if in doubt, blocks are of whole rows.
+        // Map rows are contiguous in memory: for equal extents, blocks consist of whole rows.
         let axis = usize::from(extent(0) <= extent(1));
         samples.sort_by(|a, b| a.place_m[axis].total_cmp(&b.place_m[axis]));
         let lower = ranks / 2;
@@ -61,7 +62,6 @@ impl Cut {
         }
     }
 
-    /// Whose a place is.
     pub(super) fn rank(&self, at_m: [f64; 2]) -> usize {
         match self {
             Self::Rank(rank) => *rank,
@@ -82,10 +82,10 @@ mod tests {
     use staya_controller::rand::Rng;
 
     #[test]
-    fn blocks_have_even_loads_for_any_number_of_ranks() {
+    fn blocks_have_equal_loads_for_any_number_of_ranks() {
         let mut draws = Rng::new(1);
         let mut unit = || f64::from(draws.below(1_000_000)) / 1e6;
-        // Denser towards one corner, and twice as dear in one half.
+        // Denser towards one corner, and twice the load in one half.
         let places = (0..20_000).map(|_| [unit() * unit() * 300.0, unit() * unit() * 200.0]);
         let samples: Vec<_> =
             places.map(|at| Sample { place_m: at, load: if at[0] < 50.0 { 2.0 } else { 1.0 } }).collect();
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn robots_in_one_place_and_no_robots_are_cut_too() {
+    fn coincident_robots_and_no_robots_can_be_cut() {
         let one = Sample { place_m: [3.0, 4.0], load: 1.0 };
         for samples in [vec![], vec![one], vec![one; 9]] {
             let cut = Cut::new(&mut samples.clone(), 4);

@@ -1,28 +1,30 @@
-//! What ranks need of what connects them, and what they say through it.
+//! Communication between ranks.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-/// Connects ranks: MPI, or channels between threads. All ranks call the same functions in the same order.
+/// Connects ranks by MPI, or by channels between threads. All ranks must call the same functions in
+/// the same order.
 pub trait Exchange {
-    /// The number of this rank, from 0.
+    /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
-    /// How many there are.
+    /// Number of ranks.
     fn ranks(&self) -> usize;
 
-    /// Tells everybody, and hears what everybody tells, by rank.
+    /// Sends `own` to all ranks. Returns the messages of all ranks, in order.
     ///
     /// # Errors
-    /// Somebody is not there any more.
+    /// A rank does not answer.
     fn gather(&mut self, own: Vec<u8>) -> Result<Vec<Vec<u8>>, Lost>;
 
-    /// Sends to some, at most one message each, and hears from others, in the order of `from`. Each of those sends to this one in its
-    /// own call. None of them is this rank.
+    /// Sends at most one message to each rank in `out`, and receives one from each rank in `from`,
+    /// in that order. Those ranks must send to this one in the same call. This rank is in neither
+    /// list.
     ///
     /// # Errors
-    /// Somebody is not there any more.
+    /// A rank does not answer.
     fn swap(&mut self, out: Vec<(usize, Vec<u8>)>, from: &[usize]) -> Result<Vec<Vec<u8>>, Lost>;
 }
 
@@ -30,95 +32,94 @@ pub trait Exchange {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("rank {rank} {why}")]
 pub struct Lost {
-    /// Which.
+    /// Its number.
     pub rank: usize,
-    /// What is known of it.
+    /// The reason, as far as known.
     pub why: String,
 }
 
-/// Why ranks do not go on.
+/// Why a run on ranks ends.
 #[derive(Debug, Error)]
 pub enum RankError {
     /// The robots cannot be placed.
     #[error(transparent)]
     Misplaced(#[from] staya_sim::world::Misplaced),
-    /// A checkpoint that this run cannot go on from.
+    /// The checkpoint does not fit this run.
     #[error(transparent)]
     Restore(#[from] staya_sim::engine::StateError),
-    /// There is not enough to share.
-    #[error("{ranks} ranks cannot share {robots} robots: start at most {robots}")]
+    /// There are more ranks than robots.
+    #[error("{ranks} ranks cannot share {robots} robots; start at most {robots} ranks")]
     TooMany {
-        /// Ranks.
+        /// Number of ranks.
         ranks: usize,
-        /// Robots.
+        /// Number of robots.
         robots: usize,
     },
-    /// Ranks know of no seam.
-    #[error("{ranks} ranks cannot share a torus (plane.torus_m): start one, or leave it out")]
+    /// Ranks do not support the wrap-around of a torus.
+    #[error("{ranks} ranks cannot share a torus; start one rank, or remove plane.torus_m")]
     Torus {
-        /// Ranks.
+        /// Number of ranks.
         ranks: usize,
     },
-    /// Ranks do not tell each other whom eyes see over their borders.
-    #[error("{ranks} ranks cannot share robots with eyes (plane.eyes): start one, or leave it out")]
+    /// Ranks do not exchange detections across their borders.
+    #[error("{ranks} ranks cannot share robots with sensors; start one rank, or remove plane.eyes")]
     Eyes {
-        /// Ranks.
+        /// Number of ranks.
         ranks: usize,
     },
-    /// Somebody is not there any more.
+    /// A rank does not answer.
     #[error(transparent)]
     Lost(#[from] Lost),
-    /// A message that cannot be read.
-    #[error("rank {rank} sent {what} that cannot be read ({error}): start the same program on all ranks")]
+    /// A message cannot be decoded.
+    #[error("rank {rank} sent {what} that cannot be decoded ({error}); start the same program on all ranks")]
     Garbled {
-        /// Who sent it.
+        /// Sender.
         rank: usize,
-        /// What it should have been.
+        /// Kind of message.
         what: &'static str,
-        /// What is wrong with it.
+        /// Cause.
         error: postcard::Error,
     },
-    /// A robot's state does not fit.
+    /// The state of a robot cannot be restored.
     #[error(
-        "robot {robot} came from rank {rank} in a state that does not fit ({error}): start the same program on all ranks"
+        "robot {robot} arrived from rank {rank} with an incompatible state ({error}); start the same program on all ranks"
     )]
     State {
-        /// Which.
+        /// Number of the robot.
         robot: u32,
-        /// Who sent it.
+        /// Sender.
         rank: usize,
-        /// What is wrong with it.
+        /// Cause.
         error: String,
     },
 }
 
-/// What a rank has sent, bytes, over the run.
+/// Bytes that a rank sent during the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize)]
 pub struct Traffic {
-    /// Ticks.
+    /// Number of ticks.
     pub ticks: u64,
-    /// To its neighbours: packets and bodies near them, and moves that they had to know of.
+    /// Bytes to neighbours: packets, bodies and moves near their borders.
     pub halo: u64,
-    /// Robots that went to other ranks, with all that they know.
+    /// Bytes of robots that moved to other ranks, with their whole state.
     pub moved: u64,
-    /// How many robots those were.
+    /// Number of these robots.
     pub moved_robots: u64,
-    /// To everybody: where its robots are, and sums.
+    /// Bytes to all ranks: regions and sums.
     pub told: u64,
-    /// To rank 0, for its records.
+    /// Bytes to rank 0 for its records.
     pub recorded: u64,
-    /// Rounds in which moves over borders were settled, beyond the first of each tick.
+    /// Rounds of moves across borders, beyond the first of each tick.
     pub rounds: u64,
-    /// How often the world was cut anew.
+    /// Number of new divisions of the world.
     pub cuts: u64,
 }
 
-/// The bytes of a message.
 pub(super) fn encode(message: &impl Serialize) -> Vec<u8> {
-    postcard::to_stdvec(message).expect("memory takes every message")
+    postcard::to_stdvec(message).expect("encoding to memory cannot fail")
 }
 
-/// A message of a rank.
+/// Decodes a message from a rank; `what` names it in errors.
 pub(super) fn decode<T: DeserializeOwned>(rank: usize, what: &'static str, bytes: &[u8]) -> Result<T, RankError> {
     postcard::from_bytes(bytes).map_err(|error| RankError::Garbled { rank, what, error })
 }

@@ -1,4 +1,4 @@
-//! What ranks ask of a world of which each has a part.
+//! Operations of a world of which each rank has a part.
 
 use super::exchange::{RankError, decode, encode};
 use super::region::Region;
@@ -11,33 +11,32 @@ use staya_sim::world::border::{Beside, DEPTH, Settled};
 use staya_sim::world::plane::{self, Clearance};
 use staya_sim::world::scouts::Scouts;
 
-/// What ranks tell each other while bodies move.
+/// Communication while bodies move.
 pub trait Talk {
-    /// The sum of everybody's numbers.
     fn sum(&mut self, own: u64) -> Result<u64, RankError>;
 
-    /// Tells each neighbour something, and hears what they tell, with their ranks.
+    /// Sends a message to each neighbour. Returns their messages with their ranks.
     fn swap(&mut self, message: &dyn Fn(&Region) -> Vec<u8>) -> Result<Vec<(usize, Vec<u8>)>, RankError>;
 }
 
-/// A world of which this rank has some bodies and others have the rest. What is no body is the same on all ranks.
+/// A world of which this rank has some bodies. Everything except bodies is identical on all ranks.
 pub trait Part: Ground {
-    /// Keeps the bodies of these robots alone, in this order.
     fn keep(&mut self, here: &[u32]);
 
-    /// A body for a robot that comes from another rank, behind those that are here, which the world's state puts in its place.
+    /// Adds a body for a robot from another rank behind the existing ones; restoring the world's
+    /// state moves it to its position.
     fn admit(&mut self, number: u32, id: RobotId);
 
-    /// A body goes to another rank; the last one takes its place.
+    /// Removes a body that moves to another rank; the last body takes its index.
     fn dismiss(&mut self, index: usize);
 
-    /// Whether bodies of two regions can be in the way of each other's moves.
+    /// Whether bodies of two regions can obstruct each other's moves.
     fn hinders(&self, one: &Region, other: &Region) -> bool;
 
-    /// What a neighbour must know of bodies near `region` before they move.
+    /// Data that a neighbour needs about bodies near `region` before they move.
     fn wishes(&self, tick: u32, region: &Region, commands: &[Command<f32>]) -> Vec<u8>;
 
-    /// As [`Ground::advance`], among those that neighbours told of.
+    /// As [`Ground::advance`], with the data of the neighbours.
     fn advance_beside(
         &mut self,
         tick: u32,
@@ -50,22 +49,21 @@ pub trait Part: Ground {
     /// Whether bodies of two regions can collide.
     fn touches(&self, one: &Region, other: &Region) -> bool;
 
-    /// What a neighbour must know of bodies near `region` to count collisions.
+    /// Data that a neighbour needs about bodies near `region` to count collisions.
     fn bodies(&self, tick: u32, region: &Region) -> Vec<u8>;
 
-    /// Collisions with bodies of others, after [`Ground::count_collisions`].
+    /// Counts collisions with bodies of other ranks, after [`Ground::count_collisions`].
     fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError>;
 
-    /// Replaces what nearness has been counted, and says what it was; nothing on the grid.
+    /// Replaces the clearance statistics. Returns the previous ones; nothing on a grid.
     fn replace_clearance(&mut self, clearance: Clearance) -> Clearance;
 
-    /// Whether a body is in a cell.
     fn is_taken(&self, cell: Cell) -> bool;
 
-    /// Where a body is for [`Part::keeping_of`], cells; `None`: nobody asks.
+    /// Position of a body for [`Part::keeping_of`], cells; `None` if there is no formation.
     fn place(&self, index: usize) -> Option<[f64; 2]>;
 
-    /// As [`Ground::keeping`], with the places of all robots.
+    /// As [`Ground::keeping`], with the positions of all robots.
     fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping>;
 }
 
@@ -185,7 +183,7 @@ impl Part for PlaneGround {
     }
 
     fn hinders(&self, _: &Region, _: &Region) -> bool {
-        false // bodies pass through each other
+        false // bodies do not obstruct moves
     }
 
     fn wishes(&self, _: u32, _: &Region, _: &[Command<f32>]) -> Vec<u8> {

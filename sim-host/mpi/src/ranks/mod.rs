@@ -1,12 +1,16 @@
-//! One world over ranks: processes, each with its robots, that together make the run that one process makes, to the bit.
+//! Runs one scenario on several ranks, with the bits of a run on one.
 //!
-//! Every rank has the scenario and an [`Engine`](super::Engine) with the robots in its block of the world. In each tick it decides for them, and exchanges
-//! with its neighbours what can be heard over a border (`radio/border.rs`), who stands near it and where he wants to go
-//! (`world/border.rs`), and who may have run into whom. All else that is of the whole is a sum. Fates of packets and the order
-//! of moves are functions of (seed, robot, tick), and a run's fingerprint is a sum over robots, so it does not matter who has whom;
-//! robots go, with all that they know, to where their packets are.
+//! Every rank has the scenario and an [`Engine`](super::Engine) with the robots in its block of the
+//! world. In each tick it decides for these robots. It exchanges with its neighbours the packets
+//! that cross a border (`radio/border.rs`), bodies near the border with their moves
+//! (`world/border.rs`), and possible collisions. Everything else about the whole run is a sum.
 //!
-//! [`Exchange`] is what connects ranks: MPI in the program `staya-mpi`, channels between threads ([`Threads`]) in tests.
+//! Packet losses and the order of moves are functions of (seed, robot, tick), and the trace hash is
+//! a sum over robots, so the assignment of robots to ranks does not matter. Robots move with their
+//! whole state to the rank of their position.
+//!
+//! [`Exchange`] connects ranks: MPI in the program `staya-mpi`, channels between threads
+//! ([`Threads`]) in tests.
 
 mod cut;
 mod exchange;

@@ -1,4 +1,4 @@
-//! What ranks say of themselves, and what the whole makes of it.
+//! Results of ranks, and their sum.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{Safety, Wait};
@@ -10,7 +10,7 @@ use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::{Motion, PacketCounts, RobotRow};
 use staya_sim::world::plane::Clearance;
 
-/// A rank after a tick.
+/// Results of a rank after a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sums {
     pub(super) arrived: u64,
@@ -19,16 +19,12 @@ pub(super) struct Sums {
     pub(super) packets: PacketCounts,
     pub(super) hash: u64,
     pub(super) gap_m: Option<f64>,
-    /// What its tick cost.
     pub(super) load: f64,
-    /// It asks all to stop.
     pub(super) stops: bool,
-    /// It asks all for a checkpoint.
     pub(super) saves: bool,
 }
 
 impl Sums {
-    /// Of all of them.
     pub(super) fn of(all: &[Self]) -> Self {
         all.iter().fold(Self::default(), |sum, one| Self {
             arrived: sum.arrived + one.arrived,
@@ -44,14 +40,15 @@ impl Sums {
     }
 }
 
-/// A rank at the end.
+/// Results of a rank at the end.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Part {
     collisions: u64,
     packets: PacketCounts,
     throttled: u64,
     waits: Vec<(u8, u64, u64, u64, u32)>,
-    /// Gaps to bodies, obstacles and intruders; overlaps, intrusions, overlaps with intruders, downwash.
+    /// Gaps to bodies, obstacles and intruders; overlaps, intrusions, overlaps with intruders,
+    /// downwash.
     clearance: Option<([f64; 3], [u64; 4])>,
     hash: u64,
     arrived: u64,
@@ -77,7 +74,7 @@ impl Part {
         }
     }
 
-    /// Adds a rank's part to what rank 0 knows of the whole.
+    /// Adds the results of a rank to the outcome on rank 0.
     pub(super) fn add_to(&self, outcome: &mut Outcome) {
         outcome.collisions += self.collisions;
         outcome.packets += self.packets;
@@ -109,7 +106,7 @@ impl Part {
     }
 }
 
-/// The outcome of no rank, for others to be added to.
+/// An outcome of zero robots, to which others are added.
 pub(super) fn nothing(has_clearance: bool) -> Outcome {
     Outcome {
         ticks: 0,
@@ -128,7 +125,7 @@ pub(super) fn nothing(has_clearance: bool) -> Outcome {
     }
 }
 
-/// A reason to wait by its place among all.
+/// Number of a reason to wait, its index in the list of names.
 fn number_of(wait: Wait) -> u8 {
     let at = Wait::NAMES.iter().position(|&(_, named)| named == wait);
     at.and_then(|at| u8::try_from(at).ok()).unwrap_or(u8::MAX)
@@ -138,7 +135,7 @@ fn reason(number: u8) -> Option<Wait> {
     Wait::NAMES.get(usize::from(number)).map(|&(_, wait)| wait)
 }
 
-/// A robot's line of the record, for another rank.
+/// A robot's line of the record, in a form that other ranks can decode.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Row {
     id: u32,
@@ -168,7 +165,7 @@ impl Row {
         self.id
     }
 
-    /// With how far it is from its place in a formation, which rank 0 knows.
+    /// Adds the formation error, which only rank 0 knows.
     pub(super) fn with_error(self, formation_error_cells: f32) -> RobotRow {
         let Self { id, cell, position_m, velocity_mps, mode, leader, target, target_m, wait, radius_m, has_cells } =
             self;

@@ -1,27 +1,25 @@
-//! Where a rank's robots are, so that others know what to tell it.
+//! The region of a rank's robots, by which others know which data it needs.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use staya_sim::world::border::CellBounds;
 
-/// A rectangle, metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Bounds {
     low_m: [f64; 2],
     high_m: [f64; 2],
 }
 
-/// Where everybody on a rank is who has a radio or a body. Whose part of the world it is plays no role: what is here is exact whoever
-/// strays.
+/// The actual positions of all radios and bodies on a rank, including robots outside of the rank's
+/// block.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Region {
-    /// Around robots; then a point for each of the others.
+    /// A rectangle around the robots, then a point for each other radio or body.
     parts: Vec<Bounds>,
-    /// The cells that bodies have.
     pub(super) cells: Option<CellBounds>,
 }
 
-/// Rounding may never hide somebody.
+/// A margin for rounding errors.
 const MARGIN: f64 = 1.0 + 1e-9;
 
 impl Bounds {
@@ -37,7 +35,7 @@ impl Bounds {
 }
 
 impl Region {
-    /// The region of robots in these places and cells, and of others.
+    /// The region of robots at these positions and cells, and of other radios and bodies.
     pub(super) fn new(
         robots: impl Iterator<Item = ([f64; 2], Cell)> + Clone,
         others_m: impl Iterator<Item = [f64; 2]>,
@@ -55,19 +53,19 @@ impl Region {
         }
     }
 
-    /// Whether somebody there may be within so many metres of a place.
+    /// Whether a member of the region may be within `reach_m` of a position.
     pub(super) fn is_near(&self, place_m: [f64; 2], reach_m: f64) -> bool {
         let place = Bounds::at(place_m);
         self.parts.iter().any(|part| part.squared_distance(&place) <= reach_m * reach_m * MARGIN)
     }
 
-    /// Whether somebody here may be within so many metres of somebody there; the same, whoever asks.
+    /// Whether members of both regions may be within `reach_m` of each other; symmetric.
     pub(super) fn is_beside(&self, other: &Self, reach_m: f64) -> bool {
         let pairs = self.parts.iter().flat_map(|one| other.parts.iter().map(move |two| one.squared_distance(two)));
         pairs.into_iter().any(|squared| squared <= reach_m * reach_m * MARGIN)
     }
 
-    /// Whether bodies here may be within so many cells of bodies there; the same, whoever asks.
+    /// Whether bodies of both regions may be within `reach` cells of each other; symmetric.
     pub(super) fn is_beside_in_cells(&self, other: &Self, reach: i16) -> bool {
         self.cells.zip(other.cells).is_some_and(|(one, two)| one.distance_to(&two) <= i32::from(reach))
     }

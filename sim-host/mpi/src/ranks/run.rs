@@ -1,4 +1,4 @@
-//! A rank's run: its ticks, and what it exchanges in them.
+//! The run of one rank: its ticks and communication.
 
 use super::cut::{Cut, Sample};
 use super::exchange::{Exchange, RankError, Traffic, decode, encode};
@@ -19,18 +19,19 @@ use staya_sim::record::{PacketCounts, RobotRow, TickRow};
 use staya_sim::scenario::{AttackKind, Intervention, Scenario};
 use std::time::Instant;
 
-/// How ranks share their work. No choice changes a result.
+/// How ranks share their work. No setting changes a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sharing {
-    /// Ticks after which robots that have left their rank's block go to whose block they are in. More: fewer bytes for them, more for
-    /// the packets around those that strayed.
+    /// Interval in ticks at which robots outside of their rank's block move to the right rank. A
+    /// longer interval saves bytes for these robots but costs bytes for packets around them.
     pub every_ticks: u32,
-    /// The world is cut anew when a rank has more than so many times the mean load.
+    /// The world is divided again when a rank's load exceeds this multiple of the mean.
     pub above: f64,
-    /// Rank 0 hears of each robot in each tick, for its records.
+    /// Whether rank 0 receives each robot in each tick, for its records.
     pub records: bool,
-    /// When `watch` gets the whole run, to be saved ([`Moment::run`]), which costs as much as sending all robots to rank 0; if ever, then
-    /// also when the run is told to stop.
+    /// Interval at which `watch` gets the whole run to save it ([`Moment::run`]), which costs as
+    /// much as sending all robots to rank 0. With an interval the run is also saved when it is
+    /// stopped.
     pub checkpoints: Option<Every>,
 }
 
@@ -40,24 +41,25 @@ impl Default for Sharing {
     }
 }
 
-/// What came of a run over ranks.
+/// Result of a run on ranks.
 #[derive(Clone, Debug)]
 pub struct Ended {
-    /// Of the whole, as one process has it; on other ranks than the first without arrival times and figures of formations.
+    /// Outcome of the whole run, as on one process. Other ranks than 0 lack arrival times and
+    /// formation statistics.
     pub outcome: Outcome,
-    /// What each rank has sent.
+    /// Traffic of each rank.
     pub traffic: Vec<Traffic>,
 }
 
-/// Places from which a world is cut at the start.
 const SAMPLES: usize = 1 << 16;
-/// A reception costs as much as so much of a step.
+/// Cost of a reception, as a fraction of a step.
 const RECEPTION: f64 = 0.1;
 
-/// Whether so many ranks can share a scenario.
+/// Whether `ranks` ranks can share a scenario.
 ///
 /// # Errors
-/// There are more ranks than robots.
+/// [`RankError`] if there are more ranks than robots, or the scenario has a feature without support
+/// for ranks.
 pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     let robots = scenario.robots.len();
     if ranks > 1 && scenario.torus_m().is_some() {
@@ -69,7 +71,7 @@ pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
 }
 
-/// Why a scenario gains little by more ranks, if it does; what comes of it is the same.
+/// Why more ranks speed up a scenario little, if so. The results are correct in any case.
 #[must_use]
 pub fn remark(scenario: &Scenario) -> Option<String> {
     let around = |axis: usize| {
@@ -80,17 +82,17 @@ pub fn remark(scenario: &Scenario) -> Option<String> {
     let (range_m, extent_m) = (scenario.radio.range_m, around(0).max(around(1)));
     (range_m >= extent_m).then(|| {
         format!(
-            "the radio reaches {range_m} m and the robots start within {extent_m:.0} m: every rank hears every packet, only the \
-             robots' own work is shared; radio.range_m is the field"
+            "the radio reaches {range_m} m and the robots start within {extent_m:.0} m, so every rank receives every packet and only the \
+            robots' own work is shared; reduce radio.range_m for more speed"
         )
     })
 }
 
-/// As [`simulate`](staya_sim::engine::simulate), by all ranks together; `watch` is called on rank 0, and when it breaks, one more tick is
-/// done, since the others are at it already.
+/// As [`simulate`](staya_sim::engine::simulate), on all ranks together. `watch` is called on rank
+/// 0. When it breaks, one more tick is done, because other ranks have already started it.
 ///
 /// # Errors
-/// Robots that cannot be placed, more ranks than robots, a rank that is gone.
+/// Robots that cannot be placed, more ranks than robots, or a rank that does not answer.
 pub fn simulate_on(
     scenario: &Scenario,
     exchange: &mut dyn Exchange,
@@ -100,10 +102,11 @@ pub fn simulate_on(
     go(scenario, None, exchange, sharing, watch)
 }
 
-/// The same from a checkpoint's state, of a run by one process or on any number of ranks. `watch` sees the ticks after it.
+/// Continues from the state in a checkpoint, written by one process or any number of ranks. `watch`
+/// sees only later ticks.
 ///
 /// # Errors
-/// See [`simulate_on`]; the state is of another scenario or program.
+/// As [`simulate_on`]; or the state belongs to another scenario or program.
 pub fn simulate_on_from(
     scenario: &Scenario,
     state: &[u8],
@@ -131,22 +134,20 @@ fn go(
     }
 }
 
-/// One rank.
 pub(super) struct Rank<'a, W, G: Guidance<f32>, A> {
     pub(super) scenario: &'a Scenario,
     pub(super) sharing: &'a Sharing,
     pub(super) engine: Engine<W, G, A>,
     pub(super) cut: Cut,
     pub(super) wire: Wire<'a>,
-    /// Ticks since the world was cut.
+    /// Ticks since the last division of the world.
     pub(super) age: u32,
-    /// What each rank's last tick cost.
+    /// Cost of the last tick on each rank.
     pub(super) loads: Vec<f64>,
     stops: bool,
     saved_at: Instant,
 }
 
-/// Where robots start.
 fn starts(scenario: &Scenario) -> impl Iterator<Item = [f64; 2]> + '_ {
     scenario.robots.iter().enumerate().map(|(index, robot)| match &scenario.plane {
         Some(plane) => {
@@ -201,7 +202,7 @@ where
         let keeping = self.keeping(false)?;
         let mut row = self.engine.row(keeping, PacketCounts::default());
         let mut sums = self.tell_sums(PacketCounts::default(), 0.0)?;
-        // What a checkpoint was made of has been seen.
+        // The moment of a checkpoint was already observed.
         let mut is_seen = state.is_some();
         loop {
             if !is_seen {
@@ -217,7 +218,7 @@ where
         }
     }
 
-    /// One tick: what [`Engine::step`] does, and what others must know of it.
+    /// One tick as in [`Engine::step`], with the communication between ranks.
     fn step(&mut self) -> Result<(TickRow, Sums), RankError> {
         self.agree_on_cells()?;
         let engine = &mut self.engine;
@@ -267,7 +268,7 @@ where
         Ok((self.engine.row(keeping, sums.packets), sums))
     }
 
-    /// Nobody may draw a wall where somebody stands, on whatever rank.
+    /// No rank may place a wall in a cell that is occupied on any rank.
     fn agree_on_cells(&mut self) -> Result<(), RankError> {
         let engine = &self.engine;
         let due = engine.interventions.iter().take_while(|(tick, _)| *tick <= engine.tick);
@@ -292,7 +293,7 @@ where
         Ok(())
     }
 
-    /// An attacker who takes a robot gets its keys from the rank that has it.
+    /// An attacker gets a captured robot's keys from that robot's rank.
     fn hand_out_keys(&mut self) -> Result<(), RankError> {
         let tick = self.engine.tick;
         let attacks = self.scenario.attacks.iter();
@@ -311,7 +312,7 @@ where
         Ok(())
     }
 
-    /// How well a formation is kept: rank 0 has all places, and sums them in the order of robots.
+    /// Formation quality: rank 0 has all positions and sums them in the order of robots.
     fn keeping(&mut self, counts: bool) -> Result<Option<Keeping>, RankError> {
         if self.scenario.formations.is_empty() {
             return Ok(None);
@@ -329,7 +330,6 @@ where
         Ok(self.engine.ground.keeping_of(&places, counts))
     }
 
-    /// Where robots are at the beginning of the next tick.
     pub(super) fn places(&self) -> impl Iterator<Item = ([f64; 2], Cell)> + Clone + '_ {
         let engine = &self.engine;
         (0..engine.here.len()).map(|index| {
@@ -339,7 +339,7 @@ where
         })
     }
 
-    /// Says where robots are, and hears where others are.
+    /// Sends the region of this rank, and receives the others'.
     pub(super) fn tell_region(&mut self) -> Result<(), RankError> {
         let engine = &self.engine;
         let attackers = engine.attackers.iter().map(|attacker| attacker.place_m());
@@ -353,7 +353,6 @@ where
         Ok(())
     }
 
-    /// Counts collisions over borders.
     fn collide(&mut self) -> Result<(), RankError> {
         let (ground, tick) = (&self.engine.ground, self.engine.tick);
         self.wire.choose(|one, other| ground.touches(one, other));
@@ -383,7 +382,6 @@ where
         Ok(Sums::of(&all))
     }
 
-    /// Whether rank 0 wants a checkpoint now.
     fn is_save_due(&mut self) -> bool {
         let is_due = self.wire.rank() == 0
             && match self.sharing.checkpoints {
@@ -399,7 +397,6 @@ where
         is_due
     }
 
-    /// Rank 0 shows the whole to whoever looks on.
     fn watch(&mut self, row: &TickRow, sums: &Sums, watch: &mut Watch<'_>) -> Result<(), RankError> {
         let rows = if self.sharing.records { self.rows()? } else { Vec::new() };
         let saved = if sums.saves { self.save()? } else { None };
@@ -418,7 +415,7 @@ where
         Ok(())
     }
 
-    /// Everybody's lines of the record by rising number, on rank 0.
+    /// The lines of all robots by number, on rank 0.
     fn rows(&mut self) -> Result<Vec<RobotRow>, RankError> {
         let own: Vec<Row> = self.engine.rows().map(Row::from).collect();
         let heard = self.wire.gather_first(encode(&own))?;
@@ -432,7 +429,6 @@ where
         Ok(rows.map(|(number, row)| row.with_error(ground.formation_error(number) as f32)).collect())
     }
 
-    /// Adds up what came of it.
     fn end(mut self) -> Result<Ended, RankError> {
         let engine = &self.engine;
         let times = engine.here.iter().copied().zip(engine.arrivals.times().iter().copied());
@@ -457,7 +453,7 @@ where
         };
         let mut all = Vec::new();
         for (rank, bytes) in self.wire.gather(encode(&(part, traffic)))?.iter().enumerate() {
-            let (part, traffic) = decode::<(Part, Traffic)>(rank, "its account", bytes)?;
+            let (part, traffic) = decode::<(Part, Traffic)>(rank, "its results", bytes)?;
             part.add_to(&mut outcome);
             all.push(traffic);
         }

@@ -1,5 +1,5 @@
-//! Checkpoints of a run over ranks: the same bytes as of a run by one process, so that each can go on from the other's, on any number
-//! of ranks.
+//! Checkpoints of a run on ranks. Their bytes equal those of a run on one process, so either can
+//! continue the other's, on any number of ranks.
 
 use super::exchange::{RankError, decode, encode};
 use super::ground::Part as Ground;
@@ -14,7 +14,6 @@ use staya_sim::radio::Counts;
 use staya_sim::record::PacketCounts;
 use staya_sim::world::plane::Clearance;
 
-/// A whole run as bytes.
 pub(super) struct Saved(Vec<u8>);
 
 impl Saves for Saved {
@@ -24,17 +23,16 @@ impl Saves for Saved {
     }
 }
 
-/// What a rank gives for a checkpoint.
 #[derive(Serialize, Deserialize)]
 struct Share {
     part: Part,
     radio: Counts,
     digest: u64,
-    /// Robots by their places in the scenario.
+    /// State of each robot, with its index in the scenario.
     robots: Vec<(u32, Vec<u8>)>,
 }
 
-/// The figures of a run that are sums over ranks.
+/// Statistics that are sums over ranks.
 struct Totals {
     collisions: u64,
     packets: PacketCounts,
@@ -56,7 +54,7 @@ impl Totals {
         }
     }
 
-    /// Puts these into an engine, and takes out those that it had.
+    /// Swaps these statistics with those of an engine.
     fn exchange<W: Ground, G: HostLaw, A: Safety<f32> + Send>(self, engine: &mut Engine<W, G, A>) -> Self {
         let waited = engine.waits.ticks();
         engine.waits.set_ticks(&self.waited);
@@ -77,7 +75,6 @@ where
     G: HostLaw + State,
     A: Safety<f32> + Send + State,
 {
-    /// The whole run, on rank 0.
     pub(super) fn save(&mut self) -> Result<Option<Saved>, RankError> {
         let engine = &self.engine;
         let robots = engine.here.iter().enumerate().map(|(index, &number)| {
@@ -94,7 +91,7 @@ where
         let (mut robots, mut digest, mut radio) = (Vec::new(), 0_u64, Counts::default());
         let mut whole = nothing(self.engine.ground.clearance().is_some());
         for (rank, bytes) in heard.iter().enumerate() {
-            let share = decode::<Share>(rank, "its share of a checkpoint", bytes)?;
+            let share = decode::<Share>(rank, "its part of a checkpoint", bytes)?;
             share.part.add_to(&mut whole);
             robots.extend(share.robots);
             digest = digest.wrapping_add(share.digest);
@@ -113,7 +110,7 @@ where
             radio,
             clearance: whole.clearance.unwrap_or(Clearance::FREE),
         };
-        // The head is that of the whole run.
+        // The head must contain the statistics of the whole run.
         let own = totals.exchange(&mut self.engine);
         let mut bytes = Vec::new();
         self.engine.save_head(&mut bytes);
@@ -125,7 +122,7 @@ where
         Ok(Some(Saved(bytes)))
     }
 
-    /// Goes on from a checkpoint: each rank takes the robots that it has, rank 0 all sums.
+    /// Restores a checkpoint: each rank takes its own robots, rank 0 the statistics.
     pub(super) fn restore(&mut self, bytes: &[u8]) -> Result<(), RankError> {
         let heard = self.engine.ground.heard().count();
         let others = [self.scenario.attacks.len(), heard, usize::from(self.scenario.keeping.is_some())];
@@ -133,7 +130,7 @@ where
         if self.wire.rank() > 0 {
             Totals::none().exchange(&mut self.engine);
         }
-        // Whoever cannot read it says so to all, that nobody waits.
+        // A rank that cannot restore reports it to all, so that none waits.
         let own = restored.as_ref().ok().map(|_| self.engine.digest());
         let mut digest = Some(0_u64);
         for (rank, bytes) in self.wire.gather(encode(&own))?.iter().enumerate() {

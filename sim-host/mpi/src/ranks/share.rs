@@ -1,4 +1,5 @@
-//! Which rank has whom: robots go to where their packets are, and blocks follow the load.
+//! Assignment of robots to ranks: robots move to the rank of their position, and blocks follow the
+//! load.
 
 use super::cut::{Cut, Sample};
 use super::exchange::{RankError, decode, encode};
@@ -9,9 +10,10 @@ use staya_sim::engine::hash::Chain;
 use staya_sim::engine::{HostLaw, State, StateError, Status};
 use std::collections::{BTreeMap, HashMap};
 
-/// Places that a rank gives when it is cut anew.
+/// Positions per rank for a new division of the world.
 const SAMPLES_A_RANK: usize = 512;
-/// Times of [`Sharing::every_ticks`](super::Sharing::every_ticks) between two cuts at least.
+/// Smallest interval of divisions, in units of
+/// [`Sharing::every_ticks`](super::Sharing::every_ticks).
 const REST: u32 = 8;
 
 impl<W, G, A> Rank<'_, W, G, A>
@@ -20,7 +22,8 @@ where
     G: HostLaw + State,
     A: Safety<f32> + Send + State,
 {
-    /// Lets robots go to the rank whose block they are in; cuts the world anew when the load has shifted.
+    /// Moves robots to the rank of their block, and divides the world again if the load has
+    /// shifted.
     pub(super) fn share(&mut self) -> Result<(), RankError> {
         self.age += 1;
         if self.wire.exchange.ranks() == 1 || !self.engine.tick.is_multiple_of(self.sharing.every_ticks.max(1)) {
@@ -51,7 +54,7 @@ where
         Ok(())
     }
 
-    /// Packs those who are in others' blocks, and takes in who is in this one.
+    /// Sends robots that are in other blocks, and receives those in this one.
     fn send_robots(&mut self) -> Result<(), RankError> {
         let own = self.wire.rank();
         let mut leaving = BTreeMap::<usize, Vec<u32>>::new();
@@ -65,7 +68,7 @@ where
         let all = self.wire.gather(encode(&to))?;
         let mut from = Vec::new();
         for (rank, bytes) in all.iter().enumerate() {
-            if decode::<Vec<usize>>(rank, "whom it sends robots", bytes)?.contains(&own) {
+            if decode::<Vec<usize>>(rank, "its list of receivers", bytes)?.contains(&own) {
                 from.push(rank);
             }
         }
@@ -81,7 +84,7 @@ where
                 let mut bytes = Vec::new();
                 self.engine.pack(index, &mut bytes);
                 self.dismiss(index);
-                // The last one has taken its place.
+                // The last robot has taken its index.
                 if let Some(moved) = self.engine.here.get(index) {
                     places.insert(*moved, index);
                 }
@@ -102,7 +105,7 @@ where
         Ok(())
     }
 
-    /// A robot comes, behind those that are here; its state is to be put back.
+    /// Adds a robot behind the existing ones; its state must be restored.
     fn admit(&mut self, number: u32) -> usize {
         let engine = &mut self.engine;
         let (index, robot) = (engine.here.len(), engine.robots[number as usize]);
@@ -120,7 +123,7 @@ where
         index
     }
 
-    /// A robot has gone; the last one takes its place.
+    /// Removes a robot; the last one takes its index.
     fn dismiss(&mut self, index: usize) {
         let engine = &mut self.engine;
         let robots = engine.here.len();

@@ -7,12 +7,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 
-/// A run by so many ranks, each a thread. What each rank ended with.
+/// Runs a scenario on ranks that are threads. Returns the result of each rank.
 fn on_ranks(scenario: &Scenario, ranks: usize, sharing: &Sharing) -> Vec<Result<Ended, RankError>> {
     go_on(scenario, ranks, sharing, None, &Mutex::default())
 }
 
-/// The same from a checkpoint's state; leaves the checkpoints that it makes in `saved`.
+/// Runs from the state of a checkpoint; appends new checkpoints to `saved`.
 fn go_on(
     scenario: &Scenario,
     ranks: usize,
@@ -28,7 +28,7 @@ fn go_on(
                     let mut watch = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
                         if let Some(run) = moment.run {
                             let mut bytes = Vec::new();
-                            run.save(&mut bytes).expect("all robots are somewhere");
+                            run.save(&mut bytes).expect("every robot is on some rank");
                             saved.lock().expect("no thread panicked").push(bytes);
                         }
                         ControlFlow::Continue(())
@@ -50,7 +50,6 @@ fn load(name: &str, ticks: u32) -> Scenario {
     Scenario::load(&path, &Overrides { seed: None, ticks: Some(ticks) }).expect("a scenario")
 }
 
-/// All figures of a run over ranks are those of one process.
 fn compare(name: &str, scenario: &Scenario, ranks: &[usize]) {
     let alone = simulate(scenario, |_, _| ControlFlow::Continue(())).expect("room");
     for &ranks in ranks.iter().filter(|&&ranks| ranks <= scenario.robots.len()) {
@@ -103,7 +102,7 @@ fn parse(text: &str) -> Scenario {
     Scenario::parse(text, Path::new("here.toml"), &Overrides::default()).expect("a scenario")
 }
 
-/// A crowd on the grid with every fault that a radio has, computers that go down, and somebody who takes hold of it.
+/// A crowd on the grid with all radio faults, robots that go down, and interventions.
 const GRID: &str = "name = 'grid'\nseed = 3\nticks = 60\n[terrain.natural]\nwidth = 40\nheight = 30\nobstacles = 60\n\
     [robots.scattered]\ncount = 260\ntravel = 25\n[radio]\nrange_m = 7\nloss = 0.1\ndelay_ms = 400\njitter_ms = 1500\n\
     duplicate = 0.1\nreorder = 0.1\nreorder_ms = 900\nbit_error_rate = 0.0005\nbandwidth_bytes_per_s = 90\n\
@@ -116,7 +115,7 @@ const GRID: &str = "name = 'grid'\nseed = 3\nticks = 60\n[terrain.natural]\nwidt
     [[intervention]]\nat_s = 20\ndo = { kind = 'radio', loss = 0.4, range_m = 9 }\n\
     [[intervention]]\nat_s = 25\ndo = { kind = 'goal', place_m = [20, 20, 0] }\n";
 
-/// Discs that cross each other's ways, likewise.
+/// Crossing discs with radio faults, an intruder and interventions.
 const PLANE: &str = "name = 'plane'\nseed = 5\nticks = 80\ntick_s = 0.1\n[radio]\nrange_m = 3\nloss = 0.1\ndelay_ms = 120\n\
     jitter_ms = 150\nduplicate = 0.1\nreorder = 0.1\nbit_error_rate = 0.0005\nbandwidth_bytes_per_s = 500\n\
     [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[plane.robots.circle]\ncount = 40\nradius_m = 5\nnoise_m = 0.1\n\
@@ -125,19 +124,19 @@ const PLANE: &str = "name = 'plane'\nseed = 5\nticks = 80\ntick_s = 0.1\n[radio]
     [[intervention]]\nat_s = 1\ndo = { kind = 'solid', solid = { kind = 'circle', center_m = [1, 1], radius_m = 0.5 } }\n\
     [[intervention]]\nat_s = 2\ndo = { kind = 'goal', robot = 9, place_m = [2, 2, 0] }\n";
 
-/// Land that changes under the crowd, of which its robots have an old map.
+/// A changing map of which the robots have an outdated copy.
 const CHANGES: &str = "[scouting]\nradius = 9\nunknown = 0.2\nwrong = 0.2\npatch_cells = 3\n[[terrain.change]]\nat_s = 3\nevery_s = 9\n\
     for_s = 5\nclass = 0\nrectangle = { x = 12, y = 5, width = 6, height = 20 }\n\
     [[terrain.change]]\nevery_s = 2\ndrift = { share = 0.05, step = 2 }\n";
 
-/// The same of discs.
+/// A changing map for discs.
 const PLANE_CHANGES: &str = "name = 'plane-on-land'\nseed = 5\nticks = 120\ntick_s = 0.1\n[radio]\nrange_m = 4\n\
     [terrain]\nuniform = { width = 20, height = 12, classes = 2 }\n[[terrain.change]]\nat_s = 2\nfor_s = 4\nclass = 0\n\
     rectangle = { x = 7, y = 0, width = 5, height = 11 }\n[scouting]\nunknown = 0.3\nwrong = 0.2\n\
     [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = 'route'\n[robots.scattered]\ncount = 30\n";
 
 #[test]
-fn every_fault_of_a_radio_and_every_intervention_is_the_same_over_ranks() {
+fn radio_faults_and_interventions_do_not_depend_on_ranks() {
     let changing = format!("{GRID}{CHANGES}");
     for text in [GRID, PLANE, &changing, PLANE_CHANGES] {
         compare(text.lines().next().unwrap_or_default(), &parse(text), &[2, 5]);
@@ -145,7 +144,7 @@ fn every_fault_of_a_radio_and_every_intervention_is_the_same_over_ranks() {
 }
 
 #[test]
-fn robots_go_where_their_packets_are_and_blocks_follow_the_load() {
+fn robots_move_to_the_rank_of_their_position_and_blocks_follow_the_load() {
     let scenario = parse(GRID);
     let often = Sharing { every_ticks: 2, above: 1.0, records: false, ..Sharing::default() };
     let seldom = Sharing { every_ticks: 1000, above: 1e9, records: false, ..Sharing::default() };
@@ -157,19 +156,19 @@ fn robots_go_where_their_packets_are_and_blocks_follow_the_load() {
     let sum = |traffic: &[Traffic], of: fn(&Traffic) -> u64| traffic.iter().map(of).sum::<u64>();
     assert!(sum(&often.1, |t| t.moved_robots) > 50 && sum(&often.1, |t| t.cuts) > 4);
     assert_eq!(sum(&seldom.1, |t| t.moved_robots), 0);
-    assert!(sum(&often.1, |t| t.halo) < sum(&seldom.1, |t| t.halo), "who strays is heard over more borders");
-    assert_eq!(sum(&often.1, |t| t.recorded), sum(&seldom.1, |t| t.recorded), "arrival times alone");
+    assert!(sum(&often.1, |t| t.halo) < sum(&seldom.1, |t| t.halo), "robots outside their block cost border traffic");
+    assert_eq!(sum(&often.1, |t| t.recorded), sum(&seldom.1, |t| t.recorded), "only arrival times are recorded");
 }
 
 #[test]
-fn more_ranks_than_robots_and_a_rank_that_is_gone_are_told() {
+fn too_many_ranks_and_a_missing_rank_are_errors() {
     let scenario = load("head-on.toml", 20);
     let robots = scenario.robots.len();
     for ended in on_ranks(&scenario, robots + 1, &Sharing::default()) {
         let error = ended.expect_err("too many");
         assert_eq!(
             error.to_string(),
-            format!("{} ranks cannot share {robots} robots: start at most {robots}", robots + 1)
+            format!("{} ranks cannot share {robots} robots; start at most {robots} ranks", robots + 1)
         );
     }
     let mut ranks = Threads::connected(2);
@@ -181,7 +180,7 @@ fn more_ranks_than_robots_and_a_rank_that_is_gone_are_told() {
 }
 
 #[test]
-fn a_message_that_is_none_names_its_sender() {
+fn an_invalid_message_is_an_error_with_its_sender() {
     let scenario = load("head-on.toml", 20);
     let mut ranks = Threads::connected(2);
     let mut other = ranks.pop().expect("rank 1");
@@ -191,11 +190,11 @@ fn a_message_that_is_none_names_its_sender() {
         let mut watch = |_: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| ControlFlow::Continue(());
         simulate_on(&scenario, &mut first, &Sharing::default(), &mut watch).expect_err("garbage")
     });
-    assert!(error.to_string().starts_with("rank 1 sent a region that cannot be read"), "{error}");
+    assert!(error.to_string().starts_with("rank 1 sent a region that cannot be decoded"), "{error}");
 }
 
 #[test]
-fn a_checkpoint_goes_on_to_the_same_end_on_any_number_of_ranks_and_on_none() {
+fn a_checkpoint_continues_identically_on_any_number_of_ranks() {
     let scenarios = [
         parse(GRID),
         parse(PLANE),
@@ -213,7 +212,8 @@ fn a_checkpoint_goes_on_to_the_same_end_on_any_number_of_ranks_and_on_none() {
         let saved = saved.into_inner().expect("no thread panicked");
         assert_eq!(saved.len() as u32, alone.ticks / 25, "{}", scenario.name);
         for state in &saved[..2] {
-            let here = simulate_from(&scenario, state, &mut |_, _| ControlFlow::Continue(())).expect("it goes on");
+            let here = simulate_from(&scenario, state, &mut |_, _| ControlFlow::Continue(()))
+                .expect("the checkpoint is valid");
             assert_eq!(here, alone, "{} by one process", scenario.name);
             for ranks in [1, 4] {
                 let ended = go_on(&scenario, ranks, &Sharing::default(), Some(state), &Mutex::default());

@@ -1,9 +1,9 @@
-//! Ranks as threads of one process: for tests, and where there is no MPI.
+//! Ranks as threads of one process, for tests and for use without MPI.
 
 use super::exchange::{Exchange, Lost};
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// One of several threads, each with a channel to each other one.
+/// A rank with a channel to each other one.
 #[derive(Debug)]
 pub struct Threads {
     rank: usize,
@@ -12,7 +12,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// So many ranks, connected.
+    /// Creates connected ranks.
     #[must_use]
     pub fn connected(ranks: usize) -> Vec<Self> {
         let mut all: Vec<_> = (0..ranks).map(|rank| Self { rank, to: Vec::new(), from: Vec::new() }).collect();

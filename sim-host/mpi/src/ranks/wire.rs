@@ -1,14 +1,13 @@
-//! Whom a rank talks to, and how much.
+//! Communication of a rank with traffic counters.
 
 use super::exchange::{Exchange, RankError, Traffic, decode, encode};
 use super::ground::Talk;
 use super::region::Region;
 
-/// What connects a rank, and where the others are.
 pub(super) struct Wire<'a> {
     pub(super) exchange: &'a mut dyn Exchange,
     pub(super) regions: Vec<Region>,
-    /// Those whose robots can be near enough.
+    /// Ranks whose robots may be near enough.
     neighbors: Vec<usize>,
     pub(super) traffic: Traffic,
 }
@@ -27,14 +26,13 @@ impl<'a> Wire<'a> {
         Ok(self.exchange.gather(own)?)
     }
 
-    /// Who is beside this rank, by a relation that both see alike.
+    /// Selects the neighbours by a symmetric relation.
     pub(super) fn choose(&mut self, is_beside: impl Fn(&Region, &Region) -> bool) {
         let own = self.rank();
         let others = (0..self.regions.len()).filter(|&rank| rank != own);
         self.neighbors = others.filter(|&rank| is_beside(&self.regions[own], &self.regions[rank])).collect();
     }
 
-    /// Exchanges a message with each neighbour.
     pub(super) fn halo(&mut self, message: impl Fn(&Region) -> Vec<u8>) -> Result<Vec<(usize, Vec<u8>)>, RankError> {
         let out: Vec<_> = self.neighbors.iter().map(|&rank| (rank, message(&self.regions[rank]))).collect();
         self.traffic.halo += out.iter().map(|(_, bytes)| bytes.len() as u64).sum::<u64>();
@@ -42,7 +40,7 @@ impl<'a> Wire<'a> {
         Ok(self.neighbors.iter().copied().zip(heard).collect())
     }
 
-    /// Rank 0 hears what all have; the others hear nothing.
+    /// Sends to rank 0, which returns all messages; other ranks return none.
     pub(super) fn gather_first(&mut self, own: Vec<u8>) -> Result<Vec<Vec<u8>>, RankError> {
         if self.rank() > 0 {
             self.traffic.recorded += own.len() as u64;

@@ -1,4 +1,4 @@
-//! Hands esp-hal's script to the linker.
+//! Passes esp-hal's script to the linker.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

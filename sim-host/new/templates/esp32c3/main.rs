@@ -1,5 +1,5 @@
-//! The wiring of my-swarm's robot on an ESP32-C3: FILL IN the pins. A radio modem on UART1 (GPIO 4, 5), encoders on GPIO 6, 7 and 0, 1,
-//! two motors behind a DRV8833 on GPIO 2, 3, 10 and 18.
+//! Wiring of my-swarm's robot on an ESP32-C3: FILL IN the pins. A radio modem on UART1 (GPIO 4, 5),
+//! encoders on GPIO 6, 7 and 0, 1, two motors behind a DRV8833 on GPIO 2, 3, 10 and 18.
 #![no_std]
 #![no_main]
 
@@ -42,7 +42,7 @@ async fn wire(p: Peripherals) -> Option<()> {
             frequency: Rate::from_khz(20),
         })
         .ok()?;
-    // Channels keep it for good.
+    // The channels need a static clock.
     static CLOCK: StaticCell<Timer<'static, LowSpeed>> = StaticCell::new();
     let clock = &*CLOCK.init(clock);
     let motor = |mut channel: Channel<'static, LowSpeed>| {
@@ -71,7 +71,7 @@ async fn main(_spawner: Spawner) {
     esp_hal::system::software_reset()
 }
 
-#[panic_handler] // Lets go of the motors, and starts anew.
+#[panic_handler] // Releases the motors and restarts.
 fn panic(_: &core::panic::PanicInfo) -> ! {
     esp_hal::system::software_reset()
 }

@@ -1,4 +1,4 @@
-//! Hands cortex-m-rt's script to the linker, and the folder with memory.x, where there is one.
+//! Passes cortex-m-rt's script and the folder with memory.x to the linker.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

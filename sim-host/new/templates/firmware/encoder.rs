@@ -1,4 +1,4 @@
-//! Encoders on plain pins: this part has no timers that count them.
+//! Encoders on plain pins, since this part has no timers that count them.
 
 use core::cell::Cell;
 use core::convert::Infallible;
@@ -6,8 +6,8 @@ use embassy_futures::select::select;
 use embedded_hal::digital::InputPin;
 use embedded_hal_async::digital::Wait;
 
-/// Counts the edges of both channels of an encoder into `edges`, for good. An edge that comes while the processor is busy longer than
-/// until the next one is lost.
+/// Counts the edges of both channels of an encoder into `edges` and never returns. Edges are lost
+/// if the processor is busy until the next one.
 pub async fn count<P: InputPin + Wait>(mut a: P, mut b: P, edges: &Cell<u16>) -> Infallible {
     let mut was = phase(&mut a, &mut b);
     loop {
@@ -23,7 +23,7 @@ pub async fn count<P: InputPin + Wait>(mut a: P, mut b: P, edges: &Cell<u16>) ->
     }
 }
 
-/// Which quarter of a line it is in.
+/// Quarter of an encoder line, 0 to 3.
 fn phase<P: InputPin>(a: &mut P, b: &mut P) -> u8 {
     let (a, b) = (a.is_high().unwrap_or(false), b.is_high().unwrap_or(false));
     u8::from(a) << 1 | u8::from(a != b)

@@ -1,5 +1,5 @@
-//! The robot of my-swarm: two driven wheels with encoders and a radio modem on a serial line. The same on every part; the pins are in
-//! main.rs.
+//! The robot of my-swarm: two driven wheels with encoders, and a radio modem on a serial line. This
+//! file is common to all parts; the pins are in main.rs.
 
 use core::convert::Infallible;
 use embassy_futures::select::select;
@@ -17,45 +17,48 @@ use staya_controller::wire::Postcard;
 use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
 
-// FILL IN. How to measure each: controller/robot/README.md in Staya's repository.
+// FILL IN. controller/robot/README.md in Staya's repository describes how to measure each value.
 
-/// The robot's number, each its own, 1 or more.
+/// Number of the robot, unique, from 1.
 const NUMBER: RobotId = RobotId(1);
-/// Where it starts, east and north of the point that all share (millimetres), and which way it looks (radians from east, to the left).
+/// Start: position east and north of the shared origin (millimetres), and heading (radians
+/// counterclockwise from east).
 const START: (Position, f32) = (Position::from_mm([0, 0, 0]), 0.0);
-/// Where it goes.
+/// Goal.
 const GOAL: Position = Position::from_mm([2000, 1000, 0]);
-/// Between the wheels; a wheel's radius; the body's around the middle between the wheels: metres.
+/// Distance between the wheels, radius of a wheel, and radius of the body around the centre of the
+/// axle, metres.
 const TRACK_M: f32 = 0.12;
 const WHEEL_M: f32 = 0.03;
 const BODY_M: f32 = 0.09;
-/// Edges of an encoder in one turn of a wheel, both channels counted; which of the encoders count down when the robot goes ahead.
+/// Encoder edges per turn of a wheel over both channels, and which encoders count down when driving
+/// forward.
 const EDGES_PER_TURN: u16 = 1440;
 const COUNTS_DOWN: [bool; 2] = [false, true];
-/// Speed of a rim at full duty; the largest duty at which a wheel stands still; which motors turn the other way.
+/// Speed of a wheel's rim at full duty, largest duty at which a wheel does not turn, and which
+/// motors are inverted.
 const FULL_MPS: f32 = 0.6;
 const DEAD_DUTY: f32 = 0.1;
 const IS_INVERTED: [bool; 2] = [false, true];
-/// What the wheels are asked for at most.
+/// Limits of the commands to the wheels.
 const LIMITS: Limits<f32> = Limits { speed_mps: 0.5, acceleration_mps2: 1.0 };
-/// From one step to the next. `PERIOD` of a watchdog is to be longer.
+/// Time between two steps. The `PERIOD` of a watchdog must be longer.
 const TICK: Duration = Duration::from_millis(50);
 
-/// What main.rs has wired.
+/// Peripherals that main.rs has set up.
 pub struct Wiring<R, W, P, C, D> {
-    /// Another number at each start, by chance: so that others tell its packets from those before.
+    /// A random number at each start, by which other robots notice a restart.
     pub boot: u8,
-    /// The radio modem.
     pub radio: (R, W),
-    /// Left wheel ahead and back, right wheel ahead and back.
+    /// Left wheel forward and back, right wheel forward and back.
     pub motors: [P; 4],
-    /// How far the left and the right encoder have counted; it may wrap.
+    /// Counts of the left and the right encoder; they may wrap.
     pub counts: C,
-    /// Tells the watchdog that all is well.
+    /// Resets the watchdog.
     pub pet: D,
 }
 
-/// Runs the robot for good; returns only if a measure makes no sense.
+/// Runs the robot and never returns, except for invalid constants.
 pub async fn run<R, W, P, C, D>(wiring: Wiring<R, W, P, C, D>) -> Option<Infallible>
 where
     R: Read,
@@ -74,7 +77,7 @@ where
         (HBridge::new(left_ahead, left_back), motor(IS_INVERTED[0])),
         (HBridge::new(right_ahead, right_back), motor(IS_INVERTED[1])),
     ]);
-    // To the controller the robot is a disc around a point ahead of its axle.
+    // The controller sees the robot as a disc around a point ahead of its axle.
     let ahead = LookAhead::new(TRACK_M / 2.0)?;
     let mut mixer = Mixer::new(Differential::new(TRACK_M)?, LIMITS)?;
     let mut odometry = Odometry::new(START.0, START.1)?;
@@ -106,7 +109,7 @@ where
         let out = agent.step(&inputs, now, &mut ());
         radio.send(&out.outbox);
         let twist = ahead.twist(wished_velocity(&out.command), heading);
-        // A motor that cannot be set stops the other one; the robot starts anew.
+        // If one motor fails, the other one stops and the robot restarts.
         wheels.turn(&mixer.mix(&twist, TICK)).ok()?;
     }
 }

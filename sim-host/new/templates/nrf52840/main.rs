@@ -1,5 +1,6 @@
-//! The wiring of my-swarm's robot on an nRF52840: FILL IN the pins. A radio modem on UARTE0 (P0.08, P0.06), encoders on P0.13, P0.14 and
-//! P0.15, P0.16, two motors behind a DRV8833 on P0.26, P0.27, P0.30 and P0.31.
+//! Wiring of my-swarm's robot on an nRF52840: FILL IN the pins. A radio modem on UARTE0 (P0.08,
+//! P0.06), encoders on P0.13, P0.14 and P0.15, P0.16, two motors behind a DRV8833 on P0.26, P0.27,
+//! P0.30 and P0.31.
 #![no_std]
 #![no_main]
 
@@ -54,7 +55,7 @@ async fn wire(p: Peripherals) -> Option<()> {
     None
 }
 
-/// One output of a PWM unit, which is high for its duty.
+/// One output of a PWM unit.
 struct Motor(SimplePwm<'static>);
 
 impl ErrorType for Motor {
@@ -75,13 +76,13 @@ impl SetDutyCycle for Motor {
 #[embassy_executor::main]
 async fn main(_spawner: Spawner) {
     let mut config = embassy_nrf::config::Config::default();
-    // A serial line and odometry need the crystal's accuracy.
+    // Serial lines and odometry need the accuracy of the crystal.
     config.hfclk_source = HfclkSource::ExternalXtal;
     wire(embassy_nrf::init(config)).await;
     cortex_m::peripheral::SCB::sys_reset();
 }
 
-#[panic_handler] // Lets go of the motors, and starts anew.
+#[panic_handler] // Releases the motors and restarts.
 fn panic(_: &core::panic::PanicInfo) -> ! {
     cortex_m::peripheral::SCB::sys_reset();
 }

@@ -1,4 +1,4 @@
-"""How the robots of my-swarm go: a velocity for each, once a tick. Each robot's safety layer makes of it one that hits nobody."""
+"""The guidance law of my-swarm: the preferred velocity of each robot, once per tick. The safety layers avoid collisions."""
 
 from pathlib import Path
 
@@ -7,12 +7,12 @@ import staya
 
 SCENARIO = Path(__file__).parent / "scenario.toml"
 SPEED_MPS = 0.5
-# Where somebody is nearer than this, a robot goes at half speed; metres from centre to centre.
+# Distance to another robot, from centre to centre, below which the speed is halved, metres.
 CAREFUL_M = 0.6
 
 
 def law(sim: staya.Simulation) -> np.ndarray:
-    """Straight to the goal, slower among others: velocities in m/s, shape (robots, 2). Write your own here."""
+    """Straight to the goal, slower near other robots: velocities in m/s, shape (robots, 2). Write your own law here."""
     places = sim.positions[:, :2]
     way = sim.goals[:, :2] - places
     distance = np.linalg.norm(way, axis=1, keepdims=True)
@@ -24,12 +24,12 @@ def law(sim: staya.Simulation) -> np.ndarray:
 
 
 def has_arrived(sim: staya.Simulation) -> bool:
-    """Whether all stand at their goals."""
+    """Whether all robots are at their goals."""
     return bool((np.linalg.norm((sim.goals - sim.positions)[:, :2], axis=1) < 0.02).all())
 
 
 def run(sim: staya.Simulation) -> dict:
-    """Runs until all have arrived, or the scenario's ticks are over: the figures of the run."""
+    """Runs until all robots have arrived or the scenario's ticks are over. Returns the summary of the run."""
     while not (sim.is_over or has_arrived(sim)):
         sim.step(guidance=law)
     return sim.run(until=sim.tick).summary

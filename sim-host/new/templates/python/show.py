@@ -1,4 +1,4 @@
-"""Runs scenario.toml by the law and writes a page of the run: open run.html in a browser."""
+"""Runs scenario.toml with the law and writes a page of the run: open run.html in a browser."""
 
 import my_swarm
 import staya

@@ -1,5 +1,6 @@
-//! The wiring of my-swarm's robot on an RP2350 (Raspberry Pi Pico 2): FILL IN the pins. A radio modem on UART0 (GPIO 0, 1), encoders on
-//! GPIO 2, 3 and 4, 5, two motors behind a DRV8833 on GPIO 6 to 9.
+//! Wiring of my-swarm's robot on an RP2350 (Raspberry Pi Pico 2): FILL IN the pins. A radio modem
+//! on UART0 (GPIO 0, 1), encoders on GPIO 2, 3 and 4, 5, two motors behind a DRV8833 on GPIO 6 to
+//! 9.
 #![no_std]
 #![no_main]
 
@@ -51,7 +52,7 @@ async fn main(_spawner: Spawner) {
     cortex_m::peripheral::SCB::sys_reset();
 }
 
-#[panic_handler] // Lets go of the motors, and starts anew.
+#[panic_handler] // Releases the motors and restarts.
 fn panic(_: &core::panic::PanicInfo) -> ! {
     cortex_m::peripheral::SCB::sys_reset();
 }

@@ -1,5 +1,6 @@
-//! The wiring of my-swarm's robot on an STM32F405: FILL IN the pins. A radio modem on USART1 (PA9, PA10), encoders on TIM3 (PA6, PA7)
-//! and TIM4 (PB6, PB7), two motors behind a DRV8833 on TIM8 (PC6 to PC9).
+//! Wiring of my-swarm's robot on an STM32F405: FILL IN the pins. A radio modem on USART1 (PA9,
+//! PA10), encoders on TIM3 (PA6, PA7) and TIM4 (PB6, PB7), two motors behind a DRV8833 on TIM8 (PC6
+//! to PC9).
 #![no_std]
 #![no_main]
 
@@ -38,7 +39,7 @@ async fn wire(p: Peripherals) -> Option<()> {
 #[embassy_executor::main]
 async fn main(_spawner: Spawner) {
     let mut config = Config::default();
-    // 16 MHz / 8 * 168: half of it for the core, a seventh (48 MHz) for the random numbers.
+    // 16 MHz / 8 * 168: half of it for the core, a seventh (48 MHz) for random numbers.
     let (prediv, mul, divp, divq) = (PllPreDiv::DIV8, PllMul::MUL168, PllPDiv::DIV2, PllQDiv::DIV7);
     config.rcc.pll = Some(Pll { prediv, mul, divp: Some(divp), divq: Some(divq), divr: None });
     (config.rcc.pll_src, config.rcc.sys) = (PllSource::HSI, Sysclk::PLL1_P);
@@ -47,7 +48,7 @@ async fn main(_spawner: Spawner) {
     cortex_m::peripheral::SCB::sys_reset();
 }
 
-#[panic_handler] // Lets go of the motors, and starts anew.
+#[panic_handler] // Releases the motors and restarts.
 fn panic(_: &core::panic::PanicInfo) -> ! {
     cortex_m::peripheral::SCB::sys_reset();
 }

@@ -1,4 +1,4 @@
-//! Title, axes and scale of a snapshot: metres are equally long along both axes.
+//! Title, axes and scale of a snapshot; both axes have the same scale.
 
 use super::Snapshot;
 use crate::canvas::{Anchor, Canvas, Stroke, Text};
@@ -10,10 +10,10 @@ const PAD: f64 = 12.0;
 const TITLE: f64 = 13.5;
 const LABEL: f64 = 11.5;
 const SMALL: f64 = 10.5;
-/// Room around everything that is shown, share of its larger side.
+/// Margin around the content, as a fraction of its larger side.
 const MARGIN: f64 = 0.04;
 
-/// Where metres are in the picture.
+/// Transformation from metres to the picture.
 pub struct Frame {
     /// Left, top, width, height of the plotting area.
     pub plot: [f64; 4],
@@ -26,7 +26,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Fits everything, or the chosen view, into left, top, width, height.
+    /// Fits the content, or the chosen view, into left, top, width, height.
     pub fn new(snapshot: &Snapshot, area: [f64; 4]) -> Self {
         let [x, y, width, height] = area;
         let is_range = |[low, high]: &[[f64; 2]; 2]| {
@@ -38,11 +38,11 @@ impl Frame {
             let margin = ((high[0] - low[0]).max(high[1] - low[1]) * MARGIN).max(1e-6);
             [low.map(|c| c - margin), high.map(|c| c + margin)]
         });
-        // What is too wide to count in is shown as nothing much.
+        // Ranges too wide for ticks are replaced.
         let [x_range, y_range] = [0, 1].map(|axis| ticks::sound(low[axis], high[axis]));
         let top = y + PAD + if snapshot.title.is_empty() { 0.0 } else { TITLE + 8.0 };
         let bottom = y + height - PAD - LABEL - SMALL - 14.0;
-        // The widest number decides how much is left; its own axis' marks depend little on that.
+        // The left margin depends on the widest number, which depends little on the exact ticks.
         let rough = ticks::linear(y_range[0], y_range[1], marks(bottom - top, 34.0));
         let widest = rough.iter().map(|tick| font::width(&tick.label, SMALL, false)).fold(0.0, f64::max);
         let left = x + PAD + LABEL * 1.5 + widest * layout::OTHER_FONTS + 6.0;
@@ -50,7 +50,7 @@ impl Frame {
         let room = [(right - left).max(20.0), (bottom - top).max(20.0)];
         let sides = [x_range[1] - x_range[0], y_range[1] - y_range[0]];
         let scale = (room[0] / sides[0]).min(room[1] / sides[1]);
-        // The axis with room to spare shows more, evenly on both sides.
+        // The axis with spare room shows more on both sides.
         let shown = room.map(|units| units / scale);
         let middle = [x_range, y_range].map(|[low, high]| low + (high - low) / 2.0);
         let low = [0, 1].map(|axis| middle[axis] - shown[axis] / 2.0);
@@ -61,14 +61,14 @@ impl Frame {
         Self { plot: [left, top, room[0], room[1]], area, low, scale, ticks }
     }
 
-    /// Where a place is in the picture; `None` when it is not finite or far outside, where readers lose their precision.
+    /// Position in the picture; `None` if it is not finite or so far outside that SVG readers lose
+    /// precision.
     pub fn at(&self, place: [f64; 2]) -> Option<[f64; 2]> {
         let [left, top, _, height] = self.plot;
         let at = [left + (place[0] - self.low[0]) * self.scale, top + height - (place[1] - self.low[1]) * self.scale];
         at.iter().all(|c| c.is_finite() && c.abs() < 1e5).then_some(at)
     }
 
-    /// Draws title, grid, marks, numbers and names.
     pub fn draw(&self, snapshot: &Snapshot, canvas: &mut Canvas) {
         let [left, top, width, height] = self.plot;
         let (right, bottom) = (left + width, top + height);
@@ -106,7 +106,7 @@ impl Frame {
     }
 }
 
-/// How many marks an axis of this length has.
+/// Number of ticks for an axis of this length.
 fn marks(length: f64, spacing: f64) -> usize {
     ((length / spacing) as usize).clamp(2, 12)
 }

@@ -1,4 +1,4 @@
-//! What the marks of a sheet mean, in rows below its title: only those that occur in it.
+//! Legend of a sheet in rows below its title, for the marks that it contains.
 
 use super::{Sheet, Snapshot, marks};
 use crate::canvas::{Anchor, Canvas, Stroke, Text};
@@ -7,7 +7,6 @@ use crate::{font, layout};
 
 const SMALL: f64 = 11.5;
 const ROW: f64 = 19.0;
-/// Width of a mark.
 const MARK: f64 = 24.0;
 const PAD: f64 = 14.0;
 
@@ -20,7 +19,7 @@ enum Mark {
     Near,
 }
 
-/// Draws it from `top` on, `width` wide; answers where it ends.
+/// Draws the legend from `top` with a width. Returns its lower end.
 pub fn draw(sheet: &Sheet, canvas: &mut Canvas, mut top: f64, width: f64) -> f64 {
     let mut x = PAD;
     let keys = keys(sheet);
@@ -37,7 +36,6 @@ pub fn draw(sheet: &Sheet, canvas: &mut Canvas, mut top: f64, width: f64) -> f64
     if keys.is_empty() { top } else { top + ROW }
 }
 
-/// How high it is.
 pub fn height(sheet: &Sheet, width: f64) -> f64 {
     draw(sheet, &mut Canvas::new(width, 1.0, ""), 0.0, width)
 }
@@ -58,7 +56,7 @@ fn keys(sheet: &Sheet) -> Vec<(Mark, String)> {
     keys.into_iter().filter_map(|(mark, name)| Some((mark, name?))).collect()
 }
 
-/// A mark as it is in the picture, in the middle of `MARK` units from `at` on.
+/// A sample of a mark, centred in `MARK` units from `at`.
 fn sample(mark: &Mark, canvas: &mut Canvas, [x, y]: [f64; 2]) {
     let (middle, ends) = ([x + MARK / 2.0, y], vec![[x + 2.0, y], [x + MARK - 2.0, y]]);
     let colour = colour::nth(0);

@@ -1,4 +1,4 @@
-//! What is inside of a snapshot, the lowest first: land, obstacles, trails, edges, goals, robots.
+//! Content of a snapshot, from bottom to top: map, obstacles, paths, edges, goals, robots.
 
 use super::frame::Frame;
 use super::{MOST_DISCS, Obstacle, Snapshot};
@@ -12,13 +12,11 @@ const STONE: Colour = Colour::hex(0xc9_c4_bb);
 pub const STONE_EDGE: Colour = Colour::hex(0x6f_68_5c);
 pub const EDGE: Colour = Colour::hex(0x9a_a8_b5);
 const GOAL: Colour = Colour::hex(0xd5_5e_00);
-/// Discs of a smaller radius, in units, are darts.
+/// Smaller discs (in units) are drawn as darts.
 const LEAST_RADIUS: f64 = 2.6;
-/// Length of the fastest robot's arrow from its border on.
+/// Length of the fastest robot's arrow outside of its disc.
 const ARROW: f64 = 11.0;
-/// Half the length of a dart.
 const DART: f64 = 4.2;
-/// The same in a crowd.
 const SMALL_DART: f64 = 2.2;
 
 pub fn draw(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
@@ -71,10 +69,10 @@ fn obstacles(obstacles: &[Obstacle], frame: &Frame, canvas: &mut Canvas) {
 
 fn trails(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     for (robot, trail) in snapshot.trails_m.iter().enumerate() {
-        // On land it would not be seen paler.
+        // Pale lines would be invisible on a map.
         let paler = if snapshot.land.is_some() { 0.0 } else { 0.45 };
         let colour = colour_of(snapshot, robot).towards(WHITE, paler);
-        // A place that cannot be drawn leaves a gap.
+        // A point that cannot be drawn leaves a gap.
         let lines = trail
             .split(|&at| frame.at(at).is_none())
             .map(|part| part.iter().filter_map(|&at| frame.at(at)).collect())
@@ -102,7 +100,6 @@ fn edges(positions: &[[f64; 2]], range: f64, frame: &Frame) -> Vec<Vec<Point>> {
     lines
 }
 
-/// A goal.
 pub fn cross([x, y]: Point, canvas: &mut Canvas) {
     let arm = 5.0;
     let lines = vec![vec![[x - arm, y - arm], [x + arm, y + arm]], vec![[x - arm, y + arm], [x + arm, y - arm]]];
@@ -114,7 +111,7 @@ fn colour_of(snapshot: &Snapshot, robot: usize) -> Colour {
     colour::nth(snapshot.groups.get(robot).copied().unwrap_or(0))
 }
 
-/// Discs with arrows where discs can be seen, else darts; dots where robots stand.
+/// Discs with arrows if they are large enough, else darts; dots for stationary robots.
 fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     let is_crowd = snapshot.positions_m.len() > MOST_DISCS;
     let radius = snapshot.radius_m * frame.scale;
@@ -123,12 +120,11 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     let velocity = |robot: usize| {
         let velocity = snapshot.velocities_mps.get(robot).copied().unwrap_or(still);
         let speed = velocity.iter().map(|c| c * c).sum::<f64>().sqrt();
-        // Nonsense has no direction.
         if speed.is_finite() { (velocity, speed) } else { (still, 0.0) }
     };
     let fastest = (0..snapshot.velocities_mps.len()).map(|robot| velocity(robot).1);
     let fastest = fastest.fold(snapshot.fastest_mps.max(0.0), f64::max);
-    // One shape a colour, however many robots there are.
+    // One shape per colour, for any number of robots.
     let groups = snapshot.groups.iter().max().map_or(1, |most| most + 1);
     let groups = groups.min(colour::COUNT);
     let (mut arrows, mut darts) = (Vec::new(), vec![Vec::new(); groups]);
@@ -138,7 +134,7 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
             continue;
         };
         let (velocity, speed) = velocity(robot);
-        // Rows grow downwards.
+        // Picture rows grow downwards.
         let ahead = if speed > 0.0 { [velocity[0] / speed, -velocity[1] / speed] } else { still };
         let group = snapshot.groups.get(robot).copied().unwrap_or(0) % groups;
         if are_discs {
@@ -168,7 +164,6 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     canvas.lines(arrows, Stroke::new(INK, 1.0));
 }
 
-/// A line from the centre on with two barbs.
 pub fn arrow([x, y]: Point, [dx, dy]: Point, length: f64) -> [Vec<Point>; 2] {
     let tip = [x + dx * length, y + dy * length];
     let barb = |side: f64| {
@@ -178,7 +173,6 @@ pub fn arrow([x, y]: Point, [dx, dy]: Point, length: f64) -> [Vec<Point>; 2] {
     [vec![[x, y], tip], vec![barb(1.0), tip, barb(-1.0)]]
 }
 
-/// A triangle that points ahead, with a notch behind.
 fn dart([x, y]: Point, [dx, dy]: Point, half: f64) -> Vec<Point> {
     let corner = |ahead: f64, left: f64| [x + half * (ahead * dx + left * dy), y + half * (ahead * dy - left * dx)];
     vec![corner(1.2, 0.0), corner(-0.9, 0.65), corner(-0.5, 0.0), corner(-0.9, -0.65)]

@@ -1,4 +1,4 @@
-//! Pictures one after the other: the ground keeps the ways, the rest is drawn anew.
+//! Sequence of frames: paths accumulate in the background, everything else is drawn for each frame.
 
 use super::{MOST_WAYS, View, colour_of};
 use crate::canvas::{Canvas, Stroke};
@@ -9,7 +9,7 @@ use staya_sim::scenario::Scenario;
 use std::io;
 use tiny_skia::Pixmap;
 
-/// What has been drawn so far.
+/// The background so far.
 #[derive(Clone)]
 pub struct Frames {
     ground: Pixmap,
@@ -17,12 +17,10 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Before the first picture.
     pub const fn new(ground: Pixmap) -> Self {
         Self { ground, before: Vec::new() }
     }
 
-    /// The next picture.
     pub fn next(&mut self, scenario: &Scenario, view: &View, frame: &Frame) -> io::Result<Pixmap> {
         let now: Vec<_> = frame.samples.iter().take(MOST_WAYS).map(|sample| sample.position_m).collect();
         if frame.samples.len() <= MOST_WAYS && self.before.len() == now.len() {

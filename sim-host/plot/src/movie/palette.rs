@@ -1,29 +1,27 @@
-//! Colours of a GIF: at most 255 for all its pictures, and one that is clear.
+//! The palette of a GIF: at most 255 colours for all frames, and a transparent one.
 
 use color_quant::NeuQuant;
 use tiny_skia::Pixmap;
 
-/// The colour of what does not change.
+/// Index of the transparent colour, for unchanged pixels.
 pub const CLEAR: u8 = 255;
-/// Of so many pixels one is looked at.
+/// Every n-th pixel is a sample.
 const STEP: i32 = 5;
-/// Bits of red, green and blue by which colours are looked up.
+/// Bits of red, green and blue in the lookup table.
 const BITS: u32 = 6;
 
-/// Up to 255 colours.
 pub struct Palette {
     colours: Vec<u8>,
-    /// The nearest one, by the leading bits of each part.
+    /// Nearest colour by the leading bits of each channel.
     nearest: Vec<u8>,
 }
 
 impl Palette {
-    /// One that suits these pictures.
     pub fn new(pictures: &[Pixmap]) -> Self {
         let pixels: Vec<u8> = pictures.iter().flat_map(|picture| picture.data()).copied().collect();
         let found = NeuQuant::new(STEP, usize::from(CLEAR), &pixels);
         let mut colours = found.color_map_rgb();
-        // White is what most is, and must not become nearly white.
+        // White is the most frequent colour and must be exact.
         colours.truncate(3 * (usize::from(CLEAR) - 1));
         colours.extend([255; 3]);
         let side = 1_usize << BITS;
@@ -39,12 +37,12 @@ impl Palette {
         Self { nearest: (0..side.pow(3)).map(nearest).collect(), colours }
     }
 
-    /// Red, green and blue of each; the clear one is black.
+    /// Red, green and blue of each colour; the transparent one is black.
     pub fn colours(&self) -> &[u8] {
         &self.colours
     }
 
-    /// A picture in these colours.
+    /// Converts a picture to palette indices.
     pub fn indices(&self, picture: &Pixmap) -> Vec<u8> {
         let part = |value: u8| usize::from(value >> (8 - BITS));
         let index = |pixel: &[u8]| match pixel {

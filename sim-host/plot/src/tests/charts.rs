@@ -19,7 +19,6 @@ fn svg_of(chart: &Chart) -> String {
     svg::text(&chart.draw()).unwrap()
 }
 
-/// Points of all lines and circles.
 fn drawn(canvas: &Canvas) -> Vec<Point> {
     let points = |shape: &Shape| match shape {
         Shape::Path { lines, .. } => lines.concat(),
@@ -30,9 +29,9 @@ fn drawn(canvas: &Canvas) -> Vec<Point> {
 }
 
 #[test]
-fn both_files_are_written_readable_and_the_same_each_time() {
+fn both_files_are_readable_and_reproducible() {
     let dir = tempfile::tempdir().unwrap();
-    // A point in the stem is no extension; the folder is made.
+    // A point in the stem is not an extension; the folder is created.
     let stem = dir.path().join("new/loss-0.3");
     let files = full().write(&stem).unwrap();
     let names: Vec<_> = files.iter().map(|path| path.file_name().unwrap()).collect();
@@ -44,7 +43,7 @@ fn both_files_are_written_readable_and_the_same_each_time() {
         assert_eq!(std::fs::read(path).unwrap(), before);
     }
     let left: Vec<_> = std::fs::read_dir(stem.parent().unwrap()).unwrap().collect();
-    assert_eq!(left.len(), 2, "no temporary files stay");
+    assert_eq!(left.len(), 2, "no temporary files remain");
 }
 
 #[test]
@@ -73,13 +72,13 @@ fn text_stays_text_in_the_svg() {
 }
 
 #[test]
-fn a_place_that_cannot_be_written_is_named() {
+fn an_unwritable_path_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("file");
     std::fs::write(&file, "").unwrap();
     let error = full().write(&file.join("chart")).unwrap_err();
     assert_eq!(error.path(), file);
-    // A folder where the picture should be.
+    // A folder in place of the picture.
     std::fs::create_dir(dir.path().join("b.png")).unwrap();
     let error = full().write(&dir.path().join("b")).unwrap_err();
     assert_eq!(error.path(), dir.path().join("b.png"));
@@ -87,7 +86,7 @@ fn a_place_that_cannot_be_written_is_named() {
 }
 
 #[test]
-fn charts_without_data_say_so() {
+fn charts_without_data_show_a_note() {
     let none: [[f64; 2]; 0] = [];
     for chart in [
         Chart::new("", "", ""),
@@ -103,7 +102,7 @@ fn charts_without_data_say_so() {
 }
 
 #[test]
-fn decades_are_equally_long_on_a_logarithmic_axis() {
+fn decades_have_equal_lengths_on_a_logarithmic_axis() {
     let decades = [[1.0, 0.1], [10.0, 10.0], [100.0, 1000.0], [1000.0, 0.0]];
     let chart = Chart::new("t", "x", "y").with(Series::line("a", decades));
     let both = chart.clone().log_x().log_y();
@@ -116,7 +115,7 @@ fn decades_are_equally_long_on_a_logarithmic_axis() {
         line.expect("a line")
     };
     let [a, b, c] = line(&both)[..] else {
-        panic!("what is not above 0 is left out");
+        panic!("values not above 0 are skipped");
     };
     assert!((b[0] - a[0] - (c[0] - b[0])).abs() < 1e-9);
     assert!((b[1] - a[1] - (c[1] - b[1])).abs() < 1e-9);
@@ -136,7 +135,7 @@ fn undefined_values_are_gaps() {
 }
 
 #[test]
-fn a_single_value_stands_in_the_middle_and_zero_on_the_ground() {
+fn a_single_value_is_in_the_middle_and_zero_at_the_bottom() {
     let mark = |y: f64| {
         let chart = Chart::new("", "", "").with(Series::points("", [[5.0, y]]));
         let canvas = chart.draw();
@@ -152,11 +151,10 @@ fn a_single_value_stands_in_the_middle_and_zero_on_the_ground() {
 }
 
 #[test]
-fn chosen_ranges_hold_and_nonsense_ones_do_not() {
+fn valid_ranges_apply_and_invalid_ones_are_ignored() {
     let chart = || Chart::new("", "", "").with(Series::line("", [[0.0, 0.0], [10.0, 100.0]]));
     assert!(svg_of(&chart().y_range(0.0, 50.0)).contains(">50<"));
     assert!(!svg_of(&chart().y_range(0.0, 50.0)).contains(">100<"));
-    // What the x range hides does not stretch y.
     assert!(!svg_of(&chart().x_range(0.0, 5.0).with(Series::points("", [[1.0, 3.0]]))).contains(">100<"));
     for (low, high) in [(5.0, 5.0), (7.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
         assert_eq!(svg_of(&chart().y_range(low, high)), svg_of(&chart()), "{low} {high}");
@@ -173,7 +171,6 @@ fn many_points_are_thinned_but_extremes_stay() {
     let chart = Chart::new("", "", "").with(Series::line("", wave));
     let canvas = chart.draw();
     assert!(drawn(&canvas).len() < 5000);
-    // The spike is a single point, the highest one of the line.
     let line = canvas.shapes.iter().find_map(|shape| match shape {
         Shape::Path { lines, stroke: Some(stroke), .. } if stroke.colour == PALETTE[0] => Some(&lines[0]),
         _ => None,
@@ -188,7 +185,7 @@ fn many_points_are_thinned_but_extremes_stay() {
 }
 
 #[test]
-fn series_have_different_colours_and_fits_those_of_their_data() {
+fn series_have_different_colours_and_fits_the_colour_of_their_data() {
     let text = svg_of(&full());
     let hex = |index: usize| {
         let [r, g, b] = PALETTE[index].rgb;
@@ -237,7 +234,7 @@ fn strange_text_keeps_the_file_well_formed() {
 }
 
 #[test]
-fn long_numbers_at_the_ends_of_the_axis_stay_in_the_picture() {
+fn long_numbers_at_the_ends_of_an_axis_stay_inside() {
     let low = -213.928_431;
     for width in [300.0, 657.7, 720.0] {
         let line = Series::line("A", [[low, -1.0], [low + 1e-6, 1.0]]);
@@ -261,7 +258,7 @@ fn sizes_stay_within_bounds() {
 }
 
 #[test]
-fn pictures_in_pictures_keep_their_pixels_and_clips_hold() {
+fn images_keep_their_pixels_and_clips_apply() {
     let dir = tempfile::tempdir().unwrap();
     let mut canvas = Canvas::new(8.0, 4.0, "");
     canvas.clip(Some([0.0, 0.0, 6.0, 4.0]));
@@ -283,7 +280,7 @@ fn pictures_in_pictures_keep_their_pixels_and_clips_hold() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn no_text_covers_another(
+    fn texts_do_not_overlap(
         low in -1e4_f64..1e4,
         exponent in -7_i32..9,
         height in -9.0_f64..9.0,
@@ -313,7 +310,7 @@ proptest! {
     }
 
     #[test]
-    fn any_numbers_make_a_picture(
+    fn any_numbers_can_be_drawn(
         points in proptest::collection::vec(any::<[f64; 4]>(), 0..20),
         log in any::<[bool; 2]>(),
     ) {

@@ -2,7 +2,7 @@ use super::{assert_readable, assert_texts_apart, decode};
 use crate::canvas::{Canvas, Shape};
 use crate::flock::{MOST_DISCS, Obstacle, Sheet, Snapshot, View};
 
-/// Robots around a ring that all go around it.
+/// Robots on a ring that move along it.
 fn ring(robots: u32, radius_m: f64) -> Snapshot {
     let angle = |robot: u32| f64::from(robot) / f64::from(robots) * std::f64::consts::TAU;
     let around = |robot| libm::sincos(angle(robot));
@@ -38,7 +38,6 @@ fn circles(canvas: &Canvas) -> Vec<([f64; 2], f64)> {
     canvas.shapes.iter().filter_map(circle).collect()
 }
 
-/// Lines of open paths without a fill.
 fn lines(canvas: &Canvas) -> Vec<usize> {
     let open = |shape: &Shape| match shape {
         Shape::Path { lines, closed: false, .. } => Some(lines.len()),
@@ -48,7 +47,7 @@ fn lines(canvas: &Canvas) -> Vec<usize> {
 }
 
 #[test]
-fn snapshots_of_everything_and_of_nothing_can_be_read() {
+fn full_and_empty_snapshots_are_readable() {
     let dir = tempfile::tempdir().unwrap();
     let cases = [
         everything(),
@@ -70,7 +69,7 @@ fn snapshots_of_everything_and_of_nothing_can_be_read() {
 }
 
 #[test]
-fn metres_are_equally_long_along_both_axes_and_north_is_up() {
+fn both_axes_have_one_scale_and_north_is_up() {
     let snapshot =
         Snapshot { positions_m: vec![[0.0, 0.0], [100.0, 0.0], [0.0, 10.0]], radius_m: 3.0, ..Snapshot::default() };
     let circles = circles(&snapshot.draw());
@@ -83,7 +82,7 @@ fn metres_are_equally_long_along_both_axes_and_north_is_up() {
 }
 
 #[test]
-fn edges_join_who_is_near_and_arrows_those_who_move() {
+fn near_robots_have_edges_and_moving_robots_have_arrows() {
     let three = Snapshot {
         positions_m: vec![[0.0, 0.0], [10.0, 0.0], [40.0, 0.0]],
         velocities_mps: vec![[1.0, 0.0], [0.0; 2], [f64::NAN, 1.0]],
@@ -92,20 +91,20 @@ fn edges_join_who_is_near_and_arrows_those_who_move() {
         ..Snapshot::default()
     };
     let plain = Snapshot { velocities_mps: Vec::new(), edges_within_m: None, ..three.clone() };
-    // The grid is there always; then one edge, and one arrow of two lines.
+    // The grid, then one edge, and one arrow of two lines.
     assert_eq!(lines(&plain.draw()).len(), 1);
     assert_eq!(lines(&three.draw())[1..], [1, 2]);
 }
 
 #[test]
-fn crowds_are_few_shapes() {
+fn large_swarms_need_few_shapes() {
     let crowd = ring(MOST_DISCS as u32 + 1, 5.0).draw();
     assert!(circles(&crowd).is_empty() && crowd.shapes.len() < 60);
     assert_eq!(circles(&ring(20, 5.0).draw()).len(), 20);
 }
 
 #[test]
-fn nonsense_is_left_out_and_a_chosen_view_is_kept() {
+fn invalid_items_are_skipped_and_a_chosen_view_is_kept() {
     let mut wild = everything();
     wild.positions_m.push([f64::NAN, 0.0]);
     wild.positions_m.push([f64::INFINITY, 0.0]);
@@ -114,7 +113,7 @@ fn nonsense_is_left_out_and_a_chosen_view_is_kept() {
     let nowhere = Obstacle::Disc { centre_m: [f64::NAN; 2], radius_m: 2.0 };
     wild.obstacles.push(nowhere);
     assert_eq!(circles(&wild.draw()), circles(&everything().draw()));
-    // The same view whatever there is; a senseless one is everything.
+    // A valid view does not depend on the content; an invalid one shows everything.
     let view = |snapshot: Snapshot, view_m| Snapshot { view_m: Some(view_m), ..snapshot };
     let near = view(ring(12, 1.0), [[-50.0, 50.0]; 2]);
     let far = view(Snapshot { goals_m: vec![[900.0, 0.0]], ..ring(12, 1.0) }, [[-50.0, 50.0]; 2]);
@@ -124,7 +123,7 @@ fn nonsense_is_left_out_and_a_chosen_view_is_kept() {
 }
 
 #[test]
-fn the_same_snapshot_gives_the_same_bytes_and_something_is_drawn() {
+fn equal_snapshots_give_equal_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let write = |name: &str| everything().draw().write(&dir.path().join(name)).unwrap();
     let (one, two) = (write("one"), write("two"));
@@ -137,7 +136,7 @@ fn the_same_snapshot_gives_the_same_bytes_and_something_is_drawn() {
 }
 
 #[test]
-fn space_is_seen_from_above_from_the_south_and_obliquely() {
+fn views_project_space() {
     let at = [3.0, 4.0, 5.0];
     assert_eq!(View::Plan.of(at), [3.0, 4.0]);
     assert_eq!(View::Elevation.of(at), [3.0, 5.0]);

@@ -1,4 +1,4 @@
-//! Charts, pictures of runs, and files as their readers see them.
+//! Tests of charts, pictures of runs, and their files.
 
 mod charts;
 mod flocks;
@@ -57,7 +57,7 @@ fn decode(path: &Path) -> (u32, u32, Vec<u8>) {
     (info.width, info.height, bytes)
 }
 
-/// Fails unless both files of each picture are there and can be read.
+/// Fails unless both files of each picture are readable.
 fn assert_readable(files: &[std::path::PathBuf]) {
     assert!(files.len().is_multiple_of(2));
     for path in files {
@@ -98,7 +98,7 @@ fn text_boxes(canvas: &Canvas) -> Vec<(String, [f64; 4])> {
         .collect()
 }
 
-/// Fails if a text covers another one or leaves the picture.
+/// Fails if texts overlap or leave the picture.
 fn assert_texts_apart(canvas: &Canvas) {
     let boxes = text_boxes(canvas);
     for (index, (text, [left, top, right, bottom])) in boxes.iter().enumerate() {

@@ -26,11 +26,10 @@ fn sheet(text: &str) -> Sheet {
 }
 
 #[test]
-fn goals_are_where_they_are_at_the_moment_and_all_is_inside() {
+fn goals_follow_orders_and_everything_is_visible() {
     let sheet = sheet(TEXT);
     let [first, .., last] = &sheet.snapshots[..] else { panic!("moments") };
     assert_eq!(first.goals_m, [[8.0, 2.0], [8.0, 9.0]]);
-    // Six seconds after the order, which is for all.
     let [[x, y]] = last.goals_m[..] else { panic!("one goal: {:?}", last.goals_m) };
     assert!((x - 5.0).abs() < 1e-9 && (y - 30.0).abs() < 1e-9, "{x} {y}");
     let [[west, east], [south, north]] = first.view_m.expect("a view");
@@ -39,7 +38,7 @@ fn goals_are_where_they_are_at_the_moment_and_all_is_inside() {
 }
 
 #[test]
-fn arrows_compare_over_moments_and_land_is_under_all() {
+fn arrows_have_one_scale_and_the_map_is_at_the_bottom() {
     let sheet = sheet(TEXT);
     let fastest = sheet.snapshots[0].fastest_mps;
     assert!(fastest > 0.5 && sheet.snapshots.iter().all(|moment| moment.fastest_mps == fastest), "{fastest}");
@@ -51,7 +50,7 @@ fn arrows_compare_over_moments_and_land_is_under_all() {
 }
 
 #[test]
-fn a_wall_far_longer_than_the_way_does_not_make_robots_small() {
+fn a_very_long_wall_does_not_shrink_the_robots() {
     let walls = "[[plane.wall]]\npoints_m = [[5, -200], [5, -1]]\n";
     let [[west, east], [south, north]] = sheet(&format!("{TEXT}{walls}")).snapshots[0].view_m.expect("a view");
     assert!(east - west < 30.0 && south > -20.0 && north < 40.0, "{west} {east} {south} {north}");

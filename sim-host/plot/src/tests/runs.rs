@@ -38,7 +38,7 @@ fn tick(tick: u32, error: f64) -> TickRow {
     }
 }
 
-/// Robots side by side that go east by `speed` cells per tick over land of 1 m.
+/// Robots side by side that move east by `speed` cells per tick on cells of 1 m.
 fn history(robots: u32, ticks: u32, speed: f64, error: f64) -> History {
     let mut recorder = Recorder::in_memory(Options::default());
     for now in 0..ticks {
@@ -70,13 +70,13 @@ fn names(terrain: &Terrain, history: &History, edges: &[(u32, u32)], dir: &Path)
 const WITHOUT_FORMATION: [&str; 4] = ["trajectories.svg", "trajectories.png", "packets.svg", "packets.png"];
 
 #[test]
-fn runs_of_every_length_give_their_pictures() {
+fn runs_of_any_length_have_their_pictures() {
     let dir = tempfile::tempdir().unwrap();
     let nan = f64::NAN;
     for (robots, ticks) in [(0, 0), (0, 1), (1, 1), (1, 2), (3, 40), (12, 3), (13, 3), (201, 3)] {
         let out = dir.path().join(format!("{robots}-{ticks}"));
         let history = history(robots, ticks, 0.5, nan);
-        // Without a frame there are no ways to draw.
+        // Without frames there are no paths.
         let ways = if history.frames().is_empty() { 2 } else { 0 };
         assert_eq!(names(&land(40), &history, &[], &out), WITHOUT_FORMATION[ways..]);
         assert_texts_apart(&trajectories::draw(&land(40), &[], &history, &[]).unwrap());
@@ -89,7 +89,7 @@ fn runs_of_every_length_give_their_pictures() {
 }
 
 #[test]
-fn the_same_run_gives_the_same_bytes() {
+fn equal_runs_give_equal_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let history = history(6, 50, 0.6, 0.5);
     let draw = |name: &str| {
@@ -101,7 +101,7 @@ fn the_same_run_gives_the_same_bytes() {
 }
 
 #[test]
-fn a_directory_that_cannot_be_made_is_named() {
+fn an_unwritable_directory_is_named() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("taken");
     std::fs::write(&file, "").unwrap();
@@ -114,7 +114,7 @@ fn a_directory_that_cannot_be_made_is_named() {
 }
 
 #[test]
-fn values_without_number_leave_gaps_and_an_empty_half_is_left_out() {
+fn missing_values_leave_gaps_and_an_empty_chart_is_skipped() {
     let mut recorder = Recorder::in_memory(Options::default());
     for now in 0..20 {
         let error = if (5..9).contains(&now) { f64::NAN } else { 1.0 };
@@ -140,7 +140,7 @@ fn packets_are_counted_per_second() {
         let files = canvas.write(&dir.path().join("p")).unwrap();
         let text = std::fs::read_to_string(&files[0]).unwrap();
         assert!(text.contains("packets per second") && text.contains(">20<"), "{ticks}");
-        // Constant rates are level lines: all points of a curve have the same height.
+        // Constant rates are level lines.
         let curve = text
             .lines()
             .find(|line| line.starts_with("<path") && line.contains("stroke=\"#0072b2\" stroke-width=\"1.8\""))
@@ -155,7 +155,7 @@ fn packets_are_counted_per_second() {
 }
 
 #[test]
-fn north_is_up_walls_are_dark_and_the_way_has_its_colour() {
+fn north_is_up_walls_are_dark_and_paths_have_their_colours() {
     let mut terrain = land(20);
     terrain.set(Cell { x: 0, y: 19 }, BLOCKED);
     let mut recorder = Recorder::in_memory(Options::default());
@@ -182,19 +182,19 @@ fn north_is_up_walls_are_dark_and_the_way_has_its_colour() {
     };
     assert!(pixel(0.0, 19.0).iter().all(|value| *value < 90), "the wall in the north-west");
     assert_eq!(pixel(0.0, 0.0), [255; 3]);
-    assert_eq!(pixel(9.0, 4.0), PALETTE[0].rgb, "on the way");
+    assert_eq!(pixel(9.0, 4.0), PALETTE[0].rgb, "on the path");
     assert_eq!(pixel(9.0, 15.0), [255; 3], "its mirror image");
 }
 
 #[test]
-fn a_small_part_of_a_large_map_is_shown_alone() {
+fn only_the_used_part_of_a_large_map_is_shown() {
     let text = |side: u16| format!("{:?}", trajectories::draw(&land(side), &[], &history(2, 20, 1.0, 1.0), &[]));
     assert!(text(300).contains("part of a map of 300 × 300"));
     assert!(!text(30).contains("part of"));
 }
 
 #[test]
-fn crowds_and_noisy_land_stay_small() {
+fn large_swarms_and_noisy_terrain_give_small_files() {
     let plan = LandPlan { width: 256, height: 256, classes: 9, seed: 5 };
     let terrain = uniform(&plan).unwrap();
     for robots in [6, 200, 201, 2000, 100_000] {
@@ -208,7 +208,7 @@ fn crowds_and_noisy_land_stay_small() {
 }
 
 #[test]
-fn long_wild_ways_stay_small_too() {
+fn long_paths_give_small_files() {
     // 200 robots that turn at every step, 400 steps each: 80,000 corners.
     let mut recorder = Recorder::in_memory(Options::default());
     for now in 0..400 {

@@ -19,7 +19,7 @@ fn labels_are_short_and_exact() {
 }
 
 #[test]
-fn nonsense_ranges_become_sound_ones() {
+fn invalid_ranges_become_valid() {
     for (low, high) in [
         (f64::NAN, 1.0),
         (0.0, f64::NAN),
@@ -41,7 +41,7 @@ fn nonsense_ranges_become_sound_ones() {
 }
 
 #[test]
-fn logarithmic_marks_thin_out_with_the_range() {
+fn logarithmic_ticks_thin_out_with_the_range() {
     let texts = |low, high, most| -> Vec<String> {
         let ticks = logarithmic(low, high, most).into_iter();
         ticks.map(|tick| tick.label).collect()
@@ -49,7 +49,7 @@ fn logarithmic_marks_thin_out_with_the_range() {
     assert_eq!(texts(10.0, 160.0, 8), ["10", "20", "50", "100"]);
     assert_eq!(texts(1.0, 1e5, 8), ["1", "10", "100", "1000", "10k", "100k"]);
     assert_eq!(texts(1e-9, 1e9, 6).len(), 7);
-    // Less than one step of 1, 2, 5: an axis needs marks all the same.
+    // An axis needs ticks even if its range is less than one step of 1, 2, 5.
     assert!(texts(21.0, 49.0, 6).len() >= 2);
 }
 
@@ -77,7 +77,7 @@ proptest! {
         most in 5_usize..14,
     ) {
         let high = low + fraction * libm::pow(10.0, exponent.into());
-        // What is too narrow for doubles is widened.
+        // Ranges too narrow for doubles are widened.
         let [low, high] = sound(low, high);
         let ticks = linear(low, high, most);
         prop_assert!(ticks.len() >= 2 && ticks.len() <= most + 1, "{ticks:?}");
@@ -97,7 +97,7 @@ proptest! {
                 prop_assert!((read - tick.value).abs() <= 1e-6 * step.max(read.abs()), "{tick:?}");
             }
         }
-        // A mark more would have been possible only with a finer step.
+        // One more tick would need a finer step.
         prop_assert!((high - low) / step > most as f64 / 2.5 - 1e-6);
     }
 

@@ -1,9 +1,9 @@
 """Swarms of robots, each with its own onboard controller.
 
-`Simulation` runs a scenario, with the trace hash of the command `staya run`. `orca`, `route` and the laws in
-`staya.flock` are the controller's behaviours by themselves, over all robots at once. `staya.rl` (the extra `rl`)
-has environments for Gymnasium and PettingZoo. Lengths are metres, times seconds, speeds metres per second; x is
-east, y north, z up.
+`Simulation` runs a scenario with the trace hash of the command `staya run`. `orca`, `route` and the
+laws in `staya.flock` are single behaviours of the controller, applied to all robots at once.
+`staya.rl` (the extra `rl`) has environments for Gymnasium and PettingZoo. Units are metres, seconds
+and metres per second; x is east, y north, z up.
 """
 
 from . import flock

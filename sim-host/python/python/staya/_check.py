@@ -1,5 +1,5 @@
-"""Arguments as arrays that the compiled module can read, or an error that says which one is wrong, where, and what
-to give."""
+"""Converts arguments to arrays for the compiled module. Errors name the argument, the wrong element
+and the remedy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def _array(name: str, value: ArrayLike, what: str) -> Floats:
     try:
         return np.asarray(value, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is no array of numbers ({error}); give {what}") from None
+        raise ValueError(f"{name} is not an array of numbers ({error}); give {what}") from None
 
 
 def _finite(name: str, array: Floats) -> Floats:
@@ -27,7 +27,7 @@ def _finite(name: str, array: Floats) -> Floats:
 
 
 def vectors(name: str, value: ArrayLike, count: int | None = None, axes: tuple[int, ...] = (2, 3)) -> Floats:
-    """A row of x, y (and z) per robot, as rows of three; with two, z is 0."""
+    """One row of x, y (and z) per robot, as rows of three; a missing z becomes 0."""
     sizes = " or ".join(map(str, axes))
     rows = "n" if count is None else str(count)
     what = f"an array of shape ({rows}, {sizes})"
@@ -41,13 +41,13 @@ def vectors(name: str, value: ArrayLike, count: int | None = None, axes: tuple[i
 
 
 def point(name: str, value: ArrayLike) -> list[float]:
-    """A place or a velocity, (x, y) or (x, y, z), as three numbers."""
+    """A position or a velocity, (x, y) or (x, y, z), as three numbers."""
     x, y, z = vectors(name, np.asarray(value)[None], 1)[0]
     return [float(x), float(y), float(z)]
 
 
 def rows(name: str, value: ArrayLike | None, columns: int, what: str) -> Floats:
-    """A row of so many numbers per thing; none without a value."""
+    """Rows of `columns` numbers; no rows for `None`."""
     if value is None:
         return np.empty((0, columns))
     array = _array(name, value, f"an array of shape (m, {columns}): {what}")
@@ -57,7 +57,7 @@ def rows(name: str, value: ArrayLike | None, columns: int, what: str) -> Floats:
 
 
 def scalars(name: str, value: ArrayLike, count: int, least: float = 0.0) -> Floats:
-    """A number per robot, each at least `least`; one number stands for all."""
+    """One number per robot, each at least `least`; a single number applies to all."""
     what = f"a number, or an array of shape ({count},)"
     array = _array(name, value, what)
     if array.ndim == 0:
@@ -72,7 +72,7 @@ def scalars(name: str, value: ArrayLike, count: int, least: float = 0.0) -> Floa
 
 
 def number(name: str, value: Any, least: float, most: float = np.inf, above: bool = False) -> float:
-    """A number from `least` to `most`; with `above` more than `least`."""
+    """A number from `least` to `most`; with `above` it must be greater than `least`."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -85,12 +85,12 @@ def number(name: str, value: Any, least: float, most: float = np.inf, above: boo
 
 
 def mask(name: str, value: ArrayLike | None, count: int) -> NDArray[np.bool_]:
-    """A truth per robot; true for all without a value."""
+    """One boolean per robot; all true for `None`."""
     if value is None:
         return np.ones(count, dtype=np.bool_)
     array = np.asarray(value)
     if array.shape != (count,) or array.dtype != np.bool_:
-        raise ValueError(f"{name} has the shape {array.shape} and the type {array.dtype}; give {count} truths")
+        raise ValueError(f"{name} has the shape {array.shape} and the type {array.dtype}; give {count} booleans")
     return np.ascontiguousarray(array)
 
 
@@ -106,7 +106,7 @@ def whole(name: str, value: Any, least: int, most: int = 2**32 - 1) -> int:
 
 
 def cells(name: str, value: ArrayLike, count: int | None, width: int, height: int) -> NDArray[np.int16]:
-    """A cell (x, y) per robot, on a land of that size."""
+    """One cell (x, y) per robot on a map of `width` x `height` cells."""
     array = np.asarray(value)
     rows = "n" if count is None else str(count)
     is_shaped = array.ndim == 2 and array.shape[1] == 2 and (count is None or len(array) == count)
@@ -117,12 +117,12 @@ def cells(name: str, value: ArrayLike, count: int | None, width: int, height: in
     if is_off.any():
         index = int(np.flatnonzero(is_off)[0])
         x, y = array[index]
-        raise ValueError(f"{name}[{index}] is ({x}, {y}), off the land; give x below {width} and y below {height}")
+        raise ValueError(f"{name}[{index}] is ({x}, {y}), off the map; give x below {width} and y below {height}")
     return np.ascontiguousarray(array, dtype=np.int16)
 
 
 def toml(name: str, value: Any) -> str:
-    """A value as TOML has it."""
+    """Formats a value as TOML."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, np.integer)):
@@ -135,7 +135,7 @@ def toml(name: str, value: Any) -> str:
         return "{ " + ", ".join(f"{key} = {toml(f'{name}.{key}', inside)}" for key, inside in value.items()) + " }"
     if isinstance(value, (list, tuple, np.ndarray)):
         return "[" + ", ".join(toml(f"{name}[{index}]", inside) for index, inside in enumerate(value)) + "]"
-    raise ValueError(f"{name} is {value!r}; give a number, a truth, a text, or lists or dictionaries of them")
+    raise ValueError(f"{name} is {value!r}; give a number, a boolean, a string, or lists or dictionaries of them")
 
 
 def _escaped(letter: str) -> str:

@@ -1,4 +1,4 @@
-"""The compiled module: arguments come checked from the modules beside it."""
+"""The compiled module. The modules beside it check all arguments."""
 
 from os import PathLike
 from typing import Any, final
@@ -11,11 +11,11 @@ _Floats = NDArray[np.float64]
 __all__ = ["Avoiders", "Run", "ScenarioError", "boids_steer", "goal_wish", "lattice_acceleration", "route"]
 
 class ScenarioError(ValueError):
-    """A scenario that cannot be read or is wrong: file, line, field and remedy."""
+    """An unreadable or invalid scenario, with file, line, field and remedy."""
 
 @final
 class Run:
-    """A scenario in motion."""
+    """A scenario in progress."""
 
     def __new__(
         cls,
@@ -64,7 +64,7 @@ class Run:
 
 @final
 class Avoiders:
-    """The collision avoidance of each of many robots."""
+    """Collision avoidance of many robots."""
 
     def __new__(
         cls,

@@ -1,5 +1,4 @@
-"""The controller's behaviours by themselves, over all robots at once: ORCA and routes. The flocks are in
-`staya.flock`."""
+"""ORCA and routing of all robots at once. The flocking laws are in `staya.flock`."""
 
 from __future__ import annotations
 
@@ -16,19 +15,22 @@ Floats = NDArray[np.float64]
 
 
 class Orca:
-    """Optimal reciprocal collision avoidance (J. van den Berg and others 2011) of `count` robots, with what each
-    remembers from step to step.
+    """Optimal reciprocal collision avoidance (J. van den Berg and others 2011) of `count` robots,
+    with the memory of each robot between steps.
 
-    The memory is what ends symmetry and jams; `orca` is one step without. In the plane, or with `in_space` in space.
+    The memory resolves symmetric situations and jams; `orca` is a single step without memory. In
+    the plane, or in space with `in_space`.
 
-    - `horizon_s`, `wall_horizon_s`: time ahead for which no collision with robots, with obstacles may happen.
-      Longer gives way earlier and slows crowds; shorter than a body needs to stop is not safe.
-    - `share`: own share of a correction, 0.5 when all do the same; less is not safe.
-    - `margin`: kept on top of radii, metres.
-    - `lean_rad`: how far to the right of the wish to lean while somebody is in the way; 0.4 to 0.6, 0 never.
-    - `patience_radii`: for how long a gap is left to those whose turn it is; 4 to 16.
-    - `downwash`: in space, how many times as far as beside each other robots keep apart above each other.
-    - `seed`: of the draws that end ties.
+    - `horizon_s`, `wall_horizon_s`: time horizon without collisions with robots, with obstacles. A
+      longer horizon gives way earlier and slows dense swarms; one shorter than the stopping time is
+      unsafe.
+    - `share`: own share of a correction, 0.5 if all robots use the same value; less is unsafe.
+    - `margin`: extra distance beyond the radii, metres.
+    - `lean_rad`: rotation to the right of the preferred velocity while another robot is in the way;
+      0.4 to 0.6, 0 to disable.
+    - `patience_radii`: how long a gap is left to robots with the right of way; 4 to 16.
+    - `downwash`: in space, vertical distance of robots as a multiple of the horizontal one.
+    - `seed`: seed of the random numbers that break ties.
     """
 
     def __init__(
@@ -61,7 +63,7 @@ class Orca:
         )
 
     def __len__(self) -> int:
-        """How many robots there are."""
+        """Number of robots."""
         return self._count
 
     def __call__(
@@ -77,12 +79,13 @@ class Orca:
         walls: ArrayLike | None = None,
         discs: ArrayLike | None = None,
     ) -> Floats:
-        """The velocities to take for the next `step_s`: the nearest to `preferred` that others and obstacles permit.
+        """Returns the velocities for the next `step_s`: the permitted ones nearest to `preferred`.
 
-        `positions`, `velocities`, `preferred`, `goals` and the answer have the shape (n, 2), in space (n, 3);
-        `radii` and `max_speeds` are numbers or have the shape (n,). Near its goal nobody swerves. `walls` has rows
-        of from x, y to x, y, `discs` of x, y, radius. Each robot reckons with the 16 nearest that it could meet
-        within the horizon. O(16 n + n m) on all cores; the interpreter is free meanwhile.
+        `positions`, `velocities`, `preferred`, `goals` and the result have the shape (n, 2), in
+        space (n, 3). `radii` and `max_speeds` are numbers or have the shape (n,). Robots near their
+        goals do not lean. `walls` has rows of x, y to x, y, `discs` rows of x, y, radius. Each
+        robot considers the 16 nearest robots that it could meet within the horizon. O(16 n + n m)
+        on all cores, without the interpreter lock.
         """
         count, axes = self._count, self._axes
         best = self._avoiders.velocities(
@@ -92,7 +95,7 @@ class Orca:
             None if goals is None else _check.vectors("goals", goals, count, axes),
             _check.scalars("radii", radii, count),
             _check.scalars("max_speeds", max_speeds, count),
-            _check.rows("walls", walls, 4, "from x, y to x, y"),
+            _check.rows("walls", walls, 4, "x, y to x, y"),
             _check.rows("discs", discs, 3, "x, y, radius"),
             _check.number("step_s", step_s, 0.0, above=True),
         )
@@ -118,7 +121,7 @@ def orca(
     lean_rad: float = 0.46,
     downwash: float = 1.0,
 ) -> Floats:
-    """One step of `Orca` that remembers nothing; see there for parameters, and its call for arrays."""
+    """One step of `Orca` without memory. `Orca` describes the parameters, its call the arrays."""
     avoid = Orca(
         len(_check.vectors("positions", positions, axes=(3,) if in_space else (2,))),
         in_space=in_space,
@@ -143,14 +146,14 @@ def orca(
 
 
 class Routes(NamedTuple):
-    """Ways of robots, in the order of their starts."""
+    """Paths of robots, in the order of their starts."""
 
     paths: list[NDArray[np.int16]]
-    """The cells of each way, start included: shape (k, 2), x and y."""
+    """Cells of each path with its start: shape (k, 2), x and y."""
     ticks: Floats
-    """Travel times: length times impassability of the cell entered, over all moves."""
+    """Travel times: length times impassability of the entered cell, summed over all moves."""
     arrived: NDArray[np.bool_]
-    """Who reached its goal."""
+    """Whether each robot reached its goal."""
 
 
 def route(
@@ -167,14 +170,14 @@ def route(
     norm: Literal["euclidean", "chebyshev"] = "euclidean",
     corner_cutting: bool = False,
 ) -> Routes:
-    """Walks each robot from its start to its goal by what it sees of the land (A. V. Kuznetsov 2017), as if it were
-    alone.
+    """Moves each robot from its start to its goal with limited knowledge of the map (A. V.
+    Kuznetsov 2017), without other robots.
 
-    `land[y, x]` is how many ticks it takes to cross a cell, 0 a wall, row 0 in the south; `starts` and `goals` are
-    cells (x, y), shape (n, 2). A robot sees `radius` cells around it (1 to 16), remembers where it was, and learns
-    from dead ends. `a0` to `a3` weigh travel time, other robots, earlier visits and the distance from where a way
-    leaves the window to the goal, 0 to 4095. Bounded: at most 200 moves per cell of width + height. On all cores;
-    the interpreter is free meanwhile.
+    `land[y, x]` is the number of ticks to cross a cell, 0 for a wall, row 0 in the south. `starts`
+    and `goals` are cells (x, y), shape (n, 2). A robot sees `radius` cells around it (1 to 16),
+    remembers its path, and learns from dead ends. `a0` to `a3` are the weights, from 0 to 4095, of
+    travel time, other robots, earlier visits, and the distance between goal and exit of the window.
+    At most 200 moves per cell of width + height. Runs on all cores, without the interpreter lock.
     """
     array = np.asarray(land)
     if array.ndim != 2 or not np.issubdtype(array.dtype, np.integer):
@@ -192,7 +195,7 @@ def route(
         blocked = np.flatnonzero(array[cells[:, 1], cells[:, 0]] == 0)
         if len(blocked):
             x, y = cells[blocked[0]]
-            raise ValueError(f"{name}[{blocked[0]}] is ({x}, {y}), in a wall; give a cell whose land is not 0")
+            raise ValueError(f"{name}[{blocked[0]}] is ({x}, {y}), in a wall; give a cell that is not 0")
     for name, value, known in [("exit", exit, ("best", "ray")), ("norm", norm, ("euclidean", "chebyshev"))]:
         if value not in known:
             raise ValueError(f"{name} is {value!r}; give {known[0]!r} or {known[1]!r}")

@@ -1,4 +1,4 @@
-"""The laws of the flocks, one step of all robots at once. Each robot sees the 16 nearest within its range."""
+"""Flocking laws, one step of all robots at once. Each robot sees the 16 nearest robots in range."""
 
 from __future__ import annotations
 
@@ -32,20 +32,22 @@ def lattice(
     beta: Gain = 200.0,
     gamma: Gain = 2.0,
 ) -> Floats:
-    """Accelerations of a flock that settles at equal distances, m/s^2 (R. Olfati-Saber 2006, algorithms 1 to 3).
+    """Accelerations of a flock that settles at equal distances, m/s^2 (R. Olfati-Saber 2006,
+    algorithms 1 to 3).
 
-    `positions` and `velocities` have the shape (n, 2) or (n, 3), the answer that of `positions`. `spacing` is the
-    distance of neighbours, 0.01 to 100 m; they count up to `range_ratio` times that, obstacles up to
-    `obstacle_ratio` times. `reference` is the place that pulls the flock, with its velocity. The gains `alpha`
-    (others), `beta` (obstacles) and `gamma` (reference) are one on places, 1/s^2, with critical damping, or a pair
-    with that on velocities, 1/s. `walls` has rows of from x, y to x, y, `discs` of x, y, radius. Not bounded by
-    what bodies can do, and knows no bodies: put a safety layer behind it.
+    `positions` and `velocities` have the shape (n, 2) or (n, 3), the result that of `positions`.
+    `spacing` is the distance of neighbours, 0.01 to 100 m. Robots interact up to `range_ratio`
+    times that, obstacles up to `obstacle_ratio` times. `reference` is a point that attracts the
+    flock, with its velocity. The gains `alpha` (neighbours), `beta` (obstacles) and `gamma`
+    (reference) are one number for positions, 1/s^2, with critical damping, or a pair with one for
+    velocities, 1/s. `walls` has rows of x, y to x, y, `discs` rows of x, y, radius. The law ignores
+    the limits and sizes of bodies: use it with a safety layer.
     """
     places = _check.vectors("positions", positions)
     if algorithm not in (1, 2, 3):
         raise ValueError(f"algorithm is {algorithm!r}; give 1, 2 or 3")
     if reference is None and reference_velocity is not None:
-        raise ValueError("reference_velocity is given without a reference; give both, or none")
+        raise ValueError("reference_velocity is given without a reference; give both, or neither")
     leads = None
     if reference is not None:
         still = np.zeros(np.shape(reference)) if reference_velocity is None else reference_velocity
@@ -54,7 +56,7 @@ def lattice(
         places,
         _check.vectors("velocities", velocities, len(places)),
         leads,
-        _check.rows("walls", walls, 4, "from x, y to x, y"),
+        _check.rows("walls", walls, 4, "x, y to x, y"),
         _check.rows("discs", discs, 3, "x, y, radius"),
         algorithm,
         float(spacing),
@@ -77,12 +79,14 @@ def goal(
     center_gain: float = 0.5,
     repulsion_gain: float = 1.0,
 ) -> Floats:
-    """Velocities that robots wish for who go to goals together, m/s (V. E. and V. V. Pavlovsky).
+    """Preferred velocities of robots that move to goals as a flock, m/s (V. E. and V. V.
+    Pavlovsky).
 
-    `positions` and `goals` have the shape (n, 2) or (n, 3), the answer that of `positions`; one goal, shape (1, 2)
-    or (1, 3), is for all. `min_distance` is the least distance of two centres, `neighborhood` how far others are
-    seen (4 times that without it, at least 2 times), metres. Only the ratios of the gains matter: pull of the goal,
-    of the middle of the neighbours, push of those too near.
+    `positions` and `goals` have the shape (n, 2) or (n, 3), the result that of `positions`; one
+    goal of shape (1, 2) or (1, 3) applies to all. `min_distance` is the smallest distance of two
+    centres, `neighborhood` the sensing range (default 4 times that, at least 2 times), metres. Only
+    the ratios of the gains matter: attraction of the goal, attraction of the neighbours' centre,
+    repulsion of close robots.
     """
     places = _check.vectors("positions", positions)
     shape = np.shape(goals)
@@ -112,9 +116,9 @@ def boids(
 ) -> Floats:
     """Headings of boids one step later, unit vectors of shape (n, 2) (V. A. Starovoitova 2018).
 
-    `positions` and `headings` have the shape (n, 2). Nearer than `crowded` a boid turns away, up to `closest` a
-    neighbour counts, metres; `max_turn` and `max_turn_away` are the largest turns in a step, radians. On a torus
-    with these circumferences if `torus` is given.
+    `positions` and `headings` have the shape (n, 2). A boid turns away from neighbours nearer than
+    `crowded` and considers neighbours up to `closest`, metres. `max_turn` and `max_turn_away` are
+    the largest turns in a step, radians. `torus` gives the circumferences of a torus.
     """
     places = _check.vectors("positions", positions, axes=(2,))
     sides = None if torus is None else _sides(torus)

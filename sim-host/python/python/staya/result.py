@@ -1,4 +1,4 @@
-"""What came of a run."""
+"""Results of a run."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ _WAITS = np.array(["formation", "request", "way", "radio", "turn", "others", "pl
 
 
 def figures(run: Run) -> dict[str, Any]:
-    """The figures of a run so far, as `staya run --json` prints them."""
+    """The summary of a run so far, as printed by `staya run --json`."""
     summary: dict[str, Any] = json.loads(run.summary())
     return summary
 
 
 class Page:
-    """A run as one HTML page, which needs no server and no network; in Jupyter it shows itself."""
+    """A run as one HTML page without server and network; displayed inline in Jupyter."""
 
     def __init__(self, text: str) -> None:
         self.html = text
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes the page."""
+        """Writes the page to a file."""
         Path(path).write_text(self.html, encoding="utf-8")
 
     def _repr_html_(self, height_px: int = 480) -> str:
@@ -48,11 +48,11 @@ class Page:
 
 
 class Result:
-    """What came of a run: `summary` has the figures, `trace` a line per robot and sampled tick, `series` a line per
-    tick.
+    """Results of a run: `summary`, `trace` with a line per robot and sampled tick, `series` with a
+    line per tick.
 
-    Tables are dictionaries of numpy arrays with the names of the files of `staya run`; `to_pandas` and `to_polars`
-    make frames of them.
+    Tables are dictionaries of numpy arrays named like the columns of `staya run`'s files;
+    `to_pandas` and `to_polars` convert them.
     """
 
     def __init__(
@@ -68,26 +68,26 @@ class Result:
 
     @property
     def trace_hash(self) -> str:
-        """The fingerprint of the run, 16 hex digits."""
+        """Trace hash of the run, 16 hex digits."""
         return str(self.summary["trace_hash"])
 
     def to_pandas(self, table: Table = "trace") -> pandas.DataFrame:
-        """A table as a frame of pandas, which must be installed."""
+        """A table as a pandas DataFrame; needs pandas."""
         import pandas
 
         return pandas.DataFrame(self._table(table))
 
     def to_polars(self, table: Table = "trace") -> polars.DataFrame:
-        """A table as a frame of polars, which must be installed."""
+        """A table as a polars DataFrame; needs polars."""
         import polars
 
         return polars.DataFrame(self._table(table))
 
     def page(self) -> Page:
-        """The run as a page; it must have been recorded."""
+        """The run as a page; the simulation must record."""
         text = None if self._page is None else self._page()
         if text is None:
-            raise ValueError("nothing was recorded; give record=1 when the simulation is made")
+            raise ValueError("nothing was recorded; give record=1 when you create the simulation")
         return Page(text)
 
     def _table(self, table: Table) -> Columns:

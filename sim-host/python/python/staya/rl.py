@@ -1,17 +1,19 @@
-"""Environments for reinforcement learning, of any scenario in the plane or in space whose robots have goals; the
-extra `rl`.
+"""Environments for reinforcement learning with any scenario in the plane or in space whose robots
+have goals; needs the extra `rl`.
 
-`SwarmEnv` is a Gymnasium environment in which one agent steers all robots, `SwarmVectorEnv` many of those at once,
-`RobotsEnv` a PettingZoo parallel environment in which each robot is an agent. What an agent says is a wish: behind
-it each robot's own collision avoidance and radio work as ever.
+`SwarmEnv` is a Gymnasium environment in which one agent controls all robots, `SwarmVectorEnv` runs
+many of these at once, and `RobotsEnv` is a PettingZoo parallel environment with one agent per
+robot. Actions are preferred velocities: the collision avoidance and radio of each robot stay in
+effect.
 
-- An action is a velocity per robot, each component from -1 to 1 times the robot's highest speed.
-- An observation is, per robot: its velocity over its highest speed, the way to its goal over 10 m, then for each of
-  the `neighbors` nearest robots the way to it over 10 m and its velocity over the own highest speed; all cut to -1
-  to 1. Where there are fewer neighbours, the rest is 0. It is the truth, not what the radio brings.
-- A reward is, per robot, the way that it came nearer to its goal over the way that it can go in a step, and -1 if
-  it overlaps another one.
-- A robot is done within `tolerance` metres of its goal; then it stands.
+- Action: a velocity per robot, each component from -1 to 1 times the robot's highest speed.
+- Observation per robot: its velocity over its highest speed, the vector to its goal over 10 m, then
+  for each of the `neighbors` nearest robots the vector to it over 10 m and its velocity over the
+  own highest speed. All values are clipped to -1 to 1, and 0 for missing neighbours. Positions are
+  exact, not those received by radio.
+- Reward per robot: the approach to its goal over the distance that it can move in a step, and -1
+  for an overlap with another robot.
+- A robot is done within `tolerance` metres of its goal, and then stops.
 """
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ _FAR_M = 10.0
 
 
 class _Swarm:
-    """A scenario that begins anew, as numbers per robot."""
+    """A scenario that can be restarted, with its state as numbers per robot."""
 
     def __init__(
         self, scenario: str | os.PathLike[str], neighbors: int, ticks_per_step: int, tolerance: float, fields: Any
@@ -48,11 +50,11 @@ class _Swarm:
         self.begin(None)
         if not (np.isfinite(self.sim.goals).all() and np.isfinite(self.sim.max_speeds).all()):
             raise ValueError(
-                "scenario has robots without a goal, or without [plane]; give one in which all have a place to go to"
+                "scenario has robots without a goal, or without [plane]; give one in which all robots have goals"
             )
 
     def begin(self, seed: int | None) -> None:
-        """Makes the run anew."""
+        """Restarts the run."""
         self.sim = Simulation(self._scenario, seed=seed, **self._fields)
         places = np.concatenate([self.sim.positions, self.sim.goals])
         self.axes = 3 if (places[:, 2] != 0).any() else 2
@@ -69,11 +71,11 @@ class _Swarm:
 
     @property
     def width(self) -> int:
-        """Numbers of an observation of one robot."""
+        """Length of one robot's observation."""
         return self.axes * (2 + 2 * self._neighbors)
 
     def observe(self) -> Floats:
-        """Observations: shape (n, width)."""
+        """Observations of shape (n, width)."""
         sim, axes = self.sim, self.axes
         count, most = len(sim), min(self._neighbors, len(sim) - 1)
         top = sim.max_speeds[:, None]
@@ -89,7 +91,7 @@ class _Swarm:
         return np.clip(seen, -1.0, 1.0, out=seen)
 
     def act(self, actions: NDArray[Any]) -> NDArray[np.float64]:
-        """A step; returns rewards, shape (n,). Those that are done stand, and have 0."""
+        """Does a step. Returns the rewards, shape (n,); robots that are done stop and get 0."""
         sim, was_done, before = self.sim, self.done, self._distance
         wishes = np.clip(actions, -1.0, 1.0) * sim.max_speeds[:, None]
         wishes = np.where(was_done[:, None], 0.0, wishes)
@@ -113,11 +115,11 @@ def _box(*shape: int) -> spaces.Box:
 
 
 class SwarmEnv(gymnasium.Env[Any, Any]):
-    """A scenario in which one agent steers all robots: actions of shape (n, 2) or (n, 3), the reward is the mean of
-    theirs.
+    """A scenario in which one agent controls all robots: actions of shape (n, 2) or (n, 3), the
+    reward is the mean over robots.
 
-    A scenario's fields can be said otherwise as in `Simulation`. An episode is terminated when all robots are done,
-    truncated when the scenario's ticks are used up; each has another seed.
+    Scenario fields can be overridden as in `Simulation`. An episode is terminated when all robots
+    are done and truncated when the scenario's ticks are used up. Each episode has another seed.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -142,13 +144,13 @@ class SwarmEnv(gymnasium.Env[Any, Any]):
         return self._swarm.sim
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
-        """Begins an episode."""
+        """Starts an episode."""
         super().reset(seed=seed, options=options)
         self._swarm.begin(int(self.np_random.integers(2**31)))
         return self._swarm.observe(), self._info()
 
     def step(self, action: Floats) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
-        """A step of all robots."""
+        """Does a step of all robots."""
         reward = float(self._swarm.act(action).mean())
         swarm = self._swarm
         return swarm.observe(), reward, bool(swarm.done.all()), swarm.is_out_of_time, self._info()
@@ -158,8 +160,8 @@ class SwarmEnv(gymnasium.Env[Any, Any]):
 
 
 class SwarmVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
-    """`num_envs` swarms at once, each with a run of its own; they step on all cores. The next step after an
-    episode's end begins another (Gymnasium's `AutoresetMode.NEXT_STEP`); the same numbers as
+    """`num_envs` independent swarms, stepped on all cores. The step after the end of an episode
+    starts the next one (Gymnasium's `AutoresetMode.NEXT_STEP`). The numbers equal those of
     `gymnasium.vector.SyncVectorEnv` over `SwarmEnv`."""
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -177,7 +179,7 @@ class SwarmVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
-        """Begins an episode in each; of one seed each gets another."""
+        """Starts an episode in each environment; one seed gives each environment a different one."""
         if seed is None or isinstance(seed, int):
             seeds = [None if seed is None else seed + index for index in range(self.num_envs)]
         else:
@@ -189,7 +191,7 @@ class SwarmVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return np.stack([seen for seen, _ in began]), self._infos([info for _, info in began])
 
     def step(self, actions: Floats) -> tuple[Floats, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
-        """A step of all swarms."""
+        """Does a step of all swarms."""
 
         def one(index: int) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
             env = self._envs[index]
@@ -210,13 +212,13 @@ class SwarmVectorEnv(VectorEnv[Any, Any, NDArray[Any]]):
         return gathered
 
     def close_extras(self, **_: Any) -> None:
-        """Ends the threads."""
+        """Stops the threads."""
         self._threads.shutdown()
 
 
 class RobotsEnv(pettingzoo.ParallelEnv[str, Any, Any]):
-    """A scenario in which each robot is an agent, `robot_1` and so on by its number, with an action of shape (2,)
-    or (3,).
+    """A scenario in which each robot is an agent, `robot_1` and so on by its number, with an action
+    of shape (2,) or (3,).
 
     An agent is terminated when it is done; all are truncated when the scenario's ticks are used up.
     """
@@ -247,17 +249,17 @@ class RobotsEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         return self._swarm.sim
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
-        """The observations of an agent."""
+        """Observation space of an agent."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> spaces.Space[Any]:
-        """The actions of an agent."""
+        """Action space of an agent."""
         return self.action_spaces[agent]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Floats], dict[str, dict[str, Any]]]:
-        """Begins an episode."""
+        """Starts an episode."""
         if seed is not None:
             self._random = np.random.default_rng(seed)
         self._swarm.begin(int(self._random.integers(2**31)))
@@ -267,7 +269,7 @@ class RobotsEnv(pettingzoo.ParallelEnv[str, Any, Any]):
     def step(
         self, actions: dict[str, Floats]
     ) -> tuple[dict[str, Floats], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
-        """A step of all robots; those without an action stand."""
+        """Does a step of all robots; robots without an action stop."""
         wishes = np.zeros((len(self.possible_agents), self._swarm.axes))
         for agent, action in actions.items():
             wishes[self._index[agent]] = action
@@ -285,7 +287,7 @@ class RobotsEnv(pettingzoo.ParallelEnv[str, Any, Any]):
         return {agent: seen[self._index[agent]].copy() for agent in self.agents}
 
     def render(self) -> None:
-        """Draws nothing: `simulation` of a scenario that is recorded has a page."""
+        """Draws nothing; use `simulation.page()` of a recording scenario."""
 
     def close(self) -> None:
-        """Nothing is left open."""
+        """Does nothing; there are no resources to release."""

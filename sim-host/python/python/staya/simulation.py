@@ -1,4 +1,4 @@
-"""A scenario in motion."""
+"""Interactive runs of scenarios."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Guidance = Callable[["Simulation"], ArrayLike]
 
 
 class Mode(enum.IntEnum):
-    """What a robot is doing as a whole, as in `Simulation.modes`."""
+    """The mode of a robot in `Simulation.modes`."""
 
     IDLE = 0
     FORMING = 1
@@ -31,12 +31,13 @@ class Mode(enum.IntEnum):
 
 
 class Simulation:
-    """A scenario before its first tick: `Simulation("scenarios/six-robots.toml", seed=3, radio__loss=0.3)`.
+    """A scenario before its first tick: `Simulation("scenarios/six-robots.toml", seed=3,
+    radio__loss=0.3)`.
 
-    Whatever a scenario says can be said otherwise, by its name with `__` for each dot, or in a dictionary as
-    `overrides={"plane.group[0].count": 40}`. With `record=N` every N-th tick is kept for `page`. The run is, to the
-    bit, the one of the command `staya run`, as long as nobody commands. Raises `ScenarioError`, which names file,
-    line, field and remedy.
+    Keyword arguments override scenario fields, with `__` for each dot; other names fit into
+    `overrides={"plane.group[0].count": 40}`. With `record=N` every N-th tick is kept for `page`.
+    Without commands the run equals that of `staya run`, bit for bit. Raises `ScenarioError` with
+    file, line, field and remedy.
     """
 
     def __init__(
@@ -53,7 +54,7 @@ class Simulation:
         try:
             text = path.read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
-            raise ScenarioError(f"cannot read {path}: {error}; give the name of a scenario's file") from None
+            raise ScenarioError(f"cannot read {path}: {error}; give the path of a scenario") from None
         self._begin(text, path, seed, ticks, record, {**(overrides or {}), **_fields(fields)})
 
     @classmethod
@@ -68,7 +69,7 @@ class Simulation:
         overrides: dict[str, Any] | None = None,
         **fields: Any,
     ) -> Simulation:
-        """The same of a scenario's text; files that it names are looked for in `folder`."""
+        """Creates a simulation from the text of a scenario; relative paths refer to `folder`."""
         self = cls.__new__(cls)
         self._begin(text, Path(folder, "scenario.toml"), seed, ticks, record, {**(overrides or {}), **_fields(fields)})
         return self
@@ -91,27 +92,27 @@ class Simulation:
         return f"<Simulation {self.name!r}: {len(self)} robots, tick {self.tick} of {self.ticks}>"
 
     def __len__(self) -> int:
-        """How many robots there are; everything per robot is in the order of `ids`."""
+        """Number of robots. Arrays per robot are in the order of `ids`."""
         return len(self._ids)
 
     @property
     def name(self) -> str:
-        """The scenario's name."""
+        """Name of the scenario."""
         return self._run.name
 
     @property
     def seed(self) -> int:
-        """The seed of everything random."""
+        """Seed of all random numbers."""
         return self._run.seed
 
     @property
     def tick(self) -> int:
-        """Ticks done."""
+        """Number of ticks done."""
         return self._run.tick
 
     @property
     def ticks(self) -> int:
-        """Ticks after which `run` ends."""
+        """Number of ticks after which `run` ends."""
         return self._run.ticks
 
     @property
@@ -126,65 +127,65 @@ class Simulation:
 
     @property
     def is_over(self) -> bool:
-        """Whether `run` would do nothing: all have arrived, or the ticks are used up."""
+        """Whether `run` would do nothing: all robots have arrived, or the ticks are used up."""
         return self._run.is_over
 
     @property
     def trace_hash(self) -> str:
-        """The fingerprint of everything that robots did, 16 hex digits: equal for equal runs on any machine."""
+        """Trace hash, 16 hex digits: equal for equal runs on any machine."""
         return self._run.trace_hash
 
     @property
     def ids(self) -> NDArray[np.uint32]:
-        """Robots' numbers, rising: shape (n,)."""
+        """Robot numbers, rising: shape (n,)."""
         return self._ids
 
     @property
     def radii(self) -> NDArray[np.float64]:
-        """Radii of bodies, metres: shape (n,); NaN where they go from cell to cell."""
+        """Radii, metres: shape (n,); NaN on a grid."""
         return self._bodies[:, 0]
 
     @property
     def max_speeds(self) -> NDArray[np.float64]:
-        """Highest speeds of bodies, m/s: shape (n,); NaN where they go from cell to cell."""
+        """Highest speeds, m/s: shape (n,); NaN on a grid."""
         return self._bodies[:, 1]
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """Where robots are, metres: shape (n, 3), an array of its own."""
+        """Positions, metres: shape (n, 3), a copy."""
         return self._run.positions()
 
     @property
     def velocities(self) -> NDArray[np.float64]:
-        """How robots move, m/s: shape (n, 3), an array of its own."""
+        """Velocities, m/s: shape (n, 3), a copy."""
         return self._run.velocities()
 
     @property
     def goals(self) -> NDArray[np.float64]:
-        """Where robots are to go, metres: shape (n, 3); NaN: nowhere in particular."""
+        """Goals, metres: shape (n, 3); NaN for none."""
         return self._run.goals()
 
     @property
     def modes(self) -> NDArray[np.uint8]:
-        """What robots are doing: shape (n,), each a `Mode`."""
+        """Modes: shape (n,), each a `Mode`."""
         return self._run.modes()
 
     @property
     def is_up(self) -> NDArray[np.bool_]:
-        """Whose computers run: shape (n,)."""
+        """Whether each robot's computer runs: shape (n,)."""
         return self._run.is_up()
 
     @property
     def neighbors(self) -> NDArray[np.uint32]:
-        """How many others each robot knows of by radio: shape (n,)."""
+        """Number of neighbours that each robot knows by radio: shape (n,)."""
         return self._run.neighbors()
 
     def step(self, n: int = 1, *, guidance: Guidance | None = None) -> None:
-        """Does `n` ticks, also beyond the end of the run; the interpreter is free meanwhile, and Ctrl-C ends it
-        after a tick.
+        """Does `n` ticks, also beyond the end of the run, without the interpreter lock. Ctrl-C
+        stops it after a tick.
 
-        With `guidance` each tick begins with `wish(guidance(self))`: your own law over all robots, behind the
-        robots' own collision avoidance and with what their radio brings.
+        With `guidance` each tick begins with `wish(guidance(self))`: your own law over all robots.
+        The robots' collision avoidance and radio stay in effect.
         """
         n = _check.whole("n", n, 0)
         if guidance is None:
@@ -194,11 +195,11 @@ class Simulation:
             self._run.step(1)
 
     def run(self, *, every: int | None = None, guidance: Guidance | None = None, until: int | None = None) -> Result:
-        """Goes on to the end of the run, or up to tick `until`: a result with the figures, and the trace from here
-        on.
+        """Runs to the end or to tick `until`. Returns the summary, and the trace from the present
+        tick.
 
-        Robots' lines are kept every `every` ticks; without it, as `staya run` does, one line per robot and tick for
-        each started thousand robots. Memory: 78 bytes a line.
+        The trace has the robots' lines every `every` ticks; by default every n-th tick for up to n
+        thousand robots, as in `staya run`. Memory: 78 bytes per line.
         """
         every = 0 if every is None else _check.whole("every", every, 1)
         until = None if until is None else _check.whole("until", until, 0)
@@ -215,54 +216,58 @@ class Simulation:
         return Result(columns, figures(self._run), self._run.page if self._run.records else None)
 
     def wish(self, velocities: ArrayLike, *, mask: Sequence[bool] | NDArray[np.bool_] | None = None) -> None:
-        """Tells robots which velocities to wish for from now on, m/s: shape (n, 2) or (n, 3); those where `mask` is
-        false follow their own law. What they then do is up to their safety layers. Only in the plane or in
-        space."""
+        """Sets the preferred velocities from now on, m/s: shape (n, 2) or (n, 3). Robots whose
+        `mask` is false follow their own law. The safety layers stay in effect. Only in the plane or
+        in space."""
         wishes = _check.vectors("velocities", velocities, len(self))
         self._run.wish(wishes, _check.mask("mask", mask, len(self)))
 
     def release(self) -> None:
-        """Lets all robots follow their own laws again."""
+        """Makes all robots follow their own laws again."""
         self._run.wish(np.zeros((len(self), 3)), np.zeros(len(self), dtype=np.bool_))
 
     def order(self, kind: str, **fields: Any) -> None:
-        """Does what `[[intervention]]` in a scenario does, before the next tick: `order("goal", robot=3,
+        """Does an `[[intervention]]` of scenarios before the next tick: `order("goal", robot=3,
         place_m=[4, 5, 0])`.
 
-        Kinds and their fields are in scenarios/README.md. Robots go by their numbers (`ids`).
+        scenarios/README.md lists kinds and fields. Robots are identified by number (`ids`).
         """
         given = {name: value for name, value in fields.items() if value is not None}
         self._run.intervene(f"order = {_check.toml('order', {'kind': kind, **given})}")
 
     def set_goal(self, place: ArrayLike, robot: int | None = None) -> None:
-        """Gives a robot another goal, metres, or all robots; a formation keeps its shape around that of its first."""
+        """Sets the goal of one robot or of all, metres. A formation keeps its shape around its
+        first robot's goal."""
         self.order("goal", robot=robot, place_m=_check.point("place", place))
 
     def set_parameter(self, name: str, value: float, robot: int | None = None) -> None:
-        """Changes a parameter of the guidance law or the safety layer, of a robot or of all that have it."""
+        """Sets a parameter of the guidance law or the safety layer, for one robot or all that have
+        it."""
         self.order("parameter", robot=robot, name=name, value=value)
 
     def set_radio(self, *, loss: float | None = None, range_m: float | None = None) -> None:
-        """Changes the radio for everybody: probability of loss, farthest distance in metres."""
+        """Sets the radio's probability of loss and range in metres."""
         self.order("radio", loss=loss, range_m=None if range_m is None else float(range_m))
 
     def take_down(self, robot: int, for_s: float | None = None) -> None:
-        """Stops a robot's computer for so many seconds, or for good: it stands and is silent."""
+        """Turns a robot's computer off for `for_s` seconds, or for good: the robot stops and is
+        silent."""
         self.order("down", robot=robot, for_s=for_s)
 
     def page(self) -> Page:
-        """What was recorded so far, as one HTML page that plays in any browser and shows itself in Jupyter."""
+        """The recording so far as one HTML page that plays in any browser; displayed inline in
+        Jupyter."""
         html = self._run.page()
         if html is None:
-            raise ValueError("nothing was recorded; give record=1 when the simulation is made")
+            raise ValueError("nothing was recorded; give record=1 when you create the simulation")
         return Page(html)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the scenario with all orders, so that `staya run` makes the same run of it. File names in it are
-        relative to the folder of the scenario that it was made of."""
+        """Writes the scenario with all orders, with which `staya run` repeats this run. Relative
+        paths in it refer to the folder of the original scenario."""
         if self._run.has_wishes:
             raise ValueError(
-                "robots were told velocities, which no scenario can say; give orders instead, or keep the program"
+                "velocities set by `wish` cannot be saved in a scenario; use orders instead, or keep the program"
             )
         Path(path).write_text(self._run.scenario_text(), encoding="utf-8")
 

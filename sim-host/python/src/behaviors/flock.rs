@@ -1,4 +1,4 @@
-//! The laws of the flocks, one step of all robots at once.
+//! Flocking laws, one step of all robots at once.
 
 use super::{Neighborhood, Obstacles, Robots, array, rows, vector};
 use crate::simulation;
@@ -12,14 +12,13 @@ use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, Reference
 use staya_controller::geom::{Position, Vec2};
 use staya_controller::robot::RobotId;
 
-/// Robots that a thread takes at least at a time.
 const BATCH: usize = 64;
 
-/// Accelerations of an alpha flock, m/s^2 (R. Olfati-Saber 2006). `gains` are alpha, beta and gamma, each on positions and on
-/// velocities. On all cores, without Python's interpreter.
+/// Accelerations of an alpha flock, m/s^2 (R. Olfati-Saber 2006). `gains` are alpha, beta and
+/// gamma, each for positions and for velocities. Runs on all cores, without the interpreter lock.
 ///
 /// # Errors
-/// Parameters that the law refuses.
+/// `ValueError` for parameters that the law refuses.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn lattice_acceleration<'py>(
@@ -81,11 +80,12 @@ pub fn lattice_acceleration<'py>(
     Ok(simulation::rows(py, answers.into_iter()))
 }
 
-/// Velocities that robots of a goal flock wish for, m/s (V. E. and V. V. Pavlovsky). `gains` are those of the goal, of the middle of
-/// the neighbours and of repulsion. On all cores, without Python's interpreter.
+/// Preferred velocities of a goal flock, m/s (V. E. and V. V. Pavlovsky). `gains` are those of the
+/// goal, of the neighbours' centre and of repulsion. Runs on all cores, without the interpreter
+/// lock.
 ///
 /// # Errors
-/// Parameters that the law refuses.
+/// `ValueError` for parameters that the law refuses.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn goal_wish<'py>(
@@ -125,11 +125,12 @@ pub fn goal_wish<'py>(
     Ok(simulation::rows(py, wishes.into_iter()))
 }
 
-/// Headings of boids one step later, unit vectors (V. A. Starovoitova 2018). `values` are crowded and closest, metres, and the largest turns to the
-/// others and away from one, radians. On all cores, without Python's interpreter.
+/// Headings of boids one step later, unit vectors (V. A. Starovoitova 2018). `values` are crowded
+/// and closest, metres, and the largest turns towards and away from neighbours, radians. Runs on
+/// all cores, without the interpreter lock.
 ///
 /// # Errors
-/// Arrays that cannot be read.
+/// `ValueError` for arrays that cannot be read.
 #[pyfunction]
 pub fn boids_steer<'py>(
     py: Python<'py>,
@@ -143,7 +144,7 @@ pub fn boids_steer<'py>(
     let params = BoidsParams::new(crowded_m, closest_m, turn, turn_away);
     let (positions_m, headings, radii_m) = (rows::<3>(&positions_m)?, rows::<3>(&headings)?, radii_m.as_slice()?);
     let next = py.detach(|| {
-        // All have one speed, so that headings do for velocities.
+        // All boids have one speed, so headings replace velocities.
         let robots = Robots { positions_m, velocities_mps: headings, radii_m };
         let neighborhood = Neighborhood::new(robots, f64::from(closest_m), torus_m);
         let each = (0..positions_m.len()).into_par_iter().with_min_len(BATCH);

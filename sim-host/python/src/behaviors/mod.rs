@@ -1,4 +1,5 @@
-//! The controller's behaviours by themselves, over all robots at once: whom a robot has near by is looked up here, not heard.
+//! Single behaviours of the controller, applied to all robots at once. Neighbours come from exact
+//! positions, not from a radio.
 
 pub mod flock;
 pub mod orca;
@@ -12,14 +13,12 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::{Mode, RobotId};
 use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 
-/// Robots as arrays say them: rows of three, m and m/s.
 pub(super) struct Robots<'a> {
     pub positions_m: &'a [[f64; 3]],
     pub velocities_mps: &'a [[f64; 3]],
     pub radii_m: &'a [f64],
 }
 
-/// What stands in the way, in the plane, as rows of arrays.
 pub(super) struct Obstacles<'a> {
     /// From (x, y) to (x, y).
     pub walls_m: &'a [[f64; 4]],
@@ -27,7 +26,6 @@ pub(super) struct Obstacles<'a> {
     pub discs_m: &'a [[f64; 3]],
 }
 
-/// Who is near whom.
 pub(super) struct Neighborhood<'a> {
     robots: Robots<'a>,
     range_m: f64,
@@ -35,7 +33,7 @@ pub(super) struct Neighborhood<'a> {
 }
 
 impl<'a> Neighborhood<'a> {
-    /// Robots that see each other up to a distance. On a torus with these circumferences in the plane, if they are given.
+    /// Creates a search with a range, on a torus if circumferences are given.
     pub fn new(robots: Robots<'a>, range_m: f64, torus_m: Option<[f64; 2]>) -> Self {
         let torus = torus_m.and_then(|[x, y]| Space::torus([x, y, f64::MAX]));
         let mut cells = Cells::new(torus.unwrap_or(Space::OPEN), range_m);
@@ -43,7 +41,8 @@ impl<'a> Neighborhood<'a> {
         Self { robots, range_m, cells }
     }
 
-    /// The nearest robots around robot `index`, nearest first, as many as an agent knows. `found` is scratch.
+    /// The nearest robots around robot `index`, nearest first, up to the capacity of an agent.
+    /// `found` is scratch memory.
     pub fn of(&self, index: usize, found: &mut Vec<Found<f64, 3>>) -> heapless::Vec<Nearby<f32>, NEIGHBORS> {
         let query = Query {
             at: self.robots.positions_m[index],
@@ -68,7 +67,7 @@ impl<'a> Neighborhood<'a> {
         }
     }
 
-    /// The body of robot `index`, as fast as that and without inertia unless it is told otherwise.
+    /// The body of robot `index` without inertia.
     pub fn body(&self, index: usize, max_speed_mps: f64, step_s: f64) -> Body<f32> {
         Body {
             id: id(index),
@@ -82,7 +81,6 @@ impl<'a> Neighborhood<'a> {
 }
 
 impl Obstacles<'_> {
-    /// As a robot at this place sees them.
     pub fn from(&self, [x, y, _]: [f64; 3]) -> impl Iterator<Item = Obstacle<f32>> + '_ {
         let point = move |px: f64, py: f64| Vec2::new((px - x) as f32, (py - y) as f32);
         let walls = self.walls_m.iter().map(move |&[ax, ay, bx, by]| Obstacle::Wall([point(ax, ay), point(bx, by)]));
@@ -94,7 +92,7 @@ impl Obstacles<'_> {
     }
 }
 
-/// Robots of arrays are numbered from 1.
+/// Robots in arrays have numbers from 1.
 fn id(index: usize) -> RobotId {
     RobotId(u32::try_from(index).unwrap_or(u32::MAX >> 1).saturating_add(1))
 }
@@ -108,7 +106,6 @@ pub(super) fn array(vector: Vec3<f32>) -> [f64; 3] {
     [vector.x, vector.y, vector.z].map(f64::from)
 }
 
-/// The rows of an array.
 pub(super) fn rows<'a, const D: usize>(array: &'a numpy::PyReadonlyArray2<'_, f64>) -> pyo3::PyResult<&'a [[f64; D]]> {
     Ok(array.as_slice()?.as_chunks::<D>().0)
 }

@@ -11,12 +11,11 @@ use staya_controller::orca::{AvoidParams, Avoider, DeadlockParams, InSpace};
 use staya_controller::rand::Rng;
 use std::sync::{Mutex, PoisonError};
 
-/// Keeps the draws that end ties apart from all others.
+/// Separates the random numbers that break ties from others.
 const RANDOM: u32 = u32::from_be_bytes(*b"pyth");
-/// Robots that a thread takes at least at a time.
 const BATCH: usize = 32;
 
-/// The collision avoidance of each of many robots, with what it remembers from step to step.
+/// Collision avoidance of many robots, with the memory of each between steps.
 #[pyclass(frozen, module = "staya._staya")]
 pub struct Avoiders {
     all: Mutex<Vec<(AnyAvoider, Rng)>>,
@@ -31,7 +30,7 @@ enum AnyAvoider {
 
 #[pymethods]
 impl Avoiders {
-    /// Of `count` robots, in the plane or in space.
+    /// Creates `count` robots in the plane or in space.
     #[new]
     #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
     fn new(
@@ -62,8 +61,9 @@ impl Avoiders {
         Self { all: Mutex::new(all), horizon_s }
     }
 
-    /// The velocities to take until the next step, m/s. Each robot reckons with the 16 nearest that it could meet within the
-    /// horizon. O(robots * 16) and the search, on all cores, without Python's interpreter.
+    /// Returns the velocities until the next step, m/s. Each robot considers the 16 nearest robots
+    /// that it could meet within the horizon. O(robots * 16) and the neighbour search, on all
+    /// cores, without the interpreter lock.
     #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
     fn velocities<'py>(
         &self,
@@ -86,7 +86,7 @@ impl Avoiders {
         let all = all.as_mut_slice();
         let best = py.detach(|| {
             let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
-            // Who is farther cannot be met within the horizon, whatever both do.
+            // Robots farther away cannot be met within the horizon.
             let reach_m = 2.0 * largest(speeds_mps) * (self.horizon_s + step_s) + 2.0 * largest(radii_m);
             let neighborhood = Neighborhood::new(Robots { positions_m, velocities_mps, radii_m }, reach_m, None);
             let robots = all.par_iter_mut().enumerate().with_min_len(BATCH);

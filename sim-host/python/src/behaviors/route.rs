@@ -1,4 +1,4 @@
-//! Windowed routing (A. V. Kuznetsov 2017) of many robots across one land, each as if it were alone.
+//! Windowed routing (A. V. Kuznetsov 2017) of many robots on one map, without interaction.
 
 use numpy::{IntoPyArray as _, PyArray1, PyArray2, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -12,15 +12,16 @@ use staya_sim::engine::WIDE;
 use staya_sim::terrain::Terrain;
 use staya_sim::walk::{Task, Walk, Walker};
 
-/// A way: its cells, its time in ticks, and whether it leads to the goal.
+/// Cells of each path, times in ticks, and whether each path ends at the goal.
 type Routes<'py> = (Vec<Bound<'py, PyArray2<i16>>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
 
-/// Walks robots from their starts to their goals, each by what its window shows: the cells of each way (x, y), its travel time in
-/// ticks, and whether it arrived. `land` is row by row from the south, 0 a wall. `gains` are a0 to a3, from 0 to 4095. On all cores, without
-/// Python's interpreter.
+/// Moves robots from their starts to their goals with the knowledge of their windows. Returns the
+/// cells of each path (x, y), its travel time in ticks, and whether it arrived. `land` is row by
+/// row from the south, 0 for a wall. `gains` are a0 to a3, from 0 to 4095. Runs on all cores,
+/// without the interpreter lock.
 ///
 /// # Errors
-/// Land of a size that none can have.
+/// `ValueError` for a map of an unsupported size.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
 pub fn route<'py>(
@@ -37,7 +38,7 @@ pub fn route<'py>(
     let [height, width] = [land.shape()[0], land.shape()[1]].map(|side| u16::try_from(side).unwrap_or(u16::MAX));
     let land = Terrain::from_cells(width, height, land.as_slice()?.to_vec());
     let land = land.map_err(|error| PyValueError::new_err(format!("land: {error}")))?;
-    // The same as in scenarios: sixteenths.
+    // Multiples of 1/16, as in scenarios.
     let [a0, a1, a2, a3] = gains.map(|gain| Gain::from_sixteenths((gain * 16.0).round() as u16));
     let params = RouteParams {
         radius,

@@ -1,7 +1,7 @@
 use super::*;
 use proptest::prelude::*;
 
-/// Any frame whose figures JSON keeps to the bit.
+/// Random frames whose figures survive JSON exactly.
 pub fn frames() -> impl Strategy<Value = FrameData> {
     let float = any::<i32>().prop_map(|n| n as f32 / 1024.0);
     let body = ((prop::array::uniform3(float.clone()), prop::array::uniform3(float)), any::<(u32, u8, u8)>());
@@ -40,7 +40,7 @@ fn encoded(frame: &FrameData) -> Vec<u8> {
 }
 
 #[test]
-fn bytes_are_where_the_protocol_says() {
+fn bytes_follow_the_protocol() {
     let frame = FrameData {
         tick: 7,
         time_s: 3.5,
@@ -69,7 +69,7 @@ fn bytes_are_where_the_protocol_says() {
 }
 
 #[test]
-fn heads_that_ask_for_too_much_are_refused_before_memory_is() {
+fn headers_with_too_many_bodies_are_refused_without_allocation() {
     let mut bytes = encoded(&FrameData::default());
     bytes[16..20].fill(0xff);
     bytes[24..28].fill(0xff);
@@ -81,12 +81,12 @@ fn heads_that_ask_for_too_much_are_refused_before_memory_is() {
 
 proptest! {
     #[test]
-    fn any_frame_comes_back(frame in frames()) {
+    fn every_frame_round_trips(frame in frames()) {
         prop_assert_eq!(FrameData::decode(&encoded(&frame)), Ok(frame));
     }
 
     #[test]
-    fn any_bytes_are_a_frame_or_an_error(frame in frames(), at: prop::sample::Index, flip: u8, cut: prop::sample::Index) {
+    fn damaged_bytes_give_a_frame_or_an_error(frame in frames(), at: prop::sample::Index, flip: u8, cut: prop::sample::Index) {
         let mut bytes = encoded(&frame);
         let at = at.index(bytes.len());
         bytes[at] ^= flip;

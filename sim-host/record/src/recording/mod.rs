@@ -1,7 +1,8 @@
-//! A run in a file: the scene, every frame, the orders and the summary, in blocks that are packed and checked one by
-//! one
-//! (`PROTOCOL.md`, Recordings). [`Writer`] makes one while a run goes on, [`Reader`] finds any moment of it without
-//! reading it all into memory.
+//! A run in a file: the scene, all frames, the orders and the summary, in blocks that are
+//! compressed and checked one by one (`PROTOCOL.md`, Recordings).
+//!
+//! [`Writer`] creates a recording during a run. [`Reader`] finds any moment without loading the
+//! whole file.
 
 mod read;
 mod run;
@@ -14,17 +15,17 @@ pub use write::{Sink, Writer};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What recordings begin with.
+/// First bytes of a recording.
 pub const MAGIC: [u8; 8] = *b"STAYAREC";
-/// Of the format.
+/// Version of the format.
 pub const VERSION: u32 = 1;
-/// Bytes of magic and version.
+/// Bytes of magic number and version.
 const FILE_HEAD: u64 = 12;
-/// Bytes in front of each block's packed bytes.
+/// Bytes of the header of each block.
 const BLOCK_HEAD: usize = 13;
-/// Raw bytes that a block has at most.
+/// Largest uncompressed size of a block, bytes.
 pub const MOST_RAW: u32 = 1 << 30;
-/// DEFLATE makes nothing smaller than by this factor (1032, and a little for its own head).
+/// Limit of DEFLATE's compression ratio (1032, with a margin for its header).
 const MOST_PACKED_BY: u64 = 1040;
 
 const SCENE: u8 = 1;
@@ -32,37 +33,37 @@ const FRAMES: u8 = 2;
 const ORDERS: u8 = 3;
 const END: u8 = 4;
 
-/// A recording that cannot be read or written.
+/// Why a recording cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
-    /// The system refuses.
+    /// Error of the operating system.
     #[error("cannot {action} {}: {source}; {remedy}", path.display())]
     Io {
-        /// What failed.
+        /// The action that failed.
         action: &'static str,
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: io::Error,
-        /// What helps.
+        /// What the user can do.
         remedy: &'static str,
     },
-    /// It is something else, or damaged.
+    /// The file is not a recording, or is damaged.
     #[error("{}: byte {at}: {what}; {remedy}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
-        /// Where.
+        /// Byte offset in the file.
         at: u64,
-        /// What is wrong.
+        /// The problem.
         what: String,
-        /// What helps.
+        /// What the user can do.
         remedy: &'static str,
     },
 }
 
 impl RecordingError {
-    /// What turns an error of the system into this one: `path` could not be written.
+    /// Converts an error of the system that occurred while `path` was written.
     pub fn writing(path: &Path) -> impl Fn(io::Error) -> Self {
         move |source| {
             let remedy = staya_sim::file::write_remedy(&source);
@@ -78,7 +79,7 @@ impl RecordingError {
     }
 
     fn damage(path: &Path, at: u64, what: impl Into<String>) -> Self {
-        let remedy = "make the recording anew";
+        let remedy = "make the recording again";
         Self::Format { path: path.to_owned(), at, what: what.into(), remedy }
     }
 }

@@ -1,4 +1,4 @@
-//! Recordings from a file.
+//! Reads recordings.
 
 use super::{
     BLOCK_HEAD, END, FILE_HEAD, FRAMES, MAGIC, MOST_PACKED_BY, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION,
@@ -14,10 +14,9 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Where frames are in an unpacked block.
+/// Range of a frame in an uncompressed block.
 pub type Span = Range<usize>;
 
-/// A block of the file.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     at: u64,
@@ -25,28 +24,26 @@ struct Block {
     raw: u32,
     packed: u32,
     crc: u32,
-    /// Of its first frame.
     tick: u32,
-    /// The block of the scene that its frames are in, by index.
+    /// Index of the block with the scene of its frames.
     scene: usize,
 }
 
-/// An unpacked block of frames.
 #[derive(Debug)]
 struct Unpacked {
     block: usize,
     bytes: Vec<u8>,
-    /// Each with its tick.
+    /// Tick and range of each frame.
     frames: Vec<(u32, Span)>,
 }
 
-/// A recording, of which the index and one block at a time are in memory.
+/// A recording. Its index and one block at a time are in memory.
 #[derive(Debug)]
 pub struct Reader<R = BufReader<File>> {
     source: R,
     path: PathBuf,
     blocks: Vec<Block>,
-    /// Those with frames, by index.
+    /// Indices of the blocks with frames.
     frames: Vec<usize>,
     unpacked: Option<Unpacked>,
     last_tick: u32,
@@ -54,10 +51,12 @@ pub struct Reader<R = BufReader<File>> {
 }
 
 impl Reader {
-    /// Reads the index of a recording, and checks each of its blocks. O(bytes of the file), in little memory.
+    /// Reads the index of a recording and checks all blocks. O(bytes of the file) in constant
+    /// memory.
     ///
     /// # Errors
-    /// The file cannot be read, is no recording, or is damaged. One that ends within a block is read up to it.
+    /// The file cannot be read, is not a recording, or is damaged. A file that ends inside a block
+    /// is read up to that block.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = open(path).map_err(RecordingError::reading(path))?;
         Self::new(BufReader::with_capacity(1 << 16, file), path)
@@ -65,7 +64,7 @@ impl Reader {
 }
 
 impl<R: Read + Seek> Reader<R> {
-    /// The same of anything that can be read; errors call it `path`.
+    /// Reads a recording from any source; errors call it `path`.
     ///
     /// # Errors
     /// See [`Reader::open`].
@@ -79,12 +78,12 @@ impl<R: Read + Seek> Reader<R> {
             head[..8] == MAGIC
         };
         if !is_one {
-            let (what, remedy) = ("this is no recording".to_owned(), "name a file that `staya run --record` made");
+            let (what, remedy) = ("not a recording".to_owned(), "give a file made with `staya run --record`");
             return Err(RecordingError::Format { path: path.to_owned(), at: 0, what, remedy });
         }
         let version = word(&head, 8);
         if version != VERSION {
-            let what = format!("the recording has version {version}, and this program reads {VERSION}");
+            let what = format!("unsupported version {version} (this program reads {VERSION})");
             return Err(RecordingError::damage(path, 8, what));
         }
         let (blocks, torn_at) = index(&mut source, path, length)?;
@@ -94,13 +93,13 @@ impl<R: Read + Seek> Reader<R> {
         Ok(this)
     }
 
-    /// Finds the first tick of each block, and the last one of all.
+    /// Finds the first tick of each block and the last tick of the recording.
     fn place_frames(&mut self) -> Result<(), RecordingError> {
         let mut before = None;
         for at in self.frames.clone() {
             let block = self.blocks[at];
-            // Length, magic and tick of the first frame are enough; what is behind them is looked at when it is asked
-            // for.
+            // Length, magic number and tick of the first frame are enough; the rest is checked when
+            // it is read.
             let packed = self.packed(&block)?;
             let beginning = match decompress_to_vec_with_limit(&packed, 12) {
                 Ok(bytes) => bytes,
@@ -109,7 +108,7 @@ impl<R: Read + Seek> Reader<R> {
             let is_frame = beginning.len() >= 12 && beginning[4..8] == frame::MAGIC;
             let tick = if is_frame { word(&beginning, 8) } else { 0 };
             if !is_frame || before.is_some_and(|before| before >= tick) {
-                return Err(RecordingError::damage(&self.path, block.at, "this block has no frames that come next"));
+                return Err(RecordingError::damage(&self.path, block.at, "the frames of this block are out of order"));
             }
             before = Some(tick);
             self.blocks[at].tick = tick;
@@ -121,7 +120,7 @@ impl<R: Read + Seek> Reader<R> {
         Ok(())
     }
 
-    /// The byte at which the file ends too early, if it does.
+    /// The byte at which an incomplete file ends.
     #[must_use]
     pub const fn torn_at(&self) -> Option<u64> {
         self.torn_at
@@ -133,47 +132,48 @@ impl<R: Read + Seek> Reader<R> {
         self.frames.first().map(|&first| (self.blocks[first].tick, self.last_tick))
     }
 
-    /// The first scene, as the JSON text that a page is sent.
+    /// JSON text of the first scene.
     ///
     /// # Errors
-    /// The file cannot be read, or is damaged there.
+    /// The file cannot be read or is damaged.
     pub fn scene_text(&mut self) -> Result<String, RecordingError> {
         self.scene_text_at(0)
     }
 
-    /// The scene that holds at a tick.
+    /// JSON text of the scene at a tick.
     ///
     /// # Errors
     /// See [`Reader::scene_text`].
     pub fn scene_text_at(&mut self, tick: u32) -> Result<String, RecordingError> {
-        // The index begins with a scene.
+        // A valid index begins with a scene.
         let block = self.blocks[self.block_of(tick).map_or(0, |at| self.blocks[at].scene)];
         let bytes = self.raw(&block)?;
-        String::from_utf8(bytes).map_err(|_| RecordingError::damage(&self.path, block.at, "this scene is no UTF-8"))
+        String::from_utf8(bytes).map_err(|_| RecordingError::damage(&self.path, block.at, "this scene is not UTF-8"))
     }
 
     /// The first scene.
     ///
     /// # Errors
-    /// See [`Reader::scene_text`]; or it has another form.
+    /// As [`Reader::scene_text`], or the JSON has another structure.
     pub fn scene(&mut self) -> Result<Scene, RecordingError> {
         self.json(self.blocks[0])
     }
 
-    /// The bytes of the last frame that is not after `tick`, or of the first one. The latest unpacked block is kept.
+    /// Bytes of the last frame at or before `tick`, else of the first frame. The last uncompressed
+    /// block is cached.
     ///
     /// # Errors
-    /// There are no frames; the file cannot be read, or is damaged there.
+    /// There are no frames, or the file cannot be read or is damaged.
     pub fn frame_bytes(&mut self, tick: u32) -> Result<&[u8], RecordingError> {
         let Some(at) = self.block_of(tick) else {
-            return Err(RecordingError::damage(&self.path, FILE_HEAD, "there are no frames"));
+            return Err(RecordingError::damage(&self.path, FILE_HEAD, "the recording has no frames"));
         };
         let Unpacked { bytes, frames, .. } = self.unpack(at)?;
         let number = frames.partition_point(|(first, _)| *first <= tick).saturating_sub(1);
         Ok(frames.get(number).and_then(|(_, span)| bytes.get(span.clone())).unwrap_or_default())
     }
 
-    /// The same, read.
+    /// The last frame at or before `tick`, else the first frame.
     ///
     /// # Errors
     /// See [`Reader::frame_bytes`].
@@ -183,7 +183,7 @@ impl<R: Read + Seek> Reader<R> {
         decoded.map_err(|error| RecordingError::damage(&self.path, at, error.to_string()))
     }
 
-    /// The orders with their ticks; none when the run was cut off.
+    /// Orders with their ticks; empty if the run was interrupted.
     ///
     /// # Errors
     /// See [`Reader::scene`].
@@ -191,7 +191,7 @@ impl<R: Read + Seek> Reader<R> {
         self.of_kind(ORDERS).map_or_else(|| Ok(Vec::new()), |block| self.json(block))
     }
 
-    /// The run's summary; none when the run was cut off.
+    /// Summary of the run; `None` if the run was interrupted.
     ///
     /// # Errors
     /// See [`Reader::scene`].
@@ -203,7 +203,7 @@ impl<R: Read + Seek> Reader<R> {
         self.blocks.iter().rfind(|block| block.kind == kind).copied()
     }
 
-    /// The block, by index, in which the frame of a tick is.
+    /// Index of the block with the frame of a tick.
     fn block_of(&self, tick: u32) -> Option<usize> {
         let number = self.frames.partition_point(|&at| self.blocks[at].tick <= tick).saturating_sub(1);
         self.frames.get(number).copied()
@@ -212,31 +212,29 @@ impl<R: Read + Seek> Reader<R> {
     fn json<T: DeserializeOwned>(&mut self, block: Block) -> Result<T, RecordingError> {
         let bytes = self.raw(&block)?;
         let read = serde_json::from_slice(&bytes);
-        read.map_err(|error| {
-            RecordingError::damage(&self.path, block.at, format!("this block cannot be read: {error}"))
-        })
+        read.map_err(|error| RecordingError::damage(&self.path, block.at, format!("this block is invalid: {error}")))
     }
 
     fn packed(&mut self, block: &Block) -> Result<Vec<u8>, RecordingError> {
         let io = RecordingError::reading(&self.path);
         self.source.seek(SeekFrom::Start(block.at + BLOCK_HEAD as u64)).map_err(&io)?;
-        // No longer than the file, as the index has found.
+        // The index limits it to the length of the file.
         let mut packed = vec![0; block.packed as usize];
         self.source.read_exact(&mut packed).map_err(&io)?;
         if crc32fast::hash(&packed) == block.crc {
             return Ok(packed);
         }
-        Err(RecordingError::damage(&self.path, block.at, "this block is damaged: its check sum is another one"))
+        Err(RecordingError::damage(&self.path, block.at, "this block is damaged (wrong checksum)"))
     }
 
     fn raw(&mut self, block: &Block) -> Result<Vec<u8>, RecordingError> {
         let packed = self.packed(block)?;
         let raw = decompress_to_vec_with_limit(&packed, block.raw as usize).ok();
         raw.filter(|raw| raw.len() == block.raw as usize)
-            .ok_or_else(|| RecordingError::damage(&self.path, block.at, "this block is damaged: it cannot be unpacked"))
+            .ok_or_else(|| RecordingError::damage(&self.path, block.at, "this block is damaged (decompression failed)"))
     }
 
-    /// Block number `at` of the index, unpacked.
+    /// Uncompresses block `at` of the index.
     fn unpack(&mut self, at: usize) -> Result<&Unpacked, RecordingError> {
         let unpacked = match self.unpacked.take() {
             Some(unpacked) if unpacked.block == at => unpacked,
@@ -253,7 +251,7 @@ impl<R: Read + Seek> Reader<R> {
     }
 }
 
-/// Undoes the XOR, and finds the frames; `None` when lengths or ticks make no sense.
+/// Undoes the XOR and locates the frames; `None` if lengths or ticks are invalid.
 fn spans(bytes: &mut [u8]) -> Option<Vec<(u32, Span)>> {
     let (mut frames, mut at, mut before) = (Vec::<(u32, Span)>::new(), 0, 0..0);
     while at < bytes.len() {
@@ -272,13 +270,13 @@ fn spans(bytes: &mut [u8]) -> Option<Vec<(u32, Span)>> {
     (!frames.is_empty()).then_some(frames)
 }
 
-/// Four bytes as a number; there are as many.
+/// A little-endian number; the caller has checked the length.
 fn word(bytes: &[u8], at: usize) -> u32 {
     let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
     four.map_or(0, u32::from_le_bytes)
 }
 
-/// The blocks, and where the file ends too early.
+/// The blocks, and the byte at which an incomplete file ends.
 fn index(
     source: &mut (impl Read + Seek),
     path: &Path,
@@ -296,7 +294,7 @@ fn index(
         let (kind, raw, packed) = (head[0], word(&head, 1), word(&head, 5));
         let is_possible = raw <= MOST_RAW && u64::from(raw) <= u64::from(packed) * MOST_PACKED_BY;
         if !(SCENE..=END).contains(&kind) || !is_possible {
-            let what = format!("no block begins like this (kind {kind}, {raw} bytes in {packed})");
+            let what = format!("invalid block header (kind {kind}, {raw} bytes in {packed})");
             return Err(RecordingError::damage(path, at, what));
         }
         let next = at + BLOCK_HEAD as u64 + u64::from(packed);
@@ -307,13 +305,13 @@ fn index(
             scene = Some(blocks.len());
         }
         let Some(scene) = scene else {
-            return Err(RecordingError::damage(path, at, "the first block is no scene"));
+            return Err(RecordingError::damage(path, at, "the first block is not a scene"));
         };
         blocks.push(Block { at, kind, raw, packed, crc: word(&head, 9), tick: 0, scene });
         at = next;
     }
     if blocks.is_empty() {
-        return Err(RecordingError::damage(path, at, "the file ends before the scene does"));
+        return Err(RecordingError::damage(path, at, "the file ends inside the scene"));
     }
     Ok((blocks, (at < length).then_some(at)))
 }

@@ -1,4 +1,4 @@
-//! A recording of a run that goes on.
+//! Records a run.
 
 use super::{RecordingError, Sink, Writer};
 use crate::frame::{FrameData, Framer};
@@ -11,7 +11,7 @@ use staya_sim::scenario::{Intervention, Scenario};
 use staya_sim::terrain::change::LandChange;
 use std::path::Path;
 
-/// Takes the moments of a run, and writes those that are due: every so many ticks, and the last one.
+/// Writes every n-th moment of a run, and the last one.
 #[derive(Clone, Debug)]
 pub struct RunRecorder<W: Sink> {
     writer: Writer<W>,
@@ -20,20 +20,20 @@ pub struct RunRecorder<W: Sink> {
     is_written: bool,
     every: u32,
     scene: Scene,
-    /// Ticks before which somebody changes the land or what stands in it, the latest first.
+    /// Ticks before which an intervention changes the map or obstacles, latest first.
     changes: Vec<u32>,
-    /// By which the land changes by itself.
+    /// The map's own changes over time.
     rules: Vec<LandChange>,
-    /// The tick of the last moment.
+    /// Tick of the last moment.
     seen: u32,
     orders: Vec<Value>,
 }
 
 impl<W: Sink> RunRecorder<W> {
-    /// Begins a recording in `out`; errors call it `path`. `every` is in ticks, at least 1.
+    /// Starts a recording in `out`; errors call it `path`. `every` is in ticks, at least 1.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// `out` cannot be written.
     pub fn new(out: W, path: &Path, scenario: &Scenario, every: u32) -> Result<Self, RecordingError> {
         let scene = Scene::new(scenario, Mode::Recording);
         let interventions = scenario.interventions.iter();
@@ -55,10 +55,10 @@ impl<W: Sink> RunRecorder<W> {
         })
     }
 
-    /// Takes a moment. O(bodies), and O(cells) where the scene changes.
+    /// Handles a moment. O(bodies), and O(cells) where the scene changes.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The recording cannot be written.
     pub fn tick(&mut self, moment: &Moment<'_>, robots: impl Iterator<Item = RobotRow>) -> Result<(), RecordingError> {
         let tick = moment.row.tick;
         let known = self.changes.len();
@@ -78,7 +78,7 @@ impl<W: Sink> RunRecorder<W> {
         if self.is_written { self.writer.frame(&self.frame) } else { Ok(()) }
     }
 
-    /// Takes note of what somebody does to the run before its next tick.
+    /// Records an intervention before the next tick.
     pub fn note(&mut self, what: &Intervention) {
         if changes_scene(what) {
             self.changes.push(self.seen);
@@ -86,18 +86,18 @@ impl<W: Sink> RunRecorder<W> {
         self.orders.push(json!({ "tick": self.seen, "order": order(what, &self.scene) }));
     }
 
-    /// Writes what has gathered.
+    /// Writes the buffered frames.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The recording cannot be written.
     pub fn flush(&mut self) -> Result<(), RecordingError> {
         self.writer.flush()
     }
 
-    /// Completes the recording.
+    /// Writes the last frame, the orders and the summary.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The recording cannot be written.
     pub fn finish(mut self, summary: &impl Serialize) -> Result<W, RecordingError> {
         if !self.is_written {
             self.writer.frame(&self.frame)?;
@@ -116,7 +116,7 @@ fn changes_scene(what: &Intervention) -> bool {
     )
 }
 
-/// As a page says it: robots by index, places from the scene's origin.
+/// An order as pages send it: robots by index, positions relative to the scene's origin.
 fn order(what: &Intervention, scene: &Scene) -> Value {
     let mut order = serde_json::to_value(what).unwrap_or_default();
     if let Some(robot) = what.robot() {

@@ -29,7 +29,6 @@ fn read(bytes: &[u8]) -> Result<Reader<Cursor<&[u8]>>, RecordingError> {
     Reader::new(Cursor::new(bytes), Path::new("a.rec"))
 }
 
-/// Reads everything there is.
 fn all(bytes: &[u8]) -> Result<Vec<FrameData>, RecordingError> {
     let mut reader = read(bytes)?;
     reader.scene_text()?;
@@ -47,12 +46,12 @@ fn all(bytes: &[u8]) -> Result<Vec<FrameData>, RecordingError> {
         if tick >= last {
             return Ok(frames);
         }
-        // Frames are at most a few ticks apart.
+        // The next frame is at most a few ticks later.
         tick += 1;
     }
 }
 
-/// Frames whose ticks rise.
+/// Frames with rising ticks.
 fn runs() -> impl Strategy<Value = Vec<FrameData>> {
     prop::collection::vec((frames(), 1..4_u32), 1..12).prop_map(|frames| {
         let mut tick = 0;
@@ -65,7 +64,7 @@ fn runs() -> impl Strategy<Value = Vec<FrameData>> {
 }
 
 #[test]
-fn everything_is_found_again() {
+fn every_part_is_read_back() {
     let frames: Vec<_> = (0..10).map(|tick| FrameData { tick: 5 + 2 * tick, ..FrameData::default() }).collect();
     let bytes = written(&frames, 3);
     let mut reader = read(&bytes).unwrap();
@@ -79,7 +78,7 @@ fn everything_is_found_again() {
 }
 
 #[test]
-fn a_scene_that_changes_holds_from_there_on() {
+fn a_changed_scene_applies_to_later_frames() {
     let mut writer = Writer::new(Vec::new(), Path::new("a.rec"), &scene()).unwrap();
     let frame = |tick| FrameData { tick, ..FrameData::default() };
     writer.frame(&frame(1)).unwrap();
@@ -92,7 +91,7 @@ fn a_scene_that_changes_holds_from_there_on() {
 }
 
 #[test]
-fn land_that_changes_by_itself_is_shown_as_it_is() {
+fn a_changing_map_is_recorded() {
     let text = "name = \"t\"\nticks = 12\n[terrain]\nuniform = { width = 4, height = 1, classes = 1 }\n\
         [[terrain.change]]\nat_s = 4\nfor_s = 3\nclass = 0\ncells = [[2, 0]]\n[robots]\nlist = [{ start = [0, 0], goal = [3, 0] }]\n\
         [[fault]]\nrobot = 1\nat_s = 0\ndown_s = 9\n";
@@ -115,7 +114,7 @@ fn land_that_changes_by_itself_is_shown_as_it_is() {
 }
 
 #[test]
-fn what_is_done_by_hand_is_noted_and_shown_and_a_copy_is_whole_at_any_time() {
+fn interventions_are_recorded_and_a_copy_is_valid_at_any_time() {
     let text = "name = \"t\"\nticks = 9\n[terrain]\nuniform = { width = 4, height = 1, classes = 1 }\n\
         [robots]\nlist = [{ start = [0, 0], goal = [3, 0] }]\n";
     let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).unwrap();
@@ -151,7 +150,7 @@ fn what_is_done_by_hand_is_noted_and_shown_and_a_copy_is_whole_at_any_time() {
 }
 
 #[test]
-fn damage_is_named_with_file_and_byte() {
+fn errors_name_the_file_and_byte_of_the_damage() {
     let frames: Vec<_> = (0..4).map(|tick| FrameData { tick, ..FrameData::default() }).collect();
     let good = written(&frames, 2);
     let scene_end = 12 + 13 + u32::from_le_bytes(good[17..21].try_into().unwrap()) as usize;
@@ -160,22 +159,22 @@ fn damage_is_named_with_file_and_byte() {
         bytes[at] ^= 0x40;
         all(&bytes).unwrap_err().to_string()
     };
-    assert!(spoilt(0).starts_with("a.rec: byte 0: this is no recording; name a file"), "{}", spoilt(0));
-    assert!(spoilt(8).contains("byte 8: the recording has version 65"), "{}", spoilt(8));
+    assert!(spoilt(0).starts_with("a.rec: byte 0: not a recording; give a file"), "{}", spoilt(0));
+    assert!(spoilt(8).contains("byte 8: unsupported version 65"), "{}", spoilt(8));
     let damaged = spoilt(scene_end + 20);
     assert!(damaged.starts_with(&format!("a.rec: byte {scene_end}: this block is damaged")), "{damaged}");
-    // A length that asks for more than can be packed into what there is.
-    assert!(spoilt(scene_end + 4).contains("no block begins like this"), "{}", spoilt(scene_end + 4));
+    // A length above the limit of compression.
+    assert!(spoilt(scene_end + 4).contains("invalid block header"), "{}", spoilt(scene_end + 4));
     assert!(all(b"").is_err() && all(&good[..12]).is_err());
-    // One that ends too early is read up to there.
+    // An incomplete file is read up to its end.
     let mut torn = read(&good[..good.len() - 1]).unwrap();
     assert_eq!((torn.ticks(), torn.summary().unwrap()), (Some((0, 3)), None));
     assert!(torn.torn_at().is_some());
 }
 
 #[test]
-fn a_full_disk_leaves_whole_blocks() {
-    /// Takes so many bytes and no more.
+fn a_full_disk_leaves_complete_blocks() {
+    /// A sink with a limited capacity.
     struct Full(Vec<u8>, usize);
     impl std::io::Write for Full {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -210,12 +209,12 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn any_run_comes_back(frames in runs(), flush_every in 1..5_usize) {
+    fn every_run_round_trips(frames in runs(), flush_every in 1..5_usize) {
         prop_assert_eq!(all(&written(&frames, flush_every)).unwrap(), frames);
     }
 
     #[test]
-    fn what_is_cut_off_or_flipped_is_an_error_or_less(
+    fn a_damaged_file_is_an_error_or_has_fewer_frames(
         frames in runs(), flush_every in 1..5_usize, at: prop::sample::Index, bit in 0..8_u8,
     ) {
         let good = written(&frames, flush_every);
@@ -226,7 +225,7 @@ proptest! {
         let mut flipped = good;
         flipped[at] ^= 1 << bit;
         if let Ok(some) = all(&flipped) {
-            // The kind of a block is outside of its check sum.
+            // The checksum does not cover the kind of a block.
             let mut left = frames.iter();
             prop_assert!(some.iter().all(|frame| left.any(|other| other == frame)), "{} of {}", some.len(), frames.len());
         }

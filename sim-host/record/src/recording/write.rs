@@ -1,4 +1,4 @@
-//! Recordings in the making.
+//! Writes recordings.
 
 use super::{BLOCK_HEAD, END, FRAMES, MAGIC, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION};
 use crate::frame::FrameData;
@@ -8,14 +8,14 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Raw bytes of frames that make a block: what a page unpacks to show one moment.
+/// Uncompressed size of a block, bytes. A page unpacks one block to show one moment.
 const BLOCK: usize = 1 << 18;
-/// As good as the slower ones, within a few per cent.
+/// Within a few per cent of the slower levels.
 const LEVEL: u8 = 6;
 
-/// What a recording can be written to: what the disk refused in the middle of a block is cut off again.
+/// An output that can be truncated after a failed write.
 pub trait Sink: Write {
-    /// Forgets what comes behind this many bytes; best effort.
+    /// Truncates to `length` bytes, if possible.
     fn cut(&mut self, length: u64);
 }
 
@@ -31,27 +31,25 @@ impl Sink for Vec<u8> {
     }
 }
 
-/// Writes a recording block by block. Whatever becomes of the run, the file ends with a whole block. Memory: a block
-/// and a
-/// frame.
+/// Writes a recording block by block. At any time the file ends with a complete block. Memory: one
+/// block and one frame.
 #[derive(Clone, Debug)]
 pub struct Writer<W: Sink> {
     out: W,
     path: PathBuf,
-    /// In the file, all of it whole blocks.
+    /// Bytes of complete blocks in the file.
     written: u64,
-    /// Frames of the block under way.
     raw: Vec<u8>,
-    /// The last one of them.
+    /// The previous frame, for the XOR.
     before: Vec<u8>,
     frame: Vec<u8>,
 }
 
 impl Writer<File> {
-    /// Begins a recording; a file of that name is replaced.
+    /// Creates a recording and replaces an existing file.
     ///
     /// # Errors
-    /// The file cannot be made or written.
+    /// The file cannot be created or written.
     pub fn create(path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
         let file = File::create(path).map_err(RecordingError::writing(path))?;
         Self::new(file, path, scene)
@@ -59,10 +57,10 @@ impl Writer<File> {
 }
 
 impl<W: Sink> Writer<W> {
-    /// Begins a recording in `out`; errors call it `path`.
+    /// Starts a recording in `out`; errors call it `path`.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// `out` cannot be written.
     pub fn new(out: W, path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
         let mut this =
             Self { out, path: path.to_owned(), written: 0, raw: Vec::new(), before: Vec::new(), frame: Vec::new() };
@@ -72,19 +70,19 @@ impl<W: Sink> Writer<W> {
         Ok(this)
     }
 
-    /// What holds from the next frame on, where land or solids have changed.
+    /// Writes the scene of the next frames, after the map or obstacles changed.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The recording cannot be written.
     pub fn scene(&mut self, scene: &Scene) -> Result<(), RecordingError> {
         self.flush()?;
         self.json(SCENE, scene)
     }
 
-    /// Takes a frame; ticks grow from frame to frame. O(bytes of the frame).
+    /// Adds a frame; ticks must rise. O(bytes of the frame).
     ///
     /// # Errors
-    /// It cannot be written. The file then ends with the block before.
+    /// The recording cannot be written. The file then ends with the previous block.
     pub fn frame(&mut self, frame: &FrameData) -> Result<(), RecordingError> {
         frame.encode(&mut self.frame);
         let fits = self.raw.len() + self.frame.len() + 4 <= MOST_RAW as usize;
@@ -100,10 +98,10 @@ impl<W: Sink> Writer<W> {
         Ok(())
     }
 
-    /// Writes the frames that have gathered.
+    /// Writes the buffered frames.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// The recording cannot be written.
     pub fn flush(&mut self) -> Result<(), RecordingError> {
         let raw = std::mem::take(&mut self.raw);
         self.before.clear();
@@ -116,10 +114,10 @@ impl<W: Sink> Writer<W> {
         done
     }
 
-    /// Writes the orders of the run, each with its tick, and its summary; returns what it was written to.
+    /// Writes the orders with their ticks and the summary. Returns the output.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The recording cannot be written.
     pub fn finish(mut self, orders: &impl Serialize, summary: &impl Serialize) -> Result<W, RecordingError> {
         self.flush()?;
         self.json(ORDERS, orders)?;
@@ -138,7 +136,7 @@ impl<W: Sink> Writer<W> {
         let lengths =
             u32::try_from(raw.len()).ok().filter(|raw| *raw <= MOST_RAW).zip(u32::try_from(packed.len()).ok());
         let Some((raw, length)) = lengths else {
-            let text = format!("a block of {} bytes is too large; run a smaller scenario", raw.len());
+            let text = format!("a block of {} bytes is too large; record a smaller scenario", raw.len());
             return Err(RecordingError::writing(&self.path)(io::Error::other(text)));
         };
         let mut bytes = Vec::with_capacity(BLOCK_HEAD + packed.len());

@@ -5,19 +5,18 @@ use crate::frame::FrameData;
 use crate::scene::{Kind, Scene, Solid};
 use staya_sim::world::plane::Shape;
 
-/// The frame of reference of everything.
+/// The coordinate frame of all messages.
 pub const FRAME: &str = "map";
-/// Red, green, blue of robots one after the other, by number or by group: Okabe and Ito's.
+/// Colours (red, green, blue) of consecutive robots or groups, by Okabe and Ito.
 const COLOURS: [[u8; 3]; 7] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233], [90, 90, 90]];
 const INTRUDER: [f64; 4] = [0.8, 0.1, 0.1, 1.0];
 const OBSTACLE: [f64; 4] = [0.44, 0.41, 0.36, 1.0];
-/// Height of a disc or wall, a share of a robot's radius.
+/// Height of a disc or wall as a multiple of a robot's radius.
 const HEIGHT: f64 = 1.0;
-/// Robots above which they have the colours of their groups.
+/// Above this number of robots, colours show groups.
 const MANY: usize = 100;
 
-/// Seconds and nanoseconds.
 pub fn stamp(out: &mut Bytes, at_ns: u64) {
     out.int(1, at_ns / 1_000_000_000);
     out.int(2, at_ns % 1_000_000_000);
@@ -31,7 +30,7 @@ fn rgba(out: &mut Bytes, values: [f64; 4]) {
     (1..).zip(values).for_each(|(number, value)| out.double(number, value));
 }
 
-/// A place and a turn about z, radians.
+/// A position and a rotation about z, radians.
 pub fn pose(out: &mut Bytes, at_m: [f64; 3], heading: f64) {
     out.message(1, |out| vector(out, at_m));
     out.message(2, |out| {
@@ -40,19 +39,20 @@ pub fn pose(out: &mut Bytes, at_m: [f64; 3], heading: f64) {
     });
 }
 
-/// Where a velocity points, radians from east; 0 when there is none.
+/// Direction of a velocity, radians from east; 0 for zero velocity.
 pub fn heading([x, y, _]: [f32; 3]) -> f64 {
     libm::atan2(y.into(), x.into())
 }
 
-/// A place, and the attitude of a body that looks where it goes: nose first, level from side to side.
+/// A position, and the attitude of a body that faces its velocity without roll.
 pub fn looking(out: &mut Bytes, at_m: [f64; 3], velocity_mps: [f32; 3]) {
     let quaternion = quaternion(velocity_mps);
     out.message(1, |out| vector(out, at_m));
     out.message(2, |out| (1..).zip(quaternion).for_each(|(number, value)| out.double(number, value)));
 }
 
-/// x, y, z, w of the turn of [`attitude`](staya_sim::metrics::flock::attitude): about z to the heading, then nose up.
+/// The quaternion (x, y, z, w) of [`attitude`](staya_sim::metrics::flock::attitude): a rotation
+/// about z to the heading, then a pitch.
 fn quaternion(velocity_mps: [f32; 3]) -> [f64; 4] {
     let [x, y, z] = velocity_mps.map(f64::from);
     let (sin, cos) = libm::sincos(heading(velocity_mps) / 2.0);
@@ -60,7 +60,7 @@ fn quaternion(velocity_mps: [f32; 3]) -> [f64; 4] {
     [-sin * down, cos * down, sin * level, cos * level]
 }
 
-/// An entity that takes the place of the one before.
+/// An entity, which replaces the previous one with this id.
 fn entity(update: &mut Bytes, id: &str, at_ns: u64, fill: impl FnOnce(&mut Bytes)) {
     update.message(2, |out| {
         out.message(1, |out| stamp(out, at_ns));
@@ -74,7 +74,7 @@ fn colour_of(scene: &Scene, index: usize, mode: u8) -> [f64; 4] {
     let group = scene.robots.group.get(index).copied().unwrap_or(0) as usize;
     let number = if scene.robots.id.len() <= MANY && group == 0 { index } else { group };
     let [r, g, b] = COLOURS[number % COLOURS.len()].map(|part| f64::from(part) / 255.0);
-    // Who has arrived is pale, who is down dark.
+    // Arrived robots are pale, robots that are down dark.
     match mode {
         4 => [0.5 + r / 2.0, 0.5 + g / 2.0, 0.5 + b / 2.0, 1.0],
         5 => [r / 4.0, g / 4.0, b / 4.0, 1.0],
@@ -82,7 +82,6 @@ fn colour_of(scene: &Scene, index: usize, mode: u8) -> [f64; 4] {
     }
 }
 
-/// Robots and intruders.
 pub fn bodies(scene: &Scene, frame: &FrameData, at_ns: u64) -> Vec<u8> {
     let robots = scene.robots.id.len();
     let body = |out: &mut Bytes, index: usize, radius_m: f64, colour: [f64; 4]| {
@@ -123,7 +122,6 @@ pub fn bodies(scene: &Scene, frame: &FrameData, at_ns: u64) -> Vec<u8> {
     update.0
 }
 
-/// Lines of the same look.
 fn lines(out: &mut Bytes, colour: [f64; 4], thickness: f64, pairs: impl Iterator<Item = [[f64; 3]; 2]>) {
     out.message(11, |out| {
         out.int(1, 2);
@@ -135,7 +133,6 @@ fn lines(out: &mut Bytes, colour: [f64; 4], thickness: f64, pairs: impl Iterator
     });
 }
 
-/// A cross at each goal, in its robot's colour.
 pub fn goals(scene: &Scene, goals_m: &[[f32; 3]], at_ns: u64) -> Vec<u8> {
     let mut update = Bytes::default();
     entity(&mut update, "goals", at_ns, |out| {
@@ -150,7 +147,6 @@ pub fn goals(scene: &Scene, goals_m: &[[f32; 3]], at_ns: u64) -> Vec<u8> {
     update.0
 }
 
-/// What stands in the way.
 pub fn obstacles(scene: &Scene, at_ns: u64) -> Vec<u8> {
     let largest_m = scene.robots.radius_m.iter().copied().fold(0.0, f64::max);
     let mut update = Bytes::default();
@@ -175,7 +171,7 @@ pub fn obstacles(scene: &Scene, at_ns: u64) -> Vec<u8> {
                     out.message(2, |out| vector(out, [2.0 * radius_m; 3]));
                     out.message(3, |out| rgba(out, OBSTACLE));
                 }),
-                // It has no end that could be drawn.
+                // A half-space has no boundary that could be drawn.
                 Solid::HalfSpace(_) => {}
             }
         }
@@ -183,7 +179,7 @@ pub fn obstacles(scene: &Scene, at_ns: u64) -> Vec<u8> {
     update.0
 }
 
-/// A wall as two lines, at its foot and at its top, with posts between.
+/// A wall as two lines, at its foot and its top, with posts between them.
 fn wall(out: &mut Bytes, points_m: &[[f64; 2]], high: f64) {
     let at = |[x, y]: [f64; 2], z: f64| [x, y, z];
     let sides = points_m.windows(2).flat_map(|pair| {
@@ -199,7 +195,7 @@ mod tests {
     use super::*;
     use staya_sim::metrics::flock::attitude;
 
-    /// The columns of the rotation of a unit quaternion.
+    /// The columns of the rotation matrix of a unit quaternion.
     fn columns([x, y, z, w]: [f64; 4]) -> [[f64; 3]; 3] {
         [
             [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],

@@ -1,17 +1,17 @@
-//! A run as an MCAP file with Foxglove's schemas, which Foxglove, Lichtblick and Rerun show as it is.
+//! Writes a run as an MCAP file with Foxglove's schemas, for Foxglove, Lichtblick and Rerun.
 //!
 //! | topic | schema | when |
 //! | --- | --- | --- |
-//! | `/tf` | `foxglove.FrameTransforms` | once: where frame `map` is in frame `world`, the scenario's coordinates |
-//! | `/land` | `foxglove.Grid` | once: a byte a cell, 0 a wall, otherwise ticks to cross it |
+//! | `/tf` | `foxglove.FrameTransforms` | once: the position of frame `map` in frame `world`, the scenario's coordinates |
+//! | `/land` | `foxglove.Grid` | once: one byte per cell, 0 for a wall, otherwise the ticks to cross it |
 //! | `/obstacles` | `foxglove.SceneUpdate` | once |
-//! | `/bodies` | `foxglove.SceneUpdate` | each moment: robots and intruders |
-//! | `/poses` | `foxglove.PosesInFrame` | each moment: robots, then intruders, looking where they go, in space also up and down |
-//! | `/goals` | `foxglove.SceneUpdate` | when they change: crosses |
+//! | `/bodies` | `foxglove.SceneUpdate` | each frame: robots and intruders |
+//! | `/poses` | `foxglove.PosesInFrame` | each frame: robots, then intruders, facing their velocity (with pitch in space) |
+//! | `/goals` | `foxglove.SceneUpdate` | on change: crosses |
 //! | `/events` | `foxglove.Log` | when a robot's mode changes |
-//! | `/figures` | `staya.Figures` (JSON) | each moment |
+//! | `/figures` | `staya.Figures` (JSON) | each frame |
 //!
-//! All places are in frame `map`, metres; times are simulated, from 0 on.
+//! Positions are in frame `map`, metres. Times are simulated and start at 0.
 
 mod draw;
 mod proto;
@@ -31,13 +31,13 @@ use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// Bytes that are written together; what is behind the last of them is lost when a run is killed.
+/// Size of a chunk, bytes. A killed run loses its last chunk.
 const CHUNK: u64 = 1 << 20;
 /// `foxglove.Log.Level`.
 const INFO: u64 = 2;
 const WARNING: u64 = 3;
 
-/// Topic, schema (without package), by the number of the channel here.
+/// Topics and schemas (without package), by the index of the channel.
 const TOPICS: [(&str, &str); 7] = [
     ("/tf", "FrameTransforms"),
     ("/land", "Grid"),
@@ -56,22 +56,22 @@ const GOALS: usize = 5;
 const EVENTS: usize = 6;
 const FIGURES: usize = 7;
 
-/// Writes an MCAP file while a run goes on. Memory: two chunks, a frame, and an entry for each chunk.
+/// Writes an MCAP file during a run. Memory: two chunks, a frame, and an entry for each chunk.
 pub struct McapWriter<W: Write + Seek> {
     out: mcap::Writer<W>,
     path: PathBuf,
     scene: Scene,
-    /// Number in the file and messages so far.
+    /// Channel number in the file, and messages so far.
     channels: Vec<(u16, u32)>,
     goals: Vec<[u32; 3]>,
     modes: Vec<u8>,
 }
 
 impl McapWriter<File> {
-    /// Begins a file; one of that name is replaced.
+    /// Creates a file and replaces an existing one.
     ///
     /// # Errors
-    /// It cannot be made or written.
+    /// The file cannot be created or written.
     pub fn create(path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
         let file = File::create(path).map_err(RecordingError::writing(path))?;
         Self::new(file, path, scene)
@@ -79,13 +79,14 @@ impl McapWriter<File> {
 }
 
 impl<W: Write + Seek> McapWriter<W> {
-    /// Begins a file in `out`; errors call it `path`.
+    /// Starts a file in `out`; errors call it `path`.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// `out` cannot be written.
     pub fn new(out: W, path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
         let error = failed(path);
-        // Without seeking, a chunk is written when it is complete: a file that is cut off is whole up to there.
+        // Without seeking, each complete chunk is final, so a file that is cut off is valid up to
+        // there.
         let options = WriteOptions::new().compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
         let mut out = options.library(concat!("staya ", env!("CARGO_PKG_VERSION"))).create(out).map_err(&error)?;
         let (descriptors, mut channels) = (schema::descriptors(), Vec::new());
@@ -99,10 +100,10 @@ impl<W: Write + Seek> McapWriter<W> {
         Ok(Self { out, path, scene: scene.clone(), channels, goals: Vec::new(), modes: Vec::new() })
     }
 
-    /// Takes a frame. O(bytes of the frame).
+    /// Writes a frame. O(bytes of the frame).
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn frame(&mut self, frame: &FrameData) -> Result<(), RecordingError> {
         let at_ns = nanos(frame.time_s);
         if self.channels[BODIES].1 == 0 {
@@ -131,13 +132,13 @@ impl<W: Write + Seek> McapWriter<W> {
     /// Completes the file.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn finish(&mut self) -> Result<(), RecordingError> {
         self.out.finish().map_err(failed(&self.path))?;
         Ok(())
     }
 
-    /// What stays as it is.
+    /// Writes the static messages.
     fn begin(&mut self, at_ns: u64) -> Result<(), RecordingError> {
         let origin_m = self.scene.origin_m;
         let mut frames = Bytes::default();
@@ -174,7 +175,7 @@ impl<W: Write + Seek> McapWriter<W> {
         self.send(OBSTACLES, at_ns, &obstacles)
     }
 
-    /// Says whose mode has changed; at first only how many robots there are.
+    /// Logs changed modes; for the first frame only the number of robots.
     fn events(&mut self, frame: &FrameData, robots: usize, at_ns: u64) -> Result<(), RecordingError> {
         let now = frame.mode.get(..robots).unwrap_or_default();
         let before = std::mem::replace(&mut self.modes, now.to_vec());
@@ -212,7 +213,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 }
 
-/// Simulated time; what is before 0 or no number is 0.
+/// Simulated time in nanoseconds; 0 for negative times and NaN.
 fn nanos(time_s: f64) -> u64 {
     libm::round(time_s * 1e9) as u64
 }
@@ -253,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_is_said_once_and_what_moves_each_time() {
+    fn static_messages_are_written_once_and_others_each_frame() {
         let frame = |tick: u32, mode: u8| FrameData {
             tick,
             time_s: f64::from(tick) / 10.0,
@@ -270,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn times_that_are_no_numbers_are_zero() {
+    fn invalid_times_are_zero() {
         assert_eq!([f64::NAN, -1.0, 0.05].map(nanos), [0, 0, 50_000_000]);
     }
 }

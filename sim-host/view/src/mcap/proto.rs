@@ -1,6 +1,5 @@
-//! As much of Protocol Buffers as MCAP's messages need: bytes of fields, and descriptions of messages.
+//! The part of Protocol Buffers that MCAP needs: encoding of fields, and descriptors of messages.
 
-/// A field's type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// 64-bit float.
@@ -9,11 +8,11 @@ pub enum Kind {
     Int64,
     /// Signed 32-bit integer, as a varint.
     Int32,
-    /// Unsigned 32-bit integer of four bytes.
+    /// Unsigned 32-bit integer in four bytes.
     Fixed32,
-    /// Truth.
+    /// Boolean.
     Bool,
-    /// Text.
+    /// String.
     Text,
     /// Bytes.
     Bytes,
@@ -23,7 +22,6 @@ pub enum Kind {
     Enum(&'static str),
 }
 
-/// A field of a message.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     pub name: &'static str,
@@ -32,26 +30,22 @@ pub struct Field {
     pub repeated: bool,
 }
 
-/// One of a kind.
 pub const fn one(name: &'static str, number: u32, kind: Kind) -> Field {
     Field { name, number, kind, repeated: false }
 }
 
-/// Any number of a kind.
 pub const fn many(name: &'static str, number: u32, kind: Kind) -> Field {
     Field { name, number, kind, repeated: true }
 }
 
-/// A message type.
 #[derive(Clone, Copy, Debug)]
 pub struct Type {
     pub name: &'static str,
     pub fields: &'static [Field],
-    /// Enumerations within: name, values from 0 on.
+    /// Nested enumerations: name, and values from 0.
     pub enums: &'static [(&'static str, &'static [&'static str])],
 }
 
-/// A .proto file.
 #[derive(Clone, Copy, Debug)]
 pub struct File {
     pub name: &'static str,
@@ -60,7 +54,6 @@ pub struct File {
     pub types: &'static [Type],
 }
 
-/// The bytes of a message in the making.
 #[derive(Clone, Debug, Default)]
 pub struct Bytes(pub Vec<u8>);
 
@@ -77,7 +70,7 @@ impl Bytes {
         self.varint(u64::from(number) << 3 | wire);
     }
 
-    /// An integer, a truth or a value of an enumeration.
+    /// Integer, boolean or enumeration value.
     pub fn int(&mut self, number: u32, value: u64) {
         self.tag(number, 0);
         self.varint(value);
@@ -103,7 +96,6 @@ impl Bytes {
         self.bytes(number, value.as_bytes());
     }
 
-    /// A message within.
     pub fn message(&mut self, number: u32, fill: impl FnOnce(&mut Self)) {
         let mut inside = Self::default();
         fill(&mut inside);
@@ -111,7 +103,7 @@ impl Bytes {
     }
 }
 
-/// A `google.protobuf.FileDescriptorSet`: what a reader needs to know of these files.
+/// A `google.protobuf.FileDescriptorSet`, which describes these files to readers.
 pub fn descriptor_set(files: &[&File]) -> Vec<u8> {
     let mut set = Bytes::default();
     for file in files {

@@ -1,6 +1,5 @@
-//! Foxglove's schemas, as far as runs need them: names, numbers and types of their fields are those of its .proto
-//! files,
-//! so that any reader of those understands them
+//! Foxglove's schemas, as far as runs need them. Names, numbers and types of the fields equal those
+//! of Foxglove's .proto files
 //! (<https://docs.foxglove.dev/docs/visualization/message-schemas/introduction>).
 
 use super::proto::{Field, File, Kind, Type, descriptor_set, many, one};
@@ -151,12 +150,11 @@ static FOXGLOVE: File = File {
     ],
 };
 
-/// What readers are told of all of them.
 pub fn descriptors() -> Vec<u8> {
     descriptor_set(&[&TIMESTAMP, &DURATION, &FOXGLOVE])
 }
 
-/// JSON Schema of the channel of figures.
+/// JSON Schema of the channel `/figures`.
 pub const FIGURES: &str = r#"{
   "$schema": "https://json-schema.org/draft/2020-12/schema",
   "title": "staya.Figures",
@@ -165,21 +163,21 @@ pub const FIGURES: &str = r#"{
   "required": ["tick", "arrived", "waiting", "collisions", "packets", "formation_error", "order", "gap_m", "hash"],
   "properties": {
     "tick": { "type": "integer", "minimum": 0 },
-    "arrived": { "type": "integer", "description": "robots at their targets that know it" },
-    "waiting": { "type": "integer", "description": "robots that have somewhere to go and do not get on" },
-    "collisions": { "type": "integer", "description": "of the run so far" },
+    "arrived": { "type": "integer", "description": "robots that are at their goals" },
+    "waiting": { "type": "integer", "description": "robots that have a goal but do not move" },
+    "collisions": { "type": "integer", "description": "collisions so far" },
     "packets": {
       "type": "object",
-      "description": "of this tick, by their fate",
+      "description": "radio frames of this tick, by result",
       "properties": {
         "overclaims": { "type": "object", "additionalProperties": { "type": "integer", "minimum": 0 } }
       },
       "additionalProperties": { "type": "integer", "minimum": 0 }
     },
-    "formation_error": { "type": ["number", "null"], "description": "mean distance from the places in the formation, cells" },
+    "formation_error": { "type": ["number", "null"], "description": "mean distance from the formation's places, cells" },
     "order": { "type": ["number", "null"], "description": "length of the mean direction, 0 to 1" },
     "gap_m": { "type": ["number", "null"], "description": "least distance between two bodies, metres" },
-    "hash": { "type": "string", "pattern": "^[0-9a-f]{16}$", "description": "the run's fingerprint so far" }
+    "hash": { "type": "string", "pattern": "^[0-9a-f]{16}$", "description": "trace hash so far" }
   }
 }
 "#;

@@ -1,4 +1,4 @@
-//! One browser's connection: a request, then a file or a WebSocket.
+//! One browser connection: a request, then a file or a WebSocket.
 
 use super::request::{LONGEST, Refused, Request, Rules};
 use crate::page::File;
@@ -12,51 +12,48 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, Utf8Bytes, WebSocket};
 
-/// Longest message of a page, bytes.
 const LONGEST_MESSAGE: usize = 64 << 10;
-/// Texts that wait for a page that does not read.
+/// Texts queued for a page that does not read; more close it.
 const UNREAD: usize = 512;
-/// Bytes on their way to a page at most: a scene and a frame of a million robots.
+/// Bytes queued for a page: a scene and a frame of a million robots.
 const MOST_BYTES: usize = 256 << 20;
 
-/// Frames on their way to a page that says what it has drawn.
+/// Frames in transit to a page that confirms them.
 const AHEAD: u64 = 3;
 
-/// What came of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// It goes on.
+    /// The connection continues.
     Goes,
-    /// It has become a page's.
+    /// The connection became a page.
     Opened,
-    /// It asked for what it does not get, and is being told so.
+    /// The request was rejected, and the answer is being sent.
     Refused,
-    /// It is over.
+    /// The connection ended.
     Ended,
 }
 
 enum State {
-    /// Says what it wants, until some time.
+    /// Receives a request, with a deadline.
     Asking { heard: Vec<u8>, until: Instant },
-    /// Is given an answer, until some time.
+    /// Sends an answer, with a deadline.
     Answering { left: Vec<u8>, at: usize, until: Instant },
-    /// A page.
+    /// A page connected by WebSocket.
     Live(Box<Live>),
 }
 
 struct Live {
     texts: VecDeque<Utf8Bytes>,
     frame: Option<Bytes>,
-    /// Bytes are in its buffer.
+    /// Whether data wait in the WebSocket's buffer.
     is_behind: bool,
-    /// Frames that were sent.
     sent: u64,
-    /// Of them, those that it says it has drawn; `None`: it has said nothing yet.
+    /// Number of frames that the page confirmed; `None` if it confirms none.
     seen: Option<u64>,
 }
 
 pub(super) struct Connection {
-    /// `None` only while it changes hands.
+    /// `None` only during the upgrade.
     stream: Option<Stream>,
     state: State,
 }
@@ -82,10 +79,10 @@ impl Connection {
         }
     }
 
-    /// Takes it off the poll; `is_over`: because nothing is served any more, which a page is told.
+    /// Removes the connection from the poll. With `is_over` a page is told that the server ends.
     pub fn end(self, registry: &Registry, is_over: bool) {
         match self.stream {
-            // It is closed in any case.
+            // The stream is closed in any case.
             Some(Stream::Plain(mut stream)) => drop(registry.deregister(&mut stream)),
             Some(Stream::Socket(mut socket)) => {
                 let farewell = CloseFrame { code: CloseCode::Away, reason: "over".into() };
@@ -97,7 +94,8 @@ impl Connection {
         }
     }
 
-    /// Reads what there is. `has_room`: for another page; `hear` takes its words, and says whether it could.
+    /// Reads received data. `has_room`: whether another page is allowed. `hear` takes a message and
+    /// returns whether there was room for it.
     pub fn read(
         &mut self,
         rules: &Rules,
@@ -133,12 +131,11 @@ impl Connection {
                     return if is_refusal { Outcome::Refused } else { Outcome::Goes };
                 }
             }
-            // What is said while an answer goes out is not heard.
+            // Data received during an answer are ignored.
             _ => Outcome::Goes,
         }
     }
 
-    /// Becomes a page's.
     fn upgrade(&mut self, key: &str) -> Outcome {
         let Some(Stream::Plain(mut stream)) = self.stream.take() else {
             return Outcome::Ended;
@@ -148,7 +145,7 @@ impl Connection {
             "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
              Sec-WebSocket-Accept: {accept}\r\n\r\n"
         );
-        // The first bytes on a connection: they fit, or something is wrong with it.
+        // The first bytes on a connection always fit into its buffer.
         if stream.write(head.as_bytes()).ok() != Some(head.len()) {
             return Outcome::Ended;
         }
@@ -163,28 +160,28 @@ impl Connection {
         Outcome::Opened
     }
 
-    /// Says something to a page.
+    /// Queues a text for the page.
     pub fn say(&mut self, text: Utf8Bytes) {
         if let State::Live(live) = &mut self.state {
             live.texts.push_back(text);
         }
     }
 
-    /// Shows a page a frame, unless a newer one comes before it can be sent.
+    /// Queues a frame, which replaces one that was not sent yet.
     pub fn show(&mut self, frame: Bytes) {
         if let State::Live(live) = &mut self.state {
             live.frame = Some(frame);
         }
     }
 
-    /// It has drawn so many frames.
+    /// Records that the page has drawn this number of frames.
     pub fn seen(&mut self, frames: u64) {
         if let State::Live(live) = &mut self.state {
             live.seen = Some(frames.min(live.sent));
         }
     }
 
-    /// Sends what can be sent now.
+    /// Sends as much as possible.
     pub fn write(&mut self) -> Outcome {
         match (&mut self.stream, &mut self.state) {
             (Some(Stream::Plain(stream)), State::Answering { left, at, .. }) => {
@@ -197,7 +194,7 @@ impl Connection {
                         Err(_) => return Outcome::Ended,
                     }
                 }
-                // All of it has been sent: whatever was not read before it is closed would cut it off.
+                // Unread input would make the system reset the connection and cut off the answer.
                 let _ = stream.shutdown(std::net::Shutdown::Write);
                 let mut rest = [0; 2048];
                 while stream.read(&mut rest).is_ok_and(|count| count > 0) {}
@@ -242,7 +239,7 @@ fn read_words(socket: &mut WebSocket<TcpStream>, hear: &mut dyn FnMut(String) ->
                     return Outcome::Ended;
                 }
             }
-            // Pages send no bytes; pings are answered below.
+            // Pages send no binary messages. The library answers pings.
             Ok(Message::Binary(_)) => return Outcome::Ended,
             Ok(_) => {}
             Err(error) if would_block(&error) => return Outcome::Goes,
@@ -251,7 +248,7 @@ fn read_words(socket: &mut WebSocket<TcpStream>, hear: &mut dyn FnMut(String) ->
     }
 }
 
-/// What a request gets that asks for no WebSocket, or for one more than there can be; and whether that is not what it asked for.
+/// The answer to a request that does not become a WebSocket, and whether the request was rejected.
 fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
     let file = match request {
         Request::File(name) => files.iter().find(|file| file.name == name),
@@ -259,16 +256,18 @@ fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
     };
     let (status, kind, text) = match (request, file) {
         (_, Some(file)) => ("200 OK", file.kind, file.text.as_str()),
-        (Request::File(_), None) => ("404 Not Found", "text/plain", "There is no such file.\n"),
-        (Request::Live(_), _) => ("503 Service Unavailable", "text/plain", "Too many pages look at this run.\n"),
-        (Request::Refused(Refused::Method), _) => ("405 Method Not Allowed", "text/plain", "Only GET.\n"),
+        (Request::File(_), None) => ("404 Not Found", "text/plain", "File not found.\n"),
+        (Request::Live(_), _) => {
+            ("503 Service Unavailable", "text/plain", "Too many pages are connected. Close one and reload.\n")
+        }
+        (Request::Refused(Refused::Method), _) => ("405 Method Not Allowed", "text/plain", "Use GET.\n"),
         (Request::Refused(Refused::Forbidden), _) => {
-            let text = "Only by the address that was printed, with its token.\n";
+            let text = "Open the address that the program printed, with its token.\n";
             ("403 Forbidden", "text/plain", text)
         }
-        _ => ("400 Bad Request", "text/plain", "This is no request.\n"),
+        _ => ("400 Bad Request", "text/plain", "Invalid request.\n"),
     };
-    // Without one nothing inline runs.
+    // Without a nonce the page runs no inline script.
     let nonce = super::random_hex().unwrap_or_default();
     let text = if kind == "text/html" { text.replace("NONCE", &nonce) } else { text.to_owned() };
     let length = text.len();

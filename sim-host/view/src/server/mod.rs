@@ -1,8 +1,10 @@
-//! Pages in browsers: one thread that serves files and WebSockets to them, and never makes the run wait.
+//! A web server for live pages. One thread serves files and WebSockets and never makes the run
+//! wait.
 //!
-//! The run says things ([`Server::say`]) and shows frames ([`Server::show`]); who is slow gets fewer frames, and who does not read at
-//! all is left. What pages ask for, the run takes when it likes ([`Server::next`]). Few connections at a time, each with
-//! bounded memory: whoever comes beyond that takes the place of the oldest one that has not said what it wants.
+//! The run sends texts ([`Server::say`]) and frames ([`Server::show`]). A slow page gets fewer
+//! frames, and a page that does not read is disconnected. The run polls the requests of pages
+//! ([`Server::next`]). The number of connections and the memory of each are limited; a new
+//! connection replaces the oldest one without a complete request.
 
 mod connection;
 mod request;
@@ -22,45 +24,43 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tungstenite::{Bytes, Utf8Bytes};
 
-/// Connections at a time.
 const CONNECTIONS: usize = 256;
-/// Pages at a time.
 const PAGES: usize = 32;
-/// Words of pages that the run has not taken yet.
+/// Queue of page messages for the run.
 const UNHEARD: usize = 1024;
-/// How long a connection may take to say what it wants, or to take its file.
+/// Timeout of a request and of its answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 const LISTENER: Token = Token(0);
 const WAKER: Token = Token(1);
 
-/// A page that is connected.
+/// Identifies a connected page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Client(usize);
 
-/// Connections so far, and what became of those that got nothing.
+/// Connection counters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// All of them.
+    /// All connections.
     pub connections: u64,
-    /// Those that asked for what they do not get: no request, a wrong token, another origin, one page too many.
+    /// Rejected requests: malformed, wrong token, other origin, or too many pages.
     pub refused: u64,
-    /// Those that were left: too slow to say what they want, pages that do not read or talk without end, and the oldest of too many.
+    /// Connections closed by the server: requests too slow, pages that do not read or send too
+    /// much, the oldest of too many.
     pub left: u64,
 }
 
-/// What comes from pages.
+/// An event of a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FromPage {
-    /// One has connected.
+    /// A page connected.
     Opened(Client),
-    /// It said something.
+    /// A page sent a message.
     Said(Client, String),
-    /// It is gone.
+    /// A page disconnected.
     Closed(Client),
 }
 
-/// What goes to pages.
 enum ToPages {
     Text(Option<Client>, Utf8Bytes),
     Seen(Client, u64),
@@ -68,26 +68,26 @@ enum ToPages {
     End,
 }
 
-/// Why there is no server.
+/// Why pages cannot be served.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
-    /// The port is taken, or not ours.
-    #[error("cannot listen on {address}: {source}; give another one with --listen, port 0 for any that is free")]
+    /// The address is in use or not available.
+    #[error("cannot listen on {address}: {source}; give another address with --listen, or port 0 for a free port")]
     Listen {
-        /// Where.
+        /// The address.
         address: SocketAddr,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
-    /// No events, no randomness, no thread.
-    #[error("cannot serve pages: {0}")]
+    /// The system refused events, random numbers or a thread.
+    #[error("cannot serve pages: {0}; start the command again")]
     System(io::Error),
-    /// The thread is gone.
-    #[error("the page is not served any more; start the command again, and report what it said above")]
+    /// The server thread has ended.
+    #[error("the page server has failed; start the command again and report the messages above")]
     Ended,
 }
 
-/// Serves pages until it is dropped.
+/// A server of live pages, which ends on drop.
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
@@ -101,7 +101,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Listens on `address` (port 0: any that is free) and serves `files`.
+    /// Listens on `address` (port 0 selects a free port) and serves `files`.
     ///
     /// # Errors
     /// [`ServeError`].
@@ -135,25 +135,25 @@ impl Server {
         Ok(Self { address, token, heard, outgoing, latest, counts, waker, thread })
     }
 
-    /// Where it listens.
+    /// The address that the server listens on.
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// What became of connections so far.
+    /// Connection counters so far.
     #[must_use]
     pub fn counts(&self) -> Counts {
         *lock(&self.counts)
     }
 
-    /// The address of the page, with the token.
+    /// URL of the page, with its token.
     #[must_use]
     pub fn url(&self) -> String {
         format!("http://{}/?token={}", self.address, self.token)
     }
 
-    /// The next thing that a page did; waits for it as long as `patience`, also when there will never be one again.
+    /// The next event of a page; waits for at most `patience`, even if the server thread has ended.
     #[must_use]
     pub fn next(&self, patience: Duration) -> Option<FromPage> {
         if patience.is_zero() {
@@ -169,42 +169,43 @@ impl Server {
         }
     }
 
-    /// Whether it serves pages; if not, something in its thread went wrong, and never will again.
+    /// Whether the server thread runs. It never restarts.
     #[must_use]
     pub fn is_alive(&self) -> bool {
         self.thread.as_ref().is_some_and(|thread| !thread.is_finished())
     }
 
-    /// Says something to a page, or to all.
+    /// Sends a text to one page, or to all with `None`.
     pub fn say(&self, to: Option<Client>, text: impl Into<Utf8Bytes>) {
         self.send(ToPages::Text(to, text.into()));
     }
 
-    /// Says something after which older frames mean nothing.
+    /// Sends a text and drops a queued frame, which it makes obsolete.
     pub fn begin_anew(&self, to: Option<Client>, text: impl Into<Utf8Bytes>) {
         *lock(&self.latest) = None;
         self.say(to, text);
     }
 
-    /// Shows all pages a frame; one that has not been sent yet is not sent any more.
+    /// Sends a frame to all pages. It replaces a frame that was not sent yet.
     pub fn show(&self, frame: impl Into<Bytes>) {
         *lock(&self.latest) = Some(frame.into());
-        // The next time somebody says something it is sent all the same.
+        // If the wake-up fails, the frame leaves with the next message.
         let _ = self.waker.wake();
     }
 
-    /// A page has drawn so many frames since it connected; it gets no more while two are on their way.
+    /// Records that a page has drawn this number of frames since it connected. It gets no more
+    /// while three are in transit.
     pub fn seen(&self, client: Client, frames: u64) {
         self.send(ToPages::Seen(client, frames));
     }
 
-    /// Closes the connection to a page.
+    /// Disconnects a page.
     pub fn dismiss(&self, client: Client) {
         self.send(ToPages::Dismiss(client));
     }
 
     fn send(&self, what: ToPages) {
-        // The thread ends after all others have.
+        // The thread ends only after all senders.
         let _ = self.outgoing.send(what);
         let _ = self.waker.wake();
     }
@@ -219,25 +220,23 @@ impl Drop for Server {
     }
 }
 
-/// What is in there is whole, whatever became of the thread that put it there.
+/// Locks data that are valid even after a panic of the other thread.
 fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// 128 random bits in hexadecimal digits.
 fn random_hex() -> io::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).map_err(io::Error::other)?;
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// The thread's side.
 struct Pages {
     poll: Poll,
     listener: TcpListener,
     rules: Rules,
     files: Vec<File>,
-    /// By token, hence the oldest first.
+    /// By token; tokens rise, so the oldest connection is first.
     connections: BTreeMap<usize, Connection>,
     next: usize,
     heard: SyncSender<FromPage>,
@@ -250,7 +249,7 @@ impl Pages {
     fn run(mut self) {
         let mut events = Events::with_capacity(CONNECTIONS);
         loop {
-            // An interrupted poll is one without events.
+            // An interrupted poll returns no events.
             let _ = self.poll.poll(&mut events, Some(Duration::from_secs(1)));
             for event in &events {
                 match event.token() {
@@ -275,7 +274,7 @@ impl Pages {
     }
 
     fn accept(&mut self) {
-        // Until there is nobody more; a connection that is gone already is none.
+        // An error means that no connection waits, or that it was closed already.
         while let Ok((mut stream, _)) = self.listener.accept() {
             lock(&self.counts).connections += 1;
             if self.connections.len() >= CONNECTIONS {
@@ -302,7 +301,7 @@ impl Pages {
         let mut is_done = false;
         if event.is_readable() {
             let heard = &self.heard;
-            // Whoever talks faster than the run listens is left.
+            // A page that sends faster than the run reads is disconnected.
             let mut hear = |text: String| heard.try_send(FromPage::Said(Client(number), text)).is_ok();
             match connection.read(&self.rules, &self.files, has_room, &mut hear) {
                 Outcome::Goes => {}
@@ -316,7 +315,7 @@ impl Pages {
         }
     }
 
-    /// Takes what the run says to those whom it is for. Returns whether it says no more.
+    /// Delivers the run's messages. Returns true once the run has dropped the server.
     fn pass_on(&mut self) -> bool {
         while let Ok(what) = self.out.try_recv() {
             match what {
@@ -354,7 +353,7 @@ impl Pages {
             let was_live = connection.is_live();
             connection.end(self.poll.registry(), false);
             if was_live {
-                // If the run hears nothing any more, it hears of nobody's leaving either.
+                // A run that does not read messages does not learn of this one either.
                 let _ = self.heard.try_send(FromPage::Closed(Client(number)));
             }
         }

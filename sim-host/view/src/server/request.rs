@@ -1,51 +1,46 @@
-//! What a browser asks for, and whether it may: HTTP/1.1 requests without bodies.
+//! Parses and authorises HTTP/1.1 requests without bodies.
 //!
-//! Any page that the user happens to visit can send requests to this machine. So the name by which the server is called must be
-//! its address (no name that somebody else's DNS gives out), the page must be one of its own, and who wants to
-//! see or steer anything must know the token of the address that was printed.
+//! Any web page that the user visits can send requests to this computer. Therefore the Host header
+//! must be an address of this server (not a name from a foreign DNS), the Origin must be its own
+//! page, and requests for the page or the WebSocket need the token of the printed address.
 
 use std::net::{IpAddr, SocketAddr};
 
-/// Longest request, bytes.
 pub(super) const LONGEST: usize = 8192;
-/// Headers of a request at most.
 const HEADERS: usize = 64;
 
-/// What is asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Request {
-    /// More bytes are to come.
+    /// Incomplete.
     Partial,
-    /// A file of the page; empty: the page itself.
+    /// A file of the page; empty for the page itself.
     File(String),
     /// The WebSocket, with the key of its handshake.
     Live(String),
-    /// Nothing that there is, or that he may have.
+    /// A rejected request.
     Refused(Refused),
 }
 
-/// Why a request gets nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refused {
-    /// It is no request.
+    /// Not valid HTTP.
     Malformed,
-    /// It is not for this server, not from its page, or without its token.
+    /// Wrong host, wrong origin or missing token.
     Forbidden,
-    /// Only GET.
+    /// A method other than GET.
     Method,
 }
 
-/// Who may ask.
 #[derive(Clone, Debug)]
 pub(super) struct Rules {
-    /// Where the server listens.
+    /// The address that the server listens on.
     pub address: SocketAddr,
-    /// What the address of the page ends with.
+    /// The token in the page's address.
     pub token: String,
 }
 
 impl Rules {
-    /// Whether `host` (a header) is an address of this server: a number or localhost, and its port.
+    /// Whether the Host header is an address of this server: a number or localhost, with its port.
     fn is_own_host(&self, host: &str) -> bool {
         let (name, port) = match host.rsplit_once(':') {
             Some((name, port)) if !port.ends_with(']') => (name, port.parse().ok()),
@@ -53,20 +48,20 @@ impl Rules {
         };
         let name = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
         let is_own_name = match name.parse::<IpAddr>() {
-            // Beyond loopback a machine has several addresses.
+            // A server that is not on loopback has several addresses.
             Ok(ip) => ip == self.address.ip() || !self.address.ip().is_loopback(),
             Err(_) => name.eq_ignore_ascii_case("localhost"),
         };
         is_own_name && port == Some(self.address.port())
     }
 
-    /// Compares in a time that does not tell how much of the token is right.
+    /// Compares in a time that does not depend on the number of correct characters.
     fn is_token(&self, given: &str) -> bool {
         let pairs = self.token.bytes().zip(given.bytes());
         given.len() == self.token.len() && pairs.fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
     }
 
-    /// Reads a request.
+    /// Parses a request.
     pub fn read(&self, bytes: &[u8]) -> Request {
         let mut headers = [httparse::EMPTY_HEADER; HEADERS];
         let mut request = httparse::Request::new(&mut headers);
@@ -78,7 +73,7 @@ impl Rules {
         let header = |name: &str| {
             let mut found = request.headers.iter().filter(|header| header.name.eq_ignore_ascii_case(name));
             let first = found.next().and_then(|header| std::str::from_utf8(header.value).ok());
-            // Twice the same is a trick.
+            // A repeated header is rejected, since servers disagree about its meaning.
             first.filter(|_| found.next().is_none())
         };
         let Some(host) = header("host").filter(|host| self.is_own_host(host)) else {
@@ -106,7 +101,7 @@ impl Rules {
                 }
             }
             "/" if !has_token => Request::Refused(Refused::Forbidden),
-            // There is nothing secret in the other files, and modules do not pass tokens on.
+            // The other files contain no secrets, and module imports cannot pass the token.
             path => Request::File(path.trim_start_matches('/').to_owned()),
         }
     }
@@ -129,7 +124,7 @@ mod tests {
     const FORBIDDEN: Request = Request::Refused(Refused::Forbidden);
 
     #[test]
-    fn who_has_the_address_gets_the_page_and_its_socket() {
+    fn the_printed_address_gets_the_page_and_its_socket() {
         let page = Request::File(String::new());
         for host in ["127.0.0.1:8123", "localhost:8123", "LOCALHOST:8123"] {
             assert_eq!(ask("/?token=0123abcd", host, ""), page);
@@ -141,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn other_names_other_pages_and_other_tokens_get_nothing() {
+    fn other_hosts_origins_and_tokens_are_forbidden() {
         for host in ["evil.example:8123", "127.0.0.1:8124", "127.0.0.1", "10.0.0.1:8123", "[::1]:8123", ""] {
             assert_eq!(ask("/?token=0123abcd", host, ""), FORBIDDEN, "{host}");
         }
@@ -160,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_loopback_the_name_must_still_be_a_number() {
+    fn beyond_loopback_the_host_must_be_a_number() {
         let rules = rules("0.0.0.0");
         let ask = |host: &str| rules.read(format!("GET /?token=0123abcd HTTP/1.1\r\nHost: {host}\r\n\r\n").as_bytes());
         assert_eq!(ask("192.168.1.7:8123"), Request::File(String::new()));
@@ -168,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_request_is_told_so_before_memory_runs_out() {
+    fn malformed_and_oversized_requests_are_rejected() {
         let rules = rules("127.0.0.1");
         assert_eq!(rules.read(b"GET / HT"), Request::Partial);
         let malformed = Request::Refused(Refused::Malformed);

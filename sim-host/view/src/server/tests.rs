@@ -65,7 +65,7 @@ fn a_page_talks_and_is_shown_the_newest_frame() {
 }
 
 #[test]
-fn who_does_not_read_misses_frames_and_holds_nobody_up() {
+fn a_slow_page_misses_frames_without_delaying_others() {
     let server = server();
     let (mut slow, _) = open(&server);
     let (mut quick, _) = open(&server);
@@ -85,7 +85,7 @@ fn who_does_not_read_misses_frames_and_holds_nobody_up() {
 }
 
 #[test]
-fn garbage_and_crowds_do_not_keep_others_out() {
+fn garbage_and_many_connections_do_not_block_a_page() {
     let server = server();
     let (mut page, client) = open(&server);
     let mut crowd: Vec<TcpStream> = Vec::new();
@@ -99,14 +99,14 @@ fn garbage_and_crowds_do_not_keep_others_out() {
     assert!(get(&server, &format!("/?token={}", server.token)).starts_with("HTTP/1.1 200 OK"));
     server.say(None, "still there");
     assert_eq!(page.read().expect("it is"), Message::Text("still there".into()));
-    // Too long a word, or bytes, end a page.
+    // A message that is too long or binary disconnects the page.
     page.send(Message::Text("x".repeat(100_000).into())).ok();
     assert_eq!(server.next(Duration::from_secs(10)), Some(FromPage::Closed(client)));
     drop(crowd);
 }
 
 #[test]
-fn more_pages_than_there_may_be_are_told_so() {
+fn too_many_pages_are_answered_with_an_error() {
     let server = server();
     let pages: Vec<_> = (0..PAGES).map(|_| open(&server)).collect();
     let url = server.url().replace("http:", "ws:").replace("/?", "/live?");
@@ -116,14 +116,14 @@ fn more_pages_than_there_may_be_are_told_so() {
 }
 
 #[test]
-fn a_port_that_is_taken_is_named_with_the_remedy() {
+fn a_port_in_use_is_an_error_with_a_remedy() {
     let server = server();
     let error = Server::start(server.address(), Vec::new()).expect_err("it is taken").to_string();
     assert!(error.contains(&server.address().to_string()) && error.contains("--listen"), "{error}");
 }
 
 #[test]
-fn when_the_thread_is_gone_waiting_still_takes_its_time() {
+fn waiting_respects_the_timeout_after_the_thread_ended() {
     let server = server();
     assert!(server.is_alive());
     server.send(ToPages::End);

@@ -1,9 +1,10 @@
-//! Moments of a run so far, to go back to.
+//! Past frames of a run.
 
-/// Bytes of frames that are kept at most.
+/// Largest total size of the stored frames, bytes.
 const MOST: usize = 256 << 20;
 
-/// Frames by rising tick. When there is no more room every second one goes, and later on only as many come.
+/// Frames by tick. When they exceed the limit, every second one is dropped, and from then on only
+/// every second is added.
 #[derive(Debug)]
 pub(super) struct Memory {
     frames: Vec<(u32, Box<[u8]>)>,
@@ -19,7 +20,7 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// Takes the frame of a tick in; one of the same tick goes.
+    /// Stores the frame of a tick and drops frames from this tick on.
     pub fn put(&mut self, tick: u32, frame: &[u8]) {
         self.forget_from(tick);
         if !tick.is_multiple_of(self.every) {
@@ -35,7 +36,6 @@ impl Memory {
         }
     }
 
-    /// Forgets a tick and all that came later.
     pub fn forget_from(&mut self, tick: u32) {
         while self.frames.last().is_some_and(|(last, _)| *last >= tick) {
             let gone = self.frames.pop();
@@ -43,18 +43,17 @@ impl Memory {
         }
     }
 
-    /// The last tick that is kept.
     pub fn last(&self) -> Option<u32> {
         self.frames.last().map(|(tick, _)| *tick)
     }
 
-    /// The last frame that is not after a tick.
+    /// The last frame at or before a tick.
     pub fn at(&self, tick: u32) -> Option<&[u8]> {
         let behind = self.frames.partition_point(|(kept, _)| *kept <= tick);
         self.frames.get(behind.checked_sub(1)?).map(|(_, frame)| &**frame)
     }
 
-    /// At most so many frames, evenly over time, oldest first.
+    /// At most `most` frames, evenly spaced, oldest first.
     pub fn some(&self, most: usize) -> impl Iterator<Item = &[u8]> {
         let every = self.frames.len().div_ceil(most.max(1)).max(1);
         self.frames.iter().step_by(every).map(|(_, frame)| &**frame)
@@ -66,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_keeps_within_its_bytes_and_forgets_evenly() {
+    fn memory_stays_within_its_limit_and_thins_out_evenly() {
         let mut memory = Memory { most: 1000, ..Memory::default() };
         for tick in 0..1000_u32 {
             memory.put(tick, &[tick as u8; 10]);

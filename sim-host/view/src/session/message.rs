@@ -1,4 +1,4 @@
-//! What a session and its pages say to each other, in JSON (`PROTOCOL.md`).
+//! JSON messages between a session and its pages; `PROTOCOL.md` describes them.
 
 use super::Session;
 use crate::frame::FrameData;
@@ -15,10 +15,9 @@ use staya_sim::radio::Reception;
 use staya_sim::scenario::{Intervention, Scenario};
 use staya_sim::world::plane::Shape;
 
-/// Links that are told at a time.
 const LINKS: usize = 20_000;
 
-/// What a page asks for: see `PROTOCOL.md`, From the page.
+/// A request of a page, see `PROTOCOL.md`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Wanted {
@@ -36,11 +35,11 @@ pub(super) enum Wanted {
     Order { order: Order },
 }
 
-/// A word of a page that cannot be understood.
+/// A request that cannot be parsed.
 #[derive(Clone, Debug)]
 pub(super) struct NotUnderstood {
     pub text: String,
-    /// Otherwise it is no page that speaks.
+    /// Whether the text is JSON at all; if not, the sender is not a page.
     pub is_json: bool,
 }
 
@@ -50,38 +49,38 @@ impl Wanted {
             Ok(wanted) => Ok(wanted),
             Err(error) => {
                 let is_json = serde_json::from_str::<serde_json::Map<String, Value>>(text).is_ok();
-                Err(NotUnderstood { text: format!("not understood: {error}"), is_json })
+                Err(NotUnderstood { text: format!("invalid request: {error}; reload the page"), is_json })
             }
         }
     }
 
-    /// Whether it is about the run at the moment that is shown.
+    /// Whether the request needs the engine at the shown moment.
     pub const fn needs_the_run(&self) -> bool {
         !matches!(self, Wanted::Select { .. } | Wanted::Links { .. } | Wanted::Seen { .. })
     }
 }
 
-/// An intervention as pages say it: robots by their index, places from the scene's origin.
+/// An intervention as sent by a page: robots by index, positions relative to the scene's origin.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Order(serde_json::Map<String, Value>);
 
 impl Order {
-    /// The same by robots' numbers, in world coordinates.
+    /// Converts to robot numbers and world coordinates.
     pub fn intervention(mut self, scenario: &Scenario, origin_m: [f64; 3]) -> Result<Intervention, String> {
         if let Some(index) = self.0.get("robot").filter(|index| !index.is_null()) {
             let index = index.as_u64().and_then(|index| usize::try_from(index).ok());
             let robot = index.and_then(|index| scenario.robots.get(index));
-            let robot = robot.ok_or("there is no such robot; select one that there is")?;
+            let robot = robot.ok_or("unknown robot; select another one")?;
             self.0.insert("robot".to_owned(), robot.id.0.into());
         }
-        // No limit is no number in JSON.
+        // JSON has no infinity, so null means "no limit".
         if self.0.get("range_m").is_some_and(Value::is_null) {
             self.0.remove("range_m");
             self.0.insert("no_limit".to_owned(), true.into());
         }
         let no_limit = self.0.remove("no_limit").is_some();
         let intervention = serde_json::from_value(Value::Object(self.0));
-        let mut intervention = intervention.map_err(|error| format!("this order is not understood: {error}"))?;
+        let mut intervention = intervention.map_err(|error| format!("invalid order: {error}"))?;
         let near = |place_m: &mut [f64; 3]| (0..3).for_each(|axis| place_m[axis] += origin_m[axis]);
         let flat = |place_m: &mut [f64; 2]| (0..2).for_each(|axis| place_m[axis] += origin_m[axis]);
         match &mut intervention {
@@ -107,21 +106,20 @@ pub(super) fn saved(name: &str, text: &str) -> String {
     json!({ "type": "saved", "name": format!("{name}-by-hand.toml"), "text": text }).to_string()
 }
 
-/// What happened, for people.
 pub(super) fn event(event: &Event) -> String {
     match event {
         Event::ModeChanged { from, to } => format!("{from:?} → {to:?}").to_lowercase(),
-        Event::NoRoute => "no way out of the window".to_owned(),
+        Event::NoRoute => "no open route".to_owned(),
         Event::TargetMoved { from, to } => format!("target ({}, {}) → ({}, {})", from.x, from.y, to.x, to.y),
-        Event::RequestExpired { to, kind } => format!("robot {to} never answered ({kind:?})").to_lowercase(),
+        Event::RequestExpired { to, kind } => format!("no answer from robot {to} ({kind:?})").to_lowercase(),
         Event::NeighborFound(id) => format!("robot {id} found"),
         Event::NeighborLost(id) => format!("robot {id} lost"),
         Event::NeighborEvicted(id) => format!("no room for robot {id}"),
-        Event::NeighborRebooted(id) => format!("robot {id} started anew"),
-        Event::NobodyHeard => "nobody is heard".to_owned(),
-        Event::DuplicateId(id) => format!("two robots have the number {id}"),
-        Event::Overclaimed { id, claim } => format!("robot {id} claims what cannot be: {claim}"),
-        Event::Muted => "mute: no counter or timestamp is left, a new key is needed".to_owned(),
+        Event::NeighborRebooted(id) => format!("robot {id} restarted"),
+        Event::NobodyHeard => "contact to all robots lost".to_owned(),
+        Event::DuplicateId(id) => format!("two robots use number {id}"),
+        Event::Overclaimed { id, claim } => format!("robot {id} reports implausible {claim}"),
+        Event::Muted => "cannot send: counters or timestamps used up; give a new key".to_owned(),
     }
 }
 
@@ -151,7 +149,7 @@ impl Session {
         json!(scene).to_string()
     }
 
-    /// The radio as it is now.
+    /// The radio with all interventions so far.
     fn radio(&self) -> scene::Radio {
         let mut radio = scene::Radio::of(&self.scenario);
         let planned = self.scenario.interventions.iter().filter(|(tick, _)| *tick < self.tick);
@@ -181,7 +179,7 @@ impl Session {
         .to_string()
     }
 
-    /// Figures of the ticks so far; `None` before the first.
+    /// Figures of the ticks so far; `None` before the first tick.
     pub(super) fn rows(&self, most: usize) -> Option<String> {
         let frames = self.memory.some(most).filter_map(|bytes| FrameData::figures_of(bytes).ok());
         let rows: Vec<_> = frames.map(|(tick, figures)| json!([tick, figures])).collect();
@@ -210,7 +208,6 @@ impl Session {
         json!({ "type": "links", "tick": self.tick, "pairs": BASE64_STANDARD.encode(pairs) }).to_string()
     }
 
-    /// Everything about one robot.
     pub(super) fn robot(&self, index: usize) -> String {
         let observation = self.engine.observation(index);
         let Inspection { known, land, choice, parameters, sent_bytes, heard_bytes } = self.engine.inspect(index);
@@ -267,7 +264,7 @@ fn window(land: &SeenLand) -> Value {
     })
 }
 
-/// In space, the section at the climb that was chosen.
+/// In space, the section at the chosen vertical velocity.
 fn orca(choice: &Choice) -> Value {
     let flat = |v: [f32; 3]| [v[0], v[1]];
     let lines = choice.permitted.iter().filter_map(|permitted| {
@@ -282,8 +279,8 @@ fn orca(choice: &Choice) -> Value {
     })
 }
 
-/// Where a half-space cuts the velocities of one climb: a point of its border there and the unit vector into it; `None`
-/// when it permits all of them or none.
+/// The section of a half-space at one vertical velocity: a point of its border and the unit vector
+/// into it; `None` if it permits all or no velocities there.
 fn section(permitted: &Permitted, climb_mps: f32) -> Option<([f32; 2], [f32; 2])> {
     let Permitted { point_mps: [px, py, pz], normal: [nx, ny, nz], .. } = *permitted;
     let length = libm::hypotf(nx, ny);
@@ -300,14 +297,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_section_is_the_half_space_at_that_climb() {
+    fn a_section_equals_the_half_space_at_its_climb() {
         let plane = Permitted { point_mps: [0.3, -0.2, 0.0], normal: [0.6, 0.8, 0.0], is_of_obstacle: false };
         assert_eq!(section(&plane, 0.7), Some(([0.3, -0.2], [0.6, 0.8])));
         let space = Permitted { point_mps: [0.1, 0.2, 0.3], normal: [0.48, 0.36, 0.8], is_of_obstacle: false };
         for climb in [-0.5, 0.0, 0.3, 1.0] {
             let (point, normal) = section(&space, climb).expect("it cuts");
             assert!((libm::hypotf(normal[0], normal[1]) - 1.0).abs() < 1e-6);
-            // The point of the section is on the border of the half-space.
             let off = (point[0] - 0.1) * 0.48 + (point[1] - 0.2) * 0.36 + (climb - 0.3) * 0.8;
             assert!(off.abs() < 1e-6, "{off}");
         }

@@ -1,8 +1,8 @@
-//! A run that pages look at and take hold of: [`Session::run`] is its loop.
+//! An interactive run; [`Session::run`] is its loop.
 //!
-//! The engine is stepped here, in the thread that called; pages are served by another one and never make it wait. Whatever a
-//! page does is an [`Intervention`] before the next tick, so that the run can be made again to the bit: to go back, the
-//! engine starts anew and does all again up to there.
+//! The engine is stepped in the calling thread. Another thread serves the pages and never makes the
+//! engine wait. Each action of a page is an [`Intervention`] before the next tick, so the run is
+//! reproducible bit for bit: to go back in time, the engine restarts and repeats all ticks.
 
 mod memory;
 mod message;
@@ -23,63 +23,57 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Least time between two frames.
+/// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
-/// Time between two states that nobody asked for.
 const STATE: Duration = Duration::from_millis(500);
-/// Least time between two scenes of land that changes by itself.
+/// Shortest interval of scenes of a changing map.
 const SCENE: Duration = Duration::from_millis(250);
-/// Events of a robot that are kept.
 const EVENTS: usize = 20;
-/// Rows of figures that a page is told at first.
+/// Rows of figures sent to a new page.
 const ROWS: usize = 2000;
 
-/// Why there is nothing to look at.
+/// Why a session cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    /// The scenario cannot be read, or is wrong.
+    /// The scenario is unreadable or invalid.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// Robots cannot start where they should.
-    #[error("the robots cannot be placed: {0}")]
+    /// The robots do not fit into the scenario.
+    #[error("the robots cannot be placed: {0}; change their starts")]
     Misplaced(#[from] Misplaced),
 }
 
-/// What a page looks at.
 #[derive(Clone, Copy, Debug, Default)]
 struct Looks {
     robot: Option<usize>,
     links: bool,
 }
 
-/// A run, and those who look at it.
+/// A run and its pages.
 pub struct Session {
     text: String,
     path: PathBuf,
     scenario: Scenario,
     engine: Box<dyn Operated>,
-    /// Ticks that the engine has done.
     tick: u32,
     framer: Framer,
     frame: FrameData,
     bytes: Vec<u8>,
     memory: Memory,
-    /// By hand, by rising tick.
+    /// Interventions of pages by tick.
     done: Vec<(u32, Intervention)>,
-    /// What happened to robots lately.
     events: HashMap<usize, VecDeque<(u32, String)>>,
     pace: Pace,
-    /// On the way to this tick again, without anybody's seeing it.
+    /// Tick up to which the engine repeats the run after a seek.
     catches_up_to: Option<u32>,
-    /// What is asked for in the meantime.
+    /// Requests that wait for the end of the repetition.
     deferred: VecDeque<(Client, Wanted)>,
-    /// Whether anybody has had a way to go: otherwise nothing but its last tick ends the run.
+    /// Whether any robot ever had a distance to go. If not, only the last tick ends the run.
     has_work: bool,
-    /// Whether the end of the run has been seen.
     is_over: bool,
     pages: BTreeMap<Client, Looks>,
     is_new: bool,
-    /// Whether the land has changed since it was shown.
+    /// Whether the map changed since the last scene.
     has_new_land: bool,
     scene_told: Instant,
     shown: Instant,
@@ -87,7 +81,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// A run of a scenario file before its first tick.
+    /// Loads a scenario file before its first tick.
     ///
     /// # Errors
     /// [`SessionError`].
@@ -96,7 +90,7 @@ impl Session {
         Self::new(text, path, overrides, is_paused)
     }
 
-    /// The same of a text that stands, or might stand, in the file `path`.
+    /// Loads a scenario from `text`; errors and relative paths refer to `path`.
     ///
     /// # Errors
     /// [`SessionError`].
@@ -138,12 +132,12 @@ impl Session {
         &self.scenario
     }
 
-    /// How fast it goes at first: simulated seconds per second, `None` as fast as it can.
+    /// Sets the initial speed, simulated seconds per second; `None` for no limit.
     pub fn set_speed(&mut self, speed: Option<f64>) {
         self.pace.set_speed(speed);
     }
 
-    /// Runs, and serves pages, until `stop` says so.
+    /// Runs and serves pages until `stop` returns true.
     pub fn run(mut self, server: &Server, stop: &dyn Fn() -> bool) {
         while !stop() {
             let now = Instant::now();
@@ -159,7 +153,7 @@ impl Session {
         }
     }
 
-    /// Ticks that are due, for a slice of time.
+    /// Runs due ticks for a limited time.
     fn work(&mut self, server: &Server) {
         let start = Instant::now();
         while start.elapsed() < SLICE {
@@ -176,7 +170,7 @@ impl Session {
         }
     }
 
-    /// One tick more, which nobody has seen before.
+    /// Advances by one tick beyond all stored frames.
     fn advance(&mut self, server: &Server) {
         let tick = self.tick;
         self.done.retain(|(at, _)| *at <= tick);
@@ -191,7 +185,7 @@ impl Session {
         self.is_over = is_over;
     }
 
-    /// Whether all have arrived that had a way to go, or it is the last tick.
+    /// Whether all robots with a goal have arrived, or the last tick is reached.
     fn is_at_end(&self) -> bool {
         self.tick >= self.scenario.ticks || (self.has_work && self.engine.is_over())
     }
@@ -212,10 +206,9 @@ impl Session {
         }
     }
 
-    /// Does a tick again on the way to one that was done before.
     fn repeat(&mut self, goal: u32, server: &Server) {
         for (_, what) in self.done.iter().filter(|(tick, _)| *tick == self.tick) {
-            // It made sense the first time.
+            // It was valid the first time.
             let _ = self.engine.intervene(what);
         }
         if self.tick < goal {
@@ -234,17 +227,17 @@ impl Session {
         }
     }
 
-    /// The engine as it was at a tick; it gets there step by step.
+    /// Restarts the engine if `tick` is in the past; the ticks are then repeated.
     fn go_back_to(&mut self, tick: u32) {
         if tick < self.tick {
             match operated(&self.scenario) {
                 Ok(engine) => (self.engine, self.tick, self.has_work) = (engine, 0, false),
-                // They could be placed before.
+                // The robots fitted at the first start.
                 Err(_) => return,
             }
             self.events.clear();
         } else if tick > self.tick {
-            // What was done at this tick is done already.
+            // The interventions of this tick are already applied.
             self.step();
         } else {
             return;
@@ -257,7 +250,7 @@ impl Session {
         self.memory.put(self.tick, &self.bytes);
     }
 
-    /// The frame of now, when later ones are known.
+    /// The present frame, while later ones are stored.
     fn take_frame_of_past(&mut self) {
         let (framer, frame) = (&self.framer, &mut self.frame);
         self.engine.show(&mut |moment, robots| framer.fill(frame, moment, robots));
@@ -284,7 +277,7 @@ impl Session {
         }
     }
 
-    /// What pages see beside the frame.
+    /// Sends details that pages have selected beside the frame.
     fn look_closer(&self, server: &Server) {
         let mut robots = BTreeMap::new();
         let mut links = None;
@@ -388,7 +381,7 @@ impl Session {
         self.tell(server);
     }
 
-    /// Takes note of what was done, and shows what has changed.
+    /// Records an intervention and shows its effect.
     fn note(&mut self, what: Intervention, server: &Server) {
         let tick = self.tick;
         self.done.retain(|(at, _)| *at <= tick);
@@ -408,7 +401,6 @@ impl Session {
         }
     }
 
-    /// Another run for the same pages.
     fn replace(
         &mut self,
         text: String,
@@ -423,12 +415,11 @@ impl Session {
         Ok(())
     }
 
-    /// The last tick that there is something to see of.
     fn last_tick(&self) -> u32 {
         self.memory.last().map_or(self.tick, |last| last.max(self.tick))
     }
 
-    /// What a page must know before frames mean anything to it.
+    /// Sends the scene and state, without which frames have no meaning.
     fn begin_anew(&mut self, to: Option<Client>, server: &Server) {
         server.begin_anew(to, self.scene());
         self.has_new_land &= to.is_some();
@@ -436,7 +427,7 @@ impl Session {
             server.say(to, rows);
         }
         self.is_new = true;
-        // Soon, not after the next frame's time.
+        // Shows the next frame soon rather than after the usual interval.
         self.shown = self.shown.checked_sub(FRAME).unwrap_or(self.shown);
     }
 

@@ -14,13 +14,13 @@ const IN_PLANE: &str = "name = \"t\"\nseed = 3\nticks = 2000\ntick_s = 0.05\n[ra
      [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [6, 0]\n\
      [[plane.robots.list]]\nstart_m = [6, 0.1]\ngoal_m = [0, 0]\n[[plane.ball]]\ncenter_m = [4, 2]\nradius_m = 0.3\n";
 
-/// A session in a thread, and a page that looks at it.
+/// A session in a thread, with one page.
 struct Running {
     page: WebSocket<MaybeTlsStream<TcpStream>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     url: String,
-    /// Frames and texts keep no order among each other.
+    /// Last frame; frames and texts are not ordered.
     last: Option<FrameData>,
 }
 
@@ -41,11 +41,11 @@ impl Running {
         let url = server.url().replace("http:", "ws:").replace("/?", "/live?");
         let stop = Arc::new(AtomicBool::new(false));
         let stops = Arc::clone(&stop);
-        // The engine does not change threads: the session is made where it runs.
+        // The engine cannot move between threads, so the session is created in its own.
         let thread = std::thread::spawn(move || session.run(&server, &|| stops.load(Ordering::Relaxed)));
         let (mut page, _) = tungstenite::connect(&url).expect("it lets its pages in");
         if let MaybeTlsStream::Plain(stream) = page.get_mut() {
-            // What never comes is an error, not a test that never ends.
+            // A missing message fails the test instead of blocking it.
             stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a time");
         }
         Self { page, stop, thread: Some(thread), url, last: None }
@@ -55,10 +55,10 @@ impl Running {
         self.page.send(Message::Text(word.to_string().into())).expect("it reads");
     }
 
-    /// The next message for which there is an answer.
+    /// The next message for which `is` returns a value.
     fn until<T>(&mut self, mut is: impl FnMut(Result<Value, FrameData>) -> Option<T>) -> T {
         loop {
-            let found = match self.page.read().expect("it goes on") {
+            let found = match self.page.read().expect("a message") {
                 Message::Text(text) => is(Ok(serde_json::from_str(&text).expect("JSON"))),
                 Message::Binary(bytes) => {
                     let frame = FrameData::decode(&bytes).expect("a frame");
@@ -96,7 +96,7 @@ fn hash(text: &str) -> String {
 }
 
 #[test]
-fn a_page_pauses_steps_and_goes_back_and_the_run_is_the_same() {
+fn pausing_stepping_and_seeking_leave_the_run_unchanged() {
     let mut run = Running::new(IN_PLANE);
     let scene = run.text("scene");
     assert_eq!(
@@ -123,7 +123,7 @@ fn a_page_pauses_steps_and_goes_back_and_the_run_is_the_same() {
 }
 
 #[test]
-fn what_a_page_does_is_saved_as_a_scenario_that_does_it_again() {
+fn a_saved_scenario_repeats_the_actions_of_a_page() {
     let mut run = Running::new(IN_PLANE);
     run.text("scene");
     let order = |order: Value| json!({ "do": "order", "order": order });
@@ -145,7 +145,7 @@ fn what_a_page_does_is_saved_as_a_scenario_that_does_it_again() {
     run.say(&json!({ "do": "play" }));
     let state = run.state(|state| state["at_end"] == true);
     assert_eq!(state["radio"], json!({ "loss": 0.5, "range_m": null }));
-    // And again from the middle: what was done stays done.
+    // After a seek the interventions remain.
     let last = state["tick"].as_u64().expect("a number");
     run.say(&json!({ "do": "seek", "tick": 5 }));
     run.state(|state| state["tick"] == 5);
@@ -157,7 +157,7 @@ fn what_a_page_does_is_saved_as_a_scenario_that_does_it_again() {
     let said = format!("# Trace hash after tick {last}: {}", hash(text));
     assert!(text.contains(&said), "{said}\n{text}");
     assert_ne!(hash(text), hash(IN_PLANE));
-    // Playing on from an earlier moment forgets what came later.
+    // Playing from an earlier moment drops later interventions.
     run.say(&json!({ "do": "seek", "tick": 5 }));
     run.state(|state| state["tick"] == 5);
     run.last = None;
@@ -168,7 +168,7 @@ fn what_a_page_does_is_saved_as_a_scenario_that_does_it_again() {
 }
 
 #[test]
-fn a_selected_robot_shows_what_it_knows() {
+fn a_selected_robot_shows_its_knowledge() {
     let mut run = Running::new(IN_PLANE);
     run.text("scene");
     run.say(&json!({ "do": "select", "robot": 1 }));
@@ -187,7 +187,7 @@ fn a_selected_robot_shows_what_it_knows() {
 }
 
 #[test]
-fn land_that_changes_by_itself_is_sent_to_pages() {
+fn a_changing_map_is_sent_to_pages() {
     let mut run = Running::new(
         "name = \"t\"\nticks = 50\n[terrain]\nuniform = { width = 9, height = 1, classes = 1 }\n\
          [[terrain.change]]\nat_s = 2\nclass = 0\ncells = [[5, 0]]\n[robots]\nlist = [{ start = [0, 0], goal = [8, 0] }]\n",
@@ -200,11 +200,11 @@ fn land_that_changes_by_itself_is_sent_to_pages() {
     let then = cells(&run.text("scene"));
     assert_ne!(first, then);
     run.say(&json!({ "do": "seek", "tick": 1 }));
-    assert_eq!(cells(&run.text("scene")), first, "before the change it is as it was");
+    assert_eq!(cells(&run.text("scene")), first, "the map before the change");
 }
 
 #[test]
-fn wrong_words_are_answered_and_strangers_are_left() {
+fn invalid_requests_are_answered_and_other_data_disconnect() {
     let mut run = Running::new(IN_PLANE);
     run.text("scene");
     let wrong = [
@@ -229,7 +229,7 @@ fn wrong_words_are_answered_and_strangers_are_left() {
         .tick,
         1
     );
-    // What is no JSON ends the connection, and nothing else.
+    // Data other than JSON close only this connection.
     let (mut stranger, _) = tungstenite::connect(&run.url).expect("it knows the token");
     stranger.send(Message::Text("garbage".into())).expect("it reads");
     while stranger.read().is_ok() {}
@@ -244,7 +244,7 @@ fn wrong_words_are_answered_and_strangers_are_left() {
 }
 
 #[test]
-fn new_runs_take_the_place_of_old_ones() {
+fn a_new_run_replaces_the_old_one() {
     let mut run = Running::new(IN_PLANE);
     run.text("scene");
     run.say(&json!({ "do": "new", "robots": 12, "goals": 3, "obstacles": 5, "seed": 4 }));
@@ -257,12 +257,12 @@ fn new_runs_take_the_place_of_old_ones() {
 }
 
 #[test]
-fn where_nobody_has_anywhere_to_go_it_runs_on_until_somebody_has() {
+fn a_run_without_goals_continues_until_a_robot_gets_one() {
     let nowhere = "name = \"t\"\nseed = 3\nticks = 100000\ntick_s = 0.05\n[radio]\nrange_m = 9\n\
          [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\n";
     let mut run = Running::new(nowhere);
     run.text("scene");
-    // 2000 ticks a second: neither over before a page sees it, nor long on the way.
+    // 2000 ticks per second.
     run.say(&json!({ "do": "speed", "x": 100 }));
     run.say(&json!({ "do": "play" }));
     run.state(|state| state["paused"] == false && state["at_end"] == false && state["tick"].as_u64() > Some(20));

@@ -1,13 +1,13 @@
-//! Scenarios as files: with what was done by hand, or made up of a few numbers.
+//! Scenario files of interactive runs: saved ones, and generated ones.
 
 use staya_controller::rand::Rng;
 use staya_sim::scenario::{Intervention, Scenario, with_interventions};
 use std::fmt::Write as _;
 
-/// Keeps the draws of this module apart from all others.
+/// Separates this module's random numbers from others.
 const RANDOM: u32 = u32::from_be_bytes(*b"view");
 
-/// Sets a field at the top of a scenario's text, where fields stand that are in no table.
+/// Sets a top-level field in the text of a scenario.
 pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let top = lines.iter().position(|line| line.trim_start().starts_with('[')).unwrap_or(lines.len());
@@ -20,43 +20,45 @@ pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The file that does again what was done by hand.
+/// The scenario that repeats a run with its interventions.
 pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)], tick: u32, hash: &str) -> String {
     let text = with_top_field(text, "seed", &scenario.seed.to_string());
     let text = with_top_field(&text, "ticks", &scenario.ticks.max(tick).to_string());
     let head = format!(
-        "# Saved from a view. File names are relative to the folder of the scenario that it was made of.\n\
+        "# Saved from a view. Relative paths refer to the folder of the original scenario.\n\
          # Trace hash after tick {tick}: {hash}\n"
     );
     head + &with_interventions(&text, scenario.tick_us, done)
 }
 
-/// What a run of one's own is made of (V. E. and V. V. Pavlovsky, PAV): robots that flock to goals among obstacles.
+/// Parameters of a generated run (V. E. and V. V. Pavlovsky, PAV): robots flock to goals among
+/// obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
-    /// 1 to 2000.
+    /// Number of robots, 1 to 2000.
     pub robots: u32,
-    /// 1 to 4.
+    /// Number of goals, 1 to 4.
     pub goals: u32,
-    /// Round ones, 0 to 200.
+    /// Number of round obstacles, 0 to 200.
     pub obstacles: u32,
-    /// Of places and of the run.
+    /// Seed of positions and of the run.
     pub seed: u64,
 }
 
 impl Configuration {
-    /// The same within what there can be.
+    /// Limits all numbers to their ranges.
     #[must_use]
     pub fn clamped(self) -> Self {
         let Self { robots, goals, obstacles, seed } = self;
         Self { robots: robots.clamp(1, 2000), goals: goals.clamp(1, 4), obstacles: obstacles.min(200), seed }
     }
 
-    /// The scenario: robots start in the west, their goals are in the east, obstacles between them, away from both.
+    /// Generates the scenario: robots start in the west, goals are in the east, obstacles lie
+    /// between them with a gap to both.
     #[must_use]
     pub fn scenario(self) -> String {
         let Self { robots, goals, obstacles, seed } = self.clamped();
-        // A robot needs a place of a metre or so to be drawn into.
+        // Each robot needs about one square metre.
         let side_m = libm::ceil(libm::sqrt(f64::from(robots))) * 1.2 + 3.0;
         let width_m = side_m * 2.0 + 16.0;
         let mut draws = Rng::keyed(seed, RANDOM, robots, obstacles);
@@ -93,14 +95,14 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn fields_at_the_top_are_replaced_or_added_and_others_left_alone() {
+    fn top_level_fields_are_replaced_or_added_and_others_unchanged() {
         let text = "# a\nname = \"t\"\nseed=3\n[radio]\nseed = 5\n";
         assert_eq!(with_top_field(text, "seed", "7"), "# a\nname = \"t\"\nseed = 7\n[radio]\nseed = 5\n");
         assert_eq!(with_top_field(text, "ticks", "9"), format!("ticks = 9\n{text}"));
     }
 
     #[test]
-    fn any_configuration_is_a_good_scenario() {
+    fn every_configuration_is_a_valid_scenario() {
         for (robots, goals, obstacles) in [(1, 1, 0), (20, 3, 12), (0, 9, 999), (600, 4, 60), (u32::MAX, 0, 5)] {
             for seed in 0..4 {
                 let configuration = Configuration { robots, goals, obstacles, seed };

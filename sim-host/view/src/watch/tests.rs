@@ -13,7 +13,7 @@ const THREE: &str = "name = \"t\"\nseed = 3\nticks = 40\ntick_s = 0.05\n[radio]\
      [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [6, 0]\n\
      [[plane.robots.list]]\nstart_m = [6, 1]\ngoal_m = [0, 1]\n[[plane.robots.list]]\nstart_m = [3, 5]\n";
 
-/// Robot 2 knows robot 1, where it was a metre ago; robot 3 is here by hearsay.
+/// Robot 2 knows robot 1 at an old position; robot 3 is known from beacons only.
 struct Some3;
 
 impl Insight for Some3 {
@@ -58,7 +58,7 @@ fn open(watcher: &mut Watcher) -> Page {
 
 fn text(page: &mut Page, kind: &str) -> Value {
     loop {
-        if let Message::Text(text) = page.read().expect("it goes on") {
+        if let Message::Text(text) = page.read().expect("a message") {
             let value: Value = serde_json::from_str(&text).expect("JSON");
             if value["type"] == kind {
                 return value;
@@ -80,7 +80,7 @@ fn say(page: &mut Page, watcher: &mut Watcher, words: &[Value]) {
 }
 
 #[test]
-fn who_clicks_a_robot_is_told_what_the_run_knows_of_it() {
+fn a_selected_robot_shows_the_details_of_the_run() {
     let scenario = scenario();
     let mut watcher = watcher(&scenario);
     let mut page = open(&mut watcher);
@@ -106,7 +106,7 @@ fn who_clicks_a_robot_is_told_what_the_run_knows_of_it() {
 }
 
 #[test]
-fn pages_that_say_what_looking_on_does_not_need_are_left_or_not_heeded() {
+fn other_requests_of_read_only_pages_are_ignored_or_disconnect() {
     let scenario = scenario();
     let mut watcher = watcher(&scenario);
     let mut pages = [(); 3].map(|()| open(&mut watcher));
@@ -130,11 +130,11 @@ fn pages_that_say_what_looking_on_does_not_need_are_left_or_not_heeded() {
 }
 
 #[test]
-fn without_a_page_no_robot_is_asked_for() {
+fn without_a_page_no_row_is_read() {
     let scenario = scenario();
     let mut watcher = watcher(&scenario);
     let outcome = simulate(&scenario, |moment, _| {
-        let mut robots = std::iter::from_fn(|| -> Option<RobotRow> { panic!("nobody looks") });
+        let mut robots = std::iter::from_fn(|| -> Option<RobotRow> { panic!("no page is open") });
         watcher.tick(moment, &mut robots);
         ControlFlow::Continue(())
     });

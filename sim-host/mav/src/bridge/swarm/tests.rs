@@ -8,14 +8,13 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 const PATIENCE: Duration = Duration::from_secs(20);
-/// Longest that there is.
+/// The last timestamp that 48 bits hold.
 const LAST: u64 = (1 << 48) - 1;
 
 fn key() -> Key {
     Key::of_passphrase(b"swarm")
 }
 
-/// Ten discs at a port of this machine.
 fn ten(signing: Option<Signing>) -> (Swarm, SocketAddr) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/bridge.toml");
     let scenario = Scenario::load(&path, &Overrides::default()).expect("a scenario");
@@ -35,12 +34,10 @@ fn ten(signing: Option<Signing>) -> (Swarm, SocketAddr) {
     (swarm, address)
 }
 
-/// A client of a bridge.
 struct Client {
     socket: UdpSocket,
     to: SocketAddr,
     signing: Option<Signing>,
-    /// Frames so far.
     said: u64,
 }
 
@@ -68,7 +65,7 @@ impl Client {
         self.said += 1;
     }
 
-    /// Arms vehicle 3, again and again until it is answered.
+    /// Sends an arm command to vehicle 3 until it is answered.
     fn is_obeyed(&mut self) -> bool {
         let began = Instant::now();
         while began.elapsed() < PATIENCE {
@@ -80,7 +77,7 @@ impl Client {
         false
     }
 
-    /// Whether such a message comes before there are none for a moment.
+    /// Whether a matching message arrives before the socket is silent for a moment.
     fn hears(&self, is_it: impl Fn(&MavMessage) -> bool) -> bool {
         let mut buffer = [0; 512];
         let frames = std::iter::from_fn(|| self.socket.recv(&mut buffer).ok().map(|len| buffer[..len].to_vec()));
@@ -99,10 +96,9 @@ fn arm(system: u8) -> MavMessage {
     })
 }
 
-/// Runs the swarm beside a test, and gives its figures.
+/// Runs the swarm in parallel with a test and returns its report.
 fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
     let is_over = AtomicBool::new(false);
-    /// Also when the test fails: it would wait for ever.
     struct Ends<'a>(&'a AtomicBool);
     impl Drop for Ends<'_> {
         fn drop(&mut self) {
@@ -118,7 +114,8 @@ fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
     })
 }
 
-/// The attack: one frame by who has the key, with the last timestamp; recorded, and sent again by who does not have it.
+/// The attack: a frame signed with the key and the last possible timestamp is recorded and replayed
+/// by an attacker without the key.
 #[test]
 fn a_frame_of_the_far_future_does_not_mute_the_bridge() {
     let (swarm, address) = ten(Some(Signing::new(key(), 0, timestamp())));
@@ -135,7 +132,7 @@ fn a_frame_of_the_far_future_does_not_mute_the_bridge() {
 }
 
 #[test]
-fn who_cannot_answer_does_not_obey_and_says_why_while_he_can() {
+fn a_bridge_without_timestamps_refuses_commands_and_reports_why() {
     let left = 20_000;
     let (swarm, address) = ten(Some(Signing::new(key(), 0, LAST - left).with_lead(LAST)));
     let mut client = Client::new(address, Some(Signing::new(key(), 1, LAST - left)));
@@ -158,9 +155,9 @@ fn who_cannot_answer_does_not_obey_and_says_why_while_he_can() {
     assert!(report.commands.is_empty(), "{:?}", report.commands);
 }
 
-/// The attack: commands from one port as fast as they go.
+/// The attack: commands from one port as fast as possible.
 #[test]
-fn who_floods_costs_the_others_no_answer() {
+fn a_flood_from_one_client_does_not_delay_answers_to_others() {
     let (swarm, address) = ten(None);
     let mut client = Client::new(address, None);
     let mut flooder = Client::new(address, None);
@@ -177,7 +174,7 @@ fn who_floods_costs_the_others_no_answer() {
             }
         });
         let report = beside(swarm, || {
-            // Until the flood is there.
+            // Waits until the flood arrives.
             while sent.load(Ordering::Relaxed) < 20_000 {
                 assert!(client.is_obeyed());
             }
@@ -192,12 +189,11 @@ fn who_floods_costs_the_others_no_answer() {
         panic!("one line");
     };
     assert!(line.lost_in > 0, "{line:?}");
-    // The flooder has had no more answers than it can pay for: first as a stranger, then as a peer.
+    // The flooder got only the answers that its rate limit allows.
     let answers = report.commands.values().sum::<u64>().saturating_sub(client.said);
     assert!((answers as f64) < 2.0 * (1100.0 + 1000.0 * report.wall_seconds), "{answers} in {}", report.wall_seconds);
 }
 
-/// Each frame that came in is in the report once, by what became of it.
 #[test]
 fn every_frame_is_accounted_for() {
     let (swarm, address) = ten(Some(Signing::new(key(), 0, timestamp())));
@@ -215,7 +211,7 @@ fn every_frame_is_accounted_for() {
         (0..5).for_each(|_| stranger.say(&heartbeat));
         (0..6).for_each(|_| forger.say(&heartbeat));
         (0..7).for_each(|_| hasty.say(&heartbeat));
-        // For nobody here.
+        // No vehicle has this number.
         (0..8).for_each(|_| client.say(&arm(77)));
         assert!(client.is_obeyed());
         std::thread::sleep(Duration::from_millis(300));
@@ -223,7 +219,7 @@ fn every_frame_is_accounted_for() {
     let refused = Refused { unsigned: 5, forged: 6, replayed: 3, ahead: 7, ..Refused::default() };
     assert_eq!((report.refused, report.frames_refused), (refused, 21));
     assert_eq!(report.frames_ignored, 8);
-    // The first of the recorded ones is new, and so is what was said to be obeyed.
+    // Of the recorded frames only the first is valid.
     assert_eq!(report.frames_heard, 1 + client.said - 8);
     let lines = report.lines.iter().map(|line| line.frames_in - line.lost_in).sum::<u64>();
     assert_eq!(lines, report.frames_heard + report.frames_ignored + report.frames_refused + report.frames_waiting);

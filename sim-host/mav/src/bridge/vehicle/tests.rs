@@ -21,7 +21,6 @@ fn two(first: f32, second: f32) -> [f32; 7] {
     [first, second, 0.0, 0.0, 0.0, 0.0, 0.0]
 }
 
-/// In GUIDED.
 fn guided(model: VehicleModel) -> Bench {
     let mut bench = Bench::new(model);
     let number = FlightMode::Guided.number(bench.vehicle.model.flies);
@@ -58,7 +57,7 @@ fn place_mm(wish: Option<Wish<f32>>) -> [i32; 3] {
     }
 }
 
-/// DO_REPOSITION to metres east and north of the origin.
+/// DO_REPOSITION to a position in metres east and north of the origin.
 fn reposition(east: f64, north: f64, flags: f32) -> COMMAND_INT_DATA {
     let place = origin().to_global([east, north, 0.0]).expect("near");
     let [x, y, _] = place.to_e7();
@@ -90,7 +89,7 @@ fn item(seq: u16, east: f64, north: f64) -> MISSION_ITEM_INT_DATA {
     }
 }
 
-/// Loads items; the end of the transfer.
+/// Uploads items and returns the result of the transfer.
 fn load(bench: &mut Bench, items: &[MISSION_ITEM_INT_DATA]) -> u8 {
     bench.give(MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
         count: items.len() as u16,
@@ -100,7 +99,6 @@ fn load(bench: &mut Bench, items: &[MISSION_ITEM_INT_DATA]) -> u8 {
     }));
     for item in items {
         bench.give(MavMessage::MISSION_ITEM_INT(item.clone()));
-        // A text may come before it.
         if let Some(MavMessage::MISSION_ACK(ack)) = bench.out.messages.last() {
             return ack.mavtype;
         }

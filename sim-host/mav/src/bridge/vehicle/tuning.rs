@@ -1,4 +1,4 @@
-//! Parameters that a client sets, and what it is told of them.
+//! Parameters set by a client.
 
 use super::super::params::{Meaning, NotSet};
 use super::{Action, Kind, Out, Vehicle};
@@ -8,7 +8,7 @@ use staya_mavlink::dialect::*;
 
 impl Vehicle {
     pub(super) fn unknown_parameter(&mut self, out: &mut Out) {
-        self.text(out, Kind::Parameter, MAV_SEVERITY_WARNING, "no such parameter");
+        self.text(out, Kind::Parameter, MAV_SEVERITY_WARNING, "unknown parameter");
     }
 
     pub(super) fn set_parameter(&mut self, wanted: &PARAM_SET_DATA, out: &mut Out) {
@@ -16,7 +16,7 @@ impl Vehicle {
             return self.unknown_parameter(out);
         };
         let set = self.parameters.set(index, wanted.param_value);
-        // What it is now, whether it was changed or not.
+        // The present value is reported whether it changed or not.
         let told = self.parameters.message(index);
         out.messages.extend(told.map(MavMessage::PARAM_VALUE));
         match set {
@@ -27,21 +27,22 @@ impl Vehicle {
             Err(NotSet::OutOf([least, greatest])) => {
                 let name = String::from_utf8_lossy(&*wanted.param_id).into_owned();
                 let name = name.trim_end_matches('\0');
-                let text = format!("{name}: {least} to {greatest}");
+                let text = format!("{name}: give {least} to {greatest}");
                 self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
             }
             Err(NotSet::Unknown) => self.unknown_parameter(out),
         }
     }
 
-    /// The controller did not take a value, since it does not go with the others (or it is down): says what holds.
+    /// Reports the value in use after the controller refused a value: it conflicts with another
+    /// parameter, or the robot is down.
     pub(in super::super) fn set_back(&mut self, parameter: Parameter, value: Option<f32>, out: &mut Out) {
         let meaning = Meaning::Controller(parameter);
         let Some(index) = value.and_then(|value| self.parameters.set_back(meaning, value)) else {
             return;
         };
         out.messages.extend(self.parameters.message(index).map(MavMessage::PARAM_VALUE));
-        let text = format!("{} does not go with the other parameters", parameter.name());
+        let text = format!("{} conflicts with other parameters", parameter.name());
         self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
     }
 }

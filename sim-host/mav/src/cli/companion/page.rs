@@ -1,5 +1,5 @@
-//! The page that looks on at steered vehicles, in a thread of its own: what steers leaves copies when a page wants one, never waits
-//! for it, and never hears whether anything became of it.
+//! Live page of the controlled vehicles, in its own thread. The controlling thread hands over a
+//! copy of its state if a page is open; it never waits for the page.
 
 use crate::companion::{Seen, Sight};
 use anyhow::{Context as _, Result};
@@ -15,35 +15,33 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Time between two copies.
 const EVERY: Duration = Duration::from_millis(50);
-/// Who was heard within so many seconds counts as heard now.
+/// A robot counts as heard now if its last beacon is at most this old, seconds.
 const NOW_S: f64 = 1.0;
 
-/// What the companions leave for the page.
 #[derive(Debug)]
 struct Copied {
     at: Duration,
     vehicles: Vec<Seen>,
 }
 
-/// The companions' side.
+/// The end of the page in the controlling thread.
 pub struct Page {
     is_wanted: Arc<AtomicBool>,
-    /// `None` only while it ends.
+    /// `None` only during drop.
     copies: Option<SyncSender<Copied>>,
     copied: Instant,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Page {
-    /// Of the vehicles of a configuration, whose swarm is `scenario`.
+    /// Starts the thread for the vehicles of `scenario`.
     ///
     /// # Errors
-    /// There is no thread for it.
+    /// The thread cannot be started.
     pub fn new(watcher: Watcher, scenario: &Scenario) -> Result<Self> {
         let is_wanted = Arc::new(AtomicBool::new(false));
-        // One that has not been fetched yet is enough.
+        // One copy in transit is enough.
         let (sender, copies) = sync_channel(1);
         let shown = Shown::new(scenario);
         let wanted = Arc::clone(&is_wanted);
@@ -53,14 +51,14 @@ impl Page {
         Ok(Self { is_wanted, copies: Some(sender), copied: Instant::now(), thread: Some(thread) })
     }
 
-    /// Leaves a copy of what there is to see, if a page wants one. O(1) otherwise.
+    /// Hands over a copy of the present state if a page wants one, else returns in O(1).
     pub fn look(&mut self, sight: &Sight<'_>) {
         if !self.is_wanted.load(Ordering::Relaxed) || self.copied.elapsed() < EVERY {
             return;
         }
         self.copied = Instant::now();
         if let Some(copies) = &self.copies {
-            // A page that is busy, or gone, misses it.
+            // A busy page misses the copy.
             let _ = copies.try_send(Copied { at: sight.now(), vehicles: sight.vehicles() });
         }
     }
@@ -75,10 +73,9 @@ impl Drop for Page {
     }
 }
 
-/// The page's side: what it must know of the scenario.
 struct Shown {
     tick_s: f64,
-    /// Each robot's number and radius.
+    /// Number and radius (metres) of each robot.
     robots: Vec<(u32, f64)>,
 }
 
@@ -89,7 +86,7 @@ impl Shown {
         Self { tick_s: scenario.tick_s(), robots: robots.map(|(index, robot)| (robot.id.0, radius_m(index))).collect() }
     }
 
-    /// Shows pages what is left for them, until nothing will be any more.
+    /// Sends copies to the pages until the controlling thread ends.
     fn serve(&self, mut watcher: Watcher, copies: &Receiver<Copied>, is_wanted: &AtomicBool) {
         loop {
             let copy = match copies.recv_timeout(EVERY) {
@@ -120,7 +117,7 @@ impl Shown {
             row: &row,
             arrived: copy.vehicles.iter().filter(|seen| seen.has_arrived).count(),
             waiting: copy.vehicles.iter().filter(|seen| seen.wait.is_some()).count(),
-            // Those of now: how many there have been, nobody has counted.
+            // Collisions at this moment; earlier ones are not counted.
             collisions: gaps_m.iter().filter(|gap_m| **gap_m < 0.0).count() as u64,
             gap_m: gaps_m.into_iter().min_by(f64::total_cmp),
             intruders: &[],
@@ -138,7 +135,8 @@ impl Shown {
     }
 }
 
-/// All robots at a moment: the vehicles of this program by their telemetry, the others as these know them.
+/// All robots at one moment: vehicles of this program by telemetry, the others by the beacons
+/// received from them.
 struct Swarm<'a> {
     shown: &'a Shown,
     vehicles: &'a [Seen],
@@ -149,7 +147,6 @@ impl Swarm<'_> {
         self.vehicles.iter().find(|seen| seen.index == index)
     }
 
-    /// The latest that was heard of a robot.
     fn heard(&self, id: u32) -> Option<&Known> {
         let known = self.vehicles.iter().flat_map(|seen| &seen.known).filter(|known| known.id.0 == id);
         known.min_by(|a, b| a.age_s.total_cmp(&b.age_s))
@@ -160,7 +157,7 @@ impl Swarm<'_> {
         let seen = self.seen(index);
         let measured = seen.and_then(|seen| Some((seen.position_m?, seen.velocity_mps)));
         let heard = || self.heard(id).map(|known| (known.position_m, known.velocity_mps));
-        // Of whom nothing was heard there is nothing to draw.
+        // NaN hides a robot of which no beacon has arrived.
         let (position_m, velocity_mps) = measured.or_else(heard).unwrap_or(([f64::NAN; 3], [0.0; 3]));
         RobotRow {
             id,
@@ -176,7 +173,7 @@ impl Swarm<'_> {
         }
     }
 
-    /// Distances between the surfaces of any two vehicles of this program, metres.
+    /// Gaps between the surfaces of all vehicles of this program, metres.
     fn gaps_m(&self) -> Vec<f64> {
         let radius_m = |seen: &Seen| self.shown.robots.get(seen.index).map_or(0.0, |(_, radius_m)| *radius_m);
         let placed = |seen: &Seen| Some((seen.position_m?, radius_m(seen)));
@@ -197,7 +194,7 @@ impl Insight for Swarm<'_> {
             let heard =
                 self.heard(id).map_or_else(|| "nothing".to_owned(), |known| format!("{:.1} s ago", known.age_s));
             return About {
-                facts: vec![("companion", "elsewhere".to_owned()), ("heard of it", heard)],
+                facts: vec![("companion", "elsewhere".to_owned()), ("last beacon", heard)],
                 ..About::default()
             };
         };

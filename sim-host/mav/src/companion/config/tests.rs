@@ -7,7 +7,7 @@ fn parse(text: &str) -> Result<Config, ScenarioError> {
     Config::parse(text, &folder.join("test.toml"))
 }
 
-/// A sound file, with `top` above its tables and `bottom` below, as a part of its one vehicle.
+/// A valid file, with `top` before its tables and `bottom` at the end of its only vehicle.
 fn text(top: &str, bottom: &str) -> String {
     format!(
         "scenario = \"{SCENARIO}\"\norigin = {{ latitude_deg = 55.75, longitude_deg = 37.62 }}\n{top}\n[[vehicle]]\nrobot = 3\n\
@@ -16,7 +16,7 @@ fn text(top: &str, bottom: &str) -> String {
 }
 
 #[test]
-fn what_is_left_out_is_cautious() {
+fn defaults_are_cautious() {
     let config = parse(&text("", "")).unwrap();
     let [vehicle] = config.vehicles.as_slice() else {
         panic!("one vehicle");
@@ -29,7 +29,7 @@ fn what_is_left_out_is_cautious() {
 }
 
 #[test]
-fn vehicles_share_lines_and_are_sorted() {
+fn vehicles_may_share_links_and_are_sorted() {
     let more = "[[vehicle]]\nrobot = 1\nsystem = 9\nlink = \"udpin:127.0.0.1:14550\"\nautopilot = \"px4\"\n\
                 [[vehicle]]\nrobot = 2\nlink = \"tcpout:127.0.0.1:5760\"\nautopilot = \"px4-rover\"";
     let config = parse(&text("", more)).unwrap();
@@ -40,7 +40,7 @@ fn vehicles_share_lines_and_are_sorted() {
 }
 
 #[test]
-fn heights_are_for_what_flies() {
+fn only_flying_vehicles_have_heights() {
     let rules = "[rules]\nentry = \"once\"\narm = true\ntakeoff = true\naltitude_m = 10";
     let more =
         "[[vehicle]]\nrobot = 1\nlink = \"udpin:127.0.0.1:1\"\nautopilot = \"ardupilot-copter\"\naltitude_m = 12";
@@ -50,7 +50,7 @@ fn heights_are_for_what_flies() {
 }
 
 #[test]
-fn heights_are_kept_in_the_plane_and_left_to_the_agent_in_space() {
+fn the_height_is_fixed_in_the_plane_and_commanded_in_space() {
     let config = parse(&text("", "")).unwrap();
     assert!(config.vehicles[0].rules.keeps_altitude);
     let config = parse(&text("", "").replace(SCENARIO, "../scenarios/bridge-fly.toml")).unwrap();
@@ -58,7 +58,7 @@ fn heights_are_kept_in_the_plane_and_left_to_the_agent_in_space() {
 }
 
 #[test]
-fn a_goal_on_the_earth_is_metres() {
+fn a_geographic_goal_is_converted_to_metres() {
     let config = parse(&text("", "goal_deg = [55.751, 37.62]")).unwrap();
     let goal = config.plane.starts[2].places[0].position_m;
     assert!(goal[0].abs() < 0.01 && (goal[1] - 111.34).abs() < 0.01, "{goal:?}");
@@ -66,7 +66,7 @@ fn a_goal_on_the_earth_is_metres() {
 }
 
 #[test]
-fn ways_to_other_companions() {
+fn each_network_to_other_companions_parses() {
     let config = parse(&text("[air]\nmulticast = \"239.1.2.3:5000\"", "")).unwrap();
     assert!(matches!(config.air, MediumSetup::Multicast { .. }));
     let config = parse(&text("[air]\nbind = \"0.0.0.0:5000\"\npeers = [\"10.0.0.2:5000\"]", ""));
@@ -83,40 +83,47 @@ fn errors_name_line_field_and_remedy() {
         ("nonsense = 1", "", "test.toml:3: nonsense"),
         ("[rules]\nstale_s = 0", "", "test.toml:4: rules.stale_s: 0 is out of range; give 0.1 to 60 seconds"),
         ("[rules]\nsetpoint_hz = 2", "", "rules.setpoint_hz: 2 is out of range; give 3 to 100 Hz"),
-        ("[rules]\narm = true", "", "rules.arm: with entry \"wait\" the pilot arms"),
-        ("[rules]\nentry = \"once\"\ntakeoff = true", "", "rules.takeoff: what is not armed"),
+        ("[rules]\narm = true", "", "rules.arm: only the pilot arms with entry \"wait\""),
+        ("[rules]\nentry = \"once\"\ntakeoff = true", "", "rules.takeoff: a takeoff needs an armed vehicle"),
         ("[rules]\nentry = \"always\"", "", "rules.entry"),
-        ("[air]\ntunnel = true\nmulticast = \"239.1.2.3:5\"", "", "air: it is not clear"),
-        ("[air]\nmulticast = \"10.1.2.3:5\"", "", "`10.1.2.3:5` is no IPv4 multicast group"),
-        ("[air]\npeers = [\"10.1.2.3:5\"]", "", "air.peers: it is not clear"),
-        ("[air]\nbind = \"0.0.0.0:5\"\npeers = [\"there\"]", "", "test.toml:5: air.peers[0]: `there` is no address"),
+        ("[air]\ntunnel = true\nmulticast = \"239.1.2.3:5\"", "", "air: the network to other companions is ambiguous"),
+        ("[air]\nmulticast = \"10.1.2.3:5\"", "", "`10.1.2.3:5` is not an IPv4 multicast group"),
+        ("[air]\npeers = [\"10.1.2.3:5\"]", "", "air.peers: the network to other companions is ambiguous"),
+        (
+            "[air]\nbind = \"0.0.0.0:5\"\npeers = [\"there\"]",
+            "",
+            "test.toml:5: air.peers[0]: `there` is not an address",
+        ),
         ("", "altitude_m = 0", "vehicle[0].altitude_m: 0 is out of range"),
-        ("", "goal_deg = [-55.0, 37.62]", "vehicle[0].goal_deg: this is no place near the origin"),
-        ("", "system = 255", "test.toml:8: vehicle[0].system: 255 is no vehicle's MAVLink system; give 1 to 254"),
-        ("", twice, "vehicle[1].robot: robot 3 is there twice"),
-        ("", same_system, "vehicle[1].system: system 3 is there twice on this link"),
+        ("", "goal_deg = [-55.0, 37.62]", "vehicle[0].goal_deg: not a position near the origin"),
+        (
+            "",
+            "system = 255",
+            "test.toml:8: vehicle[0].system: 255 is not a MAVLink system id of a vehicle; give 1 to 254",
+        ),
+        ("", twice, "vehicle[1].robot: robot 3 is listed twice"),
+        ("", same_system, "vehicle[1].system: system 3 is used twice on this link"),
     ] {
         let error = parse(&text(top, bottom)).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}\n{expected}");
     }
     for (from, to, expected) in [
         ("robot = 3", "robot = 99", "vehicle[0].robot: the scenario has no robot 99; give the number of one of its 16"),
-        ("udpin:127.0.0.1:14550", "udp:1", "vehicle[0].link: `udp:1`: `udp` is no kind of line"),
+        ("udpin:127.0.0.1:14550", "udp:1", "vehicle[0].link: `udp:1`: `udp` is not a kind of link"),
         ("ardupilot-rover", "betaflight", "vehicle[0].autopilot"),
-        ("latitude_deg = 55.75", "latitude_deg = 95", "test.toml:2: origin: this is no place on the Earth"),
+        ("latitude_deg = 55.75", "latitude_deg = 95", "test.toml:2: origin: not a position on the Earth"),
         ("[[vehicle]]", "[other]", "other"),
         ("swap-circle", "no-such-file", "no-such-file.toml"),
-        ("swap-circle", "six-robots", "scenario: its robots go from cell to cell"),
+        ("swap-circle", "six-robots", "scenario: its robots move from cell to cell"),
     ] {
         let error = parse(&text("", "").replace(from, to)).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}\n{expected}");
     }
     let none = format!("scenario = \"{SCENARIO}\"\norigin = {{ latitude_deg = 5, longitude_deg = 7 }}\n");
-    let error = parse(&none).expect_err("no vehicle").to_string();
-    assert!(error.contains("vehicle: there is none; add [[vehicle]]"), "{error}");
+    let error = parse(&none).expect_err("a configuration without a vehicle is invalid").to_string();
+    assert!(error.contains("vehicle: no vehicle is listed; add [[vehicle]]"), "{error}");
 }
 
-/// The first column of the tables in docs/autopilots.md are the fields, all of them.
 #[test]
 fn documentation_lists_every_field() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -137,7 +144,7 @@ fn documentation_lists_every_field() {
 }
 
 #[test]
-fn every_example_is_sound_and_so_is_its_scenario() {
+fn every_example_and_its_scenario_are_valid() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions");
     let mut found = 0;
     for entry in std::fs::read_dir(folder).unwrap() {

@@ -5,10 +5,10 @@ use std::path::Path;
 
 const TICK: Duration = Duration::from_millis(100);
 
-fn brains(count: usize) -> Vec<Controller<Postcard>> {
+fn controllers(count: usize) -> Vec<Controller<Postcard>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let mut scenario = Scenario::load(&path, &Overrides::default()).unwrap();
-    // As a companion's configuration does by its `rules.error_m`.
+    // Like `rules.error_m` in a companion's configuration.
     scenario.claims.max_radius_m += 10.0;
     let plane = scenario.plane.as_ref().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
@@ -21,8 +21,8 @@ fn at(x: f64, y: f64) -> Body {
 }
 
 #[test]
-fn heads_for_its_goal_and_says_where_it_is() {
-    let mut controller = brains(1).remove(0);
+fn the_controller_heads_for_its_goal_and_sends_beacons() {
+    let mut controller = controllers(1).remove(0);
     let mut body = at(0.0, 0.0);
     for step in 0..50 {
         let out = controller.step(&body, true, &[], TICK * step);
@@ -38,19 +38,18 @@ fn heads_for_its_goal_and_says_where_it_is() {
 }
 
 #[test]
-fn one_that_is_not_steered_is_passive_and_commands_nothing() {
-    let mut controller = brains(1).remove(0);
+fn an_uncontrolled_vehicle_is_passive_and_gets_no_command() {
+    let mut controller = controllers(1).remove(0);
     let _ = controller.step(&at(0.0, 0.0), true, &[], Duration::ZERO);
     let out = controller.step(&at(1.0, 0.0), false, &[], TICK);
-    assert!(!out.outbox.is_empty(), "the others hear where it is");
+    assert!(!out.outbox.is_empty(), "beacons continue");
     assert_eq!(controller.mode(), Mode::Passive);
     assert_eq!(controller.velocity_mps(), [0.0; 3]);
 }
 
-/// A vehicle that follows velocities with a lag reaches its place and stays there.
 #[test]
-fn a_vehicle_that_lags_does_not_overshoot_its_tolerance() {
-    let mut controller = brains(1).remove(0);
+fn a_lagging_vehicle_does_not_overshoot_its_tolerance() {
+    let mut controller = controllers(1).remove(0);
     let mut body = at(30.0, 0.0);
     let mut farthest = 0.0_f64;
     for step in 0..400 {
@@ -70,11 +69,12 @@ fn a_vehicle_that_lags_does_not_overshoot_its_tolerance() {
     assert!((body.position_m[0] - 50.0).abs() < 1.0);
 }
 
-/// How near the second one comes to the first, which stands beside its way and does not steer.
+/// Smallest distance between the second vehicle and the first, which is uncontrolled and stands
+/// beside the second one's path.
 fn least_distance(error_m: f64) -> f64 {
-    let mut brains = brains(2);
-    let mut second = brains.remove(1);
-    let mut first = brains.remove(0);
+    let mut controllers = controllers(2);
+    let mut second = controllers.remove(1);
+    let mut first = controllers.remove(0);
     let (stands, mut moves) = (Body { error_m, ..at(25.0, 0.1) }, at(10.0, 0.0));
     let mut least = f64::INFINITY;
     for step in 0..400 {
@@ -92,33 +92,32 @@ fn least_distance(error_m: f64) -> f64 {
 }
 
 #[test]
-fn one_that_is_passive_is_evaded_by_the_other_alone() {
+fn a_passive_vehicle_is_evaded_by_the_other_alone() {
     let least = least_distance(0.0);
     assert!((2.0..4.0).contains(&least), "{least}");
 }
 
 #[test]
-fn one_that_is_not_sure_of_its_place_is_given_more_room() {
+fn a_vehicle_with_a_position_error_gets_more_distance() {
     for error_m in [1.0, 4.0] {
         let least = least_distance(error_m);
-        assert!(least >= 2.0 + error_m, "{least} m beside an error of {error_m} m");
+        assert!(least >= 2.0 + error_m, "{least} m with an error of {error_m} m");
     }
 }
 
 #[test]
-fn braking_is_faster_far_away_and_never_slower_than_what_ends_in_the_tolerance() {
+fn braking_speed_grows_with_distance_and_has_a_minimum_near_the_goal() {
     let brake = Brake { place_m: [0.0; 3], tolerance_m: 1.0 };
     let speed = |distance| speed_before(&brake, [distance, 0.0, 0.0], 1.0, 0.5);
     assert_eq!(speed(0.0), 1.0);
     assert!(speed(100.0) > speed(10.0) && speed(10.0) > speed(2.0));
-    // v^2 / 2a + v lag = d with half of the acceleration.
     let v = speed(10.0);
     assert!((v * v + v * 0.5 - 10.0).abs() < 1e-9, "{v}");
     assert_eq!(speed_before(&brake, [5.0, 0.0, 0.0], 1.0, 0.0), f64::INFINITY);
 }
 
 #[test]
-fn who_falls_silent_gets_the_room_in_which_a_vehicle_rolls_out() {
+fn a_silent_vehicle_gets_the_distance_that_it_needs_to_stop() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let scenario = Scenario::load(&path, &Overrides::default()).unwrap();
     let max_m = |safety| match safety {
@@ -128,5 +127,5 @@ fn who_falls_silent_gets_the_room_in_which_a_vehicle_rolls_out() {
     let usual = scenario.safety(0);
     assert_eq!(max_m(usual), 1.0, "a radius, as for robots that stop at once");
     assert_eq!(max_m(with_room(usual, 10.0)), 10.0);
-    assert_eq!(max_m(with_room(with_room(usual, 12.0), 10.0)), 12.0, "what the scenario says, if that is more");
+    assert_eq!(max_m(with_room(with_room(usual, 12.0), 10.0)), 12.0, "the larger margin of the scenario is kept");
 }

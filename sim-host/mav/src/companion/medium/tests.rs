@@ -14,7 +14,7 @@ fn frames(count: u16) -> Vec<u8> {
 }
 
 #[test]
-fn tunnels_carry_whole_frames() {
+fn tunnel_messages_contain_whole_frames() {
     for count in 0..12 {
         let frames = frames(count);
         let messages = tunnel(&Postcard, &frames);
@@ -25,7 +25,7 @@ fn tunnels_carry_whole_frames() {
             };
             assert!(data.payload_type >= 32_768);
             let part = tunnelled(data).unwrap();
-            assert_eq!(part.last(), Some(&0), "ends with a frame's end");
+            assert_eq!(part.last(), Some(&0), "ends with a delimiter");
             back.extend_from_slice(part);
         }
         assert_eq!(back, frames);
@@ -33,7 +33,7 @@ fn tunnels_carry_whole_frames() {
 }
 
 #[test]
-fn tunnels_of_others_are_left_alone() {
+fn tunnel_messages_of_other_types_are_ignored() {
     let other = TUNNEL_DATA { payload_type: 7, payload_length: 4, ..TUNNEL_DATA::DEFAULT };
     assert_eq!(tunnelled(&other), None);
     let too_long = TUNNEL_DATA { payload_type: PAYLOAD_TYPE, payload_length: 129, ..TUNNEL_DATA::DEFAULT };
@@ -53,7 +53,7 @@ fn heard(medium: &mut Medium) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn peers_hear_each_other() {
+fn peers_receive_each_others_datagrams() {
     let free = || {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         socket.local_addr().unwrap()
@@ -70,16 +70,16 @@ fn peers_hear_each_other() {
 }
 
 #[test]
-fn nobody_is_heard_where_there_is_nobody() {
+fn no_network_receives_nothing() {
     for setup in [MediumSetup::Here, MediumSetup::Tunnel] {
         let mut medium = Medium::open(&setup).unwrap();
         medium.send(b"nothing");
-        medium.receive(|_| panic!("heard something"));
+        medium.receive(|_| panic!("received a datagram"));
     }
 }
 
 #[test]
-fn a_group_does_not_give_back_what_was_sent() {
+fn own_multicast_datagrams_are_dropped() {
     let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let setup = MediumSetup::Multicast {
         group: SocketAddrV4::new(Ipv4Addr::new(239, 255, 77, 1), port),

@@ -1,34 +1,34 @@
-//! What a person wants to know of a companion.
+//! Events of a companion, for operators.
 
 use super::{ARM_DISARM, DO_SET_MODE, Doubt, NAV_TAKEOFF, State};
 use std::fmt;
 use std::time::Duration;
 
-/// Something that happened.
+/// An event of one vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The state changed.
     State {
-        /// Before.
+        /// Previous state.
         from: State,
-        /// Now.
+        /// New state.
         to: State,
     },
-    /// The mode was left, for this custom mode, while the companion steered.
+    /// The pilot left the external control mode for this custom mode.
     HandedOver(u32),
-    /// The autopilot's clock began anew.
+    /// The autopilot restarted.
     Restarted,
-    /// Its positions are not to be believed any more.
+    /// Its positions are no more trusted.
     Doubts(Doubt),
-    /// The autopilot says nothing of its estimator, although asked.
+    /// The autopilot does not send the status of its estimator despite requests.
     NoHealth,
-    /// Heard again after so long.
+    /// A heartbeat arrived after this time without one.
     Back(Duration),
-    /// A pilot acted while the companion asked: it asks no more.
+    /// A pilot acted during the entry, so the companion stops requesting.
     PilotActs,
-    /// It has asked often enough.
+    /// The last request of the entry failed.
     GaveUp,
-    /// The autopilot does not do what it was asked.
+    /// The autopilot refused a command.
     Refused {
         /// `MAV_CMD`.
         command: u16,
@@ -38,50 +38,48 @@ pub enum Event {
 }
 
 impl State {
-    /// In words, at most 40 bytes.
+    /// Text for the operator, at most 40 bytes.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
-            Self::Silent => "no heartbeat: sends nothing",
-            Self::Pilot => "the pilot steers",
-            Self::Restarted => "restarted: choose the mode anew",
-            Self::Entering => "asks for control",
-            Self::Disarmed => "waits: not armed",
-            Self::NoPosition => "waits: no position yet",
-            Self::Grounded => "waits: not in the air, or still climbing",
-            Self::Stopped => "position is stale: stops",
-            Self::Distrusted => "position not trusted: stops",
-            Self::Steering => "steers",
+            Self::Silent => "no heartbeat: sends no setpoints",
+            Self::Pilot => "pilot has control",
+            Self::Restarted => "restarted: select the mode again",
+            Self::Entering => "requests control",
+            Self::Disarmed => "waits: disarmed",
+            Self::NoPosition => "waits: no position",
+            Self::Grounded => "waits: on the ground or climbing",
+            Self::Stopped => "position stale: stopped",
+            Self::Distrusted => "position not trusted: stopped",
+            Self::Steering => "companion has control",
         }
     }
 
-    /// Whether the vehicle does what the companion says.
+    /// Whether the vehicle follows the companion's setpoints.
     #[must_use]
     pub const fn has_control(self) -> bool {
         matches!(self, Self::Steering | Self::Stopped | Self::Distrusted)
     }
 
-    /// Whether somebody should look after it: `MAV_SEVERITY_WARNING` rather than `_INFO`.
+    /// Whether the operator should act: `MAV_SEVERITY_WARNING` rather than `_INFO`.
     #[must_use]
     pub const fn is_worrying(self) -> bool {
         matches!(self, Self::Silent | Self::Restarted | Self::Stopped | Self::Distrusted)
     }
 }
 
-/// What it asks for, in words.
 const fn command_words(command: u16) -> &'static str {
     match command {
-        DO_SET_MODE => "the mode",
+        DO_SET_MODE => "mode change",
         ARM_DISARM => "arming",
-        NAV_TAKEOFF => "the takeoff",
+        NAV_TAKEOFF => "takeoff",
         _ => "a request",
     }
 }
 
-/// `MAV_RESULT` in words.
 const fn result_words(result: u8) -> &'static str {
     match result {
-        1 => "not now",
+        1 => "temporarily rejected",
         2 => "denied",
         3 => "unsupported",
         4 => "failed",
@@ -97,10 +95,10 @@ impl fmt::Display for Event {
             Self::HandedOver(mode) => write!(f, "handed over to the pilot (mode {mode})"),
             Self::Restarted => f.write_str("the autopilot has restarted"),
             Self::Doubts(doubt) => write!(f, "position not trusted: {}", doubt.words()),
-            Self::NoHealth => f.write_str("says nothing of its estimator: all its positions are trusted"),
-            Self::Back(gap) => write!(f, "heard again after {:.1} s", gap.as_secs_f64()),
-            Self::PilotActs => f.write_str("the pilot acts: asks no more"),
-            Self::GaveUp => f.write_str("asked in vain: asks no more"),
+            Self::NoHealth => f.write_str("no estimator status: all positions are trusted"),
+            Self::Back(gap) => write!(f, "heartbeat back after {:.1} s", gap.as_secs_f64()),
+            Self::PilotActs => f.write_str("pilot acted: requests stopped"),
+            Self::GaveUp => f.write_str("no success: requests stopped"),
             Self::Refused { command, result } => {
                 write!(f, "{} (command {command}): {}", command_words(*command), result_words(*result))
             }

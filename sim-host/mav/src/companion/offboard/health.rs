@@ -1,7 +1,8 @@
-//! Whether an autopilot's own estimate of place and velocity can be believed, by what it says of it.
+//! Trust in an autopilot's position and velocity estimate.
 //!
-//! An estimator that has lost its GPS goes on telling positions, as fresh as ever and more wrong each second. What it says besides is heeded here; an
-//! autopilot that says nothing of it is believed.
+//! An estimator that lost GPS keeps sending positions that look fresh but drift. This module
+//! evaluates the status messages that autopilots send beside them. An autopilot that sends none is
+//! trusted.
 
 use staya_mavlink::constants::{
     EKF_GPS_GLITCHING, EKF_UNINITIALIZED, ESTIMATOR_ACCEL_ERROR, ESTIMATOR_ATTITUDE, ESTIMATOR_CONST_POS_MODE,
@@ -11,60 +12,62 @@ use staya_mavlink::constants::{
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
-/// How long all must be well until it is believed again.
+/// Time without any problem until positions are trusted again.
 pub const WELL_FOR: Duration = Duration::from_secs(5);
-/// A receiver's report that is older counts for nothing.
+/// Timeout of a receiver's report.
 const REPORT_VALID: Duration = Duration::from_secs(2);
-/// From here on ArduPilot's own failsafe (`FS_EKF_THRESH`) takes an innovation for too large.
+/// ArduPilot's failsafe (`FS_EKF_THRESH`) triggers at this innovation ratio.
 const EKF_LIMIT: f32 = 0.8;
-/// From here on PX4's estimator refuses what sensors say.
+/// PX4's estimator rejects measurements at this innovation ratio.
 const ESTIMATOR_LIMIT: f32 = 1.0;
 
-/// Why a position is not believed.
+/// Why a position is not trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
-    /// `GPS_RAW_INT`, `GPS2_RAW`: there was a fix in three dimensions, and no receiver has one any more.
+    /// `GPS_RAW_INT`, `GPS2_RAW`: no receiver has a 3D fix, although one had.
     Gps,
-    /// `EKF_STATUS_REPORT` or `ESTIMATOR_STATUS`: no place, no velocity, or innovations that are too large.
+    /// `EKF_STATUS_REPORT` or `ESTIMATOR_STATUS`: no position, no velocity, or innovations that are
+    /// too large.
     Estimator,
-    /// `SYS_STATUS`: GPS or attitude are switched on and not healthy.
+    /// `SYS_STATUS`: GPS or attitude is enabled but unhealthy.
     Sensors,
 }
 
 impl Doubt {
-    /// In words, at most 40 bytes.
+    /// Text for the operator, at most 40 bytes.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
-            Self::Gps => "GPS has lost its fix",
-            Self::Estimator => "its estimator fails (EKF)",
-            Self::Sensors => "GPS or AHRS is not healthy",
+            Self::Gps => "GPS lost its fix",
+            Self::Estimator => "estimator failed (EKF)",
+            Self::Sensors => "GPS or AHRS unhealthy",
         }
     }
 }
 
-/// What was said of it, in one boot of the autopilot.
+/// Status of one autopilot since its last boot.
 #[derive(Clone, Debug, Default)]
 pub struct Health {
     had_fix: bool,
-    /// When each of two receivers had a fix last.
+    /// Time of the last fix of each of two receivers.
     fixed_at: [Option<Duration>; 2],
-    /// By the places in [`Doubt`].
+    /// Present problems, indexed by [`Doubt`].
     is_bad: [bool; 3],
     well_at: Duration,
-    /// Reports of the estimator.
+    /// Number of estimator reports.
     pub reports: u64,
 }
 
-/// Whether flags and innovations, as parts of what is still accepted, are such that place and velocity are known.
+/// Whether flags and innovations (as fractions of the accepted limit) mean that position and
+/// velocity are known.
 fn is_well(flags: u16, bad: u16, innovations: [f32; 2]) -> bool {
     const NEEDED: u16 = ESTIMATOR_ATTITUDE | ESTIMATOR_VELOCITY_HORIZ | ESTIMATOR_POS_HORIZ_ABS;
-    // What is not a number is no innovation: PX4 says so of what it does not measure.
+    // NaN stands for a quantity that PX4 does not measure; it is not an error.
     flags & NEEDED == NEEDED && flags & bad == 0 && !innovations.iter().any(|share| *share >= 1.0)
 }
 
 impl Health {
-    /// Takes a message in; the doubt that is new with it.
+    /// Handles a message. Returns the problem that it starts, if any.
     pub fn hear(&mut self, message: &MavMessage, now: Duration) -> Option<Doubt> {
         let (doubt, is_bad) = match message {
             MavMessage::GPS_RAW_INT(gps) => (Doubt::Gps, self.has_lost_fix(0, gps.fix_type, now)),
@@ -100,7 +103,8 @@ impl Health {
         is_new.then_some(doubt)
     }
 
-    /// Whether, with this report of a receiver, there is no fix any more. Who never had one goes by something else.
+    /// Whether this report means that no receiver has a fix. A vehicle that never had one does not
+    /// need GPS.
     fn has_lost_fix(&mut self, receiver: usize, fix_type: u8, now: Duration) -> bool {
         let has_fix = fix_type >= GPS_FIX_TYPE_3D_FIX;
         if let Some(fixed_at) = self.fixed_at.get_mut(receiver) {
@@ -111,7 +115,7 @@ impl Health {
         self.had_fix && !self.fixed_at.iter().any(is_fixed)
     }
 
-    /// Whether its positions can be believed.
+    /// Whether positions are trusted.
     pub fn is_trusted(&self, now: Duration) -> bool {
         now >= self.well_at && !self.is_bad.contains(&true)
     }

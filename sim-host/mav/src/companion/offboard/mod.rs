@@ -1,12 +1,15 @@
-//! What a companion owes its autopilot, as a state machine without I/O and clock: telemetry and time in, messages out. Read
-//! [`OffboardStateMachine::poll`] first.
+//! The companion's side of external control as a state machine without I/O or clock: telemetry and
+//! time in, messages out. Start with [`OffboardStateMachine::poll`].
 //!
-//! It says that it is there once a second, asks for the telemetry that it needs, and sends velocities at a steady rate while, and only while,
-//! it may steer: the autopilot is heard, it is in the mode for outside control, armed (and in the air, if it flies), and its position is fresh.
+//! The state machine sends heartbeats at 1 Hz, requests the telemetry that it needs, and sends
+//! velocity setpoints at a steady rate only while it has control. It has control while heartbeats
+//! arrive, the external control mode is active, the vehicle is armed (and in the air, if it flies),
+//! and its position is fresh.
 //!
-//! Who decides about that mode is the pilot. With [`Entry::Once`] the companion asks for it (and for what else its rules say) a single time after its start; whatever
-//! a pilot does in the meantime ends that. When the mode is left, by whomever, setpoints stop with that heartbeat. After a restart
-//! of the autopilot the mode it comes up in is nobody's permission: it must be left and chosen again.
+//! The pilot decides about that mode. With [`Entry::Once`] the companion requests the mode (and
+//! what its rules add) once after its start; any action of a pilot ends these requests. Setpoints
+//! stop with the first heartbeat in another mode. After a restart of the autopilot its mode is not
+//! a permission: the pilot must leave it and select it again.
 
 mod event;
 mod health;
@@ -28,27 +31,30 @@ use staya_mavlink::dialect::MavMessage;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The companion's component of its vehicle's system: `MAV_COMP_ID_ONBOARD_COMPUTER`.
+/// Component id of the companion, `MAV_COMP_ID_ONBOARD_COMPUTER`.
 pub const COMPONENT: u8 = 191;
-/// The autopilot's component.
+/// Component id of the autopilot.
 pub const AUTOPILOT: u8 = 1;
 
-/// Between two own heartbeats.
+/// Interval of own heartbeats.
 const HEARTBEAT: Duration = Duration::from_secs(1);
-/// How long there are no setpoints at all after a hand-over.
+/// Time without any setpoint after the pilot took control.
 const QUIET: Duration = Duration::from_secs(5);
-/// A time since boot that is earlier by more is another boot; by less, a message that was overtaken.
+/// Largest step back in the time since boot that counts as a reordered message; a larger one is a
+/// restart.
 const OVERTAKEN_MS: i32 = 2000;
-/// So many messages on end, each later than the one before and none in order, were not overtaken: the autopilot restarted soon after its start.
+/// This number of consecutive messages, each later than the last but all behind the known time,
+/// means a restart soon after boot rather than reordering.
 const BEHIND: u8 = 4;
-/// A time since boot that is later by more is another boot, whose clock wrapped.
+/// A larger step ahead in the time since boot means a restart behind a clock that had wrapped.
 const DAY_MS: i32 = 86_400_000;
-/// Who climbs no faster has come to the end of a takeoff, m/s.
+/// A slower climb ends a takeoff, m/s.
 const CLIMB_OVER_MPS: f64 = 0.3;
-/// Lower than this over its home, a vehicle that does not say whether it flies is on the ground, metres.
+/// A vehicle below this height above home counts as on the ground if it reports no landed state,
+/// metres.
 const LOW_M: f64 = 1.0;
 
-/// Who puts the vehicle into the mode for outside control.
+/// Who selects the external control mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Entry {
@@ -59,71 +65,71 @@ pub enum Entry {
     Once,
 }
 
-/// By what rules a vehicle is steered.
+/// Rules by which a companion controls a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// Who asks for the mode.
+    /// Who selects the mode.
     pub entry: Entry,
-    /// Whether [`Entry::Once`] also arms. Otherwise it waits until somebody else has.
+    /// Whether [`Entry::Once`] also arms. Otherwise it waits for arming by the pilot.
     pub arm: bool,
-    /// Whether it then takes off, to `altitude_m`.
+    /// Whether it then takes off to `altitude_m`.
     pub takeoff: bool,
-    /// Height above home to take off to, metres.
+    /// Takeoff height above home, metres.
     pub altitude_m: Option<f64>,
-    /// Whether that height is kept then, as in the plane. Otherwise vertical velocities are the agent's.
+    /// Whether that height is kept in flight, as in the plane. Otherwise the agent commands
+    /// vertical velocities.
     pub keeps_altitude: bool,
-    /// A position that is older is stale.
+    /// Age at which a position is stale.
     pub stale: Duration,
-    /// An autopilot that is silent for longer is gone.
+    /// Timeout of heartbeats.
     pub link_lost: Duration,
-    /// Between two setpoints.
+    /// Interval of setpoints.
     pub setpoint_every: Duration,
-    /// Positions asked for, Hz.
+    /// Position rate requested from the autopilot, Hz.
     pub position_hz: f64,
-    /// A dry run: what it asks for is taken to be granted at once, and whoever has a position is steered.
+    /// Dry run: requests count as granted at once, and every vehicle with a position is controlled.
     pub rehearses: bool,
 }
 
-/// What a companion does.
+/// State of a companion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
-    /// No heartbeat: it sends no setpoints.
+    /// No heartbeat; no setpoints.
     Silent,
-    /// The vehicle is in another mode: it is the pilot's.
+    /// The vehicle is in another mode: the pilot has control.
     Pilot,
-    /// The autopilot has restarted in the mode for outside control, where nobody has put it.
+    /// The autopilot restarted in the external control mode, which is not a permission.
     Restarted,
-    /// It asks for the mode, arms or takes off.
+    /// The companion requests the mode, arms or takes off.
     Entering,
-    /// In the mode, not armed.
+    /// External control mode, disarmed.
     Disarmed,
-    /// In the mode and armed, without a position yet.
+    /// External control mode, armed, no position yet.
     NoPosition,
-    /// In the mode and armed, not in the air, or still taking off or landing.
+    /// External control mode, armed, on the ground, taking off or landing.
     Grounded,
-    /// It was steering and the position is stale: it tells the vehicle to stop.
+    /// The position became stale; the companion commands zero velocity.
     Stopped,
-    /// It was steering and the position is not to be believed: it tells the vehicle to stop.
+    /// The position is not trusted; the companion commands zero velocity.
     Distrusted,
-    /// It steers.
+    /// The companion controls the vehicle.
     Steering,
 }
 
-/// The last position that could be believed.
+/// The last trusted position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fix {
-    /// When it arrived.
+    /// Time of arrival.
     pub at: Duration,
-    /// Where.
+    /// Geographic position.
     pub place: Global,
-    /// Above home, metres.
+    /// Height above home, metres.
     pub above_home_m: f64,
-    /// North, east, down, m/s.
+    /// Velocity north, east, down, m/s.
     pub velocity_ned_mps: [f64; 3],
 }
 
-/// The last heartbeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Beat {
     at: Duration,
@@ -132,7 +138,6 @@ struct Beat {
     is_armed: bool,
 }
 
-/// What was asked for on entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ask {
     Mode,
@@ -140,26 +145,26 @@ enum Ask {
     Takeoff,
 }
 
-/// What has happened so far.
+/// Counters of a companion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct OffboardCounters {
-    /// Heartbeats heard.
+    /// Heartbeats received.
     pub heartbeats: u64,
-    /// Positions heard.
+    /// Positions received.
     pub positions: u64,
     /// Setpoints sent.
     pub setpoints: u64,
-    /// How often the mode was left while the companion steered.
+    /// Number of times the pilot took control.
     pub hand_overs: u64,
-    /// How often it stopped for want of a position.
+    /// Number of stops because of a stale position.
     pub stops: u64,
-    /// How often positions came that were not to be believed any more.
+    /// Number of times that positions lost trust.
     pub doubts: u64,
     /// Restarts of the autopilot.
     pub restarts: u64,
 }
 
-/// One companion.
+/// State machine of one vehicle.
 #[derive(Clone, Debug)]
 pub struct OffboardStateMachine {
     system: u8,
@@ -167,19 +172,19 @@ pub struct OffboardStateMachine {
     rules: Rules,
     state: State,
     beat: Option<Beat>,
-    /// The last one that could be believed, and whether it is of this boot.
+    /// Last trusted position, and whether it is from the present boot.
     fix: Option<Fix>,
     is_of_boot: bool,
     health: Health,
     boot_ms: Option<u32>,
-    /// The last message that seemed overtaken, by its time since boot, and how many came on end.
+    /// Time since boot of the last message that seemed reordered, and the number of consecutive
+    /// ones.
     behind: Option<(u32, u8)>,
-    /// Velocity from `LOCAL_POSITION_NED`, which is finer, and when.
+    /// Velocity of `LOCAL_POSITION_NED`, which is finer, with its time.
     velocity: Option<(Duration, [f64; 3])>,
     landed: Option<u8>,
-    /// The companion may still ask.
     may_enter: bool,
-    /// The mode is not a permission until it has been left.
+    /// Whether the mode is not a permission until it has been left.
     must_be_left: bool,
     quiet_until: Duration,
     streaming_since: Option<Duration>,
@@ -197,7 +202,7 @@ pub struct OffboardStateMachine {
 }
 
 impl OffboardStateMachine {
-    /// Of the vehicle `system`, which has just been switched on for all it knows.
+    /// Creates the state machine of vehicle `system`, which is assumed to have just started.
     #[must_use]
     pub fn new(system: u8, kind: Kind, rules: Rules) -> Self {
         Self {
@@ -231,48 +236,48 @@ impl OffboardStateMachine {
         }
     }
 
-    /// What it does, as of the last [`poll`](Self::poll).
+    /// State at the last [`poll`](Self::poll).
     #[must_use]
     pub const fn state(&self) -> State {
         self.state
     }
 
-    /// What has happened.
+    /// Counters so far.
     #[must_use]
     pub const fn tally(&self) -> OffboardCounters {
         self.tally
     }
 
-    /// The last position that could be believed, however old, and of whichever boot.
+    /// Last trusted position, of any age and any boot.
     #[must_use]
     pub const fn fix(&self) -> Option<Fix> {
         self.fix
     }
 
-    /// The last position if it is not stale, and positions can still be believed.
+    /// Last position, if it is fresh and trusted.
     #[must_use]
     pub fn fresh_fix(&self, now: Duration) -> Option<Fix> {
         let fix = self.fix.filter(|_| self.is_of_boot && self.health.is_trusted(now));
         fix.filter(|fix| now.saturating_sub(fix.at) <= self.rules.stale)
     }
 
-    /// Takes the next thing off that is worth telling a person.
+    /// Takes the next event for the operator.
     pub fn event(&mut self) -> Option<Event> {
         self.events.pop_front()
     }
 
-    /// Takes the velocity that the agent wants from now on, metres per second north, east, down.
+    /// Sets the velocity that the agent commands, north, east, down, m/s.
     pub fn steer(&mut self, velocity_ned_mps: [f64; 3], now: Duration) {
         self.command = Some((now, velocity_ned_mps));
     }
 
-    /// Takes a message of the vehicle's autopilot.
+    /// Handles a message of the autopilot.
     pub fn hear(&mut self, message: &MavMessage, now: Duration) {
         match message {
             MavMessage::HEARTBEAT(beat) => self.heartbeat(beat.custom_mode, beat.base_mode, now),
             MavMessage::SYSTEM_TIME(time) => drop(self.is_in_order(time.time_boot_ms)),
             MavMessage::GLOBAL_POSITION_INT(at) if self.is_in_order(at.time_boot_ms) => {
-                // Before they know where they are, autopilots say 0, 0.
+                // Autopilots send latitude and longitude 0 before they know their position.
                 if (at.lat, at.lon) == (0, 0) {
                     return;
                 }
@@ -304,14 +309,14 @@ impl OffboardStateMachine {
                 if let Some(doubt) = self.health.hear(message, now) {
                     self.tally.doubts += 1;
                     self.events.push_back(Event::Doubts(doubt));
-                    // It does not wait for the next poll.
+                    // Applied at once, not at the next poll.
                     self.settle(now);
                 }
             }
         }
     }
 
-    /// Takes note of the autopilot's clock; whether the message is not one that was overtaken.
+    /// Updates the autopilot's clock. Returns false for a reordered message.
     fn is_in_order(&mut self, boot_ms: u32) -> bool {
         let since = self.boot_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
         match since {
@@ -336,7 +341,7 @@ impl OffboardStateMachine {
         self.events.push_back(Event::Restarted);
         self.must_be_left = self.beat.is_some_and(|beat| beat.is_controlled);
         self.end_entry(None);
-        // Where it was is still the best that others can be told.
+        // The last position is kept: it is the best estimate for others.
         self.is_of_boot = false;
         self.health = Health::default();
         (self.velocity, self.landed) = (None, None);
@@ -371,11 +376,10 @@ impl OffboardStateMachine {
             self.must_be_left = false;
         }
         self.beat = Some(beat);
-        // What ends with this heartbeat does not wait for the next poll.
+        // Applied at once, not at the next poll.
         self.settle(now);
     }
 
-    /// The companion does not ask any more.
     fn end_entry(&mut self, event: Option<Event>) {
         if self.may_enter {
             self.events.extend(event);
@@ -392,14 +396,15 @@ impl OffboardStateMachine {
             return;
         }
         let refused = (!is_done).then_some((command, result));
-        // Each refusal is told once, however often it is repeated.
+        // A repeated refusal is reported once.
         if let Some((command, result)) = refused.filter(|_| refused != self.refused) {
             self.events.push_back(Event::Refused { command, result });
         }
         self.refused = refused;
     }
 
-    /// Whether a vehicle that flies can be steered. Its takeoff must be over: taking off and landing are the pilot's, or what was asked for.
+    /// Whether a flying vehicle can be controlled. A takeoff must be complete: takeoff and landing
+    /// belong to the pilot or the entry.
     fn is_in_air(&self, fix: &Fix) -> bool {
         if !self.kind.flies() {
             return true;
@@ -418,7 +423,7 @@ impl OffboardStateMachine {
         }
     }
 
-    /// Whether it has left the ground, by what it says, or else by its height.
+    /// Whether the vehicle has left the ground, by its landed state or else by its height.
     fn is_taking_off(&self) -> bool {
         match self.landed {
             Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
@@ -427,7 +432,7 @@ impl OffboardStateMachine {
         }
     }
 
-    /// What to do now. The first rule that applies.
+    /// The state at `now`: the first rule that applies.
     fn next_state(&self, now: Duration) -> State {
         let beat = self.beat;
         let heard = beat.filter(|beat| now.saturating_sub(beat.at) <= self.rules.link_lost);
@@ -438,7 +443,7 @@ impl OffboardStateMachine {
         if self.rules.rehearses {
             return if fix.is_some() { State::Steering } else { State::NoPosition };
         }
-        // It asks only for what it could use.
+        // The entry waits until a position makes control possible.
         let enters = self.may_enter && fix.is_some() && (beat.is_armed || self.rules.arm);
         if !beat.is_controlled {
             return if enters { State::Entering } else { State::Pilot };
@@ -454,7 +459,7 @@ impl OffboardStateMachine {
                 State::Steering | State::Stopped | State::Distrusted if !self.health.is_trusted(now) => {
                     State::Distrusted
                 }
-                // Until there is one to be believed.
+                // Stays until a position is trusted.
                 State::Distrusted => State::Distrusted,
                 State::Steering | State::Stopped => State::Stopped,
                 _ => State::NoPosition,
@@ -467,14 +472,14 @@ impl OffboardStateMachine {
         State::Steering
     }
 
-    /// Changes the state, if it has to, and says so.
+    /// Changes the state if necessary and reports the change.
     fn settle(&mut self, now: Duration) {
         let (from, to) = (self.state, self.next_state(now));
         if from == to {
             return;
         }
         if to == State::Steering && !self.rules.rehearses {
-            // It has what it wanted.
+            // The entry has succeeded.
             self.end_entry(None);
         }
         if to == State::Stopped {

@@ -1,4 +1,4 @@
-//! The messages of a companion.
+//! Messages that a companion sends.
 
 use super::{AUTOPILOT, Kind};
 use staya_mavlink::dialect::{
@@ -9,22 +9,17 @@ use staya_mavlink::dialect::{
 use staya_mavlink::mavlink_core::MessageData as _;
 use std::time::Duration;
 
-/// `MAV_CMD_NAV_TAKEOFF`.
 pub const NAV_TAKEOFF: u16 = 22;
-/// `MAV_CMD_DO_SET_MODE`.
 pub const DO_SET_MODE: u16 = 176;
-/// `MAV_CMD_COMPONENT_ARM_DISARM`.
 pub const ARM_DISARM: u16 = 400;
-/// `MAV_CMD_SET_MESSAGE_INTERVAL`.
 pub const SET_MESSAGE_INTERVAL: u16 = 511;
-/// Only the velocity counts: `POSITION_TARGET_TYPEMASK` to ignore position, acceleration, yaw and yaw rate.
+/// `POSITION_TARGET_TYPEMASK` that ignores position, acceleration, yaw and yaw rate.
 const VELOCITY_ONLY: u16 = 0xDC7;
-/// The same with the yaw rate.
+/// As `VELOCITY_ONLY`, with the yaw rate in use.
 const VELOCITY_AND_YAW_RATE: u16 = 0x5C7;
-/// `MAV_FRAME_LOCAL_NED`.
 const LOCAL_NED: u8 = 1;
 
-/// An onboard controller that is active.
+/// Heartbeat of an active onboard controller.
 pub fn heartbeat() -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
         mavtype: 18,
@@ -65,7 +60,7 @@ pub fn takeoff(system: u8, altitude_m: f64) -> MavMessage {
     command(system, NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, altitude_m])
 }
 
-/// Positions at a rate; whether it flies, for what does, twice a second.
+/// Requests positions at `position_hz`, and from flying vehicles the landed state at 2 Hz.
 pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item = MavMessage> {
     let state = kind.flies().then_some((EXTENDED_SYS_STATE_DATA::ID, 2.0));
     [(GLOBAL_POSITION_INT_DATA::ID, position_hz), (LOCAL_POSITION_NED_DATA::ID, position_hz)]
@@ -74,7 +69,7 @@ pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item
         .map(move |(id, hz)| interval(system, id, hz))
 }
 
-/// What says whether positions can be believed, as often as that is heeded.
+/// Requests the status messages that [`Health`](super::Health) evaluates.
 pub fn health_intervals(system: u8, kind: Kind) -> impl Iterator<Item = MavMessage> {
     const HEALTH_HZ: f64 = 4.0;
     let estimator = if kind.is_px4() { ESTIMATOR_STATUS_DATA::ID } else { EKF_STATUS_REPORT_DATA::ID };
@@ -86,7 +81,8 @@ fn interval(system: u8, id: u32, hz: f64) -> MavMessage {
     command(system, SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0])
 }
 
-/// A velocity, north, east, down. Below 0.05 m/s a rover of ArduPilot is told to stand and not to turn: of a velocity it makes a heading, and north of none.
+/// Velocity setpoint, north, east, down. Below 0.05 m/s an ArduPilot rover is also told not to
+/// turn: it derives its heading from the velocity, and a velocity of 0 would mean north.
 pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duration) -> MavMessage {
     const SLOW_MPS: f64 = 0.05;
     let [north, east, _] = velocity_ned_mps;
@@ -95,7 +91,7 @@ pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duratio
         if stands { (VELOCITY_AND_YAW_RATE, [0.0; 3]) } else { (VELOCITY_ONLY, velocity_ned_mps) };
     let [vx, vy, vz] = velocity.map(|v| v as f32);
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        // Wraps like everybody's.
+        // Wraps, as MAVLink's clock does.
         time_boot_ms: now.as_millis() as u32,
         target_system: system,
         target_component: AUTOPILOT,
@@ -108,7 +104,7 @@ pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duratio
     })
 }
 
-/// A line for the ground station; what does not fit 50 bytes is cut off.
+/// STATUSTEXT for the ground station, cut off at 50 bytes.
 pub fn status_text(text: &str, is_worrying: bool) -> MavMessage {
     MavMessage::STATUSTEXT(STATUSTEXT_DATA {
         severity: if is_worrying { 4 } else { 6 },

@@ -1,26 +1,25 @@
-//! What a companion says, and when.
+//! Schedule of the messages that a companion sends.
 
 use super::{Ask, Event, HEARTBEAT, OffboardStateMachine, Rules, State, out};
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
-/// Between two looks at the rate of positions.
+/// Interval of checks of the position rate.
 const LOOK: Duration = Duration::from_secs(3);
-/// In so many looks it asks for news of the estimator, which not every autopilot has.
+/// Checks in which the estimator status is requested; not every autopilot has it.
 const HEALTH_LOOKS: u8 = 3;
-/// How long PX4 gets setpoints before the mode is asked for.
+/// Time for which PX4 receives setpoints before the mode is requested.
 const STREAM: Duration = Duration::from_secs(1);
-/// Between two requests of one thing.
 const RETRY: Duration = Duration::from_secs(2);
-/// How often a thing is asked for: two minutes, since autopilots refuse arming and modes long after their first
-/// position.
+/// Retries of one request: two minutes, since autopilots refuse arming and modes long after their
+/// first position.
 pub(super) const ATTEMPTS: u8 = 60;
-/// A command of the agent that is older is none.
+/// Timeout of the agent's command.
 const COMMAND_VALID: Duration = Duration::from_millis(500);
 
 impl OffboardStateMachine {
-    /// The messages that are due at `now`, which never goes back. To be called more often than setpoints are due; at
-    /// most one of each kind and three requests come at a time.
+    /// Appends the messages due at `now`, which must not go back. Call it more often than setpoints
+    /// are due. At most one message of each kind and three requests are sent per call.
     pub fn poll(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         self.settle(now);
         if now >= self.next_heartbeat {
@@ -38,7 +37,7 @@ impl OffboardStateMachine {
             self.enter(now, out);
         }
         if let Some(velocity) = self.setpoint(now).filter(|_| now >= self.next_setpoint) {
-            // A late call does not make for a burst.
+            // A late call does not cause a burst.
             let next = self.next_setpoint + self.rules.setpoint_every;
             self.next_setpoint = next.max(now);
             if now.saturating_sub(next) < self.rules.setpoint_every {
@@ -50,14 +49,15 @@ impl OffboardStateMachine {
         }
     }
 
-    /// When [`poll`](Self::poll) has something to send if nothing is heard before, and nothing goes stale.
+    /// Time at which [`poll`](Self::poll) has a message to send, if no message arrives and no
+    /// timeout passes before.
     #[must_use]
     pub fn due(&self, now: Duration) -> Duration {
         let setpoint = self.setpoint(now).map(|_| self.next_setpoint);
         setpoint.map_or(self.next_heartbeat, |due| due.min(self.next_heartbeat))
     }
 
-    /// The setpoint to send, if there is one: north, east, down.
+    /// The setpoint to send, north, east, down.
     fn setpoint(&self, now: Duration) -> Option<[f64; 3]> {
         const STAND: [f64; 3] = [0.0; 3];
         match self.state {
@@ -69,7 +69,7 @@ impl OffboardStateMachine {
             }
             State::Stopped | State::Distrusted => Some(STAND),
             State::Entering if self.kind.needs_stream() => Some(self.at_altitude(STAND)),
-            // So that the pilot can choose the mode at all. In other modes PX4 takes no notice.
+            // PX4 accepts the mode only while setpoints arrive. It ignores them in other modes.
             State::Pilot | State::Disarmed | State::Grounded
                 if self.kind.needs_stream() && now >= self.quiet_until && self.fresh_fix(now).is_some() =>
             {
@@ -79,7 +79,8 @@ impl OffboardStateMachine {
         }
     }
 
-    /// With what brings it to its height, and keeps it there unless heights are the agent's.
+    /// Adds the climb to the set height, which is held afterwards unless the agent controls the
+    /// height.
     fn at_altitude(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
         let is_armed = self.beat.is_some_and(|beat| beat.is_armed && beat.is_controlled);
         let is_told = self.rules.keeps_altitude || self.state == State::Entering;
@@ -88,13 +89,13 @@ impl OffboardStateMachine {
         [north, east, down]
     }
 
-    /// Asks for telemetry until it comes as often as it should, and a few times for news of the estimator.
+    /// Requests telemetry until it has the right rate, and a few times the estimator status.
     fn look(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         if self.next_look.is_some_and(|at| now < at) {
             return;
         }
         let is_first = self.next_look.is_none();
-        // Who asks for nothing gets nothing.
+        // A dry run gets no answers, so it requests once.
         if self.rules.rehearses && !is_first {
             return;
         }
@@ -115,7 +116,7 @@ impl OffboardStateMachine {
         self.next_look = Some(now + LOOK);
     }
 
-    /// Asks for the mode, then to be armed, then to take off; each until it is so.
+    /// Requests the mode, arming and takeoff, each until it has happened.
     fn enter(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         let Some(beat) = self.beat else { return };
         let ask = match (beat.is_controlled, beat.is_armed) {
@@ -157,7 +158,7 @@ impl OffboardStateMachine {
         }
     }
 
-    /// All that it would ask for, once.
+    /// Shows all requests of the entry once, for a dry run.
     fn rehearse_entry(&mut self, out: &mut Vec<MavMessage>) {
         if !std::mem::take(&mut self.may_enter) {
             return;
@@ -169,7 +170,7 @@ impl OffboardStateMachine {
         out.extend(height.map(|altitude_m| out::takeoff(self.system, altitude_m)));
     }
 
-    /// What to send a few times when the companion ends: stand, if it steers.
+    /// The message to send a few times before the companion ends: zero velocity, if it has control.
     #[must_use]
     pub fn farewell(&self, now: Duration) -> Option<MavMessage> {
         self.state.has_control().then(|| out::setpoint(self.system, self.kind, [0.0; 3], now))

@@ -7,7 +7,7 @@ use staya_mavlink::dialect::{
     LOCAL_POSITION_NED_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 
-/// As a configuration that says nothing has them.
+/// The defaults of a configuration.
 pub(crate) const RULES: Rules = Rules {
     entry: Entry::Wait,
     arm: false,
@@ -29,7 +29,7 @@ const POSITION_CONTROL: u32 = 3 << 16;
 const ARMED: u8 = 0x81;
 const DISARMED: u8 = 0x01;
 
-/// OffboardStateMachine with an autopilot that says the same again and again.
+/// A state machine with an autopilot that repeats its telemetry.
 struct Bench {
     offboard: OffboardStateMachine,
     now: Duration,
@@ -38,11 +38,11 @@ struct Bench {
     base: u8,
     above_home_m: f64,
     climb_mps: f64,
-    /// What the agent wants.
+    /// Vertical velocity that the agent commands.
     down_mps: f64,
     beats: bool,
     fixes: bool,
-    /// Whether it says of its estimator what `ekf_flags` has.
+    /// Whether it sends `ekf_flags` as its estimator status.
     reports: bool,
     ekf_flags: u16,
     sent: Vec<MavMessage>,
@@ -102,7 +102,7 @@ impl Bench {
         self.offboard.hear(&report, self.now);
     }
 
-    /// Runs for so long in steps of 10 ms; returns what was sent meanwhile.
+    /// Runs in steps of 10 ms and returns the messages sent.
     fn run(&mut self, seconds: f64) -> Vec<MavMessage> {
         self.sent.clear();
         for _ in 0..(seconds * 100.0).round() as u32 {
@@ -156,7 +156,7 @@ fn stands(setpoint: &SET_POSITION_TARGET_LOCAL_NED_DATA) -> bool {
 }
 
 #[test]
-fn steers_at_the_rate_it_should_with_velocities_only() {
+fn setpoints_have_their_rate_and_only_velocities() {
     let mut bench = Bench::rover(RULES);
     bench.run(1.0);
     assert_eq!(bench.state(), State::Steering);
@@ -173,7 +173,7 @@ fn steers_at_the_rate_it_should_with_velocities_only() {
 }
 
 #[test]
-fn a_rover_of_ardupilot_that_stands_is_told_not_to_turn() {
+fn a_stationary_ardupilot_rover_is_told_not_to_turn() {
     let masks = |kind, velocity| {
         let MavMessage::SET_POSITION_TARGET_LOCAL_NED(said) = out::setpoint(7, kind, velocity, Duration::ZERO) else {
             panic!("a setpoint");
@@ -198,7 +198,7 @@ fn a_late_poll_makes_no_burst() {
 }
 
 #[test]
-fn nothing_is_asked_of_a_pilot_who_keeps_the_vehicle() {
+fn no_requests_are_sent_while_the_pilot_has_control() {
     for kind in [Kind::ArduRover, Kind::ArduCopter] {
         let mut bench = Bench::new(kind, RULES, MANUAL, ARMED);
         let sent = bench.run(30.0);
@@ -210,7 +210,7 @@ fn nothing_is_asked_of_a_pilot_who_keeps_the_vehicle() {
 }
 
 #[test]
-fn nobody_heard_nothing_but_heartbeats() {
+fn without_an_autopilot_only_heartbeats_are_sent() {
     let mut bench = Bench::rover(ONCE);
     (bench.beats, bench.fixes) = (false, false);
     let sent = bench.run(10.0);
@@ -220,7 +220,7 @@ fn nobody_heard_nothing_but_heartbeats() {
 }
 
 #[test]
-fn not_armed_it_waits() {
+fn a_disarmed_vehicle_gets_no_setpoints() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, GUIDED, DISARMED);
     let sent = bench.run(5.0);
     assert_eq!(bench.state(), State::Disarmed);
@@ -231,7 +231,7 @@ fn not_armed_it_waits() {
 }
 
 #[test]
-fn a_position_is_stale_only_after_its_time_and_then_it_stops() {
+fn a_position_turns_stale_exactly_at_its_limit_and_stops_the_vehicle() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
     bench.fix();
@@ -245,7 +245,7 @@ fn a_position_is_stale_only_after_its_time_and_then_it_stops() {
 }
 
 #[test]
-fn stale_telemetry_stops_and_fresh_one_goes_on() {
+fn stale_telemetry_stops_and_fresh_telemetry_resumes() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
     bench.fixes = false;
@@ -261,7 +261,7 @@ fn stale_telemetry_stops_and_fresh_one_goes_on() {
 }
 
 #[test]
-fn a_lost_link_ends_setpoints_at_its_boundary() {
+fn setpoints_end_exactly_at_the_link_timeout() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
     (bench.beats, bench.fixes) = (false, false);
@@ -273,7 +273,7 @@ fn a_lost_link_ends_setpoints_at_its_boundary() {
     bench.offboard.poll(at + RULES.link_lost + Duration::from_micros(1), &mut sent);
     assert_eq!(bench.state(), State::Silent);
     assert_eq!(setpoints(&sent).len(), 0);
-    // Back in the same boot, in the mode that the pilot chose: it goes on.
+    // The link returns in the same boot and in the pilot's mode, so control resumes.
     bench.now += Duration::from_secs(10);
     bench.boot_ms += 10_000;
     (bench.beats, bench.fixes) = (true, true);
@@ -283,7 +283,7 @@ fn a_lost_link_ends_setpoints_at_its_boundary() {
 }
 
 #[test]
-fn the_pilot_gets_the_vehicle_with_the_very_heartbeat() {
+fn the_pilot_gets_control_with_the_first_heartbeat_in_another_mode() {
     for rules in [RULES, ONCE] {
         let mut bench = Bench::rover(rules);
         bench.run(2.5);
@@ -292,10 +292,10 @@ fn the_pilot_gets_the_vehicle_with_the_very_heartbeat() {
         assert_eq!(bench.state(), State::Pilot);
         let sent = bench.run(60.0);
         assert_eq!(setpoints(&sent).len(), 0);
-        assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "it takes nothing back");
+        assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "control is not requested back");
         assert!(bench.events().contains(&Event::HandedOver(MANUAL)));
         assert_eq!(bench.offboard.tally().hand_overs, 1);
-        // The pilot gives it again.
+        // The pilot selects the mode again.
         bench.mode = GUIDED;
         bench.run(1.5);
         assert_eq!(bench.state(), State::Steering);
@@ -303,7 +303,7 @@ fn the_pilot_gets_the_vehicle_with_the_very_heartbeat() {
 }
 
 #[test]
-fn a_velocity_of_before_is_not_sent_after_an_interruption() {
+fn an_old_velocity_is_not_sent_after_an_interruption() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
     bench.mode = MANUAL;
@@ -312,11 +312,11 @@ fn a_velocity_of_before_is_not_sent_after_an_interruption() {
     bench.beat();
     let mut sent = Vec::new();
     bench.offboard.poll(bench.now, &mut sent);
-    assert!(stands(&setpoints(&sent)[0]), "the agent has not spoken yet");
+    assert!(stands(&setpoints(&sent)[0]), "the agent has sent no command yet");
 }
 
 #[test]
-fn an_agent_that_is_silent_stands() {
+fn a_silent_agent_stops_the_vehicle() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
     let mut sent = Vec::new();
@@ -331,7 +331,7 @@ fn an_agent_that_is_silent_stands() {
 }
 
 #[test]
-fn there_is_nothing_to_do_before_it_is_due() {
+fn poll_sends_nothing_before_the_due_time() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
     let due = bench.offboard.due(bench.now);
@@ -342,7 +342,7 @@ fn there_is_nothing_to_do_before_it_is_due() {
 }
 
 #[test]
-fn a_restart_in_the_mode_is_no_permission() {
+fn a_restart_in_the_mode_is_not_a_permission() {
     for rules in [RULES, ONCE] {
         let mut bench = Bench::rover(rules);
         bench.run(2.0);
@@ -361,7 +361,7 @@ fn a_restart_in_the_mode_is_no_permission() {
 }
 
 #[test]
-fn farewell_is_said_by_who_steers() {
+fn only_a_controlled_vehicle_is_stopped_at_the_end() {
     let mut bench = Bench::rover(RULES);
     bench.run(2.0);
     assert!(bench.offboard.farewell(bench.now).is_some());
@@ -371,7 +371,7 @@ fn farewell_is_said_by_who_steers() {
 }
 
 #[test]
-fn words_of_states_fit_a_status_text() {
+fn texts_of_states_fit_into_a_status_text() {
     for state in [
         State::Silent,
         State::Pilot,

@@ -1,4 +1,5 @@
-//! What the loop needs of the machine that it runs on. Nothing here can end it: what fails is told, or lost as on a radio.
+//! The environment of the main loop. Errors here never end the loop: they are reported, or the data
+//! is lost as on a radio.
 
 use crate::companion::medium::Medium;
 use crate::companion::roll::KeyWatch;
@@ -9,64 +10,59 @@ use std::time::{Duration, Instant};
 
 /// Time, links, the network between companions, a log and a terminal.
 pub trait Machine {
-    /// Since the start.
     fn now(&self) -> Duration;
 
-    /// Lets time pass.
     fn pause(&mut self, time: Duration);
 
-    /// The next frame of any line, waiting for at most `wait`.
+    /// The next frame of any link, waiting for at most `wait`.
     fn receive(&mut self, wait: Duration) -> Option<Received>;
 
-    /// Sends a frame on a line, to one peer or to all.
+    /// Sends a frame on a link, to one peer or to all.
     fn send(&mut self, line: usize, peer: Option<Peer>, frame: &[u8]);
 
-    /// Notes that `peer` said something sound over line number `line`, and may be told things.
+    /// Marks `peer` on link `line` as authenticated, so that it may receive frames.
     fn believe(&mut self, line: usize, peer: Peer);
 
-    /// What line number `line` has carried.
     fn counts(&self, line: usize) -> Counts;
 
-    /// Why line number `line` has no connection.
     fn trouble(&self, line: usize) -> Option<String>;
 
-    /// Gives `heard` what companions of other processes have said meanwhile.
+    /// Passes packets of companions in other processes to `heard`.
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8]));
 
-    /// Says something to them.
+    /// Sends packets to companions in other processes.
     fn tell_others(&mut self, frames: &[u8]);
 
-    /// Keeps a frame.
+    /// Writes a frame to the log.
     ///
     /// # Errors
-    /// When the log cannot be written; it is not asked again.
+    /// The log cannot be written; it is not called again.
     fn log(&mut self, frame: &[u8]) -> Result<(), TlogError>;
 
-    /// Ends the log.
+    /// Closes the log.
     ///
     /// # Errors
-    /// When its last part cannot be written.
+    /// The end of the log cannot be written.
     fn close_log(&mut self) -> Result<(), TlogError>;
 
-    /// Another key in the file of the packets' key, or what is wrong with that file.
+    /// A new key for packets, or an error of its file.
     fn new_key(&mut self) -> Option<Result<Key, String>> {
         None
     }
 
-    /// A line on standard output.
+    /// Writes a line to standard output.
     ///
-    /// # Errors
-    /// When nobody takes it.
+    /// Standard output is closed.
+    /// Standard output is closed.
     fn show(&mut self, line: &str) -> io::Result<()>;
 
-    /// A line on standard error.
+    /// Writes a line to standard error.
     ///
-    /// # Errors
-    /// When nobody takes it.
+    /// Standard error is closed.
+    /// Standard error is closed.
     fn tell(&mut self, line: &str) -> io::Result<()>;
 }
 
-/// The real one.
 pub struct Host {
     pub began: Instant,
     pub lines: Lines,

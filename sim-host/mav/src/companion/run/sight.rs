@@ -1,4 +1,4 @@
-//! What somebody who looks on sees of the vehicles.
+//! The vehicles as the live page shows them.
 
 use super::{Companions, State, Vehicle};
 use crate::geo::Origin;
@@ -7,7 +7,7 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_sim::engine::Known;
 use std::time::Duration;
 
-/// The vehicles at a moment. Nothing is computed until somebody asks.
+/// Access to the vehicles at one moment; values are computed on request.
 #[derive(Clone, Copy)]
 pub struct Sight<'a> {
     vehicles: &'a [Vehicle],
@@ -15,54 +15,53 @@ pub struct Sight<'a> {
     now: Duration,
 }
 
-/// A vehicle at a moment, in metres and m/s east, north, up.
+/// A vehicle at one moment, in metres and m/s east, north, up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
-    /// Its number among the scenario's robots, from 0.
+    /// Index among the scenario's robots, from 0.
     pub index: usize,
-    /// Where, if it ever had a position: by now, from telemetry.
+    /// Present position, extrapolated from telemetry; `None` before the first one.
     pub position_m: Option<[f64; 3]>,
-    /// How fast.
+    /// Velocity.
     pub velocity_mps: [f64; 3],
-    /// Seconds since it said where it is.
+    /// Age of the last position, seconds.
     pub age_s: Option<f64>,
-    /// Where it is to go, if that is a place.
+    /// Goal; `None` if the guidance has none.
     pub goal_m: Option<[f64; 3]>,
-    /// What its companion does.
+    /// State of the companion.
     pub state: State,
-    /// What its agent does.
+    /// Mode of the agent.
     pub mode: Mode,
-    /// Whom it follows; 0: nobody.
+    /// Robot that this one follows; 0 for none.
     pub leader: RobotId,
-    /// What it waits for.
+    /// Why the robot waits, if it does.
     pub wait: Option<Wait>,
-    /// The velocity that it was commanded last.
+    /// Last commanded velocity.
     pub commanded_mps: [f64; 3],
-    /// Whether it was at its goal when it was last steered.
+    /// Whether the vehicle was at its goal when it was last controlled.
     pub has_arrived: bool,
-    /// Whom it knows.
+    /// Known neighbours.
     pub known: Vec<Known>,
-    /// Packets of others that were heard.
+    /// Packets accepted from other robots.
     pub heard: u64,
-    /// Packets that were refused.
+    /// Packets rejected.
     pub refused: u64,
 }
 
 impl Companions<'_> {
-    /// What there is to see.
     pub(super) fn sight(&self) -> Sight<'_> {
         Sight { vehicles: &self.vehicles, origin: &self.origin, now: self.now() }
     }
 }
 
 impl Sight<'_> {
-    /// Since the start.
+    /// Time since the start.
     #[must_use]
     pub const fn now(&self) -> Duration {
         self.now
     }
 
-    /// Each vehicle of this program, in the order of the configuration. O(vehicles * neighbours).
+    /// All vehicles of this process in the order of the configuration. O(vehicles * neighbours).
     #[must_use]
     pub fn vehicles(&self) -> Vec<Seen> {
         let vehicles = self.vehicles.iter().map(|vehicle| {

@@ -1,4 +1,4 @@
-//! What a person is told: lines as things happen, and the figures at the end.
+//! Messages for operators: events as they happen, and the report at the end.
 
 use super::{Companions, FEW_TIMESTAMPS, LOOK, Vehicle, shown, status_text};
 use crate::companion::config::Config;
@@ -11,25 +11,23 @@ use staya_mavlink::frame::Sender;
 use staya_mavlink::signing::Signing;
 use std::time::Duration;
 
-/// Between two velocities that a dry run shows.
+/// Interval of velocities that a dry run shows.
 const SHOWN: Duration = Duration::from_secs(1);
 
 impl Companions<'_> {
-    /// A line for the person at the terminal, about a vehicle.
     pub(super) fn tell(&mut self, index: usize, what: &str) {
         let (at, robot) = (self.now().as_secs_f64(), self.vehicles[index].setup.robot.0);
         self.say(&format!("{at:9.3} robot {robot}: {what}"));
     }
 
-    /// A line for the person at the terminal.
     pub(super) fn say(&mut self, line: &str) {
         if !self.options.quiet {
-            // A closed standard error must not stop a vehicle's companion.
+            // A closed standard error must not stop the companion.
             let _ = self.machine.tell(line);
         }
     }
 
-    /// Shows what would be sent, a velocity once a second.
+    /// Shows a message in a dry run; velocities at 1 Hz.
     pub(super) fn show(&mut self, index: usize, message: &MavMessage) {
         let (now, vehicle) = (self.machine.now(), &mut self.vehicles[index]);
         if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(_) = message {
@@ -44,7 +42,7 @@ impl Companions<'_> {
         }
     }
 
-    /// Says of links that have no connection why not, once for each reason.
+    /// Reports links without a connection, once for each reason.
     pub(super) fn look_at_links(&mut self, now: Duration) {
         if now < self.next_look {
             return;
@@ -55,7 +53,7 @@ impl Companions<'_> {
             let link = &mut self.links[index];
             if trouble != link.trouble {
                 let line = match &trouble {
-                    Some(error) => format!("staya: {}: no connection: {error}; tries again and again", link.name),
+                    Some(error) => format!("staya: {}: no connection: {error}; retrying every second", link.name),
                     None => format!("staya: {}: connected", link.name),
                 };
                 link.trouble = trouble;
@@ -64,7 +62,8 @@ impl Companions<'_> {
         }
     }
 
-    /// Says, once for each link and to its vehicles' ground stations, that soon nothing can be signed any more.
+    /// Warns once for each link that its signing timestamps are nearly used up, also at the ground
+    /// stations of its vehicles.
     pub(super) fn look_at_timestamps(&mut self) {
         for line in 0..self.links.len() {
             let is_ending = self.signing_of(line).is_some_and(|signing| signing.left() < FEW_TIMESTAMPS);
@@ -72,18 +71,18 @@ impl Companions<'_> {
                 continue;
             }
             self.say(&format!(
-                "staya: {}: hardly a timestamp is left to sign with: a new key is needed",
+                "staya: {}: signing timestamps are nearly used up; give a new link key",
                 self.links[line].name
             ));
             for index in 0..self.vehicles.len() {
                 if self.vehicles[index].setup.line == line {
-                    self.send(index, &status_text("staya: a new link key is needed, soon mute", true));
+                    self.send(index, &status_text("staya: link key used up, give a new one", true));
                 }
             }
         }
     }
 
-    /// A hint, once, that one of the vehicles signs what it says (`is_open`: and nobody here does), or does not with this key.
+    /// Explains once why messages of a vehicle are not accepted, or not signed here (`is_open`).
     pub(super) fn tell_of_signing(&mut self, line: usize, sender: Sender, is_open: bool) {
         let is_it = |vehicle: &Vehicle| {
             let at = (vehicle.setup.line, vehicle.setup.system, AUTOPILOT);
@@ -94,34 +93,33 @@ impl Companions<'_> {
         self.tell(
             index,
             if is_open {
-                "its messages are signed; if it hears only signed ones, give link_key or --link-key"
+                "messages are signed; if it accepts only signed ones, give link_key or --link-key"
             } else {
-                "is refused: its messages are not signed with the key of link_key, or are repeated"
+                "messages rejected: not signed with the key of link_key, or replayed; give both sides the same key"
             },
         );
     }
 
     pub(super) fn tell_of(&mut self, index: usize, event: AgentEvent) {
         match event {
-            AgentEvent::NeighborFound(id) => self.tell(index, &format!("hears robot {}", id.0)),
-            AgentEvent::NeighborLost(id) => self.tell(index, &format!("has lost robot {id}")),
-            AgentEvent::DuplicateId(id) => self.tell(index, &format!("two robots have number {id}: give one another")),
+            AgentEvent::NeighborFound(id) => self.tell(index, &format!("found robot {}", id.0)),
+            AgentEvent::NeighborLost(id) => self.tell(index, &format!("lost robot {id}")),
+            AgentEvent::DuplicateId(id) => {
+                self.tell(index, &format!("two robots use number {id}; give one of them another number"))
+            }
             AgentEvent::Overclaimed { id, claim } => {
-                self.tell(index, &format!("does not believe robot {id}: it claims {claim}"));
+                self.tell(index, &format!("ignores robot {id}: implausible {claim}"));
             }
-            AgentEvent::NobodyHeard => self.tell(index, "hears nobody any more"),
+            AgentEvent::NobodyHeard => self.tell(index, "lost contact to all robots"),
             AgentEvent::Muted => {
-                self.tell(
-                    index,
-                    "mute: no counter or timestamp is left for its packets, a new key is needed (air.key)",
-                );
-                self.send(index, &status_text("staya: mute, a new swarm key is needed", true));
+                self.tell(index, "cannot send: packet counters or timestamps are used up; give a new key (air.key)");
+                self.send(index, &status_text("staya: cannot send, new swarm key needed", true));
             }
-            AgentEvent::NoRoute => self.tell(index, "finds no way"),
+            AgentEvent::NoRoute => self.tell(index, "no open route to the goal"),
             AgentEvent::ModeChanged { to: Mode::Fault, .. }
                 if self.vehicles[index].offboard.state() == State::Steering =>
             {
-                self.tell(index, "stands: it is off the scenario's map, or has no goal");
+                self.tell(index, "stopped: off the scenario's map, or without a goal");
             }
             _ => {}
         }

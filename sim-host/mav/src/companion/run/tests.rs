@@ -10,7 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Calls of the loop that can fail.
+/// Calls of the environment that can fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Call {
     Receive,
@@ -22,18 +22,18 @@ enum Call {
     Show,
 }
 
-/// What becomes of the calls of one kind.
+/// Which calls of one kind fail.
 #[derive(Clone, Copy, Debug)]
 enum Failure {
-    /// The one of this number, from 1, fails.
+    /// Only the call with this number, from 1.
     One(usize),
-    /// This one and all after it.
+    /// This call and all later ones.
     From(usize),
-    /// This one panics.
+    /// This call panics.
     Panic(usize),
 }
 
-/// A rover that does at once what it is told, and says where it is.
+/// A rover that follows commands at once and reports its position.
 struct Rover {
     system: u8,
     north_east_m: [f64; 2],
@@ -42,13 +42,12 @@ struct Rover {
     warnings: Vec<String>,
 }
 
-/// A machine whose time passes when somebody waits, with rovers at its first line.
+/// A simulated environment with rovers on the first link. Time passes while the loop waits.
 struct World {
     now: Duration,
     rovers: Vec<Rover>,
     frames: VecDeque<Received>,
     failing: Option<(Call, Failure)>,
-    /// How often the failing call was made.
     calls: usize,
     logged: usize,
     lines: Vec<String>,
@@ -79,7 +78,6 @@ impl World {
         }
     }
 
-    /// Whether this call fails.
     fn fails(&mut self, call: Call) -> bool {
         let Some((_, failure)) = self.failing.filter(|(failing, _)| *failing == call) else { return false };
         self.calls += 1;
@@ -87,7 +85,7 @@ impl World {
             Failure::One(number) => self.calls == number,
             Failure::From(number) => self.calls >= number,
             Failure::Panic(number) => {
-                assert_ne!(self.calls, number, "as the test wants");
+                assert_ne!(self.calls, number, "panic of the test");
                 false
             }
         }
@@ -131,7 +129,6 @@ impl World {
     }
 }
 
-/// What the loop sees of it.
 struct Shared(Rc<RefCell<World>>);
 
 fn broken() -> io::Error {
@@ -244,7 +241,7 @@ fn config() -> Config {
     Config::parse(&text, &folder.join("test.toml")).unwrap()
 }
 
-/// A flight in which calls fail; what came of it, and the report of one that has come to its end.
+/// Runs a flight with failing calls. The report is `None` if the run ended with an error.
 fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<CompanionReport>) {
     let options = Options { seconds: Some(SECONDS), ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(failing)));
@@ -257,38 +254,38 @@ fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<Comp
     (Rc::into_inner(world).expect("the loop has ended").into_inner(), ended.ok())
 }
 
-/// Each vehicle was steered until the end, and then told to stand.
+/// Asserts that each vehicle was controlled until the end and then told to stop.
 fn assert_steered(world: &World, what: &str) {
     for rover in &world.rovers {
         let all = &rover.setpoints;
         let last = all.last().unwrap_or_else(|| panic!("{what}: no setpoint"));
         assert_eq!(last.1, [0.0; 2], "{what}: farewell");
-        assert!(all.iter().any(|(_, velocity)| *velocity != [0.0; 2]), "{what}: it never moved");
+        assert!(all.iter().any(|(_, velocity)| *velocity != [0.0; 2]), "{what}: the rover never moved");
         let longest = all.windows(2).map(|pair| pair[1].0 - pair[0].0).max().expect("two");
         assert!(longest <= Duration::from_millis(110), "{what}: no setpoint for {longest:?}");
-        // A heartbeat that is lost is heard a second later.
+        // A lost heartbeat delays control by one second.
         assert!(all[0].0.as_secs_f64() < 2.2 && last.0.as_secs_f64() >= SECONDS, "{what}");
     }
 }
 
 #[test]
-fn no_single_failure_ends_steering_or_its_farewell() {
+fn no_single_failure_ends_control_or_the_final_stop() {
     let config = config();
     for call in [Call::Receive, Call::Send, Call::HearOthers, Call::TellOthers, Call::Log, Call::Tell] {
-        // Numbers beyond the end do no harm, and say how often the call is made.
+        // The calls are counted first, without a failure.
         let (quiet, _) = fly(&config, Some((call, Failure::One(usize::MAX))));
         assert!(quiet.calls > 0, "{call:?} is never made");
         for number in 1..=quiet.calls {
             let (world, report) = fly(&config, Some((call, Failure::One(number))));
             assert_steered(&world, &format!("{call:?} {number} of {}", quiet.calls));
-            let log_error = report.expect("it came to its end").log_error;
+            let log_error = report.expect("the run ended normally").log_error;
             assert_eq!(log_error.is_some(), call == Call::Log);
         }
     }
 }
 
 #[test]
-fn what_fails_for_good_does_not_end_steering_either() {
+fn permanent_failures_do_not_end_control() {
     let config = config();
     for call in [Call::HearOthers, Call::TellOthers, Call::Log, Call::Tell] {
         for number in [1, 2, 20] {
@@ -297,29 +294,32 @@ fn what_fails_for_good_does_not_end_steering_either() {
             assert!(report.is_some());
         }
     }
-    // Nothing comes, nothing goes: it ends by its command all the same.
+    // Without any traffic the run still ends after its duration.
     for call in [Call::Receive, Call::Send] {
         let (_, report) = fly(&config, Some((call, Failure::From(1))));
-        assert!(report.expect("its end").seconds >= SECONDS);
+        assert!(report.expect("the run ended normally").seconds >= SECONDS);
     }
 }
 
 #[test]
-fn a_full_disk_is_told_once_on_the_ground_and_on_board() {
+fn a_full_disk_is_reported_once_on_the_ground_and_on_board() {
     let (world, report) = fly(&config(), Some((Call::Log, Failure::From(50))));
     let told = world.lines.iter().filter(|line| line.contains("flight.tlog: broken by the test")).count();
     assert_eq!((told, world.logged), (1, 50));
     for rover in &world.rovers {
         assert_eq!(rover.warnings, ["staya: the log cannot be written"]);
     }
-    let report = report.expect("its end").to_string();
-    assert!(report.contains("flight.tlog: broken by the test: what is there is not all"), "{report}");
+    let report = report.expect("the run ended normally").to_string();
+    assert!(
+        report.contains("flight.tlog: broken by the test; ") && report.contains("; the log is incomplete"),
+        "{report}"
+    );
 }
 
 #[test]
-fn even_a_defect_of_its_own_does_not_leave_vehicles_going() {
+fn a_panic_stops_the_vehicles() {
     let (world, report) = fly(&config(), Some((Call::Log, Failure::Panic(100))));
-    assert!(report.is_none(), "it panicked");
+    assert!(report.is_none(), "the loop panicked");
     for rover in &world.rovers {
         let farewells = rover.setpoints.iter().rev().take_while(|(_, velocity)| *velocity == [0.0; 2]).count();
         assert!(rover.setpoints.len() > 5 && farewells >= 5, "{farewells} of {}", rover.setpoints.len());
@@ -327,7 +327,7 @@ fn even_a_defect_of_its_own_does_not_leave_vehicles_going() {
 }
 
 #[test]
-fn timestamps_that_come_to_their_end_are_told_before_nobody_can_be() {
+fn used_up_timestamps_are_reported_while_signing_is_possible() {
     let config = config();
     let options = Options { seconds: Some(SECONDS), ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(None)));
@@ -338,14 +338,14 @@ fn timestamps_that_come_to_their_end_are_told_before_nobody_can_be() {
     let report = companions.report(&config, seconds, false);
     drop(companions);
     let world = world.borrow();
-    assert_eq!(world.lines.iter().filter(|line| line.contains("hardly a timestamp is left")).count(), 1);
+    assert_eq!(world.lines.iter().filter(|line| line.contains("signing timestamps are nearly used up")).count(), 1);
     for rover in &world.rovers {
-        assert_eq!(rover.warnings, ["staya: a new link key is needed, soon mute"]);
+        assert_eq!(rover.warnings, ["staya: link key used up, give a new one"]);
     }
-    assert!(report.links[0].is_exhausted && report.to_string().contains("no timestamp left to sign with"), "{report}");
+    assert!(report.links[0].is_exhausted && report.to_string().contains("timestamps used up"), "{report}");
 }
 
-/// A dry run; how many seconds it took.
+/// Runs a dry run and returns its duration in seconds.
 fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
     let options = Options { seconds: Some(SECONDS), dry_run: true, ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(failing)));
@@ -358,21 +358,21 @@ fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
 }
 
 #[test]
-fn a_dry_run_that_nobody_reads_ends() {
+fn a_dry_run_ends_when_its_output_is_closed() {
     let (world, seconds) = rehearse(Some((Call::Show, Failure::One(3))));
     assert!(seconds < SECONDS && world.shown.len() == 2, "{seconds}: {:?}", world.shown);
 }
 
 #[test]
-fn a_dry_run_shows_velocities_and_texts_in_words() {
+fn a_dry_run_prints_velocities_and_texts() {
     let (world, seconds) = rehearse(None);
     assert!(seconds >= SECONDS);
     assert!(world.rovers.iter().all(|rover| rover.setpoints.is_empty()), "nothing is sent");
     let shown = world.shown.iter().filter(|line| line.contains("robot 1: "));
-    let shown: Vec<_> = shown.map(|line| line.split_once("robot 1: ").expect("it has it").1).collect();
+    let shown: Vec<_> = shown.map(|line| line.split_once("robot 1: ").expect("a line of robot 1").1).collect();
     assert!(shown.contains(&"COMMAND_LONG SET_MESSAGE_INTERVAL GLOBAL_POSITION_INT 10.0 Hz"), "{shown:?}");
-    assert!(shown.contains(&"STATUSTEXT \"staya: steers\""), "{shown:?}");
+    assert!(shown.contains(&"STATUSTEXT \"staya: companion has control\""), "{shown:?}");
     let velocities: Vec<_> = shown.iter().filter(|line| line.contains(" m/s north, ")).collect();
-    assert!((2..=3).contains(&velocities.len()), "one a second: {shown:?}");
+    assert!((2..=3).contains(&velocities.len()), "one per second: {shown:?}");
     assert!(velocities.iter().any(|line| !line.contains(" 0.00 m/s north, 0.00 m/s east")), "{velocities:?}");
 }

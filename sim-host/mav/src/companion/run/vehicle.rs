@@ -1,4 +1,4 @@
-//! A vehicle and its companion, as the loop has them.
+//! A vehicle and its companion.
 
 use crate::Peer;
 use crate::companion::config::VehicleSetup;
@@ -8,43 +8,40 @@ use crate::geo::{Origin, enu};
 use staya_sim::radio::HostWire;
 use std::time::Duration;
 
-/// Bytes of packets that wait for an agent's next step; the rest is lost, as on a radio.
+/// Capacity for packets until the agent's next step, bytes; more are lost, as on a radio.
 const INBOX: usize = 16 * 1024;
 
-/// A vehicle and its companion.
 pub struct Vehicle {
     pub setup: VehicleSetup,
-    /// How fast it can be, m/s, and how far from where it was known to be last, metres.
     pub max_speed_mps: f64,
     pub error_m: f64,
     pub offboard: OffboardStateMachine,
     pub controller: Controller<HostWire>,
-    /// Where its autopilot was heard.
     pub peer: Option<Peer>,
-    /// Whether it was told that signatures do not match.
+    /// Whether a signature problem was reported.
     pub is_signing_told: bool,
     pub sequence: u8,
-    /// When a dry run showed a velocity last.
+    /// When a dry run last showed a velocity.
     pub shown: Option<Duration>,
     pub inbox: Vec<u8>,
     pub next_step: Duration,
     pub has_arrived: bool,
-    /// It is so far from the origin that it is not steered.
+    /// Whether it is too far from the origin to be controlled.
     pub is_far: bool,
     pub heard: u64,
     pub refused: u64,
 }
 
 impl Vehicle {
-    /// Packets for the next step.
     pub fn listen(&mut self, frames: &[u8]) {
         if self.inbox.len() + frames.len() <= INBOX {
             self.inbox.extend_from_slice(frames);
         }
     }
 
-    /// Where it is by now, and how fast. Whose telemetry is old or not to be believed is somewhere about its last place, the farther off the older that is, up to
-    /// `error_m`: told to stop, it has rolled on, or a pilot drives it.
+    /// Position and velocity at `now`, extrapolated. With stale or untrusted telemetry the position
+    /// error grows with its age up to `error_m`, since the vehicle may still roll or be driven by a
+    /// pilot.
     pub fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
         let last = self.offboard.fix()?;
         let at = origin.to_enu_m(&last.place)?;
@@ -59,7 +56,7 @@ impl Vehicle {
     }
 }
 
-/// Whether a body is so near the origin, along the ground.
+/// Whether the horizontal distance to the origin is at most `reach_m`.
 pub fn is_within(body: &Body, reach_m: f64) -> bool {
     let [x, y, _] = body.position_m;
     x * x + y * y <= reach_m * reach_m

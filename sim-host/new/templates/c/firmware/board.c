@@ -1,4 +1,4 @@
-/* FILL IN, by the vendor's headers or by registers: until then the robot stands. */
+/* FILL IN with the vendor's headers or registers: until then the robot does not move. */
 
 #include "board.h"
 
@@ -6,7 +6,7 @@ void board_init(void) {}
 
 uint32_t board_clock_us(void)
 {
-    /* The cycle counter would do: one that a timer counts in microseconds is better. */
+    /* Replace this by a timer that counts microseconds, or by the cycle counter. */
     static uint32_t calls;
     return calls++;
 }
@@ -40,7 +40,7 @@ void board_pet(void) {}
 _Noreturn void board_fail(const char *text)
 {
     (void)text;
-    *(volatile uint32_t *)0xE000ED0C = 0x05FA0004; /* AIRCR: start anew */
+    *(volatile uint32_t *)0xE000ED0C = 0x05FA0004; /* AIRCR: restart */
     for (;;) {
     }
 }

@@ -1,4 +1,4 @@
-/* The robot's loop on a Cortex-M4F, and the start of the program without a vendor's library. */
+/* The robot's loop on a Cortex-M4F, with start-up code that needs no vendor library. */
 
 #include "board.h"
 #include "robot.h"
@@ -42,7 +42,7 @@ static _Noreturn void run(void)
 
 void reset(void)
 {
-    *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* CPACR: the FPU is on */
+    *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* CPACR: enable the FPU */
     __asm__ volatile("dsb\nisb" ::: "memory");
     const uint32_t *from = &data_in_flash;
     for (uint32_t *to = &data_start; to < &data_end;) {
@@ -56,7 +56,7 @@ void reset(void)
 
 static void fault(void)
 {
-    board_fail("the processor has met an exception");
+    board_fail("processor exception");
 }
 
 union vector {
@@ -64,7 +64,7 @@ union vector {
     void (*handler)(void);
 };
 
-/* Interrupts of the part's own units follow here if board.c uses any. */
+/* Add the interrupts of peripherals here if board.c uses any. */
 __attribute__((section(".vectors"), used)) static const union vector VECTORS[16] = {
     {.stack = &stack_top}, {.handler = reset},  {.handler = fault}, {.handler = fault}, {.handler = fault}, {.handler = fault},
     {.handler = fault},    {0},                 {0},                {0},                {0},                {.handler = fault},

@@ -7,7 +7,7 @@ StayaStatus robot_init(Robot *robot, uint32_t number, const int32_t goal_mm[2])
     if (status != STAYA_STATUS_OK) {
         return status;
     }
-    /* What differs from the defaults: docs/c.md in Staya's repository. */
+    /* Settings that differ from the defaults; see docs/c.md in Staya's repository. */
     setup.speed_mps = 0.5f;
     setup.latency_us = ROBOT_TICK_US;
     status = staya_init(robot->memory, sizeof robot->memory, &setup, &robot->agent);

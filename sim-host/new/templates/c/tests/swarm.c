@@ -1,4 +1,5 @@
-/* Ten robots on a circle, each bound for the opposite side. What one sends in a tick all others hear in the next. */
+/* Ten robots on a circle, each with its goal on the opposite side. All robots receive a packet one tick after it
+ * was sent. */
 
 #include "robot.h"
 #include <math.h>
@@ -67,10 +68,10 @@ int main(void)
         }
         if (arrived == ROBOTS) {
             const double gap_m = least_m - 2 * (double)ROBOT_RADIUS_M;
-            printf("all %d arrived after %.1f s, bodies never nearer than %.3f m\n", ROBOTS, tick * ROBOT_TICK_US * 1e-6, gap_m);
+            printf("all %d arrived after %.1f s, smallest gap %.3f m\n", ROBOTS, tick * ROBOT_TICK_US * 1e-6, gap_m);
             return gap_m >= 0.0 ? 0 : 1;
         }
     }
-    fprintf(stderr, "they never arrive\n");
+    fprintf(stderr, "the robots did not arrive in time\n");
     return 1;
 }

@@ -1,4 +1,4 @@
-"""The law in the simulator, with as many robots and as bad a radio as scenario.toml says."""
+"""Runs the law in the simulator, with the robots and radio of scenario.toml."""
 
 import my_swarm
 import pytest
@@ -9,5 +9,5 @@ import staya
 def test_all_arrive_and_none_overlap(seed):
     sim = staya.Simulation(my_swarm.SCENARIO, seed=seed)
     figures = my_swarm.run(sim)
-    assert my_swarm.has_arrived(sim), f"not there after {sim.time_s} s"
+    assert my_swarm.has_arrived(sim), f"not arrived after {sim.time_s} s"
     assert figures["collisions"] == 0

@@ -1,5 +1,5 @@
-//! Runs scenario.toml and prints what came out. With a file it also keeps the run: `cargo run --example run -- run.staya`, then
-//! `staya view run.staya`.
+//! Runs scenario.toml and prints the result. With a file name it also records the run: `cargo run
+//! --example run -- run.staya`, then `staya view run.staya`.
 
 use my_swarm::Law;
 use staya_sim::engine::simulate_own;

@@ -1,4 +1,4 @@
-//! Tells the linker what makes a program of the part's firmware.
+//! Passes the linker arguments of the part's firmware.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

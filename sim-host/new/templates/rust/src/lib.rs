@@ -1,4 +1,4 @@
-//! How the robots of my-swarm go: the same code in the simulator and on the robot.
+//! The guidance law of my-swarm, for the simulator and for the robot.
 #![no_std]
 
 use serde::{Deserialize, Serialize};
@@ -6,22 +6,23 @@ use staya_controller::agent::*;
 use staya_controller::geom::Vec3;
 use staya_controller::rand::Rng;
 
-/// Straight to a place, slower among others. Write your own here.
+/// Drives straight to the goal, slower near other robots. Write your own law here.
 ///
-/// What it keeps between decisions are its fields: serde carries them through checkpoints, and to a robot on the bench.
+/// The fields are the law's memory. serde saves them in checkpoints and sends them to robots in
+/// hardware-in-the-loop tests.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Law {
-    /// How fast it wants to go, m/s.
+    /// Preferred speed, m/s.
     pub speed_mps: f32,
-    /// How near is there, metres.
+    /// Distance at which the goal counts as reached, metres.
     pub tolerance_m: f32,
-    /// Where somebody is nearer than this, it goes at half speed; metres from centre to centre.
+    /// Distance to another robot, from centre to centre, below which the speed is halved, metres.
     pub careful_m: f32,
     goal: Option<Waypoint<f32>>,
 }
 
 impl Law {
-    /// Without a place to go to yet.
+    /// Creates a law without a goal.
     #[must_use]
     pub const fn new(speed_mps: f32, tolerance_m: f32, careful_m: f32) -> Self {
         Self { speed_mps, tolerance_m, careful_m, goal: None }
@@ -36,7 +37,7 @@ impl Guidance<f32> for Law {
     type Workspace = ();
     type Payload = ();
 
-    /// The velocity that the robot would like best. The safety layer makes of it one that hits nobody.
+    /// The preferred velocity. The safety layer changes it to avoid collisions.
     fn decide(
         &mut self,
         input: &GuidanceInput<'_, f32>,

@@ -1,4 +1,5 @@
-//! The law in the simulator: every robot runs it behind its own safety layer, and knows of the others what the radio brings.
+//! The law in the simulator. Every robot runs it with its own safety layer, and knows others only
+//! by radio.
 
 use my_swarm::Law;
 use staya_sim::engine::simulate_own;

@@ -1,17 +1,17 @@
-//! Commands, and whom they reach.
+//! Commands and their addressing.
 
 use super::*;
 
 #[test]
-fn arming_stands_and_releases_the_motors() {
+fn arming_enables_motion_and_disarming_stops_it() {
     let mut bench = Bench::new(model());
     let arm = MAV_CMD_COMPONENT_ARM_DISARM;
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
     assert_eq!((bench.wish(), bench.vehicle.is_armed), (Some(Wish::Off), false));
     assert_eq!(bench.texts(), ["disarmed"]);
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
-    assert_eq!(bench.wish(), None, "it was so before");
-    // What is not used may be no number.
+    assert_eq!(bench.wish(), None, "it was disarmed already");
+    // Unused parameters may be NaN.
     assert_eq!(bench.command(arm, [1.0, NAN, NAN, NAN, NAN, NAN, NAN]), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.wish(), Some(Wish::Own));
     for bad in [NAN, 2.0, -1.0, 0.5, f32::INFINITY] {
@@ -21,7 +21,7 @@ fn arming_stands_and_releases_the_motors() {
 }
 
 #[test]
-fn nobody_disarms_in_the_air_or_on_the_way_unless_forced() {
+fn disarming_in_the_air_or_while_moving_needs_force() {
     let mut bench = Bench::new(flying());
     bench.tick(|sample| sample.position_m[2] = 2.0);
     let arm = MAV_CMD_COMPONENT_ARM_DISARM;
@@ -36,26 +36,26 @@ fn nobody_disarms_in_the_air_or_on_the_way_unless_forced() {
 }
 
 #[test]
-fn modes_of_other_vehicles_are_denied_and_what_is_no_command_is_unsupported() {
+fn unknown_modes_are_denied_and_unknown_commands_unsupported() {
     let mut bench = Bench::new(model());
     let mode = MAV_CMD_DO_SET_MODE;
-    // No such mode, a copter's landing, without the custom flag, no numbers.
+    // An unknown mode, Copter's LAND, a mode without the custom flag, NaN.
     for bad in [two(1.0, 99.0), two(1.0, 9.0), two(0.0, 15.0), two(NAN, 15.0), two(1.0, NAN)] {
         assert_eq!(bench.command(mode, bad), MAV_RESULT_DENIED, "{bad:?}");
     }
     assert_eq!(bench.vehicle.mode, FlightMode::Auto);
-    // A takeoff of what does not fly, a landing, a servo, nothing at all.
+    // A takeoff and a landing of a ground vehicle, a servo, unknown numbers.
     for command in [MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND, 183, 0, u16::MAX] {
         assert_eq!(bench.command(command, NONE), MAV_RESULT_UNSUPPORTED, "{command}");
     }
     bench.give(MavMessage::SET_MODE(SET_MODE_DATA { custom_mode: 4, target_system: 7, base_mode: 1 }));
     assert_eq!((bench.vehicle.mode, bench.wish()), (FlightMode::Hold, Some(Wish::Hold)));
     bench.give(MavMessage::SET_MODE(SET_MODE_DATA { custom_mode: 77, target_system: 7, base_mode: 1 }));
-    assert_eq!(bench.texts(), ["no such mode"]);
+    assert_eq!(bench.texts(), ["unknown mode"]);
 }
 
 #[test]
-fn takeoff_and_landing() {
+fn takeoff_and_landing_end_at_their_heights() {
     let mut bench = guided(flying());
     let takeoff = |height| [0.0, 0.0, 0.0, NAN, NAN, NAN, height];
     for bad in [NAN, 0.0, -1.0, 1e6] {
@@ -85,7 +85,7 @@ fn takeoff_and_landing() {
 }
 
 #[test]
-fn who_returns_lands_at_home() {
+fn a_returning_vehicle_lands_at_home() {
     let mut bench = Bench::new(flying());
     bench.tick(|sample| sample.position_m = [30.0, 40.0, 9.0]);
     assert_eq!(bench.command(MAV_CMD_NAV_RETURN_TO_LAUNCH, NONE), MAV_RESULT_ACCEPTED);
@@ -95,7 +95,7 @@ fn who_returns_lands_at_home() {
 }
 
 #[test]
-fn messages_for_others_are_for_others() {
+fn messages_for_other_systems_are_ignored() {
     let mut bench = Bench::new(model());
     let command = |system, component| {
         MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
@@ -111,7 +111,7 @@ fn messages_for_others_are_for_others() {
     for (system, component) in [(7, 0), (7, 1), (0, 0), (0, 1)] {
         assert_eq!(bench.give(command(system, component)).results, [MAV_RESULT_ACCEPTED]);
     }
-    // What makes everybody the same is for nobody.
+    // PARAM_SET as a broadcast is ignored.
     let set = MavMessage::PARAM_SET(PARAM_SET_DATA {
         param_id: "SPEED_MPS".into(),
         param_value: 0.5,
@@ -132,7 +132,7 @@ fn param_set(name: &str, value: f32) -> MavMessage {
 }
 
 #[test]
-fn parameters_are_set_within_limits_and_told_either_way() {
+fn a_parameter_is_set_within_limits_and_always_reported() {
     let mut bench = Bench::new(model());
     let told = |out: &Out| match &out.messages[..] {
         [MavMessage::PARAM_VALUE(told), ..] => told.param_value,
@@ -143,15 +143,15 @@ fn parameters_are_set_within_limits_and_told_either_way() {
     assert_eq!(out.actions, [Action::Set(Parameter::Speed, 0.5)]);
     for bad in [2.1, -0.1, NAN] {
         let out = bench.give(param_set("SPEED_MPS", bad));
-        assert_eq!(told(out), 0.5, "what it was");
+        assert_eq!(told(out), 0.5, "unchanged");
         assert!(out.actions.is_empty());
-        assert_eq!(bench.texts(), ["SPEED_MPS: 0 to 2"]);
+        assert_eq!(bench.texts(), ["SPEED_MPS: give 0 to 2"]);
     }
     assert!(bench.give(param_set("NO_SUCH", 1.0)).actions.is_empty());
-    assert_eq!(bench.texts(), ["no such parameter"]);
+    assert_eq!(bench.texts(), ["unknown parameter"]);
     let count = bench.vehicle.parameters.count();
     let list = MavMessage::PARAM_REQUEST_LIST(PARAM_REQUEST_LIST_DATA { target_system: 7, target_component: 1 });
-    assert!(bench.give(list).messages.is_empty(), "they come one by one");
+    assert!(bench.give(list).messages.is_empty(), "the listing is sent one by one");
     while bench.vehicle.is_listing() {
         bench.vehicle.list_one(&mut bench.out);
     }
@@ -167,11 +167,11 @@ fn parameters_are_set_within_limits_and_told_either_way() {
     assert_eq!(told(bench.give(read(-1))), 0.5);
     assert!(matches!(bench.give(read(0)).messages[..], [MavMessage::PARAM_VALUE(_)]));
     bench.give(read(count as i16));
-    assert!(bench.texts().is_empty(), "it was said just now");
+    assert!(bench.texts().is_empty(), "texts of one kind are rate-limited");
     bench.vehicle.now_us += 10_000_000;
     bench.give(read(count as i16));
-    assert_eq!(bench.texts(), ["no such parameter"]);
-    // The timeout of setpoints is the vehicle's own matter.
+    assert_eq!(bench.texts(), ["unknown parameter"]);
+    // The setpoint timeout is a parameter of the vehicle, not of the controller.
     let mut bench = guided(model());
     assert!(bench.give(param_set("SETPOINT_S", 0.5)).actions.is_empty());
     let Some(Wish::Velocity { valid, .. }) = set(&mut bench, local(0xDC7, 1)) else {

@@ -1,12 +1,12 @@
-//! Missions, and orders of the dialect.
+//! Missions, and the dialect's orders to a formation.
 
 use super::*;
 use crate::bridge::mission::MAV_MISSION_INVALID_PARAM2;
 
 #[test]
-fn missions_are_gone_through_item_by_item() {
+fn a_mission_runs_item_by_item() {
     let mut bench = Bench::new(model());
-    assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_DENIED, "there is none");
+    assert_eq!(bench.command(MAV_CMD_MISSION_START, NONE), MAV_RESULT_DENIED, "there is no mission");
     let mut wait = item(1, 10.0, 0.0);
     wait.param1 = 0.3;
     let items = [item(0, 0.0, 0.0), wait, item(2, 10.0, 10.0)];
@@ -19,7 +19,7 @@ fn missions_are_gone_through_item_by_item() {
             _ => None,
         })
     };
-    // There, and for three tenths of a second.
+    // At the goal, then 0.3 s of waiting.
     for expected in [None, None, None, Some(1)] {
         let out = bench.tick(|sample| sample.position_m = [10.0, 0.02, 0.0]);
         assert_eq!(reached(out), expected);
@@ -30,7 +30,7 @@ fn missions_are_gone_through_item_by_item() {
     assert_eq!(reached(out), Some(2));
     assert_eq!((bench.wish(), bench.vehicle.is_on_mission), (Some(Wish::Hold), false));
     assert_eq!(bench.texts(), ["mission done: holding"]);
-    // Whoever takes over ends it.
+    // A change of mode ends the mission.
     assert_eq!(bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(1.0)), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 10.0)), MAV_RESULT_ACCEPTED);
     assert!(bench.vehicle.is_on_mission);
@@ -47,9 +47,9 @@ fn reached(out: &Out) -> Vec<u16> {
     messages.collect()
 }
 
-/// As MAVSDK makes them: each place with a speed, and what is for a camera, behind it.
+/// A mission as MAVSDK writes it: every waypoint is followed by a speed and camera items.
 #[test]
-fn speeds_waits_and_cameras_are_items_that_are_done_on_the_way() {
+fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     let mut bench = Bench::new(model());
     let order = |seq, command, param1, param2| MISSION_ITEM_INT_DATA {
         command,
@@ -73,11 +73,11 @@ fn speeds_waits_and_cameras_are_items_that_are_done_on_the_way() {
     assert_eq!(reached(&bench.out), [1]);
     assert!(bench.out.actions.contains(&Action::Set(Parameter::Speed, 0.5)));
     assert!((place_mm(bench.wish())[0] - 10_000).abs() < 10);
-    // The body goes 2 m/s.
+    // The body is limited to 2 m/s.
     let out = bench.tick(|sample| sample.position_m = [10.0, 0.0, 0.0]);
     assert_eq!(reached(out), [2, 3]);
     assert!(out.actions.contains(&Action::Set(Parameter::Speed, 2.0)));
-    assert_eq!(bench.texts(), ["mission wants 10 m/s, has 2"]);
+    assert_eq!(bench.texts(), ["mission speed 10 m/s limited to 2"]);
     assert_eq!(bench.wish(), Some(Wish::Hold));
     assert!(reached(bench.tick(|_| {})).is_empty());
     assert!(reached(bench.tick(|_| {})).is_empty());
@@ -107,17 +107,17 @@ fn a_landing_at_the_end_of_a_mission_is_reached_on_the_ground() {
 }
 
 #[test]
-fn mission_items_that_cannot_be_are_refused() {
+fn invalid_mission_items_are_refused() {
     for (change, fault, text) in [
         (
             (|item| item.command = 82) as fn(&mut MISSION_ITEM_INT_DATA),
             MAV_MISSION_UNSUPPORTED,
-            "mission item 2: no command 82 here",
+            "mission item 2: unsupported command 82",
         ),
-        (|item| item.command = MAV_CMD_NAV_LAND, MAV_MISSION_UNSUPPORTED, "mission item 2: no command 21 here"),
-        (|item| item.frame = 8, MAV_MISSION_UNSUPPORTED_FRAME, "mission item 2: frame 8 is unknown"),
-        (|item| item.x = i32::MAX, MAV_MISSION_INVALID_PARAM5_X, "mission item 2: no room at its place"),
-        (|item| item.param1 = -1.0, MAV_MISSION_INVALID_PARAM1, "mission item 2: param1, the wait, is wrong"),
+        (|item| item.command = MAV_CMD_NAV_LAND, MAV_MISSION_UNSUPPORTED, "mission item 2: unsupported command 21"),
+        (|item| item.frame = 8, MAV_MISSION_UNSUPPORTED_FRAME, "mission item 2: unsupported frame 8"),
+        (|item| item.x = i32::MAX, MAV_MISSION_INVALID_PARAM5_X, "mission item 2: obstacle or off the map"),
+        (|item| item.param1 = -1.0, MAV_MISSION_INVALID_PARAM1, "mission item 2: param1 (wait) invalid"),
     ] {
         let mut bench = Bench::new(model());
         let mut bad = item(2, 1.0, 1.0);
@@ -131,7 +131,7 @@ fn mission_items_that_cannot_be_are_refused() {
 }
 
 #[test]
-fn an_old_client_goes_there_by_an_item_of_no_mission() {
+fn an_item_outside_an_upload_moves_the_vehicle() {
     let mut bench = guided(model());
     let there = MISSION_ITEM_DATA {
         x: 50.0001,
@@ -166,7 +166,7 @@ fn orders_of_the_dialect_reach_the_controller() {
     };
     assert_eq!((header.boot, header.sender.0, header.sequence), (1, 255, 4));
     assert_eq!((told.to.0, told.version, told.target), (0, 9, Cell::new(3, -2)));
-    // A count that no message has is none of theirs.
+    // A template whose part does not match its count is invalid.
     let template = STAYA_TEMPLATE_DATA { target_system: 7, count: 3, parts: 1, ..STAYA_TEMPLATE_DATA::DEFAULT };
     assert!(bench.give(MavMessage::STAYA_TEMPLATE(template.clone())).actions.is_empty());
     let template = STAYA_TEMPLATE_DATA { count: 1, entry_x: [5, 0], entry_id: [6, 0], ..template };
@@ -178,7 +178,7 @@ fn orders_of_the_dialect_reach_the_controller() {
 }
 
 #[test]
-fn orders_of_a_formation_are_confirmed_once_when_all_of_them_is_there() {
+fn a_complete_formation_order_is_confirmed_once() {
     let mut bench = Bench::new(VehicleModel { in_formation: true, ..on_grid() });
     let part = |part, version| {
         let data = STAYA_TEMPLATE_DATA { part, version, parts: 2, slot: 4, count: 1, ..STAYA_TEMPLATE_DATA::DEFAULT };
@@ -191,14 +191,13 @@ fn orders_of_a_formation_are_confirmed_once_when_all_of_them_is_there() {
     for (message, texts) in [
         (part(1, 1), None),
         (part(1, 1), None),
-        (part(0, 1), Some("place 5 of a new formation")),
+        (part(0, 1), Some("new formation: place 5")),
         (part(0, 1), None),
         (part(0, 2), None),
-        (part(1, 2), Some("place 5 of a new formation")),
-        (goal(1), Some("goal: cell 3, 4")),
+        (part(1, 2), Some("new formation: place 5")),
+        (goal(1), Some("goal: cell (3, 4)")),
         (goal(1), None),
-        (goal(2), Some("goal: cell 3, 4")),
-        // A part that no template has.
+        (goal(2), Some("goal: cell (3, 4)")),
         (part(200, 3), None),
     ] {
         bench.give(message);

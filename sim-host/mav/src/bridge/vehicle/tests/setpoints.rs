@@ -1,12 +1,12 @@
-//! Setpoints and gotos.
+//! Setpoints and DO_REPOSITION.
 
 use super::*;
 
 #[test]
-fn setpoints_of_each_frame_and_mask_become_wishes() {
+fn setpoints_of_each_frame_and_mask_become_goals() {
     let mut bench = guided(model());
     let valid = Duration::from_millis(3000);
-    // East is y, north is x; it stays on the ground, and at (3, 5).
+    // The vehicle is at (3, 5) on the ground.
     assert_eq!(place_mm(set(&mut bench, local(0xDF8, 1))), [20_000, 10_000, 0]);
     assert_eq!(place_mm(set(&mut bench, local(0xDF8, 7))), [23_000, 15_000, 0]);
     let velocity = |x, y| Some(Wish::Velocity { velocity_mps: Vec3::new(x, y, 0.0), valid });
@@ -18,7 +18,7 @@ fn setpoints_of_each_frame_and_mask_become_wishes() {
         panic!("{both:?}");
     };
     assert_eq!((waypoint.velocity_mps, until), (Vec3::new(0.5, 1.0, 0.0), valid));
-    // It goes east: forward is east, right is south.
+    // The vehicle heads east, so right is south.
     bench.tick(|sample| sample.velocity_mps = [1.0, 0.0, 0.0]);
     for frame in [8, 9] {
         let Some(Wish::Velocity { velocity_mps: v, .. }) = set(&mut bench, local(0xDC7, frame)) else {
@@ -34,7 +34,7 @@ fn setpoints_in_space_have_heights() {
     let mut bench = guided(flying());
     assert_eq!(place_mm(set(&mut bench, local(0xDF8, 1))), [20_000, 10_000, 3000]);
     bench.tick(|sample| sample.position_m[2] = 7.0);
-    assert_eq!(place_mm(set(&mut bench, local(0xDFC, 1)))[2], 7000, "z is not meant");
+    assert_eq!(place_mm(set(&mut bench, local(0xDFC, 1)))[2], 7000, "the mask excludes z");
     let Some(Wish::Velocity { velocity_mps, .. }) = set(&mut bench, local(0xDC7, 1)) else {
         panic!("a velocity");
     };
@@ -56,16 +56,15 @@ fn setpoints_in_space_have_heights() {
 }
 
 #[test]
-fn setpoints_that_make_no_sense_are_not_followed_and_said_so() {
+fn invalid_setpoints_are_refused_with_a_text() {
     let mut bench = guided(model());
     let mut refused = |change: &dyn Fn(&mut SET_POSITION_TARGET_LOCAL_NED_DATA)| {
         let mut target = local(0xDF8, 1);
         change(&mut target);
-        // Long after the last text.
         bench.vehicle.now_us += 10_000_000;
         assert_eq!(set(&mut bench, target), None);
         assert_eq!(bench.texts().len(), 1);
-        // At once again: nobody says it twice.
+        // A repeated refusal is silent.
         let mut target = local(0xDF8, 1);
         change(&mut target);
         assert_eq!(set(&mut bench, target), None);
@@ -77,18 +76,18 @@ fn setpoints_that_make_no_sense_are_not_followed_and_said_so() {
     refused(&|t| t.x = NAN);
     refused(&|t| t.y = f32::INFINITY);
     refused(&|t| t.x = 1e12);
-    // What is not meant may be no number.
+    // Fields excluded by the mask may be NaN.
     let mut target = local(0xDF8, 1);
     (target.vx, target.afx, target.yaw) = (NAN, NAN, NAN);
     assert!(set(&mut bench, target).is_some());
     bench.vehicle.now_us += 10_000_000;
     assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 4.0)), MAV_RESULT_ACCEPTED);
-    assert_eq!(set(&mut bench, local(0xDF8, 1)), None, "nobody follows in HOLD");
-    assert_eq!(bench.texts(), ["setpoint: not armed and GUIDED"]);
+    assert_eq!(set(&mut bench, local(0xDF8, 1)), None, "HOLD ignores setpoints");
+    assert_eq!(bench.texts(), ["setpoint: arm and select GUIDED first"]);
 }
 
 #[test]
-fn reposition_goes_there_or_says_why_not() {
+fn reposition_moves_the_vehicle_or_answers_why_not() {
     let mut bench = Bench::new(model());
     let not_now = MAV_RESULT_TEMPORARILY_REJECTED;
     assert_eq!(bench.command_int(reposition(8.0, 2.0, 0.0)), not_now, "in AUTO");
@@ -107,11 +106,11 @@ fn reposition_goes_there_or_says_why_not() {
     let frame = MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME;
     assert_eq!(bad(&|c| c.frame = MAV_FRAME_BODY_NED), frame);
     assert_eq!(bad(&|c| c.x = i32::MAX), MAV_RESULT_DENIED);
-    // The other side of the Earth.
+    // On the other side of the Earth.
     assert_eq!(bad(&|c| c.y = -1_700_000_000), MAV_RESULT_DENIED);
     assert_eq!(bad(&|c| c.param2 = 0.5), MAV_RESULT_DENIED);
     assert_eq!(bad(&|c| c.param1 = 99.0), MAV_RESULT_DENIED, "too fast");
-    // As floats, a place is off by a metre.
+    // 32-bit floats are off by a metre.
     let floats = bench.command(MAV_CMD_DO_REPOSITION, [-1.0, 1.0, 0.0, 0.0, 50.0, 8.0, 0.0]);
     assert_eq!(floats, MAV_RESULT_COMMAND_INT_ONLY);
     assert_eq!(bench.command(MAV_CMD_COMPONENT_ARM_DISARM, NONE), MAV_RESULT_ACCEPTED);
@@ -119,23 +118,22 @@ fn reposition_goes_there_or_says_why_not() {
 }
 
 #[test]
-fn nobody_is_sent_into_a_wall() {
+fn goals_inside_a_wall_are_denied() {
     let ball = Solid::Ball { center_m: [8.0, 2.0, 0.0], radius_m: 1.0 };
     let mut bench = Bench::new(VehicleModel { solids: vec![ball], ..model() });
     assert_eq!(bench.command_int(reposition(8.5, 2.0, 1.0)), MAV_RESULT_DENIED);
-    // Its edge would be in it.
+    // The edge of the body would be in the wall.
     assert_eq!(bench.command_int(reposition(9.2, 2.0, 1.0)), MAV_RESULT_DENIED);
     assert_eq!(bench.command_int(reposition(9.3, 2.0, 1.0)), MAV_RESULT_ACCEPTED);
 }
 
 #[test]
-fn on_the_grid_places_are_cells_and_velocities_none() {
+fn on_a_grid_positions_become_cells_and_velocities_are_refused() {
     let mut bench = guided(on_grid());
     assert_eq!(set(&mut bench, local(0xDC7, 1)), None);
     let mut target = local(0xDF8, 1);
     (target.x, target.y) = (17.0, 5.0);
     assert_eq!(set(&mut bench, target.clone()), Some(Wish::Cell(Cell::new(2, 8))));
-    // The wall, and off the map.
     for (x, y) in [(9.0, 9.0), (21.0, 1.0), (-0.1, 1.0)] {
         (target.x, target.y) = (x, y);
         assert_eq!(set(&mut bench, target.clone()), None, "{x} {y}");

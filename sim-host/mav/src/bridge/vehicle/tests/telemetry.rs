@@ -1,8 +1,7 @@
-//! What a vehicle says, and when.
+//! Telemetry and its rates.
 
 use super::*;
 
-/// Messages that came within a second.
 fn second(bench: &mut Bench, from_us: u64) -> Vec<MavMessage> {
     bench.out = Out::default();
     for step in 1..500 {
@@ -18,7 +17,7 @@ fn count<D: MessageData>(messages: &[MavMessage]) -> usize {
 }
 
 #[test]
-fn rates_are_those_that_were_asked_for() {
+fn streams_have_the_requested_rates() {
     let mut bench = Bench::new(model());
     let messages = second(&mut bench, 0);
     assert_eq!(count::<HEARTBEAT_DATA>(&messages), 1);
@@ -36,7 +35,7 @@ fn rates_are_those_that_were_asked_for() {
     assert_eq!(bench.command(MAV_CMD_GET_MESSAGE_INTERVAL, first(attitude)), MAV_RESULT_ACCEPTED);
     let told = MESSAGE_INTERVAL_DATA { interval_us: 200_000, message_id: 30 };
     assert_eq!(bench.out.messages[1], MavMessage::MESSAGE_INTERVAL(told));
-    // Too often, no number, no such message; and a heartbeat is a heartbeat.
+    // Too fast, negative, NaN, an unknown message, and the heartbeat.
     for (bad, result) in [
         (two(position, 10.0), MAV_RESULT_DENIED),
         (two(position, -2.0), MAV_RESULT_DENIED),
@@ -60,7 +59,7 @@ fn rates_are_those_that_were_asked_for() {
 }
 
 #[test]
-fn all_that_streams_can_be_requested() {
+fn every_streamed_message_can_be_requested_once() {
     let mut bench = Bench::new(model());
     let request = MAV_CMD_REQUEST_MESSAGE;
     for id in [0, 1, 2, 24, 30, 32, 33, 42, 49, 74, 147, 148, 242, 245_u32] {
@@ -91,13 +90,12 @@ fn positions_are_north_east_down_and_on_the_earth() {
     let expected = origin().to_global([100.0, 200.0, 30.0]).expect("near").to_e7();
     assert_eq!([global.lat, global.lon, global.alt], expected);
     assert_eq!((global.relative_alt, global.vx, global.vy, global.vz), (30_000, -400, 300, -100));
-    // atan2(3, -4): between south and east.
     assert_eq!(global.hdg, 14_313);
     assert_eq!(bench.vehicle.uptime_us(), 100_000);
 }
 
 #[test]
-fn heartbeats_say_how_it_is() {
+fn heartbeats_report_mode_and_arming() {
     let mut bench = Bench::new(model());
     let heartbeat = |bench: &Bench| match bench.vehicle.telemetry(0) {
         Some(MavMessage::HEARTBEAT(heartbeat)) => heartbeat,
@@ -114,7 +112,7 @@ fn heartbeats_say_how_it_is() {
 }
 
 #[test]
-fn pings_times_and_files_are_answered_at_once() {
+fn ping_timesync_and_file_requests_are_answered_at_once() {
     let mut bench = Bench::new(model());
     let ping = PING_DATA { time_usec: 77, seq: 3, ..PING_DATA::DEFAULT };
     let answer = PING_DATA { target_system: GCS.system, target_component: GCS.component, ..ping.clone() };
@@ -137,7 +135,7 @@ fn pings_times_and_files_are_answered_at_once() {
 }
 
 #[test]
-fn who_is_down_is_silent_and_forgets_its_mode() {
+fn a_robot_that_is_down_is_silent_and_loses_its_mode() {
     let mut bench = guided(model());
     assert_eq!(load(&mut bench, &[item(0, 0.0, 0.0), item(1, 1.0, 1.0)]), 0);
     bench.tick(|sample| sample.is_up = false);
@@ -147,24 +145,24 @@ fn who_is_down_is_silent_and_forgets_its_mode() {
     bench.sample.is_up = true;
     let (parameters, sample) = (bench.vehicle.parameters.clone(), bench.sample);
     bench.vehicle.restart(parameters, sample, &mut bench.out);
-    assert_eq!(bench.texts(), ["started anew"]);
+    assert_eq!(bench.texts(), ["restarted"]);
     assert_eq!((bench.vehicle.mode, bench.vehicle.mission.len()), (FlightMode::Auto, 2));
     assert_eq!(bench.vehicle.uptime_us(), 0);
 }
 
 #[test]
-fn what_happens_is_said_and_a_setpoint_that_ran_out_too() {
+fn events_and_setpoint_timeouts_are_reported_as_texts() {
     let mut bench = guided(model());
     bench.tick(|sample| {
         sample.wish = Wish::Velocity { velocity_mps: Vec3::ZERO, valid: Duration::ZERO };
     });
     bench.tick(|sample| sample.wish = Wish::Hold);
-    assert_eq!(bench.texts(), ["no setpoint any more: holding"]);
+    assert_eq!(bench.texts(), ["setpoint timed out: holding"]);
     let arrived = Event::ModeChanged { from: Mode::Cruise, to: Mode::Arrived };
     let lost = [2, 3].map(|id| Event::NeighborLost(staya_controller::robot::RobotId(id)));
     let (sample, mut out) = (bench.sample, Out::default());
     let events = [arrived, lost[0], lost[1]];
     bench.vehicle.observe(sample, &events, 9_000_000, &mut out);
     bench.out = out;
-    assert_eq!(bench.texts(), ["arrived", "robot 2 is not heard any more"]);
+    assert_eq!(bench.texts(), ["arrived", "robot 2 is lost"]);
 }

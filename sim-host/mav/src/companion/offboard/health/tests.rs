@@ -39,24 +39,24 @@ fn sensors(present: u32, enabled: u32, health: u32) -> MavMessage {
 }
 
 #[test]
-fn who_says_nothing_of_it_is_believed() {
+fn an_autopilot_without_status_messages_is_trusted() {
     assert!(Health::default().is_trusted(Duration::ZERO));
     assert_eq!(Health::default().hear(&MavMessage::HEARTBEAT(Default::default()), s(1.0)), None);
 }
 
 #[test]
-fn a_fix_that_is_lost_is_a_doubt_and_one_that_never_was_is_none() {
+fn only_a_vehicle_that_had_a_fix_can_lose_it() {
     let mut health = Health::default();
-    assert_eq!(health.hear(&gps(1), s(1.0)), None, "it goes by something else");
+    assert_eq!(health.hear(&gps(1), s(1.0)), None, "never had a fix");
     assert!(health.is_trusted(s(1.0)));
     assert_eq!(health.hear(&gps(3), s(2.0)), None);
     assert_eq!(health.hear(&gps(2), s(3.0)), Some(Doubt::Gps));
-    assert_eq!(health.hear(&gps(2), s(4.0)), None, "told once");
+    assert_eq!(health.hear(&gps(2), s(4.0)), None, "reported once");
     assert!(!health.is_trusted(s(100.0)));
 }
 
 #[test]
-fn one_receiver_of_two_is_enough_while_it_speaks() {
+fn one_of_two_receivers_is_enough_until_it_times_out() {
     let mut health = Health::default();
     for (seconds, message, doubt) in [
         (1.0, gps(3), None),
@@ -64,7 +64,7 @@ fn one_receiver_of_two_is_enough_while_it_speaks() {
         (1.5, gps(1), None),
         (3.0, second_gps(3), None),
         (4.9, gps(1), None),
-        // The second one has fallen silent.
+        // The second receiver has timed out.
         (5.1, gps(1), Some(Doubt::Gps)),
         (5.2, second_gps(3), None),
         (11.0, second_gps(3), None),
@@ -73,7 +73,7 @@ fn one_receiver_of_two_is_enough_while_it_speaks() {
     ] {
         assert_eq!(health.hear(&message, s(seconds)), doubt, "{seconds} {message:?}");
     }
-    // Who has only a second one goes by that.
+    // A vehicle with only a second receiver.
     let mut second = Health::default();
     assert_eq!(second.hear(&gps(0), s(0.5)), None);
     assert_eq!(second.hear(&second_gps(6), s(1.0)), None);
@@ -82,14 +82,14 @@ fn one_receiver_of_two_is_enough_while_it_speaks() {
 }
 
 #[test]
-fn it_is_believed_again_when_all_has_been_well_for_a_while() {
+fn trust_returns_after_a_time_without_problems() {
     let mut health = Health::default();
     let _ = health.hear(&gps(6), s(0.0));
     let _ = health.hear(&gps(0), s(1.0));
     let _ = health.hear(&ekf(0, 0.0), s(2.0));
     let _ = health.hear(&gps(6), s(3.0));
-    assert!(!health.is_trusted(s(20.0)), "the estimator still fails");
-    // The last time that anything was wrong was at 3 s.
+    assert!(!health.is_trusted(s(20.0)), "the estimator is still bad");
+    // The last problem was at 3 s.
     let _ = health.hear(&ekf(SOUND, 0.0), s(4.0));
     assert!(!health.is_trusted(s(7.9)));
     assert!(health.is_trusted(s(8.0)));
@@ -100,14 +100,14 @@ fn it_is_believed_again_when_all_has_been_well_for_a_while() {
 }
 
 #[test]
-fn estimators_are_believed_with_place_and_velocity_and_small_innovations() {
+fn an_estimator_needs_position_velocity_and_small_innovations() {
     for (message, doubt) in [
         (ekf(SOUND, 0.79), None),
         (ekf(SOUND, 0.8), Some(Doubt::Estimator)),
         (ekf(SOUND & !ESTIMATOR_POS_HORIZ_ABS, 0.0), Some(Doubt::Estimator)),
         (ekf(SOUND | EKF_UNINITIALIZED, 0.0), Some(Doubt::Estimator)),
         (ekf(SOUND | EKF_GPS_GLITCHING, 0.0), Some(Doubt::Estimator)),
-        // As recorded: well, dead reckoning after its end, and standing.
+        // As recorded: good, after dead reckoning ended, and stationary.
         (ekf(0x33F, 0.0), None),
         (ekf(0x27, 0.0), Some(Doubt::Estimator)),
         (ekf(0xA7, 0.0), Some(Doubt::Estimator)),
@@ -122,7 +122,7 @@ fn estimators_are_believed_with_place_and_velocity_and_small_innovations() {
 }
 
 #[test]
-fn sensors_count_that_are_there_and_on() {
+fn only_present_and_enabled_sensors_count() {
     const BOTH: u32 = MAV_SYS_STATUS_SENSOR_GPS | MAV_SYS_STATUS_AHRS;
     for (message, doubt) in [
         (sensors(u32::MAX, u32::MAX, BOTH), None),
@@ -136,7 +136,7 @@ fn sensors_count_that_are_there_and_on() {
 }
 
 #[test]
-fn words_of_doubts_fit_a_status_text() {
+fn texts_of_problems_fit_into_a_status_text() {
     for doubt in [Doubt::Gps, Doubt::Estimator, Doubt::Sensors] {
         assert!("staya: ".len() + doubt.words().len() <= 50);
     }

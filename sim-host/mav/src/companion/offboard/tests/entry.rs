@@ -1,10 +1,10 @@
-//! How it comes to steer.
+//! Entry into external control.
 
 use super::super::poll::ATTEMPTS;
 use super::*;
 
 #[test]
-fn asks_once_and_then_steers() {
+fn one_request_leads_to_control() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     let sent = bench.run(1.0);
     assert_eq!(bench.state(), State::Entering);
@@ -16,7 +16,7 @@ fn asks_once_and_then_steers() {
 }
 
 #[test]
-fn asks_for_nothing_before_it_knows_where_it_is() {
+fn no_request_before_the_first_position() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     bench.fixes = false;
     let sent = bench.run(42.0);
@@ -28,7 +28,7 @@ fn asks_for_nothing_before_it_knows_where_it_is() {
 }
 
 #[test]
-fn asks_in_vain_so_often_and_no_more() {
+fn requests_end_after_the_last_retry() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     let sent = bench.run(200.0);
     assert_eq!(commands(&sent, out::DO_SET_MODE), usize::from(ATTEMPTS));
@@ -37,7 +37,7 @@ fn asks_in_vain_so_often_and_no_more() {
 }
 
 #[test]
-fn a_pilot_who_acts_ends_the_asking() {
+fn any_action_of_the_pilot_ends_the_requests() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     bench.run(1.0);
     // HOLD.
@@ -51,7 +51,7 @@ fn a_pilot_who_acts_ends_the_asking() {
 }
 
 #[test]
-fn disarming_ends_it_and_nobody_arms_again() {
+fn disarming_ends_the_entry_and_is_not_reversed() {
     let mut bench = Bench::new(Kind::ArduRover, Rules { arm: true, ..ONCE }, MANUAL, DISARMED);
     assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
     bench.mode = GUIDED;
@@ -66,7 +66,7 @@ fn disarming_ends_it_and_nobody_arms_again() {
 }
 
 #[test]
-fn a_refusal_is_told_once() {
+fn a_refusal_is_reported_once() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     bench.run(1.0);
     bench.events();
@@ -80,12 +80,12 @@ fn a_refusal_is_told_once() {
     }
     let told = bench.events();
     assert_eq!(told.len(), 1);
-    assert_eq!(told[0].to_string(), "the mode (command 176): failed");
+    assert_eq!(told[0].to_string(), "mode change (command 176): failed");
 }
 
 #[test]
-fn copter_is_armed_taken_off_and_then_steered_at_its_height() {
-    // GUIDED of a copter.
+fn a_copter_is_armed_takes_off_and_is_controlled_at_its_height() {
+    // Copter's GUIDED.
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 0, DISARMED);
     assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
     bench.mode = 4;
@@ -100,13 +100,13 @@ fn copter_is_armed_taken_off_and_then_steered_at_its_height() {
     bench.above_home_m = 9.0;
     let sent = bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
-    assert_eq!(setpoints(&sent).last().unwrap().vz, -0.5, "it climbs the last metre");
+    assert_eq!(setpoints(&sent).last().unwrap().vz, -0.5, "climbs the last metre");
     bench.above_home_m = 30.0;
     assert_eq!(setpoints(&bench.run(0.5)).last().unwrap().vz, 1.0);
 }
 
 #[test]
-fn in_space_heights_are_the_agents_once_it_has_taken_off() {
+fn in_space_the_agent_commands_the_height_after_takeoff() {
     for (kind, mode) in [(Kind::ArduCopter, 4), (Kind::Px4Copter, OFFBOARD)] {
         let mut bench = Bench::new(kind, Rules { keeps_altitude: false, ..FLY }, mode, ARMED);
         bench.down_mps = 0.7;
@@ -121,7 +121,7 @@ fn in_space_heights_are_the_agents_once_it_has_taken_off() {
 }
 
 #[test]
-fn what_flies_is_not_steered_on_the_ground() {
+fn a_flying_vehicle_is_not_controlled_on_the_ground() {
     let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
     let sent = bench.run(2.0);
     assert_eq!(bench.state(), State::Grounded);
@@ -129,7 +129,7 @@ fn what_flies_is_not_steered_on_the_ground() {
     bench.above_home_m = 1.0;
     bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
-    // What the autopilot itself says counts for more than a height.
+    // The landed state takes precedence over the height.
     bench.offboard.hear(&landed(1), bench.now);
     bench.run(0.5);
     assert_eq!(bench.state(), State::Grounded);
@@ -144,7 +144,7 @@ fn landed(landed_state: u8) -> MavMessage {
 }
 
 #[test]
-fn taking_off_and_landing_are_the_pilots() {
+fn no_setpoints_during_the_pilots_takeoff_and_landing() {
     let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
     bench.above_home_m = 5.0;
     for (landed_state, state) in
@@ -158,7 +158,7 @@ fn taking_off_and_landing_are_the_pilots() {
 }
 
 #[test]
-fn steering_begins_when_the_climb_is_over_and_goes_on_when_it_climbs_itself() {
+fn control_begins_after_the_climb_and_continues_during_later_climbs() {
     for landed_state in [0, 2] {
         let mut bench = Bench::new(Kind::ArduCopter, RULES, 4, ARMED);
         bench.offboard.hear(&landed(landed_state), bench.now);
@@ -175,13 +175,13 @@ fn steering_begins_when_the_climb_is_over_and_goes_on_when_it_climbs_itself() {
 }
 
 #[test]
-fn a_takeoff_that_has_begun_is_not_asked_for_again() {
+fn a_started_takeoff_is_not_requested_again() {
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 4, ARMED);
     bench.offboard.hear(&landed(1), bench.now);
-    assert_eq!(commands(&bench.run(3.0), out::NAV_TAKEOFF), 2, "nothing has come of it yet");
+    assert_eq!(commands(&bench.run(3.0), out::NAV_TAKEOFF), 2, "the takeoff has not started");
     bench.offboard.hear(&landed(3), bench.now);
     assert_eq!(commands(&bench.run(10.0), out::NAV_TAKEOFF), 0);
-    // A height says it where the autopilot does not.
+    // The height replaces a missing landed state.
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 4, ARMED);
     bench.run(1.0);
     bench.above_home_m = 1.0;
@@ -189,7 +189,7 @@ fn a_takeoff_that_has_begun_is_not_asked_for_again() {
 }
 
 #[test]
-fn px4_gets_setpoints_before_the_mode_is_asked_for() {
+fn px4_gets_setpoints_before_the_mode_request() {
     let mut bench = Bench::new(Kind::Px4Rover, ONCE, POSITION_CONTROL, ARMED);
     let sent = bench.run(0.9);
     assert!(setpoints(&sent).len() >= 17 && setpoints(&sent).iter().all(stands));
@@ -199,7 +199,7 @@ fn px4_gets_setpoints_before_the_mode_is_asked_for() {
         MavMessage::COMMAND_LONG(data) if data.command == out::DO_SET_MODE => Some(data),
         _ => None,
     });
-    let request = request.expect("the mode is asked for");
+    let request = request.expect("a mode request");
     assert_eq!((request.param1, request.param2), (1.0, 6.0));
     bench.mode = OFFBOARD;
     bench.run(1.0);
@@ -207,7 +207,7 @@ fn px4_gets_setpoints_before_the_mode_is_asked_for() {
 }
 
 #[test]
-fn px4_can_be_put_into_offboard_by_its_pilot_but_is_left_alone_after_a_hand_over() {
+fn px4_gets_setpoints_for_its_pilots_offboard_but_none_after_a_hand_over() {
     let mut bench = Bench::new(Kind::Px4Copter, RULES, POSITION_CONTROL, ARMED);
     bench.above_home_m = 5.0;
     let offered = setpoints(&bench.run(2.0));
@@ -223,9 +223,9 @@ fn px4_can_be_put_into_offboard_by_its_pilot_but_is_left_alone_after_a_hand_over
     assert!(!offered.is_empty() && offered.iter().all(stands));
 }
 
-/// Nothing that it asks for is ever granted, and positions come once a second.
+/// No request is granted, and positions arrive at 1 Hz.
 #[test]
-fn a_dry_run_shows_what_it_would_ask_for_and_then_velocities() {
+fn a_dry_run_shows_its_requests_and_then_velocities() {
     let rules = Rules { rehearses: true, stale: Duration::from_secs(3), ..FLY };
     let mut bench = Bench::new(Kind::ArduCopter, rules, 0, DISARMED);
     bench.fixes = false;
@@ -238,7 +238,7 @@ fn a_dry_run_shows_what_it_would_ask_for_and_then_velocities() {
         assert_eq!(commands(&sent, command), times, "{command}");
     }
     let states = bench.events().iter().filter(|event| matches!(event, Event::State { .. })).count();
-    assert_eq!(states, 1, "it does not go to and fro");
+    assert_eq!(states, 1, "the state does not oscillate");
     assert!(setpoints(&sent).len() > 190 && setpoints(&sent).iter().any(|setpoint| setpoint.vx == 1.0));
 }
 

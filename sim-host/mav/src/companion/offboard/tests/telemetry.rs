@@ -1,22 +1,22 @@
-//! What the autopilot says, and in which order.
+//! Telemetry in and out of order.
 
 use super::*;
 
 #[test]
-fn telemetry_is_asked_for_again_after_a_restart_and_while_it_comes_too_slowly() {
+fn telemetry_is_requested_again_after_a_restart_or_at_a_low_rate() {
     let mut bench = Bench::rover(RULES);
     bench.reports = true;
-    assert_eq!(commands(&bench.run(10.0), 511), 6, "once: it comes as it should");
+    assert_eq!(commands(&bench.run(10.0), 511), 6, "one request each, since the rate is right");
     bench.boot_ms = 0;
     assert_eq!(commands(&bench.run(2.0), 511), 6);
     bench.fixes = false;
     assert!(commands(&bench.run(9.0), 511) >= 4);
     let mut copter = Bench::new(Kind::ArduCopter, RULES, 0, ARMED);
-    assert_eq!(commands(&copter.run(2.0), 511), 7, "and whether it flies");
+    assert_eq!(commands(&copter.run(2.0), 511), 7, "with the landed state");
 }
 
 #[test]
-fn an_autopilot_that_says_nothing_of_its_estimator_is_asked_a_few_times_and_believed() {
+fn an_autopilot_without_estimator_status_is_asked_a_few_times_and_trusted() {
     let mut bench = Bench::rover(RULES);
     assert_eq!(commands(&bench.run(60.0), 511), 2 + 3 * 4);
     assert_eq!(bench.state(), State::Steering);
@@ -24,7 +24,7 @@ fn an_autopilot_that_says_nothing_of_its_estimator_is_asked_a_few_times_and_beli
 }
 
 #[test]
-fn a_doubt_stops_it_with_the_very_message_and_for_a_while_after_its_end() {
+fn a_problem_stops_the_vehicle_at_once_and_for_a_time_after_its_end() {
     let mut bench = Bench::rover(RULES);
     bench.reports = true;
     bench.run(2.0);
@@ -46,21 +46,21 @@ fn a_doubt_stops_it_with_the_very_message_and_for_a_while_after_its_end() {
 }
 
 #[test]
-fn a_position_that_is_not_believed_is_none_to_begin_with() {
+fn an_untrusted_first_position_does_not_start_the_entry() {
     let mut bench = Bench::new(Kind::ArduRover, Rules { arm: true, ..ONCE }, MANUAL, DISARMED);
     bench.ekf_flags = 0xA7;
     bench.reports = true;
     bench.ekf();
     let sent = bench.run(10.0);
     assert_eq!(bench.state(), State::Pilot);
-    assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "it asks only for what it could use");
+    assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "no request without a trusted position");
     (bench.mode, bench.base) = (GUIDED, ARMED);
     let sent = bench.run(3.0);
     assert_eq!((bench.state(), setpoints(&sent).len()), (State::NoPosition, 0));
 }
 
 #[test]
-fn overtaken_messages_are_left_out_and_clocks_may_wrap() {
+fn reordered_messages_are_dropped_and_clocks_may_wrap() {
     let mut bench = Bench::rover(RULES);
     bench.boot_ms = u32::MAX - 500;
     bench.run(2.0);
@@ -70,7 +70,7 @@ fn overtaken_messages_are_left_out_and_clocks_may_wrap() {
     bench.fix();
     assert_eq!(bench.offboard.tally().positions, before, "an old position");
     bench.boot_ms += 1000;
-    // 2000 ms back is overtaken, 2001 a restart.
+    // A step back of 2000 ms is reordering, of 2001 ms a restart.
     bench.fix();
     bench.boot_ms = bench.boot_ms.wrapping_sub(2000);
     bench.fix();
@@ -78,7 +78,7 @@ fn overtaken_messages_are_left_out_and_clocks_may_wrap() {
     bench.boot_ms = bench.boot_ms.wrapping_sub(1);
     bench.fix();
     assert_eq!(bench.offboard.tally().restarts, 1);
-    // An autopilot that had run for 30 days begins anew: seen as a jump ahead.
+    // A restart after 30 days appears as a jump ahead.
     bench.boot_ms = 30 * 86_400_000;
     bench.fix();
     let restarts = bench.offboard.tally().restarts;
@@ -88,7 +88,7 @@ fn overtaken_messages_are_left_out_and_clocks_may_wrap() {
 }
 
 #[test]
-fn zero_zero_is_no_position() {
+fn latitude_and_longitude_zero_are_not_a_position() {
     let mut bench = Bench::rover(RULES);
     bench.fixes = false;
     let nowhere = MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA::DEFAULT);
@@ -99,7 +99,7 @@ fn zero_zero_is_no_position() {
 }
 
 #[test]
-fn velocity_is_the_finer_one_while_it_is_fresh() {
+fn the_finer_velocity_is_used_while_it_is_fresh() {
     let mut bench = Bench::rover(RULES);
     let local = |vx| {
         MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
@@ -119,7 +119,7 @@ fn velocity_is_the_finer_one_while_it_is_fresh() {
 }
 
 #[test]
-fn a_restart_within_two_seconds_of_the_boot_is_none_that_was_overtaken() {
+fn a_restart_within_two_seconds_of_boot_is_not_taken_for_reordering() {
     let mut bench = Bench::rover(RULES);
     bench.boot_ms = 0;
     bench.run(1.9);
@@ -127,7 +127,7 @@ fn a_restart_within_two_seconds_of_the_boot_is_none_that_was_overtaken() {
     bench.boot_ms = 0;
     bench.run(1.0);
     assert_eq!((bench.state(), bench.offboard.tally().restarts), (State::Restarted, 1));
-    // Old ones among new ones are no restart, however many.
+    // Late messages between current ones are not a restart, in any number.
     let mut bench = Bench::rover(RULES);
     bench.run(1.0);
     for _ in 0..20 {
@@ -137,7 +137,7 @@ fn a_restart_within_two_seconds_of_the_boot_is_none_that_was_overtaken() {
         bench.boot_ms = now + 10;
         bench.fix();
     }
-    // Nor are some that come one behind the other, the latest first.
+    // Nor are late messages in falling order.
     for behind in 1..20 {
         bench.boot_ms -= behind;
         bench.fix();

@@ -1,9 +1,10 @@
-//! Recorded flights of six rovers, heard by the whole loop: what the companions tell each other of a vehicle in trouble.
+//! Recorded flights of six rovers through the whole loop: what the others learn of a vehicle in
+//! trouble.
 
 use super::*;
 use crate::companion::replay::Recording;
 
-/// A machine whose time is that of a recording.
+/// An environment with the time and frames of a recording.
 struct Replay {
     now: Duration,
     frames: VecDeque<(Duration, Vec<u8>)>,
@@ -26,7 +27,7 @@ impl Machine for Replay {
         }
         self.now = self.now.max(*at);
         let (_, frame) = self.frames.pop_front()?;
-        // Vehicle n of the file is at line n - 1.
+        // Vehicle n of the recording is on link n - 1.
         let line = usize::from(RawFrame::new(&frame)?.sender().system) - 1;
         Some(Received { line, peer: Peer::Wire, frame })
     }
@@ -64,7 +65,8 @@ impl Machine for Replay {
     }
 }
 
-/// Robot 1's knowledge of robot 3 over time: seconds, and the radius in metres, or `None` while it is unknown.
+/// What robot 1 knows of robot 3 over time: seconds, and the radius in metres, `None` while
+/// unknown.
 fn known_of_the_third(name: &str, until: f64) -> Vec<(f64, Option<f32>)> {
     let recording = Recording::load(name);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/six-rovers-crossing.toml");
@@ -82,24 +84,24 @@ fn known_of_the_third(name: &str, until: f64) -> Vec<(f64, Option<f32>)> {
 }
 
 #[test]
-fn others_are_told_that_a_vehicle_without_gps_may_be_elsewhere() {
+fn beacons_of_a_vehicle_without_gps_enlarge_its_radius() {
     let known = known_of_the_third("rovers-gps-lost", 55.0);
     let at = |seconds: f64| {
-        let found = known.iter().find(|(at, _)| *at >= seconds).expect("so long");
-        f64::from(found.1.expect("it is heard throughout"))
+        let found = known.iter().find(|(at, _)| *at >= seconds).expect("the recording is long enough");
+        f64::from(found.1.expect("always known"))
     };
-    assert_eq!(at(6.9), 1.0, "its body");
-    // From 7.03 s on, at 2 m/s, up to rules.error_m.
+    assert_eq!(at(6.9), 1.0, "the radius of the body");
+    // From 7.03 s the radius grows by 2 m/s up to rules.error_m.
     assert!((at(9.03) - 5.0).abs() < 0.5, "{}", at(9.03));
     assert!((at(14.0) - 11.0).abs() < 1e-3 && (at(45.0) - 11.0).abs() < 1e-3, "{}", at(14.0));
-    assert_eq!(at(47.0), 1.0, "all was well for 5 s");
+    assert_eq!(at(47.0), 1.0, "no problem for 5 s");
 }
 
 #[test]
-fn others_never_lose_a_vehicle_whose_autopilot_restarts() {
+fn a_vehicle_is_never_lost_while_its_autopilot_restarts() {
     let known = known_of_the_third("rovers-restart", 62.0);
     let heard: Vec<_> = known.iter().filter(|(at, _)| *at > 2.0).collect();
-    assert!(heard.iter().all(|(_, radius)| radius.is_some()), "lost it");
+    assert!(heard.iter().all(|(_, radius)| radius.is_some()), "robot 3 was lost");
     let widest = heard.iter().filter_map(|(_, radius)| *radius).fold(0.0, f32::max);
     assert!((widest - 11.0).abs() < 1e-3, "{widest}");
 }

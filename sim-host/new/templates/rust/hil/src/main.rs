@@ -1,4 +1,4 @@
-//! Robots of my-swarm, some of them on emulated parts or boards; the arguments are those of `staya hil`.
+//! Runs robots of my-swarm, some on emulated parts or boards, with the arguments of `staya hil`.
 
 use my_swarm::Law;
 
