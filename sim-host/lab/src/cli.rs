@@ -1,6 +1,8 @@
-//! The command line of `staya-lab`: `staya sweep`, and `staya experiment` for papers and benchmarks, run again.
+//! The command line of `staya-lab`: `staya sweep`, and `staya experiment`, which repeats papers and
+//! benchmarks.
 //!
-//! Where a plan's fields are not its options one by one, a module here makes the plan of them.
+//! If the options of an experiment are not simply the fields of its plan, a module here converts
+//! them.
 
 mod crossing;
 mod flock;
@@ -75,10 +77,10 @@ enum Experiment {
 }
 
 impl ExperimentArgs {
-    /// Runs the command.
+    /// Runs the experiment.
     ///
     /// # Errors
-    /// A parameter out of range, a file that cannot be read or written.
+    /// A parameter is out of range, or a file cannot be read or written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let stop = Stop::on_ctrl_c()?;
         let keeping = &self.keeping;
@@ -115,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arguments_of_all_experiments_agree_with_each_other() {
+    fn options_of_all_experiments_are_consistent() {
         ExperimentArgs::augment_args(clap::Command::new("experiment")).debug_assert();
     }
 }

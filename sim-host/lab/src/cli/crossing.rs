@@ -136,7 +136,7 @@ pub struct CrossingArgs {
 }
 
 impl CrossingArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> cases::Plan {
         cases::Plan {
             cases: if self.cases.is_empty() { cases::Case::ALL.to_vec() } else { self.cases.clone() },
@@ -156,7 +156,7 @@ impl CrossingArgs {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Numbers(Vec<u32>);
 
-/// Reads numbers and spans.
+/// Parses numbers and ranges.
 fn numbers(text: &str) -> Result<Numbers, String> {
     let wrong = || format!("\"{text}\": give numbers and spans of them, as in 4,6,8 or 2..64");
     let number = |word: &str| match word.trim().parse() {
@@ -182,7 +182,7 @@ fn numbers(text: &str) -> Result<Numbers, String> {
 }
 
 impl SwapArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> swap::Plan {
         swap::Plan {
             robots: self.robots.0.clone(),
@@ -202,7 +202,7 @@ impl SwapArgs {
 }
 
 impl DoorwayArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> doorway::Plan {
         doorway::Plan {
             widths_m: self.widths.clone(),
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_and_spans_are_read_in_any_order() {
+    fn numbers_and_ranges_are_parsed_in_any_order() {
         assert_eq!(numbers("8,2..4, 3"), Ok(Numbers(vec![2, 3, 4, 8])));
         for bad in ["", "0", "4..2", "..", "a", "1,", "-3", "2..1000000"] {
             assert!(numbers(bad).is_err(), "{bad}");

@@ -26,7 +26,7 @@ pub struct FlockArgs {
 }
 
 impl FlockArgs {
-    /// The flocks to drive at each other, if that is asked for.
+    /// Plan for flocks driven at each other, if requested.
     pub fn closing(&self) -> Option<Closing> {
         self.closing.then(|| Closing {
             speeds: self.speeds.clone(),

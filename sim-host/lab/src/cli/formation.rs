@@ -108,10 +108,10 @@ pub struct FormationArgs {
 }
 
 impl FormationArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     ///
     /// # Errors
-    /// A lag out of range.
+    /// A lag is out of range.
     pub fn plan(&self) -> Result<Plan> {
         let mut formation = FormationParams {
             eps: self.eps,
@@ -154,7 +154,7 @@ impl FormationArgs {
     }
 }
 
-/// A length on the command line in units of the grid.
+/// Converts a length in cells to units of the grid.
 fn units(option: &str, cells: Option<f64>) -> Result<Option<u16>> {
     let Some(cells) = cells else { return Ok(None) };
     let units = cells * f64::from(UNIT);

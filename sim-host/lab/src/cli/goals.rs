@@ -27,7 +27,7 @@ pub struct GoalsArgs {
 }
 
 impl GoalsArgs {
-    /// The search, if that is asked for.
+    /// Plan of the search for gains, if requested.
     pub fn tuning(&self) -> Option<Tuning> {
         let &Self { particles, moves, judged, .. } = self;
         self.tune.then(|| Tuning { plan: self.plan.clone(), particles, moves, judged })

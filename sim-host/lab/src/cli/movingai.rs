@@ -49,7 +49,6 @@ pub struct MovingAiArgs {
     pub out: PathBuf,
 }
 
-/// Reads a window radius.
 fn sight(word: &str) -> Result<Sight, String> {
     if word == "map" {
         return Ok(Sight::Map);
@@ -61,10 +60,10 @@ fn sight(word: &str) -> Result<Sight, String> {
 }
 
 impl MovingAiArgs {
-    /// What is to be done with groups, if that is asked for.
+    /// Plan for groups of robots, if requested.
     ///
     /// # Errors
-    /// As [`Self::plan`].
+    /// Those of [`Self::plan`].
     pub fn share(&self) -> Result<Option<GroupPlan>> {
         if !self.share {
             return Ok(None);
@@ -73,10 +72,10 @@ impl MovingAiArgs {
         Ok(Some(GroupPlan { robots: self.plan()?, groups, losses, runs: self.runs, seed: self.seed }))
     }
 
-    /// What is to be done.
+    /// Converts the options to a plan.
     ///
     /// # Errors
-    /// A file that cannot be read, a scenario of another map.
+    /// A file cannot be read, or the scenario belongs to another map.
     pub fn plan(&self) -> Result<Plan> {
         Ok(Plan {
             benchmark: Benchmark::load(&self.scen, self.map.as_deref())?,
@@ -84,7 +83,7 @@ impl MovingAiArgs {
                 sight: self.radius,
                 memory: self.visits,
                 learning: self.learned,
-                // The sight is the radius.
+                // The sight determines the radius.
                 params: self.route.params(1),
                 replan: self.route.replan,
             },
@@ -97,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn radius_is_a_number_or_the_map() {
+    fn radius_is_a_number_or_the_word_map() {
         assert_eq!(sight("5"), Ok(Sight::Radius(5)));
         assert_eq!(sight("255"), Ok(Sight::Radius(255)));
         assert_eq!(sight("map"), Ok(Sight::Map));

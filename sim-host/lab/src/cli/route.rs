@@ -35,7 +35,7 @@ enum CoefficientArg {
 }
 
 impl CoefficientArg {
-    /// The coefficient, and the values in sixteenths that show what it does.
+    /// The coefficient and its default values in a sweep, sixteenths.
     const fn with_values(self) -> (Coefficient, &'static [u16]) {
         match self {
             Self::A0 => (Coefficient::A0, &[0, 4, 8, 12, 16, 24, 32, 64]),
@@ -133,7 +133,7 @@ pub struct RouteArgs {
 }
 
 impl RouteArgs {
-    /// What is to be done with shared maps, if that is asked for.
+    /// Plan for shared maps, if requested.
     pub fn share(&self) -> Option<share::Plan> {
         let route =
             RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };
@@ -153,7 +153,7 @@ impl RouteArgs {
         })
     }
 
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> Plan {
         let params =
             RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_are_the_papers_experiment() {
+    fn defaults_match_the_experiment_of_the_paper() {
         assert_eq!(read(&[]).unwrap().plan(), Plan::default());
     }
 
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_are_left_and_an_early_end_is_told() {
+    fn pictures_are_written_and_an_early_end_is_reported() {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("a/b");
         let folder = out.to_str().unwrap();

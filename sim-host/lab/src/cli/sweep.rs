@@ -18,15 +18,15 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// The merged rows, in the folder of results.
+/// File name of the merged rows.
 const ROWS: &str = "rows.csv";
-/// Their means, medians and intervals.
+/// File name of means, medians and intervals.
 const AGGREGATES: &str = "aggregates.csv";
-/// What the columns of the merged rows are.
+/// File name of the description of the columns.
 const SCHEMA: &str = "rows.schema.json";
 /// Most points in the table on standard output.
 const SHOWN: usize = 40;
-/// Most figures in it.
+/// Most figures in that table.
 const FIGURES: usize = 4;
 
 /// Run a scenario thousands of times, with other values in its fields.
@@ -137,7 +137,7 @@ struct ParallelArgs {
 
 impl TargetArgs {
     fn load(&self) -> Result<(Plan, PathBuf)> {
-        // clap demands it.
+        // Clap guarantees a plan.
         let plan = Plan::load(self.plan.as_deref().unwrap_or(Path::new("")))?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&plan.name));
         Ok((plan, out))
@@ -148,7 +148,7 @@ impl SweepArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A plan that cannot be read or is wrong, rows that do not go together, files that cannot be written.
+    /// The plan cannot be read or is wrong, rows are inconsistent, or a file cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.command {
             Some(SweepCommand::Merge(args)) => args.run(global),
@@ -237,7 +237,7 @@ impl SweepArgs {
     }
 }
 
-/// Says what was unusual.
+/// Warns of damaged rows and impossible runs.
 fn tell(course: &Course) {
     if course.torn > 0 {
         eprintln!("{} bytes of a row that had been cut off are gone; its run was done again", course.torn);
@@ -292,7 +292,7 @@ impl PlotArgs {
 impl ScriptArgs {
     fn with(&self, make: impl FnOnce(&Plan, &Job<'_>) -> Result<String, SweepError>) -> Result<String> {
         let (plan, out) = self.target.load()?;
-        // Jobs begin in folders of their own.
+        // Jobs start in other folders.
         let absolute = |path: &Path| std::path::absolute(path);
         let program = match &self.program {
             Some(program) => program.clone(),
@@ -304,16 +304,16 @@ impl ScriptArgs {
     }
 }
 
-/// What came of a sweep, for programs and for readers.
+/// Result of a sweep, for programs and for readers.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     plan: &'a str,
     fingerprint: String,
-    /// Of the plan or the shard.
+    /// Runs of the plan or of the shard.
     runs: u64,
     done_before: u64,
     done_now: u64,
-    /// Rows that stood in two files, alike.
+    /// Rows found in two files, identically.
     doubles: u64,
     interrupted: bool,
     wall_seconds: Option<f64>,
@@ -409,7 +409,7 @@ impl<'a> Report<'a> {
         Ok(text)
     }
 
-    /// The first figures of each point: mean and half the width of its 95 % interval.
+    /// Table of the first figures of each point: mean, and half the width of its 95 % interval.
     fn points_table(&self, text: &mut String) -> std::fmt::Result {
         let plan = self.source;
         let measures = &plan.measures()[..plan.measures().len().min(FIGURES)];
@@ -433,7 +433,6 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Seconds as a person says them.
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{s:.1} s"),
@@ -442,7 +441,6 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Bytes as a person says them.
 fn size(bytes: u64) -> String {
     match bytes {
         b if b < 10_000 => format!("{b} bytes"),
