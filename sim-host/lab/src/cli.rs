@@ -56,23 +56,29 @@ enum Experiment {
     Route(Box<route::RouteArgs>),
     /// What a map is worth on land that changes, with some of it blank or wrong.
     Scouting(Box<scouting::Plan>),
-    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8, figure 6).
+    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8,
+    /// figure 6).
     Formation(Box<formation::FormationArgs>),
-    /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they come.
+    /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they
+    /// come.
     Swap(crossing::SwapArgs),
     /// Two crowds pass one gap in opposite directions.
     Doorway(crossing::DoorwayArgs),
-    /// Fourteen ways to get in each other's way: crossings, doors, corridors, sizes, intruders, dead ends, in space.
+    /// Fourteen ways to get in each other's way: crossings, doors, corridors, sizes, intruders,
+    /// dead ends, in space.
     Crossing(Box<crossing::CrossingArgs>),
     /// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
     Movingai(movingai::MovingAiArgs),
-    /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova, section 2.3).
+    /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova,
+    /// section 2.3).
     Boids(Box<boids::Plan>),
     /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
     Flock(Box<flock::FlockArgs>),
-    /// 225 robots travel to three goals: how much of a group they are, and gains tuned (Pavlovsky and Pavlovsky).
+    /// 225 robots travel to three goals: how much of a group they are, and gains tuned (Pavlovsky
+    /// and Pavlovsky).
     Goals(Box<goals::GoalsArgs>),
-    /// What a robot costs in time and memory, in swarms of a thousand to a million, on the grid and in the plane.
+    /// What a robot costs in time and memory, in swarms of a thousand to a million, on the grid and
+    /// in the plane.
     Scale(Box<scale::Plan>),
 }
 

@@ -42,7 +42,8 @@ const PIECE: usize = 256;
 /// would take a hundred.
 pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
-/// What to do: boids on a torus, five ways to find neighbours, equal flights, and what they cost (Starovoitova, section 2.3).
+/// What to do: boids on a torus, five ways to find neighbours, equal flights, and what they cost
+/// (Starovoitova, section 2.3).
 ///
 /// Lengths, turns and area are the paper's unless told otherwise.
 #[derive(Args, Clone, Debug, PartialEq)]

@@ -100,10 +100,11 @@ pub struct DoorwayArgs {
 
 /// Fourteen ways to get in each other's way: who arrives, how late, who overlaps.
 ///
-/// blocks, four_ways, tee, door, doors and corridor: groups among walls. parked_door: a crowd that goes through a door to
-/// places among others that stand behind it. parked: a goal behind a row of robots that stand.
-/// mixed: five sizes and three speeds. intruder: a vehicle that gives way to nobody. dead_end: a bag of walls, by routing.
-/// sphere: in space. blackout: the radio is dead while they meet. flock: an alpha flock between two balls.
+/// blocks, four_ways, tee, door, doors and corridor: groups among walls. parked_door: a crowd that
+/// goes through a door to places among others that stand behind it. parked: a goal behind a row of
+/// robots that stand. mixed: five sizes and three speeds. intruder: a vehicle that gives way to
+/// nobody. dead_end: a bag of walls, by routing. sphere: in space. blackout: the radio is dead
+/// while they meet. flock: an alpha flock between two balls.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct CrossingArgs {
@@ -119,7 +120,8 @@ pub struct CrossingArgs {
     /// How long the radio is dead in the case "blackout", seconds.
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     blackout: f64,
-    /// Everything so many times as large: bodies, ways, walls, speeds, noise and how far the radio reaches.
+    /// Everything so many times as large: bodies, ways, walls, speeds, noise and how far the radio
+    /// reaches.
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     size: f64,
     /// Move each start at random by up to this along both axes, metres.

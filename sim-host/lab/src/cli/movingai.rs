@@ -15,21 +15,22 @@ pub struct MovingAiArgs {
     /// The map, if it is not beside the scenario under the name that the scenario gives.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Radius of the robot's window in cells, or "map": the robot sees everything, and the lengths that it
-    /// finds are compared with the benchmark's optimal ones.
+    /// Radius of the robot's window in cells, or "map": the robot sees everything, and the lengths
+    /// that it finds are compared with the benchmark's optimal ones.
     #[arg(long, value_name = "CELLS|map", default_value = "5", value_parser = sight)]
     radius: Sight,
-    /// How many visited cells the robot remembers, which gets it out of dead ends larger than its window.
+    /// How many visited cells the robot remembers, which gets it out of dead ends larger than its
+    /// window.
     #[arg(long, value_name = "CELLS", default_value = "64", value_enum)]
     visits: Memory,
-    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to its goal; 0 leaves
-    /// it the walls to follow.
+    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to
+    /// its goal; 0 leaves it the walls to follow.
     #[arg(long, value_name = "CELLS", default_value = "256", value_enum)]
     learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
-    /// Send groups of robots, each with a query of its own, through the whole simulator, with maps shared over the radio and
-    /// without; results go to the folder's `share`.
+    /// Send groups of robots, each with a query of its own, through the whole simulator, with maps
+    /// shared over the radio and without; results go to the folder's `share`.
     #[arg(long, conflicts_with_all = ["visits", "learned", "replan", "exit"])]
     share: bool,
     /// Robots of a group.
@@ -41,7 +42,8 @@ pub struct MovingAiArgs {
     /// Groups of each size.
     #[arg(long, default_value_t = 50, requires = "share")]
     runs: u32,
-    /// Equal seeds give equal results; what robots make of maps was chosen on seed 1 of natural land.
+    /// Equal seeds give equal results; what robots make of maps was chosen on seed 1 of natural
+    /// land.
     #[arg(long, default_value_t = 3, requires = "share")]
     seed: u64,
     /// Folder for the rows.

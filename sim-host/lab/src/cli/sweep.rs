@@ -37,7 +37,8 @@ pub struct SweepArgs {
     command: Option<SweepCommand>,
     #[command(flatten)]
     target: TargetArgs,
-    /// Show how many runs there are, how long they will take and how much they will write; tries three of them.
+    /// Show how many runs there are, how long they will take and how much they will write; tries
+    /// three of them.
     #[arg(long)]
     dry_run: bool,
     /// Do one of N equal parts only, as in 3/8; `staya sweep merge` puts the parts together.
@@ -130,7 +131,8 @@ struct SlurmArgs {
 struct ParallelArgs {
     #[command(flatten)]
     script: ScriptArgs,
-    /// A host that ssh reaches, as GNU parallel has it (8/name: eight at once; `:` is this machine); may be repeated.
+    /// A host that ssh reaches, as GNU parallel has it (8/name: eight at once; `:` is this
+    /// machine); may be repeated.
     #[arg(long = "host", value_name = "HOST")]
     hosts: Vec<String>,
 }

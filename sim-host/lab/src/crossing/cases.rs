@@ -33,7 +33,8 @@ pub enum Case {
     Door,
     /// Two crowds at a wall with two such doors.
     Doors,
-    /// A crowd that goes through a door to places among and beyond robots that are parked behind it.
+    /// A crowd that goes through a door to places among and beyond robots that are parked behind
+    /// it.
     ParkedDoor,
     /// Two groups in a corridor in which two robots pass each other.
     Corridor,

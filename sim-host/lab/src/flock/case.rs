@@ -35,7 +35,8 @@ pub enum Case {
     Split,
     /// E: 150 robots through a gap, algorithm 3 (figure 11).
     Squeeze,
-    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of 30/7 d unless a plan says otherwise.
+    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of
+    /// 30/7 d unless a plan says otherwise.
     Gap,
     /// Not in the paper: as E, through 30 balls at random places, 8/7 d apart at least.
     Forest,

@@ -53,7 +53,8 @@ const HORIZON_S: f64 = 0.3;
 /// Width of a gap for one robot, spacings.
 const GAP: f64 = 8.0 / 7.0;
 
-/// What to do: the five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an agent that hears packets only.
+/// What to do: the five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an
+/// agent that hears packets only.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Which simulations [default: the paper's five].
@@ -112,14 +113,15 @@ pub struct Plan {
     /// Over which way behind a resting reference its velocity fades, spacings.
     #[arg(long, value_name = "SPACINGS", default_value_t = 10.0)]
     pub rest: f64,
-    /// Robots press on nobody who is nearer to the reference (algorithm 3 only; not in the paper): so they pass gaps one after the
-    /// other.
+    /// Robots press on nobody who is nearer to the reference (algorithm 3 only; not in the paper):
+    /// so they pass gaps one after the other.
     #[arg(long)]
     pub takes_turns: bool,
     /// How wide the gap of case "gap" is.
     #[arg(long = "gap", value_name = "SPACINGS", default_value_t = GAP)]
     pub gap: f64,
-    /// The paper's particles instead of agents: all know everything at once, in doubles, with no limit of speed.
+    /// The paper's particles instead of agents: all know everything at once, in doubles, with no
+    /// limit of speed.
     #[arg(long, conflicts_with_all = ["safety", "horizon_s", "loss"])]
     pub ideal: bool,
     /// Of the ideal ones, how many nearest ones each knows.

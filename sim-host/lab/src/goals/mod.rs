@@ -66,8 +66,8 @@ use watch::Watch;
 /// obstacles, and places of goals.
 const STARTS: u32 = 0x0047_0101;
 
-/// What to do: the goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order over K1 / K2 and
-/// R_nbh.
+/// What to do: the goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order
+/// over K1 / K2 and R_nbh.
 ///
 /// All lists are crossed with each other.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -103,8 +103,8 @@ pub struct Plan {
     /// The operator moves the first goal after a quarter of the time.
     #[arg(long = "move-goal")]
     pub moves_goal: bool,
-    /// Sides of the square in which robots start at random, in R_MinDist and per root of their number. At 2 they are
-    /// one group from the start.
+    /// Sides of the square in which robots start at random, in R_MinDist and per root of their
+    /// number. At 2 they are one group from the start.
     #[arg(long = "start-side", value_name = "SIDE,...", value_delimiter = ',', default_value = "4")]
     pub start_sides: Vec<f64>,
     /// Numbers of round obstacles at random between the start and the goals.
@@ -155,7 +155,8 @@ pub struct Plan {
     /// Length of a tick.
     #[arg(long = "step", value_name = "SECONDS", default_value_t = 0.1)]
     pub step_s: f64,
-    /// Equal seeds give equal results. What is chosen here (start, gains, measures) was chosen on seed 1.
+    /// Equal seeds give equal results. What is chosen here (start, gains, measures) was chosen on
+    /// seed 1.
     #[arg(long, default_value_t = 11)]
     pub seed: u64,
     /// Folder for rows and pictures.

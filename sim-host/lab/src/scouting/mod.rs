@@ -74,7 +74,8 @@ pub struct Plan {
     /// When the robot searches its way anew.
     #[arg(long, default_value = "each-cell", value_parser = options::replan())]
     pub replan: Replan,
-    /// Equal seeds give equal results. The route's parameters were chosen on seed 1; nothing was on this one.
+    /// Equal seeds give equal results. The route's parameters were chosen on seed 1; nothing was on
+    /// this one.
     #[arg(long, default_value_t = 2)]
     pub seed: u64,
     /// Folder for rows.

@@ -58,8 +58,8 @@ pub enum Starts {
     /// Anywhere, to anywhere half the land away or farther.
     #[default]
     Anywhere,
-    /// In a block in one corner, to the same block in the opposite corner, all at once: they see the same land at the same
-    /// time.
+    /// In a block in one corner, to the same block in the opposite corner, all at once: they see
+    /// the same land at the same time.
     Together,
     /// The same, but each sets out some time after the one before it.
     InTurn,
