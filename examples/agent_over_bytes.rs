@@ -53,7 +53,6 @@ fn main() {
                 robot.state.position = robot.state.position.moved(velocity_mps * TICK_S).expect("near by");
             }
         }
-        // The channel may carry any bytes, in pieces of any length.
         for byte in said.iter_mut().flatten() {
             bytes += 1;
             if noise.below(1000) == 0 {

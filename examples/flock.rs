@@ -17,7 +17,6 @@ const SPACING_M: f64 = 0.5;
 const STEP_S: f64 = 0.02;
 const STEPS: u32 = 3750;
 const PICTURES_EVERY: u32 = 1250;
-/// Centres and radii of the discs, metres.
 const DISCS: [(Vec3<f64>, f64); 2] = [(Vec3::new(6.0, 1.7, 0.0), 0.6), (Vec3::new(6.0, -1.7, 0.0), 0.6)];
 
 struct Robot {
@@ -61,7 +60,6 @@ fn main() {
     assert!(off_by < 0.02, "somebody does not follow");
 }
 
-/// Acceleration of robot `own`, from the robots in range, the discs and the reference.
 fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robot) -> Vec3<f64> {
     let id = |index: usize| RobotId(index as u32 + 1);
     let robot = &robots[own];

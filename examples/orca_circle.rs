@@ -32,7 +32,6 @@ fn main() {
     while !places.iter().zip(0..).all(|(place, i)| has_arrived(place, i)) {
         let mut chosen = Vec::new();
         for (i, own) in places.iter().enumerate() {
-            // Visible robots, nearest first.
             let others = (0..places.len()).filter(|j| *j != i).map(|j| Nearby {
                 id: RobotId(j as u32 + 1),
                 offset_m: places[j] - *own,

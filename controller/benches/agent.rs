@@ -139,7 +139,6 @@ fn in_plane_inboxes() -> Vec<Vec<u8>> {
             ..Beacon::default()
         }
     };
-    // One step per sequence number, so that the benchmark can repeat them cyclically.
     (0..=u16::MAX)
         .map(|sequence| {
             let mut bytes = heapless::Vec::<u8, 512>::new();
@@ -177,7 +176,6 @@ fn agent_step_in_plane(c: &mut Criterion) {
             black_box(agent.step(black_box(&inputs(step)), now(step), &mut ()))
         });
     });
-    // The check does not apply if a filter skipped this benchmark.
     assert!(step == 0 || agent.neighbors().len() == 8);
 }
 

@@ -19,7 +19,6 @@ const CASES: usize = 64;
 
 type Others = [Nearby<f32>; NEIGHBORS];
 
-/// Neighbours up to `range` metres away along each axis; none of them overlap.
 fn others(rng: &mut Rng, range: f32) -> Others {
     let mut within = |range: f32| (rng.below(2001) as f32 / 1000.0 - 1.0) * range;
     let mut id = 1;

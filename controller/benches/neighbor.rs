@@ -15,7 +15,6 @@ const AGES: Ages = Ages { stale_after: Duration::from_millis(500), expire_after:
 
 type Table = NeighborTable<f32, { ROBOTS as usize }>;
 
-/// Robot `id` somewhere within `range_mm` of the origin on each axis, moving.
 fn neighbor(id: u32, range_mm: i32, rng: &mut Rng) -> Neighbor<f32> {
     let mut within = |range: i32| rng.below(range.cast_unsigned() * 2).cast_signed() - range;
     let beacon = Beacon {

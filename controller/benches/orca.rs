@@ -12,7 +12,6 @@ use staya_controller::scalar::{Q16, Scalar};
 const SCENES: usize = 256;
 const NEIGHBORS: usize = 10;
 
-/// Random number from -`most` to `most`.
 fn within<S: Scalar>(rng: &mut Rng, most: f64) -> S {
     let share = f64::from(rng.below(1 << 16)) / f64::from(1 << 15) - 1.0;
     S::from_f64(share * most).unwrap()

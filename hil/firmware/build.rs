@@ -79,7 +79,6 @@ fn offer_script(here: &Path, part: &str, scripts: &[&str], is_optimised: bool) {
     println!("cargo:rustc-link-search={}", out.display());
 }
 
-/// The programs: the files in src/bin.
 fn bins(here: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(here.join("src/bin")).into_iter().flatten();
     entries.filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string())).collect()

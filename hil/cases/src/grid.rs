@@ -20,11 +20,8 @@ use staya_controller::wire::{Postcard, Wire};
 /// Neighbours in the table of an agent in the plane; on the grid, the table has room for all
 /// robots.
 pub(crate) const KNOWN: usize = 8;
-/// Cells in an agent's memory of visits.
 const VISITS: usize = 32;
-/// Neighbours in an agent's template.
 const TEMPLATE: usize = ROBOTS;
-/// Robots of a case on the grid.
 pub(crate) const ROBOTS: usize = 4;
 
 pub(crate) type Route = RouteGuidance<CELLS, VISITS>;
@@ -41,7 +38,6 @@ pub(crate) struct Walker<S: Scalar, G: Guidance<S>, W = Postcard> {
     pub(crate) free_at_ms: u32,
 }
 
-/// Constants of a case.
 pub(crate) struct Scene {
     pub(crate) land: Land,
     pub(crate) faults: Faults,
@@ -76,7 +72,6 @@ where
     W: Wire,
     P: Probe<S>,
 {
-    // One more sender, the operator.
     let mut medium = Medium::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
     let mut workspace = workspace();
     let (mut hash, mut course) = (Hash::new(), Hash::new());
@@ -194,7 +189,6 @@ fn advance<S: Scalar, G: Guidance<S>, W>(
     }
 }
 
-/// Number of pairs of bodies in one cell.
 fn overlaps<S: Scalar, G: Guidance<S>, W>(walkers: &[Walker<S, G, W>]) -> u32 {
     let mut count = 0;
     for (index, one) in walkers.iter().enumerate() {

@@ -48,7 +48,6 @@ impl Hash {
         self.word(out.call_again.as_micros().into());
     }
 
-    /// Hashes the command of a step.
     pub(crate) fn command<S: Scalar>(&mut self, command: &Command<S>) {
         match command {
             Command::Hold => self.bytes(&[0]),

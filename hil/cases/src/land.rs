@@ -3,9 +3,7 @@
 use heapless::Vec;
 use staya_controller::grid::{BLOCKED, Cell, Window};
 
-/// Radius of a robot's window.
 const SIGHT: i16 = 5;
-/// Cells of that window.
 pub(crate) const WINDOW: usize = 121;
 
 /// A square map with one corner at (0, 0), surrounded by walls.
@@ -36,14 +34,12 @@ impl Land {
         high.unwrap_or(0).saturating_add(1).min(255) as u8
     }
 
-    /// Window of a robot in `cell`.
     pub(crate) fn window<'a>(&self, cell: Cell, cells: &'a mut Vec<u8, WINDOW>) -> Option<Window<'a>> {
         cells.clear();
         let origin = cell - Cell::new(SIGHT, SIGHT);
         let side = 2 * SIGHT + 1;
         for y in 0..side {
             for x in 0..side {
-                // The vector has one place per cell.
                 let _ = cells.push(self.at(origin + Cell::new(x, y)));
             }
         }

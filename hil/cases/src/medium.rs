@@ -8,16 +8,14 @@ use staya_controller::wire::Wire;
 /// Bytes that one robot can send in a tick: its beacon and some requests. Further frames are
 /// dropped.
 const SAID: usize = 144;
-/// Bytes that one robot can receive in a tick.
 pub(crate) const INBOX: usize = 576;
-/// Random number stream of this module.
+/// Random number stream for this module.
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");
 
 /// Faults of the medium: probabilities per frame as Q0.32.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Faults {
     pub(crate) seed: u64,
-    /// The frame is lost.
     pub(crate) loss: u32,
     /// One bit is flipped.
     pub(crate) flip: u32,
@@ -27,7 +25,6 @@ pub(crate) struct Faults {
 
 /// A medium shared by `R` senders that holds the frames of the last tick, in wire format `W`.
 pub(crate) struct Medium<W, const R: usize> {
-    /// Splits bytes into frames.
     wire: W,
     said: [Vec<u8, SAID>; R],
     next: [Vec<u8, SAID>; R],
@@ -106,7 +103,6 @@ fn next_packet<'a>(wire: &impl Wire, rest: &mut &'a [u8]) -> Option<(usize, &'a 
     Some((len, packet))
 }
 
-/// Appends a packet if it fits, and returns whether it did.
 fn push_packet<const N: usize>(bytes: &mut Vec<u8, N>, packet: &[u8]) -> bool {
     bytes.extend_from_slice(packet).is_ok()
 }

@@ -18,11 +18,8 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Postcard;
 
-/// Largest number of obstacles that a robot sees.
 const OBSTACLES: usize = 8;
-/// Time from one step to the next.
 pub(crate) const STEP: Duration = Duration::from_millis(100);
-/// Side of a terrain cell, millimetres.
 const CELL_MM: i32 = 1000;
 
 pub(crate) type PlaneAgent<S, G, A> = Agent<S, G, KNOWN, A>;
@@ -33,7 +30,6 @@ pub(crate) struct Mover<S: Scalar, G: Guidance<S>, A> {
     pub(crate) velocity_mps: Vec3<S>,
 }
 
-/// A stationary obstacle in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid {
     /// A wall between two points of the plane, millimetres.
@@ -44,7 +40,6 @@ pub(crate) enum Solid {
     Floor(i32),
 }
 
-/// Constants of a case.
 pub(crate) struct Scene<S> {
     pub(crate) solids: &'static [Solid],
     /// Cells with walls, for guidance laws that need a grid.
@@ -61,7 +56,6 @@ pub(crate) fn instant(tick: u32) -> Instant {
     Instant::from_micros(0) + STEP.saturating_mul(tick.cast_signed())
 }
 
-/// Runs `movers` until all have arrived.
 #[inline(never)]
 pub(crate) fn run<S, G, A, P, const R: usize>(
     scene: &Scene<S>,
@@ -155,7 +149,6 @@ where
     probe.step(&mut mover.agent, &inputs, instant(tick), workspace)
 }
 
-/// Converts a solid to an obstacle relative to a robot at `from`.
 fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
     match *solid {
         Solid::Wall(ends_mm) => {
@@ -171,7 +164,6 @@ fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
     }
 }
 
-/// Number of pairs of overlapping bodies.
 fn overlaps<S: Scalar, G: Guidance<S>, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
     let least = u64::from(scene.apart_mm.unsigned_abs());
     pairs(movers).filter(|squared| *squared < least * least).count() as u32
@@ -183,7 +175,6 @@ fn apart<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
     [pairs(movers).min(), pairs(movers).max()].map(millimetres)
 }
 
-/// Squared distance of each pair, square millimetres.
 fn pairs<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> impl Iterator<Item = u64> {
     movers.iter().enumerate().flat_map(move |(index, one)| {
         let others = movers.iter().skip(index.saturating_add(1));

@@ -36,16 +36,13 @@ use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, Postcard, encode};
 
-/// Steps of each case, each with other neighbours.
 const STEPS: u32 = 64;
-/// Visible obstacles in the plane and in space.
 const OBSTACLES: usize = 4;
 const PURPOSE: u32 = u32::from_be_bytes(*b"wrst");
 const RADIUS_MM: i32 = 150;
 /// The agent's id: in the middle, so that templates name robots on both sides of it.
 const OWN: RobotId = RobotId(5);
 
-/// Room for sixteen beacons.
 type Inbox = Vec<u8, { 16 * Beacon::MAX_FRAME_LEN }>;
 
 /// The behaviour of the agent.
@@ -167,12 +164,10 @@ pub fn worst_orca<S: Scalar, H: HalfSpaces<S> + Serialize, P: Probe<S>, const N:
     in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
 }
 
-/// Random number from -`most` to `most`.
 fn about(rng: &mut Rng, most: u32) -> i32 {
     rng.below(2 * most + 1).cast_signed() - most.cast_signed()
 }
 
-/// Fills the inbox with beacons of `N` other robots.
 fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32, &mut Rng) -> Beacon) {
     inbox.clear();
     let numbers = (1..).filter(|number| *number != OWN.0);
@@ -180,7 +175,6 @@ fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32,
         let mut rng = Rng::keyed(2, PURPOSE, number, step);
         // Sequence numbers skip many frames, so that a sender may have moved anywhere.
         let header = Header { boot: 0, sender: RobotId(number), sequence: step as u16 * 64 };
-        // The inbox is large enough.
         let _ = encode(header, &Message::Beacon(beacon(number, &mut rng)), inbox);
     }
 }
@@ -215,7 +209,6 @@ where
         while !obstacles.is_full() {
             let end = Vec2::new(metres(900), metres(900));
             let other = end + Vec2::new(metres(900), metres(900));
-            // The vector is large enough.
             let _ = obstacles.push(Obstacle::Wall([end, other]));
         }
         let inputs = Inputs {
@@ -249,7 +242,6 @@ const EDGES: [(u16, u16); 12] =
 const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
 const TOP: Cell = Cell::new(50, 50);
 const GOAL: Cell = Cell::new(98, 98);
-/// Index of the agent's place.
 const MIDDLE: usize = 4;
 
 fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLATE> {

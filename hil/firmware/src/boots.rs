@@ -9,7 +9,6 @@ const MAGIC: u32 = 0x5354_4159;
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct Kept {
-    /// Starts since power-up.
     boots: u32,
     /// Not 0 if a semihosting call raised a fault, because no debugger or emulator serves it.
     is_mute: u32,

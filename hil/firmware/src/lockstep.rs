@@ -66,7 +66,6 @@ fn about(start: &Start, firmware: &'static str) -> About {
     About { part: start.part, firmware, boot: start.boots, ticks_per_second: start.tick_hz }
 }
 
-/// Measures ticks and stack of a step.
 #[derive(Default)]
 struct Gauge {
     painted: Option<Painted>,
@@ -106,7 +105,6 @@ pub const fn note(firmware: &str) -> Note {
     note
 }
 
-/// Writes at most `room` bytes of text.
 const fn write(mut note: Note, at: usize, room: usize, text: &str) -> Note {
     let (text, mut count) = (text.as_bytes(), 0);
     while count < text.len() && count < room {

@@ -80,7 +80,6 @@ pub(crate) struct Body<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O:
 }
 
 impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G, A, W, N, O> {
-    /// Creates a body without an agent.
     pub(crate) const fn new(workspace: G::Workspace) -> Self {
         Self {
             agent: Slot::Empty,
@@ -137,7 +136,6 @@ where
         Err(Refusal::Task)
     }
 
-    /// Runs one step; see [`Controller::step`](crate::robot::Controller::step).
     pub(crate) fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
         let agent = self.agent.as_mut().ok_or(Refusal::NotConfigured)?;
         let window = match &inputs.window {

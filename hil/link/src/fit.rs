@@ -92,7 +92,6 @@ impl Capacities {
         Ok((step, cut))
     }
 
-    /// Packs the obstacles that are kept and returns their bytes.
     fn pack(&self, obstacles: &[Obstacle<f32>], packed: &mut [u8]) -> usize {
         let (free, _) = packed.as_chunks_mut::<OBSTACLE_BYTES>();
         let room = free.len().min(self.obstacles.into());

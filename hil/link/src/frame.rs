@@ -27,7 +27,6 @@ pub const VERSION: u8 = 9;
 /// Bytes of version, kind and CRC.
 pub const OVERHEAD: usize = 1 + 1 + CRC_LEN;
 const CRC_LEN: usize = 4;
-/// Data bytes of a full COBS block.
 const BLOCK: usize = 254;
 /// COBS code of a full block, which is not followed by a zero.
 const FULL: u8 = 0xFF;

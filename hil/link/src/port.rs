@@ -26,7 +26,6 @@ pub struct Limits {
 
 /// Shortest time before a step is resent: no host polls more often.
 const LEAST_RESEND_US: u64 = 1000;
-/// Most doublings of the resend time.
 const MOST_DOUBLINGS: u32 = 10;
 
 /// Round-trip times of steps: the retransmission timer of RFC 6298 (section 2), in microseconds.
@@ -445,7 +444,6 @@ impl Said {
     }
 }
 
-/// Bytes that end the frame, serialised without a length prefix.
 struct Rest<'a>(&'a [u8]);
 
 impl Serialize for Rest<'_> {

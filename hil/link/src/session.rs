@@ -296,7 +296,6 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         };
         match self.controller.configure(&setup, task.as_ref(), law) {
             Ok(digest) => {
-                // The buffer is large enough.
                 let _ = self.answer.fill(kind::CONFIGURED, &Configured { seq, digest });
                 self.last = Some(seq);
                 Reaction::Answer(self.answer.bytes())
@@ -366,7 +365,6 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
             part: text(about.part),
             firmware: text(about.firmware),
         };
-        // The buffer is large enough.
         let _ = self.note.fill(kind::HELLO, &hello);
     }
 
@@ -399,7 +397,6 @@ fn fill_fault(frame: &mut Frame<MAX_NOTE>, seq: u16, kind: FaultKind, text: impl
     let mut cut = Cut(String::new());
     let _ = write!(cut, "{text}");
     let text = cut.0;
-    // The buffer is large enough.
     let _ = frame.fill(kind::FAULT, &Fault { seq, kind, text });
 }
 

@@ -114,7 +114,6 @@ pub fn find_emulator(program: &str) -> Option<PathBuf> {
         .find(|program| program.is_file())
 }
 
-/// Reads to the end and stores the first bytes.
 fn listen(mut stderr: ChildStderr, complaints: &Mutex<String>) {
     let mut buffer = [0; 512];
     while let Ok(count @ 1..) = stderr.read(&mut buffer) {

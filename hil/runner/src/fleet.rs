@@ -219,7 +219,6 @@ fn open(config: &DeviceConfig, options: &Options) -> Result<Channel, Cause> {
     Ok(Channel::open(&device, &options.firmware, log.as_deref())?)
 }
 
-/// Reads until the stream or the fleet ends.
 fn read(
     mut reader: Box<dyn Read + Send>,
     index: usize,

@@ -116,7 +116,6 @@ mod tests {
         let mut line = Line::new(faults, 0, 7);
         let frame = [0, 1, 2, 3, 0];
         for _ in 0..frames {
-            // In two pieces, as a line may deliver it.
             line.push(&frame[..2], 10);
             line.push(&frame[2..], 10);
         }

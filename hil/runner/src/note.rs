@@ -114,7 +114,6 @@ fn section(elf: &[u8]) -> Option<&[u8]> {
 mod tests {
     use super::*;
 
-    /// Builds an ELF file with one section and the section of names.
     fn elf(name: &[u8], contents: &[u8]) -> Vec<u8> {
         let mut elf = vec![0u8; 52];
         elf[..6].copy_from_slice(b"\x7fELF\x01\x01");

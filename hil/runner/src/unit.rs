@@ -21,7 +21,6 @@ use std::time::Duration;
 /// Largest request, bytes: 1.5 times the frame length of the largest device.
 const REQUEST: usize = 16_384;
 
-/// Activity of a device.
 #[derive(Debug)]
 enum Phase {
     /// Identifying itself.
@@ -38,7 +37,6 @@ enum Phase {
     Failed,
 }
 
-/// The outstanding step and the shadow's result.
 #[derive(Debug)]
 struct Expected {
     tick: u32,
@@ -51,7 +49,6 @@ pub struct Unit {
     config: DeviceConfig,
     channel: Channel,
     port: Box<Port<REQUEST>>,
-    /// Required name of the firmware.
     program: Option<String>,
     shadows: Shadows,
     shadow: Option<Box<dyn Controller + Send>>,
@@ -110,7 +107,6 @@ impl Unit {
         self.channel.emulator.as_ref().map(|emulator| emulator.id())
     }
 
-    /// Sets the timeouts of a request of `bytes` bytes.
     fn set_limits(&mut self, bytes: usize, limit: Duration) {
         let bytes = u32::try_from(bytes + MAX_ANSWER).unwrap_or(u32::MAX);
         let line = self.channel.per_byte.saturating_mul(bytes);
@@ -208,7 +204,6 @@ impl Unit {
         Some(lines.into_iter().flatten().fold(due, u64::min))
     }
 
-    /// Processes received bytes.
     fn hear(&mut self, now_us: u64) {
         while let Some(due_us) = self.back.next_us() {
             let Some(bytes) = self.back.pop(now_us) else {

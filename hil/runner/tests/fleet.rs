@@ -61,7 +61,6 @@ fn decided(answer: Answer) -> StepResult {
     }
 }
 
-/// Digests of all robots after each tick.
 fn run(fleet: &mut Fleet, ticks: u32) -> Vec<Vec<u64>> {
     let digests = |t| {
         let answers = tick(fleet, t);

@@ -83,7 +83,6 @@ impl SerialPort {
     }
 }
 
-/// Lists the ports of a machine, as the end of a sentence.
 fn there_are(ports: &[String]) -> String {
     if ports.is_empty() {
         return String::from("; this machine shows no serial port");

@@ -12,7 +12,6 @@ use staya_sim::world::plane::{Abilities, Solid};
 /// Highest speed that a beacon can represent, metres per second.
 pub(super) const FASTEST_MPS: f64 = 32.0;
 
-/// Common settings of all robots of a run.
 #[derive(Clone, Debug)]
 pub(super) struct Arena {
     pub name: &'static str,
@@ -93,7 +92,6 @@ pub(super) fn starts(
     Some(starts)
 }
 
-/// Distance of two places, metres.
 pub(super) fn distance_m(a: [f64; 3], b: [f64; 3]) -> f64 {
     let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
     libm::sqrt(squares.sum())

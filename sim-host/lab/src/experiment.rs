@@ -185,7 +185,6 @@ pub trait Experiment: Sized + Sync {
     }
 }
 
-/// Output of `--json`.
 #[derive(Debug, Serialize)]
 struct Output<'a, R> {
     #[serde(flatten)]
@@ -196,18 +195,14 @@ struct Output<'a, R> {
     files: BTreeMap<&'static str, &'a [PathBuf]>,
 }
 
-/// Statistics of the command.
 #[derive(Debug)]
 struct Course {
     unit: &'static str,
     done: usize,
-    /// Runs made by earlier commands.
     found: u64,
     total: usize,
-    /// Wall time of the runs.
     wall_seconds: f64,
     files: Vec<PathBuf>,
-    /// Files of rows, their schema and aggregates.
     rows: Vec<PathBuf>,
 }
 

@@ -122,7 +122,6 @@ impl Planner {
         }
     }
 
-    /// Index of a cell of the map.
     fn index(&self, cell: Cell) -> usize {
         (cell.y as usize + 1) * self.stride + cell.x as usize + 1
     }

@@ -37,7 +37,6 @@ pub fn mavlink_decode(bytes: &[u8]) {
     judge(&frame);
 }
 
-/// Decodes one frame and checks an accepted message.
 fn judge(piece: &[u8]) {
     let Ok(frame) = decode(piece) else { return };
     assert!(frame.header.sender.is_somebody() && frame.tag.is_none());

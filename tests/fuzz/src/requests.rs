@@ -13,7 +13,6 @@ use std::collections::BTreeMap;
 
 /// Enough for every matter: two origins, with standing requests and direction requests of each.
 const LINES: usize = 4;
-/// Longest time of a packet in the air.
 const DELAY_MS: i32 = 500;
 /// Longer than all attempts of a request and the delay of the last one.
 const MEMORY: Duration = Duration::from_millis(5_000);
@@ -24,7 +23,6 @@ const GRAIN_MS: i32 = 10;
 /// A listener forgets a robot after this silence.
 const SILENCE_MS: i32 = 3_000;
 
-/// A frame in the air.
 struct Packet {
     to: usize,
     sent_ms: i32,
@@ -33,7 +31,6 @@ struct Packet {
     place: usize,
 }
 
-/// One request in the model.
 struct Asked {
     request: Request,
     sends: u32,
@@ -50,7 +47,6 @@ struct Line {
     until_ms: i32,
 }
 
-/// A robot and the model's knowledge about it.
 struct Robot {
     id: RobotId,
     boot: u8,
@@ -230,7 +226,6 @@ impl Robot {
     }
 }
 
-/// The robots, the air between them, and the time.
 struct World {
     robots: [Robot; 2],
     air: Vec<Packet>,
@@ -295,7 +290,6 @@ impl World {
         }
     }
 
-    /// Executes one random action.
     fn act(&mut self, choice: &mut Unstructured<'_>) -> Result<()> {
         match choice.int_in_range(0..=7_u8)? {
             0 | 1 => {
@@ -376,7 +370,6 @@ mod tests {
         World { robots: [Robot::new(1), Robot::new(2)], air: Vec::new(), start: Instant::default(), now_ms: 0 }
     }
 
-    /// The first robot asks the second.
     fn ask(world: &mut World, kind: RequestKind) {
         let now = world.now();
         world.robots[0].ask(RobotId(2), RobotId(1), kind, 1_000, now);

@@ -133,7 +133,6 @@ fn entry(choice: &mut Unstructured<'_>, least_hops: u8) -> Result<TemplateEntry>
     })
 }
 
-/// The part after encoding and decoding.
 fn carried(part: TemplateAssignment) -> TemplateAssignment {
     let mut out = Bounded::<u8, MAX_FRAME_LEN>::new();
     let message = Message::Template(part);

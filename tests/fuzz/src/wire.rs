@@ -33,7 +33,6 @@ pub fn wire_decode(bytes: &[u8]) {
     judge(&frame);
 }
 
-/// Decodes one frame and checks an accepted message.
 fn judge(piece: &[u8]) {
     let Ok(frame) = decode(piece) else {
         assert!(decode_verified(piece, |_, _| Ok(())).is_err());

@@ -11,10 +11,8 @@ use staya_sim::nearby::{Cells, Space};
 use std::time::{Duration, Instant};
 
 const BOIDS: u32 = 100_000;
-/// Steps from each start.
 const STEPS: u64 = 4;
 
-/// Time of `count` steps, `STEPS` from each start.
 fn run<T>(count: u64, start: impl Fn() -> T, mut step: impl FnMut(&mut T)) -> Duration {
     let mut sum = Duration::ZERO;
     let mut left = count;

@@ -14,7 +14,6 @@ use std::time::Duration;
 /// Above this number, all pairs take minutes.
 const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
-/// Number of neighbours of all boids.
 fn neighbours(flock: &Flock, radius: f32, search: &mut impl Search<f32, 2>) -> usize {
     search.rebuild(flock.places());
     let mut found = Vec::new();

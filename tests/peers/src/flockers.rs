@@ -71,7 +71,6 @@ impl Location2D<Real2D> for Boid {
     }
 }
 
-/// State shared by all boids.
 struct World {
     field: Field2D<Boid>,
     torus: Torus<f32>,
@@ -82,7 +81,6 @@ struct World {
 }
 
 impl World {
-    /// Creates a world whose field does not contain the flock yet.
     fn new(flock: &Flock) -> Self {
         let plan = plan();
         let [width, height] = flock.sides();

@@ -9,9 +9,7 @@ use staya_controller::rand::Rng;
 use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 use std::borrow::Cow;
 
-/// Range of sight, metres.
 const RANGE_M: f32 = 5.0;
-/// Side of the index's cells, metres.
 const CELL_M: f32 = 2.5;
 /// Area per robot, square metres: about 22 robots are in range, of which the nearest ten are used.
 const GROUND_M2: f32 = 3.6;

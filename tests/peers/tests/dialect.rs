@@ -21,7 +21,6 @@ fn rust_dialect_matches_its_xml() {
     assert!(there == fresh, "{} differs from its XML from line {:?} on", file.display(), line.map(|line| line + 1));
 }
 
-/// The formatted module of the dialect.
 fn generated(xml: &Path) -> String {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     generate(XmlDefinitions::Files(vec![xml]), folder).unwrap();

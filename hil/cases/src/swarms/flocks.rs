@@ -31,7 +31,6 @@ fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
 
 #[inline(never)]
 pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
-    // Next to the path of the reference.
     const BALL: [Solid; 1] = [Solid::Ball([6000, 900, 0], 500)];
     // Gains low enough to be stable at ten decisions per second with a latency of 0.1 s.
     let params = LatticeParams {

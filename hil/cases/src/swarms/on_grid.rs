@@ -16,13 +16,11 @@ use staya_controller::wire::{
     GoalAssignment, Header, Message, Postcard, Request, RequestKind, TemplateAssignment, Wire,
 };
 
-/// Rough terrain with two walls to go around.
 const LAND: Land = Land { size: 28, roughness_log2: 2, walls: &[(9, 7, 12), (18, 14, 19)] };
 const OPERATOR: RobotId = RobotId(200);
 /// Rows 1 2 and 3 4, with robot 1 in front.
 const PLACES: [Cell; ROBOTS] = [Cell::new(0, 0), Cell::new(-3, 0), Cell::new(0, -3), Cell::new(-3, -3)];
 const EDGES: [(u16, u16); 4] = [(0, 1), (0, 2), (1, 3), (2, 3)];
-/// Start and goal of robot 1.
 const START: Cell = Cell::new(5, 5);
 const GOAL: Cell = Cell::new(24, 21);
 
@@ -47,7 +45,6 @@ fn add_travellers<S: Scalar>(walkers: &mut Vec<Walker<S, Route>, ROBOTS>) {
         let guidance = Route::new(RouteParams::default());
         let mut agent = GridAgent::new(&config(index), guidance, Unguarded, Postcard);
         agent.assign_goal(goal);
-        // The vector has one place per robot.
         let _ = walkers.push(Walker { agent, cell, free_at_ms: 0 });
     }
 }

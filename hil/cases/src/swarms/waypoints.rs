@@ -21,7 +21,6 @@ use staya_controller::scalar::Scalar;
 use staya_controller::wire::Postcard;
 
 const RADIUS_MM: i32 = 150;
-/// Half-planes of a robot's safety layer.
 const PLANES: usize = 16;
 
 /// A pentagon with a radius of 1.5 m, slightly irregular to avoid symmetry.
@@ -50,7 +49,6 @@ pub(super) fn add_movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize
     safety: impl Fn() -> A,
 ) {
     for (index, start) in starts.iter().enumerate() {
-        // The vector has one place per robot.
         let _ = movers.push(Mover {
             agent: PlaneAgent::new(&config(index), guidance(index), safety(), Postcard),
             position: Position::from_mm(*start),
@@ -67,7 +65,6 @@ fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
     WaypointGuidance::new(S::HALF, S::from_milli(30))
 }
 
-/// Assigns each robot its place and runs until all have arrived.
 fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
     scene: &Scene<S>,
     starts: &[[i32; 3]; R],
@@ -99,7 +96,6 @@ pub(super) fn swap<S: Scalar, H: HalfSpaces<S> + Clone + Serialize, P: Probe<S>>
 
 #[inline(never)]
 pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
-    // A gap of 0.5 m between two rooms.
     const WALLS: [Solid; 2] = [Solid::Wall([[0, -9000], [0, -250]]), Solid::Wall([[0, 250], [0, 9000]])];
     let starts = [[-1500, 0, 0], [-2500, 300, 0], [1500, 100, 0], [2500, -300, 0]];
     let goals = [[2500, 300, 0], [1500, 0, 0], [-2500, -300, 0], [-1500, 100, 0]];

@@ -40,15 +40,12 @@ mod program {
     /// Samples for the median. If there are more steps, every second, fourth, ... step is sampled.
     const SAMPLES: usize = if cfg!(part = "nrf51") { 64 } else { 1024 };
 
-    /// Records ticks and stack of each step.
     struct Meter {
         samples: Vec<u32, SAMPLES>,
-        /// One of `stride` steps is sampled.
         stride: u32,
         steps: u32,
         most_ticks: u32,
         deepest: u32,
-        /// Overhead of a measurement, ticks.
         empty: u32,
     }
 
@@ -82,7 +79,6 @@ mod program {
                 self.stride *= 2;
             }
             if self.steps.is_multiple_of(self.stride) {
-                // The vector is large enough.
                 let _ = self.samples.push(ticks);
             }
             self.steps += 1;
@@ -168,13 +164,11 @@ mod program {
         runtime::exit(0)
     }
 
-    /// MAVLink with signatures.
     #[cfg(not(part = "nrf51"))]
     fn signed() -> Signed {
         Signed::new(Signing::new(Key::new(black_box([7; KEY_LEN])), 0, 0))
     }
 
-    /// Postcard with an authentication tag.
     #[cfg(not(part = "nrf51"))]
     fn sealed() -> Option<Sealed> {
         Sealed::at_start(&Key::new(black_box([7; KEY_LEN])), 0)

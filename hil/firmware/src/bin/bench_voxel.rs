@@ -37,10 +37,8 @@ mod program {
     const NEIGHBORS: usize = if cfg!(part = "nrf51") { 8 } else { 16 };
     const HALF_PLANES: usize = 2 * NEIGHBORS;
 
-    /// Records ticks.
     struct Meter {
         ticks: Vec<u32, { CALLS as usize }>,
-        /// Overhead of a measurement, ticks.
         empty: u32,
     }
 
@@ -55,7 +53,6 @@ mod program {
             let before = runtime::ticks();
             let out = work();
             let ticks = runtime::ticks().wrapping_sub(before).saturating_sub(self.empty);
-            // The vector is large enough.
             let _ = self.ticks.push(ticks);
             out
         }
@@ -74,7 +71,6 @@ mod program {
     }
 
     pub fn run() -> ! {
-        // Starts the clock for the measurements.
         let start = &runtime::start();
         #[cfg(not(part = "nrf51"))]
         all::<f32>(&Table { scalar: "f32", start });
@@ -84,7 +80,6 @@ mod program {
         runtime::exit(0)
     }
 
-    /// Common columns of the rows of one number format.
     struct Table<'a> {
         scalar: &'static str,
         start: &'a Start,
@@ -118,7 +113,6 @@ mod program {
         }
     }
 
-    /// Random number within `milli` thousandths around 0.
     fn about<S: Scalar>(rng: &mut Rng, milli: i32) -> S {
         S::from_milli(rng.below(2 * milli.unsigned_abs() + 1) as i32 - milli)
     }

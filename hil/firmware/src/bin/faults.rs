@@ -10,7 +10,6 @@ mod program {
     use core::hint::black_box;
     use staya_firmware::runtime;
 
-    /// An address without memory.
     const NOWHERE: usize = if cfg!(part = "nrf51") { 0x7000_0000 } else { 0xF000_0000 };
 
     pub fn run() -> ! {

@@ -46,7 +46,6 @@ mod program {
         }
     }
 
-    /// Processes arbitrary bytes from the line.
     fn link() {
         const CONTENT: usize = content_bytes(169, 32, SMALL_INBOX);
         let about = About { part: "nopanic", firmware: "nopanic", boot: 0, ticks_per_second: 1 };

@@ -64,7 +64,6 @@ mod program {
         }
     }
 
-    /// Decodes bytes from a line as messages of any kind.
     fn messages() {
         let mut rest = black_box(&[1; 300][..]);
         while let Some(frame) = staya_mavlink::frame::next_frame(&mut rest) {

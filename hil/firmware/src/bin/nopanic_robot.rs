@@ -199,7 +199,6 @@ mod program {
         }
     }
 
-    /// Loads models from bytes that the optimiser does not know.
     fn voxels<S: Scalar>() {
         let bytes: &[u8] = black_box(&[1; 100]);
         if let Ok(model) = Model::<S, 2>::from_bytes(bytes) {

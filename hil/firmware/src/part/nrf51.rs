@@ -70,7 +70,6 @@ pub fn ticks() -> u32 {
     TIMER0.cc(NOW).read()
 }
 
-/// Sets up 8 bits, no parity, one stop bit, no flow control.
 fn uart0() {
     // The line must idle high even before the UART drives the pin.
     GPIO.outset().write(|pins| pins.set_pin(TX_PIN, true));

@@ -26,7 +26,6 @@ const EIGHT_BITS: u8 = 3;
 /// Polls of the transmitter before a byte is dropped: seconds, because the host may read slowly.
 const SEND_PATIENCE: u32 = 5_000_000;
 
-/// A memory-mapped register at this address.
 #[derive(Clone, Copy)]
 struct Register<T>(usize, core::marker::PhantomData<T>);
 

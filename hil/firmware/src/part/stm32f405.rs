@@ -14,11 +14,9 @@ pub const NAME: &str = "stm32f405";
 /// Bytes between interrupt and main loop: 90 ms at 115200 baud.
 pub static RECEIVED: Ring<1024> = Ring::new();
 
-/// The internal oscillator, which runs after reset.
 const HSI_HZ: u32 = 16_000_000;
 const HSE_HZ: u32 = number(env!("STAYA_HSE_HZ"));
 const PLL_HZ: u32 = 168_000_000;
-/// Pins of port A.
 const TX_PIN: usize = 9;
 const RX_PIN: usize = 10;
 /// Reads of an oscillator's status bit before it counts as missing: tens of milliseconds at 16 MHz.
@@ -28,7 +26,6 @@ const PATIENCE: u32 = 50_000;
 const SEND_PATIENCE: u32 = 200_000;
 /// SysTick counts down from here, 24 bits.
 const SYSTICK_TOP: u32 = 0x00FF_FFFF;
-/// Wraps of SysTick.
 static WRAPS: AtomicU32 = AtomicU32::new(0);
 
 pub fn start() -> Clocks {

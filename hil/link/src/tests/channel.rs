@@ -20,7 +20,6 @@ use staya_controller::wire::Postcard;
 use staya_mavlink::any::AnyWire;
 use std::vec::Vec;
 
-/// Executes a step without a line.
 fn decide(controller: &mut impl Controller, step: &StepInputs<'_>) -> StepResult {
     controller.step(step).expect("fits");
     controller.result().expect("a robot")
@@ -150,7 +149,6 @@ fn reset_of_the_device_is_detected_and_it_rejoins() {
     }
 }
 
-/// Inputs of a stationary robot that receives nothing.
 fn nothing_new(tick: u32) -> StepInputs<'static> {
     StepInputs {
         tick,

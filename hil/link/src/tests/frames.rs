@@ -19,7 +19,6 @@ fn deframe<const N: usize>(bytes: &[u8]) -> Vec<Found> {
     found.collect()
 }
 
-/// Serialises to exactly these bytes.
 struct Raw<'a>(&'a [u8]);
 
 impl Serialize for Raw<'_> {

@@ -21,7 +21,6 @@ use staya_controller::template::TemplateEntry;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Postcard, RequestKind};
 
-/// Length of a frame's content, bytes.
 fn content(frame: &[u8]) -> usize {
     let mut deframer = crate::frame::Deframer::<16384>::new();
     let bodies = frame.iter().filter_map(|byte| {
@@ -31,7 +30,6 @@ fn content(frame: &[u8]) -> usize {
     bodies.last().expect("a frame") + crate::frame::OVERHEAD
 }
 
-/// The values with the longest encoding.
 const FAR: Cell = Cell::new(i16::MIN, i16::MIN);
 const LATE: Duration = Duration::from_micros(i32::MIN);
 const LAST: Instant = Instant::from_micros(u32::MAX);

@@ -18,7 +18,6 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::Instant;
 use std::vec::Vec;
 
-/// Moves east, a little faster at each decision.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct East {
     mmps: u16,

@@ -34,7 +34,6 @@ impl Method {
         }
     }
 
-    /// Creates the search in this space, for queries of this radius.
     pub(super) fn search(self, space: Space<f32, 2>, radius: f32) -> AnySearch {
         match self {
             Self::AllPairs => AnySearch::AllPairs(AllPairs::new(space)),

@@ -32,10 +32,8 @@ use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Random number stream of the starts.
 const STARTS: u32 = 0x0045_0301;
 
-/// Boids steered in one unit of parallel work.
 const PIECE: usize = 256;
 
 /// Default limit of boids for searches over all pairs: 10,000 take about a second per step, 100,000
@@ -386,7 +384,6 @@ impl Flock {
         self.advance();
     }
 
-    /// Computes the next heading of a boid.
     fn steer(&self, search: &impl Search<f32, 2>, boid: u32, scratch: &mut Scratch) -> Vec2<f32> {
         let query = self.query(boid);
         search.within(&query, &mut scratch.found);
@@ -436,7 +433,6 @@ impl Flock {
     /// Hash of the bits of all places and headings.
     #[must_use]
     pub fn hash(&self) -> u64 {
-        // FNV-1a.
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let headings = self.headings.iter().flat_map(|h| [h.x, h.y]);
         let places = self.places.iter().copied().flatten();

@@ -33,10 +33,8 @@ pub struct Row {
     pub timings: Vec<Timing>,
     /// Lattice cells on all threads, microseconds per boid and step.
     pub parallel_us_per_boid: f64,
-    /// Whether all searches gave equal trajectories.
     #[serde(skip)]
     pub(super) is_equal: bool,
-    /// Hash of the first search.
     #[serde(skip)]
     pub(super) hash: u64,
 }
@@ -83,7 +81,6 @@ impl Row {
         }
     }
 
-    /// Sets `is_equal` and `hash` from the timings.
     pub(super) fn settle(&mut self) {
         self.is_equal = self.timings.windows(2).all(|pair| pair[0].hash == pair[1].hash);
         let first = self.timings.first().and_then(|timing| u64::from_str_radix(&timing.hash, 16).ok());

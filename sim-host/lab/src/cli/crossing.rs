@@ -158,7 +158,6 @@ impl CrossingArgs {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Numbers(Vec<u32>);
 
-/// Parses numbers and ranges.
 fn numbers(text: &str) -> Result<Numbers, String> {
     let wrong = || format!("\"{text}\": give numbers and spans of them, as in 4,6,8 or 2..64");
     let number = |word: &str| match word.trim().parse() {

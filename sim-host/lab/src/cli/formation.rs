@@ -157,7 +157,6 @@ impl FormationArgs {
     }
 }
 
-/// Converts a length in cells to units of the grid.
 fn units(option: &str, cells: Option<f64>) -> Result<Option<u16>> {
     let Some(cells) = cells else { return Ok(None) };
     let units = cells * f64::from(UNIT);

@@ -18,11 +18,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// File name of the merged rows.
 const ROWS: &str = "rows.csv";
-/// File name of means, medians and intervals.
 const AGGREGATES: &str = "aggregates.csv";
-/// File name of the description of the columns.
 const SCHEMA: &str = "rows.schema.json";
 /// Most points in the table on standard output.
 const SHOWN: usize = 40;
@@ -239,7 +236,6 @@ impl SweepArgs {
     }
 }
 
-/// Warns of damaged rows and impossible runs.
 fn tell(course: &Course) {
     if course.torn > 0 {
         eprintln!("{} bytes of a row that had been cut off are gone; its run was done again", course.torn);
@@ -306,7 +302,6 @@ impl ScriptArgs {
     }
 }
 
-/// Result of a sweep, for programs and for readers.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     plan: &'a str,
@@ -327,7 +322,6 @@ struct Report<'a> {
     source: &'a Plan,
 }
 
-/// A point and its figures.
 #[derive(Debug, Serialize)]
 struct PointFigures {
     runs: usize,
@@ -355,7 +349,6 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Writes rows, aggregates and pictures.
     fn take(&mut self, merged: &Merged) -> Result<()> {
         let (plan, out) = (self.source, self.out);
         make_dir(out)?;

@@ -111,7 +111,6 @@ impl Case {
         }
     }
 
-    /// Outcome with RVO2, if known.
     const fn rvo2(self) -> &'static str {
         match self {
             Self::FourWays | Self::Tee => "20 of 20 in 87 to 95 s",
@@ -270,7 +269,6 @@ impl Plan {
     }
 }
 
-/// Whether each robot has a goal.
 fn has_goal(scenario: &Scenario) -> impl Iterator<Item = bool> {
     scenario.plane.iter().flat_map(|plane| plane.starts.iter().map(|start| !start.places.is_empty()))
 }

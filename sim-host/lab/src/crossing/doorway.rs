@@ -20,12 +20,10 @@ pub const RADIUS_M: f64 = 0.3;
 const SPACING_M: [f64; 2] = [1.2, 1.6];
 /// Distance of the first column from the wall, metres: robots at their goals do not block the door.
 const FRONT_M: f64 = 2.5;
-/// Robots in a row.
 const ROW: u32 = 4;
 /// Half the wall's length, metres: too long to go around.
 const WALL_M: f64 = 50.0;
 
-/// Random number stream of this module.
 const NOISE: u32 = 0x0045_0001;
 
 /// Parameters of the experiment.
@@ -260,7 +258,6 @@ impl Experiment for Plan {
 
 /// Order of the robots that pass the gap.
 struct Flow {
-    /// Side on which each robot started.
     sides: Vec<f64>,
     /// Whether each robot has crossed the wall's line.
     crossed: Vec<bool>,

@@ -44,14 +44,12 @@ pub struct Conditions {
 }
 
 impl Default for Conditions {
-    /// 0.05 s, 0.5 m/s, 3 m, no losses, ORCA.
     fn default() -> Self {
         Self { step_s: 0.05, speed_mps: 0.5, range_m: 3.0, loss: 0.0, safety: SafetyKind::Orca }
     }
 }
 
 impl Conditions {
-    /// Checks the conditions and the noise of the starts.
     fn check(&self, noise_m: f64) -> Result<()> {
         for (name, value, low, high) in [
             ("--noise", noise_m, 0.0, 100.0),
@@ -65,7 +63,6 @@ impl Conditions {
         Ok(())
     }
 
-    /// The conditions as parameters of rows.
     fn given(&self, noise_m: f64) -> Vec<(&'static str, Value)> {
         let Self { step_s, speed_mps, range_m, loss, safety } = *self;
         vec![
@@ -130,7 +127,6 @@ fn run(
     (!stopped).then_some(outcome)
 }
 
-/// Four moments of a run, with this title.
 fn picture(title: &str, scenario: &Scenario) -> Sheet {
     let in_memory = "a recorder without files cannot fail";
     let mut recorder = Recorder::in_memory(Options::default());

@@ -52,7 +52,6 @@ fn each_case_has_its_robots_and_invalid_plans_are_refused() {
             cases::Case::Door | cases::Case::Doors | cases::Case::Corridor => 2,
             _ => 1,
         };
-        // Plus the parked robots behind a door.
         let parked = if case == cases::Case::ParkedDoor { 15 } else { 0 };
         assert_eq!(scenario.robots.len(), (groups * case.robots() + parked) as usize, "{case:?}");
         let plane = scenario.plane.expect("bodies");

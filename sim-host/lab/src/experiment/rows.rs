@@ -19,7 +19,6 @@ use std::time::Instant;
 
 /// File name of the merged rows, written when all runs are done.
 const ROWS: &str = "rows.csv";
-/// File name of means, medians and intervals.
 const AGGREGATES: &str = "aggregates.csv";
 /// To be increased when equal plans give other rows.
 const FORMAT: u64 = 1;
@@ -46,7 +45,7 @@ pub trait Cell {
     fn set(&mut self, value: Option<f64>) -> bool;
 }
 
-/// Largest whole number below which a double represents all whole numbers.
+/// Doubles represent every whole number up to this one exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 macro_rules! whole_cells {
@@ -134,7 +133,6 @@ pub(crate) struct Sheet<'a, E> {
     plan: &'a E,
     fingerprint: u64,
     parameters: Vec<&'static str>,
-    /// Names and meanings.
     figures: Vec<(&'static str, &'static str)>,
 }
 
@@ -326,7 +324,6 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         Ok(by_point)
     }
 
-    /// Statistics of the shard, if rows are stored.
     pub(crate) fn course(&self) -> Option<Course> {
         self.course.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

@@ -13,9 +13,7 @@ use staya_controller::rand::Rng;
 use staya_sim::scenario::{Scenario, Target};
 use staya_sim::world::plane::Solid;
 
-/// Random number stream of the starts.
 const STARTS: u32 = 0x0046_0101;
-/// Random number stream of the forest.
 const TREES: u32 = 0x0046_0102;
 /// The paper's d in its units, which positions and speeds below use.
 const UNITS: f64 = 7.0;
@@ -60,7 +58,6 @@ impl Case {
         }
     }
 
-    /// Title of its pictures.
     pub(super) const fn title(self) -> &'static str {
         match self {
             Self::Free => "Flocking in free space by algorithm 2",
@@ -94,7 +91,6 @@ impl Case {
         }
     }
 
-    /// Whether the case has obstacles.
     pub(super) const fn has_balls(self) -> bool {
         !matches!(self, Self::Free | Self::Fragment | Self::Rendezvous3d)
     }
@@ -162,7 +158,6 @@ impl Case {
         }
     }
 
-    /// Draws place and velocity of a robot.
     fn draw(self, rng: &mut Rng) -> ([f64; 3], [f64; 3]) {
         let at_rest = [0.0; 3];
         match self {
@@ -189,7 +184,6 @@ impl Case {
         }
     }
 
-    /// Obstacles of one run.
     pub(super) fn solids(self, (spacing_m, gap): (f64, f64), seed: u64, run: u32) -> Vec<Solid> {
         let unit_m = spacing_m / UNITS;
         let ball = |[x, y, radius]: [f64; 3]| Solid::Ball {
@@ -239,7 +233,6 @@ impl Plan {
         self.spacing_m / 14.0
     }
 
-    /// Builds the scenario of one run of a case.
     pub(super) fn scenario(&self, point: Point, run: u32) -> Result<Scenario> {
         let Point { case, reference } = point;
         let setting = case.setting();
@@ -319,17 +312,14 @@ impl Plan {
         Ok(arena.scenario(setup))
     }
 
-    /// Seed of a run's scenario.
     pub(super) fn run_seed(&self, case: Case, run: u32) -> u64 {
         Rng::keyed(self.seed, STARTS, run, case as u32).next_u64()
     }
 
-    /// d' / d of a case.
     pub(super) fn obstacle_ratio(&self, case: Case) -> f64 {
         self.obstacle_ratio.unwrap_or(case.setting().obstacle_ratio)
     }
 
-    /// c1 of alpha-, beta- and gamma-agents of a case.
     pub(super) fn gains(&self, case: Case) -> [f64; 3] {
         let own = case.setting().gains;
         let [alpha, beta, gamma] = own;

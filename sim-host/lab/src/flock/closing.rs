@@ -26,7 +26,6 @@ use staya_sim::scenario::{Scenario, Start, Target};
 use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
-/// Random number stream of the offsets of both sides.
 const OFFSETS: u32 = 0x0046_0201;
 /// Distance of the two sides at the start, in d.
 const GAP: f64 = 4.0;
@@ -150,7 +149,6 @@ impl Closing {
         self.spacing_m / 14.0
     }
 
-    /// Flock, sides and speed of each row.
     fn lines(&self) -> Vec<(Flock, Sides, f64)> {
         let mut lines = Vec::new();
         for flock in [Flock::Alpha, Flock::Goal, Flock::Boids] {
@@ -242,12 +240,10 @@ impl Closing {
         starts
     }
 
-    /// Row and safety layer of a point.
     fn point(&self, point: usize) -> ((Flock, Sides, f64), SafetyKind) {
         (self.lines()[point / WAYS.len()], WAYS[point % WAYS.len()])
     }
 
-    /// Seed of a run's law and radio.
     fn run_seed(&self, run: u32) -> u64 {
         Rng::keyed(self.seed, OFFSETS, run, 1).next_u64()
     }

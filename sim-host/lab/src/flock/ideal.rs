@@ -81,7 +81,6 @@ impl Swarm<'_> {
         if speed > self.fastest_mps { velocity.map(|v| v * self.fastest_mps / speed) } else { velocity }
     }
 
-    /// Accelerations of all particles, m/s^2.
     fn changes(&self, places: &[[f64; 3]], velocities: &[[f64; 3]], target: Option<Target>) -> Vec<[f64; 3]> {
         let vec = |[x, y, z]: [f64; 3]| Vec3::new(x, y, z);
         let mut cells = Cells::new(Space::OPEN, self.range_m);

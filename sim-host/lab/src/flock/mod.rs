@@ -142,7 +142,6 @@ pub struct Plan {
 }
 
 impl Default for Plan {
-    /// The five cases of the paper with its parameters.
     fn default() -> Self {
         options::defaults()
     }
@@ -180,7 +179,6 @@ struct Point {
 }
 
 impl Point {
-    /// Base name of files.
     fn name(self) -> String {
         match self.reference {
             Some(reference @ (Reference::Static | Reference::Resting)) => {
@@ -192,7 +190,6 @@ impl Point {
 }
 
 impl Plan {
-    /// The rows of the table.
     fn lines(&self) -> Vec<Point> {
         let of = |&case: &Case| {
             let references: Vec<Option<Reference>> =

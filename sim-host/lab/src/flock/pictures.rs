@@ -11,7 +11,6 @@ use staya_sim::world::plane::Solid;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Most points of a curve.
 const POINTS: usize = 400;
 
 impl Report {
@@ -149,7 +148,6 @@ impl Report {
     }
 }
 
-/// Title of a case with its reference.
 fn title(case: &CaseReport) -> String {
     match case.reference {
         Some(reference) if reference != Reference::Moving => {

@@ -266,7 +266,6 @@ fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
 }
 
 impl Report {
-    /// Description of the robots in titles.
     pub(super) fn who(&self) -> String {
         let turns = if self.takes_turns { ", in turn" } else { "" };
         if !self.ideal {

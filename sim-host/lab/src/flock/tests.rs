@@ -2,7 +2,6 @@ use super::closing::{Closing, Flock, Sides};
 use super::*;
 use crate::experiment::rows::Keeping;
 
-/// A plan small enough for a test and large enough to show the effects.
 fn small(case: Case, robots: u32, seconds: f64) -> Plan {
     Plan {
         cases: vec![case],

@@ -141,7 +141,6 @@ pub struct Watch {
     solids: Vec<Solid>,
     meter: FlockMeter<3>,
     energy: Option<EnergyMeter<3>>,
-    /// Ticks to store for pictures.
     wanted: Vec<u32>,
     places_m: Vec<[f64; 3]>,
     velocities_mps: Vec<[f64; 3]>,

@@ -52,7 +52,6 @@ const SHUFFLE: Sharpness = Sharpness::HalvedPer(Gain::from_sixteenths(8));
 const LOOSE: u16 = 12 * UNIT as u16;
 
 impl Law {
-    /// All laws, the planned one first.
     pub(super) const ALL: [Self; 6] =
         [Self::Staya, Self::Lookahead, Self::Loose, Self::Shared, Self::Unwaiting, Self::Paper];
 
@@ -64,7 +63,6 @@ impl Law {
         }
     }
 
-    /// Formation parameters, except for the paper's law.
     pub(super) fn params(self, plan: &Plan) -> FormationParams {
         let ahead = FormationParams { eps: plan.formation.eps, ..FormationParams::looking_ahead() };
         match self {

@@ -38,9 +38,8 @@ use staya_sim::world::{Misplaced, MoveRules};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Random number stream of the landscapes.
 const LANDSCAPES: u32 = 0x0045_0101;
-/// Random number stream of the seeds for robots and radio.
+/// Random number stream for the seeds for robots and radio.
 const RUNS: u32 = 0x0045_0102;
 
 /// Robots in the formation of figure 5.
@@ -226,7 +225,6 @@ impl Plan {
         [Way::Alone, own].into_iter().chain(eps).chain(losses).chain(laws)
     }
 
-    /// Obstacles and crossing mode of a point.
     fn point(&self, point: usize) -> (u32, Way) {
         let ways: Vec<Way> = self.ways().collect();
         (self.obstacles[point / ways.len()], ways[point % ways.len()])
@@ -456,7 +454,6 @@ impl Experiment for Plan {
     }
 }
 
-/// Runs a scenario to its end and measures it.
 fn cross(scenario: &Scenario) -> Result<Crossing, Misplaced> {
     let mut worst_error = 0.0_f64;
     let outcome = simulate(scenario, |moment, _| {

@@ -5,7 +5,6 @@ use staya_plot::{Chart, Panels, Series};
 use staya_sim::record::Error;
 use std::path::{Path, PathBuf};
 
-/// Segments of a curve.
 const STEPS: u32 = 100;
 
 impl Report {
@@ -26,7 +25,6 @@ impl Report {
         Ok(files)
     }
 
-    /// The note below titles.
     pub(super) fn note(&self) -> String {
         format!(
             "six robots {} cells apart, {2} x {2} cells, window radius {1}, {3} runs each",
@@ -34,7 +32,6 @@ impl Report {
         )
     }
 
-    /// Numbers of obstacles from 0 to the largest.
     pub(super) fn axis(&self) -> impl Iterator<Item = f64> {
         let most = self.points.last().map_or(0, |point| point.obstacles);
         (0..=STEPS).map(move |step| f64::from(most) * f64::from(step) / f64::from(STEPS))

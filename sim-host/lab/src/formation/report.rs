@@ -309,7 +309,6 @@ impl Display for Report {
     }
 }
 
-/// Writes a row per value and a column per point.
 fn variants(f: &mut Formatter<'_>, report: &Report, kind: Variants) -> fmt::Result {
     let Some(first) = report.points.first() else {
         return Ok(());

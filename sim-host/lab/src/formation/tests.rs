@@ -1,7 +1,6 @@
 use super::*;
 use staya_controller::cost::Gain;
 
-/// A plan small enough for a test and large enough to show the effects.
 fn small() -> Plan {
     Plan {
         obstacles: vec![0, 10],

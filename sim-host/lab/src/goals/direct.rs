@@ -25,7 +25,6 @@ struct Crowd<'a> {
     scene: &'a Scene,
     params: GoalParams<f32>,
     push_out: Option<PushOutParams<f32>>,
-    /// Largest number of neighbours that a robot knows.
     most: usize,
     arrival_m: f32,
     seed: u64,
@@ -164,7 +163,6 @@ impl<'a> Crowd<'a> {
     }
 }
 
-/// Robot ids start at 1.
 fn number(index: usize) -> RobotId {
     RobotId(index as u32 + 1)
 }

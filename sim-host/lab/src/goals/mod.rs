@@ -182,12 +182,10 @@ impl Plan {
         self.min_distance_m
     }
 
-    /// Seed of a run's scenario.
     fn run_seed(&self, run: u32) -> u64 {
         Rng::keyed(self.seed, STARTS + 1, run, 0).next_u64()
     }
 
-    /// Builds the scenario of a run with agents.
     fn scenario(&self, setting: &Setting, scene: &Scene, run: u32) -> Scenario {
         let (unit, speed_mps, seed) = (self.min_distance_m, self.speed_mps(), self.run_seed(run));
         let params = setting.params(unit, speed_mps);
@@ -306,7 +304,6 @@ impl Experiment for Plan {
 }
 
 impl Plan {
-    /// Common parameters of all points, as in rows.
     fn common(&self) -> Vec<(&'static str, Value)> {
         vec![
             ("min_distance_m", self.min_distance_m.into()),

@@ -9,7 +9,6 @@ use staya_sim::record::Error;
 use staya_sim::world::plane::Solid;
 use std::path::{Path, PathBuf};
 
-/// Most curves in a chart.
 const CURVES: usize = 10;
 
 /// The points whose first runs are drawn: smallest, middle and largest K1 above 0 of the last

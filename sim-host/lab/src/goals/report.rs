@@ -109,13 +109,11 @@ impl Report {
         }
     }
 
-    /// The scene of the first run of a setting.
     pub(super) fn scene(&self, setting: &Setting) -> Option<Scene> {
         Scene::new(&self.plan, setting, 0).ok()
     }
 }
 
-/// Compares each point with that of independent robots.
 fn compare(points: &mut [Point]) {
     let alone = points.iter().filter(|point| point.setting.k2 == 0.0);
     let alone: Vec<_> = alone.map(|point| (point.setting, point.together, point.company)).collect();

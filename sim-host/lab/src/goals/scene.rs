@@ -32,7 +32,6 @@ pub struct Scene {
     pub starts: Vec<Start>,
     /// Obstacles.
     pub solids: Vec<Solid>,
-    /// Initial places of the goals, metres.
     goals_m: Vec<[f64; 3]>,
     velocity_mps: [f64; 3],
     /// Tick in which the first goal moves, if it does, and its new place.

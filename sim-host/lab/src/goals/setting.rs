@@ -34,7 +34,6 @@ impl Named for Knowledge {
     }
 }
 
-/// Parser of the option for [`Knowledge`].
 pub(super) fn knowledge() -> impl TypedValueParser<Value = Knowledge> {
     one_of(&[
         (Knowledge::All, "All within R_nbh, where they are: the law by itself, without agents"),
@@ -93,7 +92,6 @@ impl Setting {
         Self { k3: 0.0, neighborhood_m: 0.0, ..self.without_gains() }
     }
 
-    /// Parameters of the law.
     pub(super) fn params(&self, min_distance_m: f64, speed_mps: f64) -> GoalParams<f32> {
         GoalParams {
             goal_gain: self.k1 as f32,
@@ -144,7 +142,6 @@ impl Setting {
     }
 }
 
-/// Short name of a parameter in tables.
 pub(super) fn short(name: &'static str) -> &'static str {
     match name {
         "neighborhood_m" => "R_nbh",
@@ -214,7 +211,6 @@ impl Plan {
         cross(&all, &self.k1, |s, value| s.k1 = value)
     }
 
-    /// Checks that all settings can be run.
     pub(super) fn check_settings(&self) -> Result<()> {
         let settings = self.settings();
         ensure!(!settings.is_empty(), "no points; give one value or more of each list, such as --k1 50");

@@ -1,6 +1,5 @@
 use super::*;
 
-/// A plan small enough for a test and large enough to show the effects.
 fn small() -> Plan {
     Plan {
         k1: vec![50.0],

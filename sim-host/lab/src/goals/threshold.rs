@@ -104,7 +104,6 @@ pub(super) fn of(points: &[Gain]) -> Vec<Threshold> {
     thresholds.filter(|(count, _)| *count >= 3).map(|(_, threshold)| threshold).collect()
 }
 
-/// Writes the thresholds as a table, or nothing if there are none.
 pub(super) fn table(f: &mut Formatter<'_>, thresholds: &[Threshold]) -> fmt::Result {
     if thresholds.is_empty() {
         return Ok(());

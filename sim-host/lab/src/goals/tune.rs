@@ -70,7 +70,6 @@ pub struct Verdict {
 pub struct Tuned {
     /// K2 / K1, K3 / K1, R_nbh in R_MinDist.
     gains: [f64; 3],
-    /// Cost evaluations.
     evaluations: u64,
     /// Figures of the best gains on the runs of the search.
     found: Verdict,
@@ -108,7 +107,6 @@ impl Record for Tuned {
 }
 
 impl Tuning {
-    /// The scenes without duplicates.
     fn scenes(&self) -> Vec<Setting> {
         let mut scenes: Vec<Setting> = Vec::new();
         for setting in self.plan.settings() {
@@ -119,7 +117,6 @@ impl Tuning {
         scenes
     }
 
-    /// The scene with these gains.
     fn with(&self, scene: &Setting, [k2, k3, neighborhood]: [f64; 3]) -> Setting {
         Setting { k1: K1, k2: K1 * k2, k3: K1 * k3, neighborhood_m: neighborhood * self.plan.min_distance_m, ..*scene }
     }
@@ -197,7 +194,6 @@ fn gains(place: &[f64]) -> [f64; 3] {
     [libm::exp2(at(0)), libm::exp2(at(1)), at(2)]
 }
 
-/// Cost function of the search.
 struct Cost<'a> {
     tuning: &'a Tuning,
     scene: &'a Setting,

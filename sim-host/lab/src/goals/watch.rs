@@ -103,7 +103,6 @@ pub struct Watch<'a> {
     radius_m: f64,
     min_distance_m: f64,
     step_s: f64,
-    /// Ticks to store for pictures.
     wanted: Vec<u32>,
     warm_up: u32,
     groups: FlockMeter<2>,

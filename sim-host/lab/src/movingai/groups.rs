@@ -26,9 +26,8 @@ use staya_sim::terrain::movingai::Query;
 use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
-/// Random number stream of the choice of queries.
 const QUERIES: u32 = 0x0045_0204;
-/// Random number stream of the seeds for robots and radio.
+/// Random number stream for the seeds for robots and radio.
 const RUNS: u32 = 0x0045_0205;
 
 /// Parameters of the experiment.

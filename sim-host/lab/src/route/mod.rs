@@ -43,13 +43,9 @@ use staya_sim::terrain::metrics::Metrics;
 use staya_sim::terrain::{Terrain, TerrainError};
 use std::path::{Path, PathBuf};
 
-/// Random number stream of the landscapes.
 const LANDSCAPES: u32 = 0x0045_0001;
-/// Random number stream of the order of cells.
 const ORDER: u32 = 0x0045_0002;
-/// Random number stream of the shuffled moves.
 const MOVES: u32 = 0x0045_0004;
-/// Random number stream of the parked robots.
 const PARKED: u32 = 0x0045_0003;
 
 /// Number of obstacles whose arrival times KUZ shows in figure 4.
@@ -205,7 +201,6 @@ pub struct Example {
     pub run: Run,
 }
 
-/// Scratch memory of one thread.
 #[derive(Debug, Default)]
 struct Scratch {
     walker: Walker<CELLS>,
@@ -231,7 +226,6 @@ impl Plan {
         std::iter::once(self.params).chain(sweep)
     }
 
-    /// Land and parameters of a point: each land with each variant.
     fn point(&self, point: usize) -> (Land, RouteParams) {
         let variants: Vec<RouteParams> = self.variants().collect();
         (self.lands[point / variants.len()], variants[point % variants.len()])

@@ -205,7 +205,6 @@ fn histogram(title: &str, arrivals: &Arrivals) -> Chart {
     chart
 }
 
-/// Draws one landscape with both paths across it.
 fn map(example: &Example) -> Canvas {
     const SIDE: f64 = 700.0;
     const LEFT: f64 = 20.0;

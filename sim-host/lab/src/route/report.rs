@@ -12,7 +12,6 @@ use staya_sim::terrain::metrics::obstacles_of_entropy;
 use staya_stats::{Goodness, Histogram, NortonRice, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
-/// Bins of the histograms of arrival times.
 const BINS: usize = 30;
 
 /// Loss compared with the fastest route, in percent, over the robots that arrived.
@@ -163,7 +162,6 @@ pub struct Report {
     pub points: Vec<Point>,
     /// Effects of other coefficients.
     pub sweep: Vec<Response>,
-    /// The plan's own parameters.
     #[serde(skip)]
     pub(super) params: RouteParams,
 }
@@ -236,7 +234,6 @@ fn losses(runs: &[Run], variant: usize) -> [Vec<f64>; 2] {
     [time, length]
 }
 
-/// `None` without runs.
 fn point(land: Land, runs: &[Run], size: u16) -> Option<Point> {
     let over_runs = |value: fn(&Run) -> f64| {
         let values: Vec<f64> = runs.iter().map(value).collect();
@@ -358,7 +355,6 @@ fn row_name(point: &Point) -> String {
     format!("{:<9}{obstacles:>5}", point.land)
 }
 
-/// Writes one table per coefficient: a row per value, two columns per point.
 fn sweep_tables(f: &mut Formatter<'_>, report: &Report) -> fmt::Result {
     for responses in report.sweep.chunk_by(|a, b| a.coefficient == b.coefficient) {
         let coefficient = responses[0].coefficient;

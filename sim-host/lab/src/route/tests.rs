@@ -77,7 +77,6 @@ fn no_robot_is_faster_than_the_optimum_though_some_paths_are_shorter() {
     let plan = Plan { runs: 100, ..plan() };
     let results = all(&plan);
     let runs = || results.iter().flatten();
-    // From (1, 1) to (38, 38) by diagonals.
     let shortest = 37 * u64::from(Dir::NorthEast.length(Norm::Euclidean));
     for run in runs() {
         let walk = run.walks[0];

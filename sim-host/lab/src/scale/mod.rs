@@ -101,7 +101,6 @@ impl Plan {
         )
     }
 
-    /// Ground and size of a point; sizes increase.
     fn point(&self, point: usize) -> (Ground, u32) {
         (self.ground[point % self.ground.len()], self.robots[point / self.ground.len()])
     }

@@ -15,7 +15,6 @@ impl Usage {
         Self(processor_s(&text))
     }
 
-    /// Seconds since `before`.
     pub(super) fn since(self, before: Self) -> Option<f64> {
         Some(self.0? - before.0?)
     }
@@ -30,7 +29,6 @@ fn processor_s(stat: &str) -> Option<f64> {
     Some((user + system) as f64 / CLOCK_HZ)
 }
 
-/// Current resident memory; `None` if the system does not report it.
 pub(super) fn memory_bytes() -> Option<u64> {
     resident_bytes(&fs::read_to_string("/proc/self/status").ok()?)
 }

@@ -13,7 +13,6 @@ use staya_sim::terrain::change::change;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Scratch memory of searches.
 #[derive(Default)]
 pub(super) struct Foresight {
     /// Classes of each cell, with the ticks from which they hold.

@@ -36,9 +36,7 @@ use std::num::NonZeroU32;
 use std::path::PathBuf;
 use walk::{Knowledge, Scout};
 
-/// Random number stream of the landscapes and their changes.
 const LANDSCAPES: u32 = 0x0045_0011;
-/// Classes of impassability.
 const CLASSES: u8 = 9;
 
 /// What to do: what a map is worth on land that changes, with some of it blank or wrong.
@@ -156,7 +154,6 @@ impl Record for Run {
     }
 }
 
-/// Scratch memory of one thread.
 #[derive(Default)]
 struct Scratch {
     scout: Scout,
@@ -172,7 +169,6 @@ impl Plan {
         [Known::Sight].into_iter().chain(blank).chain(wrong).chain([Known::Far]).collect()
     }
 
-    /// Knowledge of a point's robot, and the share of cells that change in each tick.
     fn point(&self, point: usize) -> (Known, f64) {
         (self.known()[point / self.drifts.len()], self.drifts[point % self.drifts.len()])
     }

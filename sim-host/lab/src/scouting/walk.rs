@@ -13,7 +13,6 @@ use staya_sim::world::{known_window, window};
 /// Moves after which a robot counts as lost, per cell of the map's half perimeter.
 const PATIENCE: usize = 200;
 
-/// Knowledge of a robot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knowledge<'a> {
     /// Its map; without one it plans on its sight.
@@ -22,10 +21,8 @@ pub(super) struct Knowledge<'a> {
     pub sight: u8,
 }
 
-/// Initial land, its changes, and their seed.
 pub(super) type Changing<'a> = (&'a Terrain, &'a [LandChange], u64);
 
-/// Scratch memory for walks.
 #[derive(Default)]
 pub(super) struct Scout {
     field: Box<CostField<CELLS>>,

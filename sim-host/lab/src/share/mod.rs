@@ -38,11 +38,9 @@ use staya_sim::terrain::{Terrain, TerrainError};
 use staya_sim::world::MoveRules;
 use std::ops::ControlFlow;
 
-/// Random number stream of the landscapes.
 const LANDSCAPES: u32 = 0x0045_0201;
-/// Random number stream of the seeds for robots and radio.
+/// Random number stream for the seeds for robots and radio.
 const RUNS: u32 = 0x0045_0202;
-/// Random number stream of the places of robots and goals.
 const PLACES: u32 = 0x0045_0203;
 
 /// Microseconds per tick; only beacons depend on it.
@@ -126,7 +124,6 @@ impl Default for Plan {
     }
 }
 
-/// Parameters of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
     pub obstacles: u32,
@@ -238,7 +235,6 @@ impl Plan {
         Ok(Scenario { faults, ..scenario })
     }
 
-    /// Tick in which a robot departs.
     fn departure(&self, case: Case, robot: RobotId) -> u32 {
         if case.starts == Starts::InTurn { (robot.0 - 1) * self.interval } else { 0 }
     }

@@ -74,14 +74,12 @@ impl Outlook {
         })
     }
 
-    /// Sharing mode in tables.
     pub(crate) fn maps(&self) -> String {
         if self.shared { format!("shared, {:.0} %", 100.0 * self.loss) } else { String::from("own") }
     }
 }
 
 impl Report {
-    /// Summarises the runs of each case, in the plan's order.
     pub(super) fn of(plan: &Plan, runs: &[Vec<Trip>]) -> Self {
         let cases = plan.cases();
         let of_point = 1 + plan.losses.len();

@@ -8,15 +8,12 @@ use staya_sim::record::Error;
 use staya_stats::Summary;
 use std::path::{Path, PathBuf};
 
-/// Most values of an axis that are shown separately; more are grouped into parts.
 const MOST: usize = 24;
 /// Least and most equal parts of an axis with more values.
 const PARTS: [usize; 2] = [4, 12];
 /// Average number of runs per part, or per cell of two axes, if there are enough.
 const RUNS: usize = 4;
-/// Most curves in one picture.
 const CURVES: usize = 6;
-/// Most default pictures.
 const UNASKED: usize = 8;
 
 /// The pictures that a plan requests; by default its first figures over its first two axes.
@@ -72,16 +69,13 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
     }
 }
 
-/// The values of an axis as shown in a picture.
 struct Levels {
-    /// Labels.
     names: Vec<String>,
     /// Numeric values; `None` if they are words.
     numbers: Option<Vec<f64>>,
     /// Whether each level is a part of the axis.
     is_parts: bool,
     is_log: bool,
-    /// The first and the last value.
     ends: [f64; 2],
 }
 
@@ -178,7 +172,6 @@ impl Picture<'_> {
         Summary::of(&figures)
     }
 
-    /// Chart of means with intervals; with a second axis, one curve for each of its values.
     fn chart(&self) -> Chart {
         let PlotTable { figure, over, and } = self.plot;
         let mut chart = Chart::new(self.title(), over, figure).note(self.note("means with 95 % intervals"));

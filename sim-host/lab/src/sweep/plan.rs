@@ -16,7 +16,6 @@ use std::path::{Path, PathBuf};
 pub use table::PlotTable;
 use table::{PlanFile, SeedRange, Seeds};
 
-/// Page that lists the fields of plans.
 const LIST: &str = "docs/sweeps.md";
 /// Most runs of a plan: some hundred megabytes of rows.
 const MOST: u64 = 1_000_000;
@@ -304,7 +303,6 @@ impl Plan {
         all
     }
 
-    /// The existing files named by the scenario of any run.
     fn files(&self) -> Vec<PathBuf> {
         let mut words = Vec::new();
         collect_words(&toml::Value::Table(self.base.clone()), &mut words);

@@ -99,7 +99,6 @@ impl Row {
     }
 }
 
-/// First cells: number, values and seed.
 fn beginning(plan: &dyn Design, run: u64) -> Vec<String> {
     let (number, seed) = (run.to_string(), plan.seed(run).to_string());
     [number].into_iter().chain(plan.values(run)).chain([seed]).collect()

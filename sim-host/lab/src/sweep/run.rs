@@ -45,7 +45,6 @@ fn simulated(plan: &Plan, number: u64, watch: &mut dyn FnMut(u32) -> bool) -> Re
     Ok((Summary::new(&scenario, &outcome, Vec::new()), is_cut))
 }
 
-/// The figures that the plan records.
 fn chosen(plan: &Plan, summary: &Summary) -> Vec<Figure> {
     let figures: BTreeMap<_, _> = summary.figures().into_iter().collect();
     plan.measures().iter().map(|name| Figure(figures.get(name).copied().flatten())).collect()
@@ -66,7 +65,6 @@ pub struct Estimate {
     pub bytes: u64,
 }
 
-/// Time limit of a tried run.
 const TRY: Duration = Duration::from_secs(2);
 
 /// Tries the first, the middle and the last run, for at most two seconds each.

@@ -39,7 +39,6 @@ impl Job<'_> {
         Err(SweepError::new("--tasks", format!("{} tasks", self.tasks), remedy))
     }
 
-    /// Command line of a shard, quoted for a shell.
     fn command(&self, shard: &str) -> String {
         let Self { program, plan, out, .. } = self;
         let [program, plan, out] =
@@ -55,7 +54,6 @@ impl Job<'_> {
     }
 }
 
-/// Quotes text as one shell word.
 fn quoted(text: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@%".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {

@@ -29,9 +29,7 @@ const SYNC: Duration = Duration::from_secs(2);
 /// One of several equal parts of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Number of the part, 1 to `of`.
     index: u64,
-    /// Number of parts.
     of: u64,
 }
 
@@ -156,7 +154,6 @@ pub fn files(out: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(files)
 }
 
-/// A shard's file, open and locked.
 #[derive(Debug)]
 struct Appended {
     file: File,

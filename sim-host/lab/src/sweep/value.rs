@@ -15,7 +15,7 @@ pub enum Value {
     Word(String),
 }
 
-/// Largest whole number below which a double represents all whole numbers.
+/// Doubles represent every whole number up to this one exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 impl Value {
@@ -50,7 +50,6 @@ impl Value {
         }
     }
 
-    /// Converts to TOML.
     pub(crate) fn toml(&self) -> toml::Value {
         match self {
             Self::Whole(number) => toml::Value::Integer(*number),

@@ -25,7 +25,6 @@ enum Node<R> {
 pub struct MidpointTree<R, const D: usize> {
     space: Space<R, D>,
     nodes: Vec<Node<R>>,
-    /// Indices of the points, leaf by leaf.
     order: Vec<u32>,
     /// The points in that order, folded into the torus.
     points: Vec<[R; D]>,

@@ -14,7 +14,6 @@ pub struct MutualPairs<R, const D: usize> {
     radius: R,
     /// Folded into the torus.
     points: Vec<[R; D]>,
-    /// Neighbours of each point, with their offsets.
     near: Vec<Vec<(u32, [R; D])>>,
 }
 

@@ -14,7 +14,6 @@ fn answers(mut search: impl Search<f64, 2>, points: &Points, queries: &[Query<f6
     queries.iter().map(answer).collect()
 }
 
-/// Checks that every search gives the answers of the reference.
 fn assert_agree(space: Space<f64, 2>, points: &Points, queries: &[Query<f64, 2>]) {
     let expected = answers(AllPairs::new(space), points, queries);
     assert_eq!(expected, answers(Tree::new(space), points, queries));

@@ -13,20 +13,16 @@ use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 use std::f64::consts::PI;
 
-/// Radius of the robots in scenes with equal ones, metres.
 pub(super) const RADIUS_M: f64 = 0.3;
 /// Distance from its goal at which a robot has arrived, metres.
 const TOLERANCE_M: f64 = 0.1;
 /// Half the width of a road, metres: three robots fit side by side.
 const ROAD_M: f64 = 1.2;
-/// Length of roads and walls, metres.
 const FAR_M: f64 = 30.0;
 /// Distance between robots of a group at the start and at their goals, metres.
 const APART_M: f64 = 0.9;
-/// Spacing of the flock, metres.
 pub(super) const SPACING_M: f64 = 0.7;
 
-/// Random number stream of this module.
 const NOISE: u32 = 0x0045_0002;
 
 /// A stationary robot that moves through these places to the last of them.
@@ -40,7 +36,6 @@ fn start(at: [f64; 2], places: &[[f64; 2]]) -> Start {
     }
 }
 
-/// Closed wall through these points.
 fn polygon(points: &[[f64; 2]]) -> impl Iterator<Item = Solid> {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(&from, &to)| Solid::Wall([from, to]))
@@ -107,7 +102,6 @@ impl Plan {
         scenario
     }
 
-    /// Common properties of the robots of a case.
     fn general(&self, case: Case) -> RobotGroup {
         let speed_mps = self.conditions.speed_mps * self.size;
         let group = self.conditions.group_at(speed_mps, RADIUS_M * self.size, TOLERANCE_M * self.size);
@@ -129,7 +123,6 @@ impl Plan {
         }
     }
 
-    /// Assigns five sizes and three speeds in turn.
     fn mix(&self, setup: &mut PlaneSetup) {
         for (index, start) in setup.starts.iter_mut().enumerate() {
             let radius_m = RADIUS_M * self.size * [0.4, 0.7, 1.0, 1.3, 1.6][index % 5];
@@ -255,7 +248,6 @@ fn parked_door(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, wall_with_doors(&[0.0]))
 }
 
-/// Scales routes and walls.
 fn resize(setup: &mut PlaneSetup, size: f64) {
     let scale = |place: &mut [f64]| place.iter_mut().for_each(|x| *x *= size);
     for start in &mut setup.starts {

@@ -6,7 +6,6 @@ use staya_console::{Ended, Global, Stop};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Eight runs, 0.1 s in all, with noise and packet loss.
 fn plan() -> swap::Plan {
     let conditions = crate::crossing::Conditions { loss: 0.2, ..Default::default() };
     swap::Plan { robots: vec![3, 4], seeds: 4, noise_m: 0.02, patience: 2.0, conditions, ..swap::Plan::default() }

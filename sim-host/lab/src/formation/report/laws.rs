@@ -18,7 +18,6 @@ pub struct LawJourney {
 }
 
 impl Point {
-    /// Results with a law at a loss.
     fn under(&self, law: Law, loss: f64) -> Option<&Journey> {
         if law == Law::Staya {
             return self.with_loss(loss);
@@ -44,7 +43,6 @@ impl Report {
         (Law::ALL.into_iter().filter(|&law| has(law)).collect(), losses)
     }
 
-    /// Writes a row per law and loss, and a column per point.
     pub(super) fn write_laws(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (laws, losses) = self.laws();
         if losses.is_empty() {
@@ -143,7 +141,6 @@ impl Report {
     }
 }
 
-/// Results of the laws in the order of their crossings.
 pub(super) fn journeys(ways: impl Iterator<Item = (Law, Option<Journey>)>) -> Vec<LawJourney> {
     ways.filter_map(|(law, journey)| Some(LawJourney { law, journey: journey? })).collect()
 }

@@ -8,7 +8,6 @@ use staya_sim::scenario::{ScenarioError, Source};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
-/// Most values of one axis.
 const MOST: u32 = 1_000_000;
 
 /// A field and its values.
@@ -38,7 +37,6 @@ pub struct Axes {
     pub set: Vec<(Field, Value, Range<usize>)>,
 }
 
-/// A field in the plan's text, with its value.
 struct Entry<'a> {
     field: Field,
     span: Range<usize>,
@@ -134,7 +132,6 @@ pub fn no_range(is: &str) -> (String, String) {
     (format!("it is {is}, which has no range"), "give a list of values".to_owned())
 }
 
-/// Finds a table of the plan in its text.
 fn table<'a, 't>(root: &'a DeTable<'t>, name: &str, index: Option<usize>) -> Option<&'a DeTable<'t>> {
     let value = root.get(name)?.get_ref();
     match (value, index) {
@@ -193,7 +190,6 @@ fn collect<'a>(
     }
 }
 
-/// Reads an axis with a list or a range of values.
 fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_>) -> Result<Axis, ScenarioError> {
     let wrong = |what: String, remedy: &str| source.error_at(span.clone(), field.name(), what, remedy);
     let (values, is_log, is_range) = match value {
@@ -228,7 +224,6 @@ fn range(value: &toml::Value) -> Result<RangeTable, String> {
     Ok(range)
 }
 
-/// Computes the values of a range.
 fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
     let RangeTable { from, to, log, .. } = *range;
     check_log(range)?;

@@ -30,7 +30,6 @@ fn error(text: &str) -> String {
     parse(&folder(), text).expect_err("something is wrong")
 }
 
-/// Values of an axis, formatted as in a table.
 fn values(plan: &Plan, axis: &str) -> Vec<String> {
     plan.values(axis).expect("an axis").iter().map(ToString::to_string).collect()
 }

@@ -41,7 +41,6 @@ fn perform_all(plan: &Plan, out: &Path, shards: &[&str], existing: Existing) -> 
     last
 }
 
-/// Merged rows of the plan.
 fn merged(plan: &Plan, out: &Path) -> String {
     let merged = Merged::read(plan, &files(out).expect("a folder")).unwrap_or_else(|what| panic!("{what}"));
     let merged = merged.whole(plan, out, "").unwrap_or_else(|what| panic!("{what}"));
@@ -181,7 +180,6 @@ fn inconsistent_rows_are_refused() {
         said.contains(&format!("1-of-2.csv:11: run {number} has another row in")) && said.contains("--anew"),
         "{said}"
     );
-    // Damaged rows.
     for (cells, what) in [
         ("1,2,3", "it is no row"),
         ("", "it is no row"),
