@@ -1,5 +1,5 @@
-//! Two robots change places, and all that goes between them is bytes: what one says in a tick the other hears in the
-//! next, with a damaged byte now and then. Run it by `cargo run --example agent_over_bytes`.
+//! Two robots change places and exchange nothing but bytes: a packet sent in one tick arrives in
+//! the next, sometimes with a damaged byte. Run it with `cargo run --example agent_over_bytes`.
 
 use staya_controller::agent::*;
 use staya_controller::geom::Position;
@@ -24,7 +24,7 @@ struct Robot {
 fn robot(id: u32, from: Position, to: Position) -> Robot {
     let config = AgentConfig::new(RobotId(id), RADIUS_M, TICK);
     let law = WaypointGuidance::new(SPEED_MPS, 0.02);
-    // A robot that falls silent may have gone on: its disc grows.
+    // A silent robot may have moved on, so its disc grows.
     let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
     let safety = OrcaSafety::new(AvoidParams::default(), inflation);
     let mut agent = OrcaAgent::new(&config, law, safety, Postcard);
@@ -41,19 +41,18 @@ fn main() {
     while robots.iter().any(|robot| robot.agent.mode() != Mode::Arrived) {
         let mut said = Vec::new();
         for robot in &mut robots {
-            // What it senses and hears goes in; a command and what it says come out.
+            // Sensor readings and received bytes go in; a command and packets to send come out.
             let surroundings = InPlane { max_speed_mps: SPEED_MPS, obstacles: &[] };
             let inputs = Inputs { state: robot.state, surroundings, inbox: &robot.inbox };
             let out = robot.agent.step(&inputs, now, &mut ());
             refused += out.rejected;
             said.push(out.outbox.to_vec());
-            // A body without inertia: it goes as it is told.
+            // A body without inertia follows the command at once.
             if let Command::Velocity(velocity_mps) = out.command {
                 robot.state.velocity_mps = velocity_mps;
                 robot.state.position = robot.state.position.moved(velocity_mps * TICK_S).expect("near by");
             }
         }
-        // The pipe: any bytes may go through it, in any pieces.
         for byte in said.iter_mut().flatten() {
             bytes += 1;
             if noise.below(1000) == 0 {

@@ -1,7 +1,10 @@
-//! An auction without an auctioneer: 16 robots, 16 places, and no list of who goes where. Beside its beacons each robot tells which
-//! place it bids for and how far off it is; of two that bid for one place the farther one gives it up and bids for the nearest that
-//! nobody nearer has (a greedy form of H.-L. Choi, L. Brunet, J. P. How 2009, "Consensus-based decentralized auctions for robust
-//! task allocation", section III). Run it by `cargo run --example auction`.
+//! An auction without an auctioneer: 16 robots share out 16 places.
+//!
+//! With its beacons, each robot broadcasts the place that it bids for and its distance to it. If
+//! two robots bid for one place, the farther one withdraws and bids for the nearest place without a
+//! nearer bidder. This is a greedy form of H.-L. Choi, L. Brunet, J. P. How 2009, "Consensus-based
+//! decentralized auctions for robust task allocation", section III. Run it with
+//! `cargo run --example auction`.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
@@ -38,14 +41,14 @@ fn place(task: u8) -> Position {
     Position::from_mm([along(task % 4), along(task / 4), 0])
 }
 
-/// A place, and how far the bidder is from it. Five bytes on the air at most.
+/// A place and the bidder's distance from it. At most five bytes in a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Bid {
     task: u8,
     distance_mm: u32,
 }
 
-/// What a robot bids for.
+/// Guidance law that moves to the place it bids for.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Auction {
     bid: Option<Bid>,
@@ -68,7 +71,7 @@ impl Guidance<f32> for Auction {
     ) -> Result<Decision<f32>, BadInput> {
         let way_m = |task: u8| place(task).since::<f32>(input.state.position);
         let own = |task: u8| Bid { task, distance_mm: (way_m(task).norm() * 1000.0) as u32 };
-        // Of equal bids that of the lower number counts.
+        // Of two equal bids, the one of the lower robot id wins.
         let is_outbid = |own: &Bid| {
             let rank = |bid: &Bid, id: RobotId| (bid.distance_mm, id);
             let bids = input.neighbors.iter().filter_map(|other| Some((other.payload?, other.id)));
@@ -113,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The tasks at whose places somebody is.
+/// The places that a robot occupies.
 fn taken(places_m: &[[f64; 3]]) -> BTreeSet<u8> {
     let off = |task: u8, [x, y, _]: [f64; 3]| {
         let [at_x, at_y, _] = place(task).mm.map(|mm| f64::from(mm) / 1000.0);

@@ -1,7 +1,9 @@
-//! What robots of one's own law tell each other: 20 robots on a line, of whom each hears only its nearest, agree on the mean of
-//! where all are, and meet there. Beside its beacons each tells what it believes, and moves its belief towards those that it
-//! hears (R. Olfati-Saber, J. A. Fax, R. M. Murray 2007, "Consensus and cooperation in networked multi-agent systems", section II).
-//! Run it by `cargo run --example consensus`.
+//! A payload in beacons: 20 robots on a line agree on the mean of their positions and meet there.
+//!
+//! Each robot hears only its nearest neighbours. With its beacons it broadcasts its estimate of the
+//! meeting point, and it moves this estimate towards those that it receives (R. Olfati-Saber, J. A.
+//! Fax, R. M. Murray 2007, "Consensus and cooperation in networked multi-agent systems", section
+//! II). Run it with `cargo run --example consensus`.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
@@ -14,12 +16,13 @@ use std::{error::Error, ops::ControlFlow, path::Path};
 
 const ROBOTS: u32 = 20;
 const SPACING_M: f64 = 0.6;
-/// When they go, s: the time to tell each other their beliefs. A longer line takes longer, by the square of its robots.
+/// Time of departure, s, after which the estimates agree. Convergence takes time in proportion to
+/// the square of the number of robots.
 const TALK_S: f64 = 100.0;
-/// How far a belief moves towards each of those heard; among many less, so that it settles.
+/// Gain towards each received estimate. It is lower with many neighbours, for stability.
 const STEP: f32 = 0.2;
 
-/// Where it believes that all should meet, metres; `None` until it has decided once, as of those of whom nothing was heard.
+/// Estimate of the meeting point, metres; `None` before the first decision.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Meeting {
     belief_m: Option<[f32; 2]>,
@@ -31,7 +34,7 @@ impl Guidance<f32> for Meeting {
     type Input<'a> = InPlane<'a, f32>;
     type Destination = Roams;
     type Workspace = ();
-    /// At most 9 bytes in a frame of at most 30, behind each beacon.
+    /// At most 9 bytes, in a frame of at most 30 after each beacon.
     type Payload = Option<[f32; 2]>;
 
     fn decide(
@@ -69,7 +72,7 @@ impl Guidance<f32> for Meeting {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Each hears one on either side, and one packet in ten is lost.
+    // Each robot hears one neighbour on either side, and 10 % of the packets are lost.
     let starts: Vec<_> =
         (0..ROBOTS).map(|i| format!("{{ start_m = [{}, {}] }}", SPACING_M * f64::from(i), i % 2)).collect();
     let text = format!(

@@ -1,5 +1,6 @@
-//! Robots that are strewn about become one flock: equal distances, one velocity, a way between two discs (Olfati-Saber
-//! 2006, algorithm 3). Only the flock's law, no agents and no radio. Run it by `cargo run --example flock`.
+//! Scattered robots form a flock with equal distances and a common velocity, and pass between two
+//! discs (Olfati-Saber 2006, algorithm 3). It uses the flocking law alone, without agents and
+//! radio. Run it with `cargo run --example flock`.
 
 use staya_controller::flock::lattice::{LatticeParams, Reference, acceleration};
 use staya_controller::obstacle::Obstacle;
@@ -16,7 +17,6 @@ const SPACING_M: f64 = 0.5;
 const STEP_S: f64 = 0.02;
 const STEPS: u32 = 3750;
 const PICTURES_EVERY: u32 = 1250;
-/// Where discs stand, and how large they are.
 const DISCS: [(Vec3<f64>, f64); 2] = [(Vec3::new(6.0, 1.7, 0.0), 0.6), (Vec3::new(6.0, -1.7, 0.0), 0.6)];
 
 struct Robot {
@@ -30,13 +30,13 @@ fn main() {
     let mut draw = || f64::from(rng.below(4000)) / 1000.0 - 2.0;
     let strewn = |_| Robot { place: Vec3::new(draw(), draw(), 0.0), velocity: Vec3::ZERO };
     let mut robots: Vec<Robot> = (0..ROBOTS).map(strewn).collect();
-    // A point that moves evenly: where the flock should be, and how fast it should go.
+    // The flock's reference: a point with constant velocity.
     let mut lead = Robot { place: Vec3::ZERO, velocity: Vec3::new(0.2, 0.0, 0.0) };
     for step in 0..=STEPS {
         if step % PICTURES_EVERY == 0 {
             println!("after {:.0} s\n{}", f64::from(step) * STEP_S, picture(&robots));
         }
-        // All decide, then all move.
+        // All robots decide before any robot moves.
         let chosen: Vec<_> = (0..ROBOTS).map(|own| decide(&params, &robots, own, &lead)).collect();
         for (robot, acceleration) in robots.iter_mut().zip(chosen) {
             robot.velocity += acceleration * STEP_S;
@@ -60,8 +60,6 @@ fn main() {
     assert!(off_by < 0.02, "somebody does not follow");
 }
 
-/// What robot number `own` does to its velocity. It sees the others within the law's range, the discs and the
-/// reference.
 fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robot) -> Vec3<f64> {
     let id = |index: usize| RobotId(index as u32 + 1);
     let robot = &robots[own];
@@ -91,7 +89,7 @@ fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robo
     acceleration(params, &body, &nearby, &discs, Some(&reference))
 }
 
-/// The land from above: robots are `o`, discs `#`; a character is 0.2 m wide and 0.4 m high.
+/// Draws the scene from above: robots are `o`, discs `#`; a character is 0.2 m wide and 0.4 m high.
 fn picture(robots: &[Robot]) -> String {
     let mut text = String::new();
     for row in (-7..=7).rev() {

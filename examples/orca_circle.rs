@@ -1,5 +1,5 @@
-//! Robots on a circle change places with those opposite: collision avoidance alone, without agents and radio, as RVO2's
-//! example `Circle` does it. Run it by `cargo run --example orca_circle`.
+//! Robots on a circle change places with the opposite ones: collision avoidance alone, without
+//! agents and radio, as in RVO2's example `Circle`. Run it with `cargo run --example orca_circle`.
 
 use staya_controller::orca::{AvoidParams, Avoider};
 use staya_controller::scalar::Scalar;
@@ -21,18 +21,17 @@ fn main() {
         let (sin, cos) = Scalar::sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(ROBOTS));
         Vec3::new(cos, sin, 0.0) * 5.0
     };
-    // Everybody's goal is opposite: minus its start.
+    // The goal of each robot is the opposite point: minus its start.
     let has_arrived = |place: &Vec3<f64>, i: u32| (*place + start(i)).norm() < 0.05;
 
     let mut places: Vec<Vec3<f64>> = (0..ROBOTS).map(start).collect();
     let mut velocities = vec![Vec3::ZERO; places.len()];
-    // At most 16 obstacles and robots count, the nearest ones.
+    // Only the nearest 16 obstacles and robots are considered.
     let mut avoiders = vec![Avoider::<f64, 16>::new(AvoidParams::default()); places.len()];
     let (mut rng, mut least_gap_m, mut steps) = (Rng::new(1), f64::MAX, 0);
     while !places.iter().zip(0..).all(|(place, i)| has_arrived(place, i)) {
         let mut chosen = Vec::new();
         for (i, own) in places.iter().enumerate() {
-            // What it sees: the others, nearest first.
             let others = (0..places.len()).filter(|j| *j != i).map(|j| Nearby {
                 id: RobotId(j as u32 + 1),
                 offset_m: places[j] - *own,
@@ -53,13 +52,14 @@ fn main() {
                 max_acceleration_mps2: f64::MAX, // no inertia
                 step_s: STEP_S,
             };
-            // It would like to be at its goal, and takes the nearest velocity that nobody forbids.
+            // The preferred velocity reaches the goal in one step; ORCA returns the nearest
+            // permitted velocity.
             let goal = (-start(i as u32) - *own).xy();
             let wish = (goal * (1.0 / STEP_S)).clamp_norm(SPEED_MPS);
             let best = avoiders[i].velocity(&body, wish, Some(goal), &nearby, &[], &mut rng);
             chosen.push(best.velocity_mps.extend(0.0));
         }
-        // All have decided; now all move.
+        // All robots have decided; now all move.
         velocities = chosen;
         for (place, velocity) in places.iter_mut().zip(&velocities) {
             *place += *velocity * STEP_S;

@@ -1,6 +1,9 @@
-//! A guidance law that Staya does not have, run by 20 robots in the simulator: the one of `own_part/src/lib.rs`, by which all become a
-//! patrol with even gaps on a ring. Run it by `cargo run --release --example own_guidance -- out/patrol`; without a folder it draws and
-//! records nothing. `staya hil` runs the same law on emulated parts: see docs/project.md.
+//! Runs 20 robots in the simulator with a user-defined guidance law: the ring patrol of
+//! `own_part/src/lib.rs`.
+//!
+//! Run it with `cargo run --release --example own_guidance -- out/patrol`; without a folder it
+//! writes neither pictures nor a recording. `staya hil` runs the same law on emulated parts: see
+//! docs/project.md.
 
 use patrol::Patrol;
 use staya_plot::motion_pictures;

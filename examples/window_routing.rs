@@ -1,11 +1,12 @@
-//! A robot finds its way over land of which it sees a window of 11 x 11 cells only: out of a dead end that is larger
-//! than what it sees, by remembering where it has been. Run it by `cargo run --example window_routing`.
+//! A robot that sees only a window of 11 x 11 cells leaves a dead end larger than this window,
+//! because it remembers the cells that it has visited. Run it with
+//! `cargo run --example window_routing`.
 
 use staya_controller::cost::Gain;
 use staya_controller::grid::{BLOCKED, Cell, Window};
 use staya_controller::route::{CostField, RouteParams, Router};
 
-/// `.` takes a tick to cross, `:` three; nobody enters `#`. North is up.
+/// Map, north up: `.` takes one tick to cross, `:` three; `#` is blocked.
 const LAND: [&str; 17] = [
     "................................................",
     "................................................",
@@ -27,7 +28,7 @@ const LAND: [&str; 17] = [
 ];
 const START: Cell = Cell::new(3, 8);
 const GOAL: Cell = Cell::new(45, 8);
-/// Ticks to cross a cell; what is not on the map cannot be entered.
+/// Ticks to cross a cell; cells outside the map are blocked.
 fn impassability(cell: Cell) -> u8 {
     let row = usize::try_from(LAND.len() as i16 - 1 - cell.y).ok();
     let row = row.and_then(|row| LAND.get(row));
@@ -40,10 +41,11 @@ fn impassability(cell: Cell) -> u8 {
 }
 
 fn main() {
-    // As for mazes: an earlier visit of a cell costs much.
+    // Parameters for mazes: a high cost for visited cells.
     let params = RouteParams { a2: Gain::from_int(30), ..RouteParams::default() };
     let side = 2 * u16::from(params.radius) + 1;
-    // What the robot keeps: the last 256 cells that it was in. A search needs (side + 2)^2 cells of scratch memory.
+    // The robot stores the last 256 cells that it was in. A search needs (side + 2)^2 cells of
+    // scratch memory.
     let mut router = Router::<256>::new();
     let mut field = CostField::<169>::new();
     let (mut cell, mut way, mut ticks) = (START, vec![START], 0);
@@ -54,7 +56,8 @@ fn main() {
             .collect();
         let window = Window::new(&seen, corner, side, side).expect("side times side cells");
         router.observe(&params, cell, GOAL);
-        // What each of the eight moves costs at best; other robots would be cells in the last argument.
+        // Lowest cost of each of the eight moves. The last argument would list cells of other
+        // robots.
         let weights =
             router.weights(&params, &mut field, &window, cell, GOAL, []).expect("there is a way out");
         cell = cell + weights.best().expect("a move is open").offset();

@@ -1,5 +1,5 @@
-/* Robots on a circle change places with those opposite: collision avoidance alone, on plain arrays, without agents and radio.
-   The same as orca_circle.rs. How to compile it: docs/c.md. */
+/* Robots on a circle change places with the opposite ones: collision avoidance alone, on plain
+   arrays, without agents and radio. C version of orca_circle.rs. How to compile it: docs/c.md. */
 
 #include "staya.h"
 #include <float.h>
@@ -66,12 +66,12 @@ int main(void)
                 .max_acceleration_mps2 = FLT_MAX, /* no inertia */
                 .step_s = STEP_S,
             };
-            /* It would like to be at its goal, and takes the nearest velocity that nobody forbids. */
+            /* The preferred velocity reaches the goal in one step; ORCA takes the nearest permitted one. */
             const float way_m[3] = {goal[i][0] - place[i][0], goal[i][1] - place[i][1], 0.0f};
             const float wish_mps[3] = {way_m[0] / STEP_S, way_m[1] / STEP_S, 0.0f};
             must(staya_orca_velocity(avoider[i], &body, wish_mps, way_m, nearby, count, NULL, 0, chosen[i]));
         }
-        /* All have decided; now all move. */
+        /* All robots have decided; now all move. */
         arrived = 0;
         for (int i = 0; i < ROBOTS; i++) {
             for (int axis = 0; axis < 3; axis++) {

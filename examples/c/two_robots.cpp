@@ -1,4 +1,5 @@
-// Whole agents from C++: two robots change places, and only bytes go between them. How to compile it: docs/c.md.
+// Agents from C++: two robots change places and exchange nothing but bytes. How to compile it:
+// docs/c.md.
 
 #include "staya.h"
 #include <cmath>
@@ -34,11 +35,11 @@ public:
         inputs.position_mm[0] = from_mm;
         inputs.max_speed_mps = setup.speed_mps;
     }
-    // The agent is where its memory is.
+    // Not copyable: the agent lives in `memory`.
     Robot(const Robot &) = delete;
     Robot &operator=(const Robot &) = delete;
 
-    // Hears, decides, speaks.
+    // Runs one step of the agent; returns the packets that it sends.
     std::vector<std::uint8_t> step(std::uint32_t now_us, const std::vector<std::uint8_t> &heard)
     {
         inputs.now_us = now_us;
@@ -48,7 +49,7 @@ public:
         return {outputs.outbox, outputs.outbox + outputs.outbox_bytes};
     }
 
-    // A body without inertia: it goes as it is told.
+    // A body without inertia follows the command at once.
     void move()
     {
         float way_m[3] = {};
@@ -79,7 +80,7 @@ int main()
     double least_m = 1e9;
     std::uint32_t tick = 0;
     for (; !(east.has_arrived() && west.has_arrived()); tick++) {
-        // What was said in a tick is heard in the next.
+        // Packets arrive one tick after they were sent.
         auto said_east = east.step(tick * TICK_US, from_west);
         auto said_west = west.step(tick * TICK_US, from_east);
         from_east = said_east;

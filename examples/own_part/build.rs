@@ -1,4 +1,4 @@
-//! Tells the linker what makes a program of the part's firmware.
+//! Passes the linker script of the part's firmware to the linker.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -1,4 +1,4 @@
-//! Hands cortex-m-rt's script to the linker.
+//! Passes the linker script of cortex-m-rt to the linker.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");

@@ -1,12 +1,12 @@
-//! Each example of this folder runs to its end: its claims are assertions of its own.
+//! Runs each example of this folder to its end. The examples assert their own claims.
 
 use std::path::Path;
 use std::process::Command;
 
 #[test]
-fn each_example_holds_what_it_claims() {
+fn each_example_fulfils_its_own_assertions() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    // Cargo builds the examples beside the tests: target/PROFILE/examples, target/PROFILE/deps.
+    // Cargo builds examples to target/PROFILE/examples and tests to target/PROFILE/deps.
     let own = std::env::current_exe().expect("a path");
     let built = own.ancestors().nth(2).expect("target/PROFILE").join("examples");
     let mut count = 0;

@@ -1,27 +1,27 @@
-//! Names the part that a target triple stands for, and gives its linker script to the linker.
+//! Derives the part from the target triple and passes its linker script to the linker.
 
 use std::env;
 use std::path::Path;
 
-/// Bits per second on the wire, unless `STAYA_BAUD` says otherwise.
+/// Default baud rate; the variable `STAYA_BAUD` overrides it.
 const BAUD: u32 = 115_200;
-/// The crystal of an STM32F405 board, unless `STAYA_HSE_HZ` says otherwise.
+/// Default crystal of an STM32F405 board; the variable `STAYA_HSE_HZ` overrides it.
 const HSE_HZ: u32 = 8_000_000;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rustc-check-cfg=cfg(part, values(\"stm32f405\", \"nrf51\", \"riscv32\"))");
     number("STAYA_BAUD", BAUD, 1200..=2_000_000);
-    // The PLL divides the crystal down to 1 MHz, so whole megahertz only.
+    // The PLL divides the crystal down to 1 MHz, so only whole megahertz are possible.
     let hse_hz = number("STAYA_HSE_HZ", HSE_HZ, 4_000_000..=26_000_000);
     assert!(hse_hz.is_multiple_of(1_000_000), "STAYA_HSE_HZ is not in whole megahertz");
 
     let target = env::var("TARGET").unwrap_or_default();
     let (part, scripts): (&str, &[&str]) = match target.as_str() {
-        // cortex-m-rt's link.x includes memory.x, and the linker takes the one of its working
-        // directory first: the workspace's, which is the map of the STM32F405.
+        // The link.x of cortex-m-rt includes memory.x. The linker finds the one in its working
+        // directory first: the workspace's, which is the memory map of the STM32F405.
         "thumbv7em-none-eabihf" => ("stm32f405", &["link.x"]),
-        // Hence whole scripts of other names for the other Cortex-M.
+        // Other Cortex-M parts therefore need complete scripts with other names.
         "thumbv6m-none-eabi" => ("nrf51", &["nrf51-memory.x", "nrf51.x"]),
         "riscv32imac-unknown-none-elf" => ("riscv32", &["riscv32.x", "link.x"]),
         _ => return,
@@ -45,25 +45,26 @@ fn main() {
             println!("cargo:rustc-link-arg-bin={bin}=-T{script}");
         }
         if is_only_linked || (bin == "lockstep" && is_optimised) {
-            // defmt's script keeps the panic that its macros `panic`, `assert` and `unwrap` fall back on, called or not; nobody
-            // calls them (`cargo xtask check` looks).
+            // The script of defmt keeps the panic behind its macros `panic`, `assert` and `unwrap`
+            // even in programs without them, like these (`cargo xtask check` verifies it).
             println!("cargo:rustc-link-arg-bin={bin}=--defsym=__defmt_default_panic=0");
         }
     }
-    // What refers to what, for `cargo xtask size`: the code and the constants that a behaviour's step needs.
+    // Relocations show `cargo xtask size` which code and constants a behaviour's step needs.
     println!("cargo:rustc-link-arg-bin=bench=--emit-relocs");
-    // Sections stay as small as they are: without it the linker fills up to 64 KiB pages.
+    // Prevents the linker from padding sections to pages of 64 KiB.
     println!("cargo:rustc-link-arg-bins=--nmagic");
 }
 
-/// One script for firmware in crates elsewhere, `-Tstaya-firmware.x`, where the linker looks: all of a part's, and the map of the
-/// STM32F405 for who has no memory.x of his own.
+/// Offers firmware in other crates a single script on the linker's search path,
+/// `-Tstaya-firmware.x`: all scripts of the part, and the STM32F405's memory map for crates without
+/// a memory.x.
 fn offer_script(here: &Path, part: &str, scripts: &[&str], is_optimised: bool) {
     let out = std::path::PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     let mut all: String =
         scripts.iter().chain(&["defmt.x", "note.x"]).map(|name| format!("INCLUDE {name}\n")).collect();
     if is_optimised {
-        // See below.
+        // As for `build.rs`'s own programs, see `main`.
         all += "__defmt_default_panic = 0;\n";
     }
     let write = |name: &str, text: &[u8]| {
@@ -78,13 +79,13 @@ fn offer_script(here: &Path, part: &str, scripts: &[&str], is_optimised: bool) {
     println!("cargo:rustc-link-search={}", out.display());
 }
 
-/// The programs: each file in src/bin is one.
 fn bins(here: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(here.join("src/bin")).into_iter().flatten();
     entries.filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string())).collect()
 }
 
-/// A number from the environment or the default, handed on to the crate as an environment variable.
+/// Takes a number from the environment or the default, and passes it to the crate as an environment
+/// variable.
 fn number(name: &str, default: u32, range: std::ops::RangeInclusive<u32>) -> u32 {
     println!("cargo:rerun-if-env-changed={name}");
     let value = match env::var(name) {

@@ -1,5 +1,5 @@
-//! A guidance law that Staya does not have: each robot goes round a ring at the pace that keeps it midway between the two whom it hears
-//! ahead and behind, so that all become a patrol with even gaps.
+//! A user-defined guidance law: robots patrol a ring with even gaps. Each robot adjusts its speed
+//! to stay midway between the nearest robots that it hears ahead and behind.
 #![no_std]
 
 use core::f32::consts::TAU;
@@ -8,17 +8,18 @@ use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::{rand::Rng, scalar::Scalar};
 
-/// What the law keeps between decisions. Serde carries it to devices, through checkpoints and into the run's fingerprint.
+/// State and parameters of the law. Serde carries them to devices, into checkpoints and into the
+/// trace hash.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Patrol {
     /// Radius of the ring, metres.
     pub ring_m: f32,
-    /// Pace where the gaps are even, m/s.
+    /// Speed while the gaps are even, m/s.
     pub cruise_mps: f32,
 }
 
 impl Patrol {
-    /// A ring of eight metres, half a metre a second.
+    /// A ring of 8 m radius, at 0.5 m/s.
     pub const RING: Self = Self { ring_m: 8.0, cruise_mps: 0.5 };
 }
 
@@ -41,7 +42,7 @@ impl<S: Scalar> Guidance<S> for Patrol {
         let number = |x: f32| S::from_f32(x).unwrap_or(S::ZERO);
         let (turn, place) = (number(TAU), input.state.position.since::<S>(Position::default()));
         let bearing = |place: Vec3<S>| place.y.atan2(place.x);
-        // How far others are round the ring, ahead of this robot and behind it.
+        // Smallest arcs to another robot, ahead and behind.
         let (mut ahead, mut behind) = (turn, turn);
         for other in input.nearby {
             let angle = bearing(place + other.offset_m) - bearing(place);

@@ -1,4 +1,5 @@
-//! Twenty robots on patrol, some of them on emulated parts or boards; the arguments are those of `staya hil`.
+//! Twenty robots on patrol, some of them on emulated parts or boards. Takes the options of
+//! `staya hil`.
 
 use patrol::Patrol;
 

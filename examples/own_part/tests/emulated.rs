@@ -1,5 +1,6 @@
-//! The law on emulated parts. `cargo xtask test` builds the firmware and runs these; by hand:
-//! `cargo xtask firmware --crate examples/own_part stm32f405 && cargo test -p patrol --test emulated`.
+//! The law on emulated parts. `cargo xtask test` builds the firmware and runs these tests. By
+//! hand: `cargo xtask firmware --crate examples/own_part stm32f405`, then
+//! `cargo test -p patrol --test emulated`.
 
 use clap::Parser;
 use patrol::Patrol;
@@ -18,7 +19,7 @@ const DEVICES: [&str; 6] = ["--device", "qemu:stm32f405", "--devices", "4", "--f
 const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/target/firmware");
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/patrol.toml");
 
-/// Why the firmware is not what `own` steps.
+/// The reason for which the firmware is refused as a device for `own`.
 fn refusal<G: OwnLaw + LinkedLaw<f32>>(own: &Own<G>) -> String {
     #[derive(Parser)]
     struct Line {
@@ -35,7 +36,7 @@ fn refusal<G: OwnLaw + LinkedLaw<f32>>(own: &Own<G>) -> String {
 }
 
 #[test]
-fn four_robots_of_twenty_decide_on_parts_what_their_shadows_do() {
+fn four_of_twenty_robots_on_parts_decide_like_their_shadows() {
     let mut patrol = Command::new(env!("CARGO_BIN_EXE_patrol"));
     let output = patrol.arg(SCENARIO).args(DEVICES).args(["--ticks", "150", "--json", "--quiet"]).output();
     let output = output.expect("it runs");
@@ -51,7 +52,8 @@ fn four_robots_of_twenty_decide_on_parts_what_their_shadows_do() {
     }
 }
 
-/// The patrol, told alike, a thousandth of a millimetre a second faster: what a host that was changed after its firmware was flashed does.
+/// The patrol with the same serialised form but a speed that is 1 um/s higher: a host that was
+/// changed after its firmware was flashed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Changed(Patrol);
 
@@ -83,7 +85,7 @@ impl Guidance<f32> for Changed {
 }
 
 #[test]
-fn a_law_that_differs_from_the_firmwares_is_noticed_at_once() {
+fn law_that_differs_from_the_firmware_is_detected_at_once() {
     let error = refusal(&Own::new(package!(), |_| Changed(Patrol::RING)));
     assert!(error.contains("robot 1 on qemu:stm32f405") && error.contains("differs at step 0"), "{error}");
 }

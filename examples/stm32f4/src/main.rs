@@ -1,5 +1,7 @@
-//! A robot with two driven wheels on an STM32F405: a radio modem on USART1 (PA9, PA10), encoders on TIM3 (PA6, PA7)
-//! and TIM4 (PB6, PB7), two motors behind a DRV8833 on TIM8 (PC6 to PC9). It goes to a waypoint, keeping clear of others.
+//! A robot with two driven wheels on an STM32F405 that moves to a waypoint and avoids other robots.
+//!
+//! Wiring: a radio modem on USART1 (PA9, PA10), encoders on TIM3 (PA6, PA7) and TIM4 (PB6, PB7),
+//! and two motors behind a DRV8833 on TIM8 (PC6 to PC9).
 #![no_std]
 #![no_main]
 
@@ -18,7 +20,7 @@ use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
 
 const TICK: Duration = Duration::from_millis(50);
-/// Measured on the robot: between the wheels, a wheel's radius, the body's radius, edges per turn of a wheel.
+/// Measured on the robot: wheel distance, wheel radius, body radius, and encoder edges per turn.
 const TRACK_M: f32 = 0.12;
 const WHEEL_M: f32 = 0.03;
 const BODY_M: f32 = 0.09;
@@ -29,7 +31,7 @@ bind_interrupts!(struct Irqs {
     RNG => rng::InterruptHandler<peripherals::RNG>;
 });
 
-/// Runs the robot; returns only if a measure makes no sense.
+/// Runs the robot; returns only if a measured value is invalid.
 async fn robot(p: Peripherals) -> Option<()> {
     let (mut tx, mut rx, mut modem) = ([0; 256], [0; 512], UartConfig::default());
     modem.baudrate = 57_600;
@@ -86,7 +88,8 @@ async fn robot(p: Peripherals) -> Option<()> {
 #[embassy_executor::main]
 async fn main(_spawner: Spawner) {
     let mut config = Config::default();
-    // 16 MHz / 8 * 168: half of it for the core, a seventh (48 MHz) for the random numbers.
+    // 16 MHz / 8 * 168, divided by 2 for the core and by 7 (48 MHz) for the random number
+    // generator.
     let (prediv, mul, divp, divq) = (PllPreDiv::DIV8, PllMul::MUL168, PllPDiv::DIV2, PllQDiv::DIV7);
     config.rcc.pll = Some(Pll { prediv, mul, divp: Some(divp), divq: Some(divq), divr: None });
     (config.rcc.pll_src, config.rcc.sys) = (PllSource::HSI, Sysclk::PLL1_P);
@@ -95,7 +98,7 @@ async fn main(_spawner: Spawner) {
     cortex_m::peripheral::SCB::sys_reset();
 }
 
-#[panic_handler] // Lets go of the motors, and starts anew.
+#[panic_handler] // Stops the motors and restarts.
 fn panic(_: &core::panic::PanicInfo) -> ! {
     cortex_m::peripheral::SCB::sys_reset();
 }

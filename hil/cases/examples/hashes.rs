@@ -1,4 +1,5 @@
-//! Prints `case number hash steps` for each case and kind of number: the table that every target must give.
+//! Prints `case number hash steps` for each case and number format: the table that every target
+//! must reproduce.
 
 fn main() {
     staya_cases::every(|name, number, summary| {

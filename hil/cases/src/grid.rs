@@ -1,4 +1,4 @@
-//! Swarms on the grid: bodies that move cell by cell.
+//! Swarms on the grid, whose bodies move from cell to cell.
 
 use crate::hash::Hash;
 use crate::land::{Land, WINDOW};
@@ -17,35 +17,31 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Postcard, Wire};
 
-/// Neighbours that an agent of a case in the plane knows; on the grid as many as there are robots.
+/// Neighbours in the table of an agent in the plane; on the grid, the table has room for all
+/// robots.
 pub(crate) const KNOWN: usize = 8;
-/// Cells whose visits it remembers.
 const VISITS: usize = 32;
-/// Neighbours in its template.
 const TEMPLATE: usize = ROBOTS;
-/// Robots of a case on the grid.
 pub(crate) const ROBOTS: usize = 4;
 
 pub(crate) type Route = RouteGuidance<CELLS, VISITS>;
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE>;
 pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, ROBOTS, Unguarded, W>;
 
-/// A tick in which a unit of [`UNIT`] is a millisecond: crossings need no division.
+/// Duration of a tick. With [`UNIT`] milliseconds, crossing times need no division.
 pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
 
-/// A robot with its body.
 pub(crate) struct Walker<S: Scalar, G: Guidance<S>, W = Postcard> {
     pub(crate) agent: GridAgent<S, G, W>,
     pub(crate) cell: Cell,
-    /// When it may leave its cell, milliseconds after the start.
+    /// Time at which the robot may leave its cell, milliseconds after the start.
     pub(crate) free_at_ms: u32,
 }
 
-/// What does not change during a case.
 pub(crate) struct Scene {
     pub(crate) land: Land,
     pub(crate) faults: Faults,
-    /// After so many ticks it ends, arrived or not.
+    /// Limit after which the case ends even if not all robots have arrived.
     pub(crate) ticks: u32,
 }
 
@@ -53,14 +49,14 @@ pub(crate) fn instant(tick: u32) -> Instant {
     Instant::from_micros(0) + TICK.saturating_mul(tick.cast_signed())
 }
 
-/// Made where it stays, not beside it first: a small part has no room for two.
+/// Not inlined, so that the workspace is built in place: a small part has no memory for two.
 #[inline(never)]
 pub(crate) fn workspace() -> GridWorkspace<CELLS> {
     GridWorkspace::new()
 }
 
-/// Runs `walkers` until all have arrived. `commander` says what an operator says in a tick; robots hear it as they
-/// hear each other, all in wire format `wire`.
+/// Runs `walkers` until all have arrived. `commander` writes an operator's packets of a tick;
+/// robots receive them like each other's packets. All use wire format `wire`.
 #[inline(never)]
 pub(crate) fn run<S, G, W, P>(
     scene: &Scene,
@@ -76,7 +72,6 @@ where
     W: Wire,
     P: Probe<S>,
 {
-    // One place more, for the operator.
     let mut medium = Medium::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
     let mut workspace = workspace();
     let (mut hash, mut course) = (Hash::new(), Hash::new());
@@ -156,7 +151,7 @@ where
     probe.step(&mut walker.agent, &inputs, instant(tick), workspace)
 }
 
-/// Moves one body by the first of its wishes that leads into a free cell (KUZ algorithm 4).
+/// Moves one body by its first preferred move that leads into a free cell (KUZ algorithm 4).
 fn advance<S: Scalar, G: Guidance<S>, W>(
     scene: &Scene,
     walkers: &mut [Walker<S, G, W>],
@@ -185,7 +180,8 @@ fn advance<S: Scalar, G: Guidance<S>, W>(
     if let Some(walker) = walkers.get_mut(index)
         && walker.free_at_ms <= now_ms
     {
-        // Who goes on at the first tick after it became free carries the rest of that tick over (KUZ eq. 6).
+        // A body that leaves in the first tick after it became free carries the rest of that tick
+        // over (KUZ eq. 6).
         let is_going_on = now_ms.saturating_sub(walker.free_at_ms) < UNIT;
         let start_ms = if is_going_on { walker.free_at_ms } else { now_ms };
         walker.free_at_ms = start_ms.saturating_add(crossing_ms);
@@ -193,7 +189,6 @@ fn advance<S: Scalar, G: Guidance<S>, W>(
     }
 }
 
-/// Pairs of bodies in one cell.
 fn overlaps<S: Scalar, G: Guidance<S>, W>(walkers: &[Walker<S, G, W>]) -> u32 {
     let mut count = 0;
     for (index, one) in walkers.iter().enumerate() {

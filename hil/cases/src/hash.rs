@@ -1,10 +1,10 @@
-//! A hash over everything that a swarm did.
+//! Hash of everything that a swarm did.
 
 use staya_controller::agent::{Command, Outputs};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::scalar::Scalar;
 
-/// FNV-1a of 64 bits: order matters, and a device without a wide multiplier still affords it.
+/// 64-bit FNV-1a: depends on the order and is cheap on a processor without a wide multiplier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hash(u64);
 
@@ -39,7 +39,7 @@ impl Hash {
         }
     }
 
-    /// All that a step gave, events aside: they follow from the rest of the state.
+    /// Hashes all outputs of a step except events, which follow from the rest of the state.
     pub(crate) fn outputs<S: Scalar>(&mut self, out: &Outputs<S>) {
         self.command(&out.command);
         self.bytes(&out.received.to_le_bytes());
@@ -48,7 +48,6 @@ impl Hash {
         self.word(out.call_again.as_micros().into());
     }
 
-    /// What a step wants the body to do.
     pub(crate) fn command<S: Scalar>(&mut self, command: &Command<S>) {
         match command {
             Command::Hold => self.bytes(&[0]),

@@ -1,10 +1,13 @@
-//! Canned swarms, one for each behaviour: a few agents in one program that hear each other's bytes and move their
-//! bodies, on land from a formula. The same code runs on a host and on a microcontroller, and a hash over everything
-//! that the agents did says whether they did the same.
+//! Canned swarms, one for each behaviour, to compare targets with each other.
 //!
-//! Nothing here allocates or panics, and what is `inline(never)` keeps the stack of one case out of the others': the
-//! largest runs in the 16 KiB of RAM of a micro:bit. Bodies move by [`Scalar`] arithmetic and integers only, so that equal bits of
-//! the controller are all that equal hashes need.
+//! A case runs a few agents in one program. They receive each other's packets and move simulated
+//! bodies on terrain from a formula. The same code runs on a host and on a microcontroller. A hash
+//! of all outputs shows whether both computed the same.
+//!
+//! Nothing here allocates or panics. Functions marked `inline(never)` keep the cases from sharing
+//! one large stack frame: the largest case runs in the 16 KiB of RAM of a micro:bit. Bodies move by
+//! [`Scalar`] arithmetic and integers only, so that hashes are equal if the controller's results
+//! are bitwise equal.
 #![no_std]
 
 #[cfg(test)]
@@ -30,9 +33,10 @@ use staya_controller::time::Instant;
 use staya_controller::wire::{Postcard, Wire};
 use staya_mavlink::wire::Mavlink;
 
-/// What stands around each [`Agent::step`] of a case: firmware counts instructions and stack there.
+/// Wrapper around each [`Agent::step`] of a case, in which firmware measures instructions and
+/// stack.
 pub trait Probe<S: Scalar> {
-    /// Does `agent.step(inputs, now, workspace)`.
+    /// Calls `agent.step(inputs, now, workspace)`.
     fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
         &mut self,
         agent: &mut Agent<S, G, N, A, W>,
@@ -58,7 +62,7 @@ impl<S: Scalar> Probe<S> for Unmeasured {
     }
 }
 
-/// Measures nothing, and hides from the optimiser what goes into a step and what becomes of it.
+/// Measures nothing, and hides the inputs and outputs of a step from the optimiser.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Opaque;
 
@@ -75,8 +79,8 @@ impl<S: Scalar> Probe<S> for Opaque {
     }
 }
 
-/// Every case with every kind of number that parts compute with, in the order of the golden table: name, kind of
-/// number, and what came of it.
+/// Runs every case with every number format used on parts, in the order of the golden table. Passes
+/// name, number format and result to `done`.
 pub fn every(mut done: impl FnMut(&'static str, &'static str, &Summary)) {
     each::<f32>("f32", &mut done);
     each::<Q16>("Q16", &mut done);
@@ -93,7 +97,8 @@ fn each<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'s
     }
 }
 
-/// [`Case::Packets`] in each wire format: for each its hash, and then its course, which is the same for all.
+/// Runs [`Case::Packets`] in each wire format. Reports the hash of each format, followed by the
+/// hash of the course, which is equal for all formats.
 pub fn in_each_format<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'static str, &Summary)) {
     let course = |summary: Summary| Summary { hash: summary.course, ..summary };
     let postcard = packets_over::<S, _, _>(Postcard, &mut Unmeasured);
@@ -103,34 +108,34 @@ pub fn in_each_format<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'s
     done("packets_mavlink_course", number, &course(mavlink));
 }
 
-/// [`Case::Packets`] in a wire format.
+/// Runs [`Case::Packets`] in one wire format.
 pub fn packets_over<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -> Summary {
     swarms::on_grid::packets(wire, probe)
 }
 
-/// What came of a case.
+/// Result of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// Over all that the agents gave, and where their bodies were, in each tick.
+    /// Hash of all outputs of the agents and all positions of the bodies, in each tick.
     pub hash: u64,
-    /// The same without the bytes that went over the radio, and how many frames of them were heard; 0 for cases that run in one
-    /// wire format only.
+    /// Like `hash`, but without transmitted bytes and the count of accepted frames; 0 for cases
+    /// that run in one wire format only.
     pub course: u64,
-    /// Ticks until all had arrived, or the case's limit.
+    /// Ticks until all robots had arrived, or the case's limit.
     pub ticks: u32,
     /// Steps of all agents together.
     pub steps: u32,
-    /// Agents that said at the end that they had arrived.
+    /// Agents whose mode was "arrived" at the end.
     pub arrived: u32,
-    /// Pairs of bodies that overlapped, summed over the ticks.
+    /// Pairs of overlapping bodies, summed over the ticks.
     pub overlaps: u32,
-    /// Distances of the nearest and of the farthest two bodies at the end, millimetres; 0 on the grid.
+    /// Smallest and largest distance of two bodies at the end, millimetres; 0 on the grid.
     pub apart_mm: [u32; 2],
-    /// Frames that agents refused: damaged or heard before.
+    /// Frames that agents rejected as damaged or repeated.
     pub rejected: u32,
-    /// Bytes of one agent.
+    /// Size of one agent, bytes.
     pub agent_bytes: u32,
-    /// Bytes of the workspace that all agents share.
+    /// Size of the workspace shared by all agents, bytes.
     pub workspace_bytes: u32,
 }
 

@@ -1,32 +1,30 @@
-//! The radio medium between the robots of a case: what one said in a tick all others hear in the next, or what is left
-//! of it.
+//! The radio medium between the robots of a case. Packets sent in one tick arrive at all other
+//! robots in the next, unless they are lost.
 
 use heapless::Vec;
 use staya_controller::rand::Rng;
 use staya_controller::wire::Wire;
 
-/// Bytes of one robot that are kept for the next tick: its beacon and some requests. What does not fit is not sent.
+/// Bytes that one robot can send in a tick: its beacon and some requests. Further frames are
+/// dropped.
 const SAID: usize = 144;
-/// Bytes that one robot hears in a tick.
 pub(crate) const INBOX: usize = 576;
-/// Keeps the draws of this module apart from others.
+/// Random number stream for this module.
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");
 
-/// What becomes of a frame on its way: probabilities as Q0.32.
+/// Faults of the medium: probabilities per frame as Q0.32.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Faults {
     pub(crate) seed: u64,
-    /// It does not arrive.
     pub(crate) loss: u32,
-    /// One of its bits is wrong.
+    /// One bit is flipped.
     pub(crate) flip: u32,
-    /// It arrives twice.
+    /// The frame arrives twice.
     pub(crate) twice: u32,
 }
 
-/// The medium that `R` senders share: what they said in the last tick, in wire format `W`.
+/// A medium shared by `R` senders that holds the frames of the last tick, in wire format `W`.
 pub(crate) struct Medium<W, const R: usize> {
-    /// Tells frames apart.
     wire: W,
     said: [Vec<u8, SAID>; R],
     next: [Vec<u8, SAID>; R],
@@ -34,12 +32,12 @@ pub(crate) struct Medium<W, const R: usize> {
 }
 
 impl<W: Wire, const R: usize> Medium<W, R> {
-    #[inline(never)] // Made where it stays, not beside it first.
+    #[inline(never)] // Built in place to save stack.
     pub(crate) const fn new(wire: W, faults: Faults) -> Self {
         Self { wire, said: [const { Vec::new() }; R], next: [const { Vec::new() }; R], faults }
     }
 
-    /// Takes what `sender` says in this tick, frame by frame as long as there is room.
+    /// Takes the frames that `sender` sends in this tick, as long as they fit.
     pub(crate) fn send(&mut self, sender: usize, bytes: &[u8]) {
         if let Some(said) = self.next.get_mut(sender) {
             let mut rest = bytes;
@@ -49,7 +47,7 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// The tick is over: what was said in it can be heard.
+    /// Ends the tick: its frames become receivable.
     pub(crate) fn turn(&mut self) {
         core::mem::swap(&mut self.said, &mut self.next);
         for said in &mut self.next {
@@ -57,7 +55,8 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// What arrives at `receiver` in tick `tick`, in the order of the senders.
+    /// Fills `inbox` with the frames that arrive at `receiver` in tick `tick`, in the order of the
+    /// senders.
     pub(crate) fn hear(&self, receiver: usize, tick: u32, inbox: &mut Vec<u8, INBOX>) {
         inbox.clear();
         for (sender, said) in self.said.iter().enumerate() {
@@ -73,8 +72,8 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// Each packet, a frame of `len` bytes, draws as often as any other, so that the fate of one does not change the
-    /// next one's.
+    /// Carries one packet, a frame of `len` bytes. Each packet draws equally many random numbers,
+    /// so that the fate of one does not affect the next.
     fn carry(&self, len: usize, packet: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, INBOX>) {
         let Faults { loss, flip, twice, .. } = self.faults;
         let (is_lost, is_wrong) = (rng.chance_q32(loss), rng.chance_q32(flip));
@@ -95,7 +94,8 @@ impl<W: Wire, const R: usize> Medium<W, R> {
     }
 }
 
-/// Takes the next frame off `rest`: its length, and its bytes with its delimiter if the format has one.
+/// Removes the next frame from `rest`. Returns its length, and its bytes with its delimiter if the
+/// format has one.
 fn next_packet<'a>(wire: &impl Wire, rest: &mut &'a [u8]) -> Option<(usize, &'a [u8])> {
     let before = *rest;
     let len = wire.next_frame(rest)?.len();
@@ -103,7 +103,6 @@ fn next_packet<'a>(wire: &impl Wire, rest: &mut &'a [u8]) -> Option<(usize, &'a 
     Some((len, packet))
 }
 
-/// Appends a packet if it fits; whether it did.
 fn push_packet<const N: usize>(bytes: &mut Vec<u8, N>, packet: &[u8]) -> bool {
     bytes.extend_from_slice(packet).is_ok()
 }

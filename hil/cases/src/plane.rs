@@ -1,4 +1,4 @@
-//! Swarms in the plane and in space: bodies that follow their commands at once.
+//! Swarms in the plane and in space, whose bodies follow their commands at once.
 
 use crate::grid::KNOWN;
 use crate::hash::Hash;
@@ -18,43 +18,37 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::Postcard;
 
-/// Obstacles that a robot sees.
 const OBSTACLES: usize = 8;
-/// Time from one step to the next.
 pub(crate) const STEP: Duration = Duration::from_millis(100);
-/// Side of a cell where there is land, millimetres.
 const CELL_MM: i32 = 1000;
 
 pub(crate) type PlaneAgent<S, G, A> = Agent<S, G, KNOWN, A>;
 
-/// A robot with its body.
 pub(crate) struct Mover<S: Scalar, G: Guidance<S>, A> {
     pub(crate) agent: PlaneAgent<S, G, A>,
     pub(crate) position: Position,
     pub(crate) velocity_mps: Vec3<S>,
 }
 
-/// Something that does not move, in the world.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid {
     /// A wall between two points of the plane, millimetres.
     Wall([[i32; 2]; 2]),
-    /// A ball: its centre and radius, millimetres.
+    /// A ball with its centre and radius, millimetres.
     Ball([i32; 3], i32),
-    /// The floor, at this height, millimetres.
+    /// The floor at this height, millimetres.
     Floor(i32),
 }
 
-/// What does not change during a case.
 pub(crate) struct Scene<S> {
     pub(crate) solids: &'static [Solid],
     /// Cells with walls, for guidance laws that need a grid.
     pub(crate) land: Option<Land>,
     pub(crate) max_speed_mps: S,
-    /// Two centres nearer than this overlap, millimetres.
+    /// Two bodies overlap if their centres are nearer than this, millimetres.
     pub(crate) apart_mm: i32,
     pub(crate) faults: Faults,
-    /// After so many ticks it ends, arrived or not.
+    /// Limit after which the case ends even if not all robots have arrived.
     pub(crate) ticks: u32,
 }
 
@@ -62,7 +56,6 @@ pub(crate) fn instant(tick: u32) -> Instant {
     Instant::from_micros(0) + STEP.saturating_mul(tick.cast_signed())
 }
 
-/// Runs `movers` until all have arrived.
 #[inline(never)]
 pub(crate) fn run<S, G, A, P, const R: usize>(
     scene: &Scene<S>,
@@ -82,7 +75,7 @@ where
     let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
     let mut inbox = Vec::<u8, INBOX>::new();
     for tick in 0..scene.ticks {
-        // Bodies move when all have decided: what they say and where they are belongs to one moment.
+        // Bodies move after all have decided, so that packets and positions belong to one moment.
         for (index, mover) in movers.iter_mut().enumerate() {
             medium.hear(index, tick, &mut inbox);
             let out = step(scene, mover, tick, &inbox, workspace, probe);
@@ -133,12 +126,12 @@ where
     let mut cells = Vec::<u8, WINDOW>::new();
     let mut obstacles = Vec::<Obstacle<S>, OBSTACLES>::new();
     for solid in scene.solids {
-        // Scenes have no more than there is room for; a test says so.
+        // A test shows that no scene has more obstacles than fit.
         let _ = obstacles.push(seen(solid, mover.position));
     }
     let frame = GridFrame { origin_m: Vec2::ZERO, cell_m: S::from_milli(CELL_MM) };
     let place_m = mover.position.since::<S>(Position::ORIGIN).xy();
-    // Scenes lie around the origin: no place is beyond all cells.
+    // Scenes lie around the origin, so that every place is in a cell.
     let cell = frame.cell(place_m).unwrap_or_default();
     let window = scene.land.and_then(|land| land.window(cell, &mut cells));
     if let Some(window) = &window {
@@ -156,7 +149,6 @@ where
     probe.step(&mut mover.agent, &inputs, instant(tick), workspace)
 }
 
-/// A solid as the robot at `from` sees it.
 fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
     match *solid {
         Solid::Wall(ends_mm) => {
@@ -172,19 +164,17 @@ fn seen<S: Scalar>(solid: &Solid, from: Position) -> Obstacle<S> {
     }
 }
 
-/// Pairs of bodies that overlap.
 fn overlaps<S: Scalar, G: Guidance<S>, A>(scene: &Scene<S>, movers: &[Mover<S, G, A>]) -> u32 {
     let least = u64::from(scene.apart_mm.unsigned_abs());
     pairs(movers).filter(|squared| *squared < least * least).count() as u32
 }
 
-/// Distances of the nearest and of the farthest pair, millimetres.
+/// Smallest and largest distance of two bodies, millimetres.
 fn apart<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
     let millimetres = |squared: Option<u64>| squared.unwrap_or(0).isqrt() as u32;
     [pairs(movers).min(), pairs(movers).max()].map(millimetres)
 }
 
-/// The squared distance of each pair, square millimetres.
 fn pairs<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> impl Iterator<Item = u64> {
     movers.iter().enumerate().flat_map(move |(index, one)| {
         let others = movers.iter().skip(index.saturating_add(1));

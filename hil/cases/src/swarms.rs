@@ -1,4 +1,4 @@
-//! The cases: which robots, their tasks, and their controllers.
+//! The cases: their robots, tasks and controllers.
 
 mod flocks;
 pub(crate) mod on_grid;
@@ -12,37 +12,40 @@ use staya_controller::wire::Postcard;
 /// A canned swarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Case {
-    /// Each for itself across rough land with walls, to the opposite corner (A. V. Kuznetsov 2017, KUZ, algorithm 1).
+    /// Independent robots cross rough terrain with walls to the opposite corner (A. V. Kuznetsov
+    /// 2017, KUZ, algorithm 1).
     Route,
-    /// Two rows of two keep their places across rough land (KUZ algorithm 2).
+    /// Two rows of two keep formation across rough terrain (KUZ algorithm 2).
     Formation,
-    /// The same, each foreseeing the others by asking itself what it would do in their place.
+    /// Like [`Case::Formation`], with reflexive prediction: each robot predicts the others by
+    /// evaluating its own law in their place.
     FormationReflexive,
-    /// The same over a radio that loses, damages and repeats packets, everything that the robots know coming
-    /// as packets from an operator: places, goal, "stop", "resume".
+    /// Like [`Case::FormationReflexive`], over a radio that loses, damages and repeats packets. The
+    /// robots receive places, goal, "stop" and "resume" from an operator.
     Packets,
-    /// The grid's route on bodies that move in the plane, behind ORCA.
+    /// The grid's route law for bodies that move in the plane, with ORCA.
     RouteInPlane,
-    /// Five robots on a circle change sides, half-planes by the formula.
+    /// Five robots on a circle change sides with ORCA, half-planes by formula.
     OrcaAnalytic,
-    /// The same with half-planes from a table of 2 KiB.
+    /// Like [`Case::OrcaAnalytic`], with half-planes from a table of 2 KiB.
     OrcaTemplate2k,
-    /// Robots in two rooms change places through a door for one.
+    /// Robots in two rooms change places through a door that is one robot wide.
     Doorway,
-    /// Five robots on a sphere change sides above a floor, around a ball.
+    /// Five robots on a sphere change sides above a floor and around a ball.
     Fly,
-    /// Crossing ways behind push-out, around a ball.
+    /// Robots on crossing routes around a ball, with push-out.
     PushOut,
     /// An alpha flock follows a reference past a ball.
     Lattice,
-    /// A goal flock goes to the middle, parts, and each robot goes to its goal.
+    /// A goal flock moves to the middle of its goals and splits up, and each robot moves to its
+    /// goal.
     GoalFlock,
-    /// Boids take on one heading.
+    /// Boids align their headings.
     Boids,
 }
 
 impl Case {
-    /// Every case.
+    /// All cases.
     pub const ALL: &[Self] = &[
         Self::Route,
         Self::Formation,
@@ -59,7 +62,7 @@ impl Case {
         Self::Boids,
     ];
 
-    /// Its name in tables.
+    /// Name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -79,9 +82,10 @@ impl Case {
         }
     }
 
-    /// Runs it to its end.
+    /// Runs the case to its end.
     ///
-    /// Stack: agents, radio and workspace, about 12 KiB for the largest case, beside what a step needs.
+    /// Stack: agents, radio and workspace, about 12 KiB for the largest case, plus the stack of a
+    /// step.
     pub fn run<S: Scalar, P: Probe<S>>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::route(probe),

@@ -1,4 +1,4 @@
-//! What the swarms do, so that a hash stands for work done and not for robots that stand.
+//! Shows that the swarms do their tasks, so that equal hashes mean more than idle robots.
 
 use super::*;
 use staya_controller::scalar::Q16;
@@ -42,22 +42,23 @@ fn robots_with_goals_arrive_and_never_touch() {
 }
 
 #[test]
-fn an_alpha_flock_ends_in_its_lattice_and_boids_stay_together() {
+fn alpha_flock_forms_its_lattice_and_boids_stay_together() {
     each(
         |name, summary| {
             let [nearest, farthest] = summary.apart_mm;
-            // Five robots 1 m from their neighbours: as a row they would be 4 m long.
+            // Five robots 1 m from their neighbours: a row would be 4 m long.
             assert!((800..1100).contains(&nearest), "{name}: {summary:?}");
             assert!(farthest < 2600 && summary.overlaps == 0, "{name}: {summary:?}");
         },
         &[Case::Lattice],
     );
-    // Up to 127 degrees apart at first, which would take them 35 m apart in 40 s.
+    // Their headings differ by up to 127 degrees at first, which would separate them by 35 m in 40
+    // s.
     each(|name, summary| assert!(summary.apart_mm[1] < 12_000, "{name}: {summary:?}"), &[Case::Boids]);
 }
 
 #[test]
-fn a_bad_radio_costs_frames_and_a_good_one_none() {
+fn only_a_faulty_radio_loses_frames() {
     each(|name, summary| assert!(summary.rejected > 50, "{name}: {summary:?}"), &[Case::Packets]);
     each(
         |name, summary| assert_eq!(summary.rejected, 0, "{name}"),
@@ -66,7 +67,7 @@ fn a_bad_radio_costs_frames_and_a_good_one_none() {
 }
 
 #[test]
-fn packets_in_mavlink_take_the_same_course_as_in_postcard() {
+fn packets_in_mavlink_and_postcard_lead_to_the_same_course() {
     fn check<S: Scalar>(number: &'static str) {
         let mut hashes = std::vec::Vec::new();
         in_each_format::<S>(number, &mut |name, _, summary| {

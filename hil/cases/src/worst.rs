@@ -1,5 +1,8 @@
-//! One agent of full size in the worst company: as many neighbours as it knows, all near, going anywhere, other ones in
-//! each step. Not a proof of the worst case, but what a firmware should have time for.
+//! One agent of full size under heavy load, to estimate the time of a step.
+//!
+//! In each step it has a full table of near neighbours with random velocities, and other ones than
+//! in the step before. This is not a proof of the worst case, but a firmware should have time for
+//! it.
 
 use crate::hash::Hash;
 use crate::land::WINDOW;
@@ -33,47 +36,45 @@ use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, Postcard, encode};
 
-/// Steps of each, in other company each time.
 const STEPS: u32 = 64;
-/// Obstacles in sight in the plane and in space.
 const OBSTACLES: usize = 4;
 const PURPOSE: u32 = u32::from_be_bytes(*b"wrst");
 const RADIUS_MM: i32 = 150;
-/// The own robot's number: in the middle, so that templates name others on both sides.
+/// The agent's id: in the middle, so that templates name robots on both sides of it.
 const OWN: RobotId = RobotId(5);
 
-/// Bytes of sixteen beacons.
 type Inbox = Vec<u8, { 16 * Beacon::MAX_FRAME_LEN }>;
 
-/// Which behaviour.
+/// The behaviour of the agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorstCase {
     /// A search of the whole window.
     Route,
     /// Formation among eight neighbours of the template.
     Formation,
-    /// The same, each of the eight foreseen by a search of its own.
+    /// Like [`WorstCase::Formation`], with a search for the prediction of each of the eight
+    /// neighbours.
     FormationReflexive,
-    /// ORCA in a crowd in which no velocity is permitted most of the time, half-planes by the formula.
+    /// ORCA in a crowd in which mostly no velocity is permitted, half-planes by formula.
     OrcaAnalytic,
-    /// The same with half-planes from the table.
+    /// Like [`WorstCase::OrcaAnalytic`], with half-planes from the table.
     OrcaTemplate2k,
-    /// ORCA in space in such a crowd.
+    /// ORCA in space, in such a crowd.
     #[cfg(feature = "all-cases")]
     Fly,
     /// Push-out in such a crowd.
     #[cfg(feature = "all-cases")]
     PushOut,
-    /// The alpha flock with everybody in range.
+    /// The alpha flock with all robots in range.
     Lattice,
-    /// The goal flock with everybody in range.
+    /// The goal flock with all robots in range.
     GoalFlock,
-    /// Boids with everybody in range.
+    /// Boids with all robots in range.
     Boids,
 }
 
 impl WorstCase {
-    /// All of them.
+    /// All cases.
     pub const ALL: &[Self] = &[
         Self::Route,
         Self::Formation,
@@ -89,7 +90,7 @@ impl WorstCase {
         Self::Boids,
     ];
 
-    /// Its name in tables.
+    /// Name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -108,7 +109,8 @@ impl WorstCase {
         }
     }
 
-    /// Runs 64 steps with `N` neighbours in each and at most `K` half-planes; on the grid with eight neighbours at most.
+    /// Runs 64 steps with `N` neighbours and at most `K` half-planes; on the grid with at most
+    /// eight neighbours.
     pub fn run<S: Scalar, P: Probe<S>, const N: usize, const K: usize>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::<S, _, P, N>(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), probe),
@@ -153,7 +155,7 @@ fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
     WaypointGuidance::new(S::ONE, S::from_milli(10))
 }
 
-/// [`WorstCase::OrcaAnalytic`] with half-planes of neighbours from `source`.
+/// Runs [`WorstCase::OrcaAnalytic`] with half-planes of neighbours from `source`.
 pub fn worst_orca<S: Scalar, H: HalfSpaces<S> + Serialize, P: Probe<S>, const N: usize, const K: usize>(
     source: H,
     probe: &mut P,
@@ -162,20 +164,17 @@ pub fn worst_orca<S: Scalar, H: HalfSpaces<S> + Serialize, P: Probe<S>, const N:
     in_crowd::<S, _, _, P, N>(waypoint(), safety, probe)
 }
 
-/// Uniform within `most` of 0.
 fn about(rng: &mut Rng, most: u32) -> i32 {
     rng.below(2 * most + 1).cast_signed() - most.cast_signed()
 }
 
-/// What `N` robots other than oneself say in this step.
 fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32, &mut Rng) -> Beacon) {
     inbox.clear();
     let numbers = (1..).filter(|number| *number != OWN.0);
     for number in numbers.take(N) {
         let mut rng = Rng::keyed(2, PURPOSE, number, step);
-        // Many frames after the last one that was heard, so that it can have come from anywhere.
+        // Sequence numbers skip many frames, so that a sender may have moved anywhere.
         let header = Header { boot: 0, sender: RobotId(number), sequence: step as u16 * 64 };
-        // There is room.
         let _ = encode(header, &Message::Beacon(beacon(number, &mut rng)), inbox);
     }
 }
@@ -190,7 +189,7 @@ where
     P: Probe<S>,
 {
     let config = AgentConfig { seed: 1, latency: STEP, ..AgentConfig::new(OWN, S::from_milli(RADIUS_MM), STEP) };
-    // Boids roam.
+    // Boids accept no waypoint.
     let _ = law.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([9000, 500, 0])));
     let mut agent = Agent::<S, G, N, A>::new(&config, law, safety, Postcard);
     let mut summary = Summary::of::<Agent<S, G, N, A>, ()>();
@@ -210,7 +209,6 @@ where
         while !obstacles.is_full() {
             let end = Vec2::new(metres(900), metres(900));
             let other = end + Vec2::new(metres(900), metres(900));
-            // There is room.
             let _ = obstacles.push(Obstacle::Wall([end, other]));
         }
         let inputs = Inputs {
@@ -227,7 +225,7 @@ where
     summary.finish(hash, STEPS)
 }
 
-/// Rows 1 2 3, 4 5 6, 7 8 9, robot 1 in front and the own one in the middle.
+/// Rows 1 2 3, 4 5 6, 7 8 9, with robot 1 in front and the agent in the middle.
 const PLACES: [Cell; 9] = [
     Cell::new(0, 0),
     Cell::new(-3, 0),
@@ -244,12 +242,11 @@ const EDGES: [(u16, u16); 12] =
 const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
 const TOP: Cell = Cell::new(50, 50);
 const GOAL: Cell = Cell::new(98, 98);
-/// Index of the own place.
 const MIDDLE: usize = 4;
 
 fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLATE> {
     let params = FormationParams { prediction, ..FormationParams::default() };
-    // The graph is sound: a test counts who is in it.
+    // The graph is valid: a test counts its robots.
     let template = Template::from_graph(&PLACES, &EDGES, MIDDLE, 2).unwrap_or_default();
     FormationGuidance::new(RouteParams::default(), params, template)
 }
@@ -279,7 +276,7 @@ where
             let index = number.saturating_sub(1) as usize;
             let place = PLACES.get(index).copied().unwrap_or_default();
             Beacon {
-                // Nobody is quite in place: whoever foresees them has to search their ways.
+                // Each robot is off its place, so that prediction must search its route.
                 cell: TOP + place + Cell::new(about(rng, 1) as i16, i16::from(number != 1)),
                 heading: Dir::NorthEast,
                 leader: RobotId(LEADERS.get(index).copied().unwrap_or(0)),

@@ -1,7 +1,7 @@
-//! What happens when the firmware cannot go on: it says why, and starts anew or stops.
+//! Handling of panics and processor exceptions: report the reason, then reset or stop.
 //!
-//! A program chooses by [`faults_go_over_the_link!`](crate::faults_go_over_the_link) or
-//! [`faults_are_printed!`](crate::faults_are_printed), or has a panic handler of its own.
+//! A program selects a handler with [`faults_go_over_the_link!`](crate::faults_go_over_the_link) or
+//! [`faults_are_printed!`](crate::faults_are_printed), or has its own panic handler.
 
 use crate::{boots, runtime};
 use core::fmt::{self, Display};
@@ -10,7 +10,7 @@ use core::ptr::addr_of;
 use staya_link::message::FaultKind;
 use staya_link::session::fault_frame;
 
-/// Sends the reason over the link, cut to what a fault holds, then resets.
+/// Sends the reason over the link, cut to the capacity of a fault message, then resets.
 pub fn over_the_link(reason: impl Display) -> ! {
     let frame = fault_frame(FaultKind::Panic, reason);
     runtime::send(frame.bytes());
@@ -23,7 +23,8 @@ pub fn printed(reason: impl Display) -> ! {
     runtime::exit(101)
 }
 
-/// What a panic says, without the folders in front of the file: a fault has room for 80 bytes.
+/// Message of a panic with the file name but not its folders, because a fault holds 80 bytes of
+/// text.
 pub struct Panic<'a>(pub &'a PanicInfo<'a>);
 
 impl Display for Panic<'_> {
@@ -38,7 +39,7 @@ impl Display for Panic<'_> {
     }
 }
 
-/// An exception of the processor, by the address of the instruction.
+/// A processor exception at the address of this instruction.
 pub struct Trap(u32);
 
 impl Display for Trap {
@@ -47,8 +48,8 @@ impl Display for Trap {
     }
 }
 
-/// The exception at this address. If it is a semihosting call, then nobody serves them: that is
-/// remembered, and the part resets.
+/// Creates the report of an exception at this address. An unserved semihosting call is recorded
+/// instead, and the part resets.
 #[must_use]
 pub fn trap(address: u32) -> Trap {
     if is_semihosting(address) {
@@ -58,7 +59,8 @@ pub fn trap(address: u32) -> Trap {
     Trap(address)
 }
 
-/// Whether there is a semihosting call: BKPT 0xAB, or EBREAK between two shifts that do nothing.
+/// Whether the instruction is a semihosting call: BKPT 0xAB, or EBREAK between two shifts that do
+/// nothing.
 fn is_semihosting(address: u32) -> bool {
     unsafe extern "C" {
         static __stext: u8;
@@ -66,7 +68,7 @@ fn is_semihosting(address: u32) -> bool {
     }
     let code = addr_of!(__stext) as usize..addr_of!(__etext) as usize;
     let address = address as usize;
-    // An address outside of the code would be the next exception.
+    // Reading outside the code could raise the next exception.
     if !code.contains(&address) {
         return false;
     }

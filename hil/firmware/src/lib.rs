@@ -1,6 +1,6 @@
-//! What the firmware's programs share: start-up, clock ticks, the UART, the stack's depth, logs, faults.
+//! Common parts of the firmware programs: start-up, tick counter, UART, stack depth, logs, faults.
 //!
-//! One library for three parts, chosen by the target triple:
+//! One library for three parts, selected by the target triple:
 //!
 //! | part | triple | emulated by QEMU as |
 //! | --- | --- | --- |
@@ -8,12 +8,13 @@
 //! | nRF51 of the micro:bit (Cortex-M0) | `thumbv6m-none-eabi` | `microbit` |
 //! | RISC-V without an FPU | `riscv32imac-unknown-none-elf` | `virt` |
 //!
-//! `cargo xtask firmware` builds them. Built for the host, each program only says so.
+//! `cargo xtask firmware` builds the programs. Built for the host, each program only prints this.
 #![cfg_attr(not(test), no_std)]
 
 pub mod ring;
 
-// For the macros, wherever they are used; cortex-m-rt's own macro asks for the crate itself there.
+// Used by the macros. The macro of cortex-m-rt needs that crate itself in the caller's
+// dependencies.
 #[doc(hidden)]
 #[cfg(target_os = "none")]
 pub use staya_link as link;
@@ -36,13 +37,13 @@ pub mod runtime;
 #[cfg(target_os = "none")]
 pub mod stack;
 
-/// Makes `$run`, a `fn() -> !`, what the part runs after reset. On the host the program gets a
-/// `main` that says how it is built for a part, and `$run` need not be there.
+/// Makes `$run`, a `fn() -> !`, the part's program after reset. On the host, the program gets a
+/// `main` that prints how to build it for a part, and `$run` may be missing.
 #[macro_export]
 macro_rules! entry {
     ($run:path) => {
-        // SAFETY: `main` is the one symbol that cortex-m-rt and riscv-rt call after they have set
-        // up the stack and the statics; no other function of the program has this name.
+        // SAFETY: `main` is the symbol that cortex-m-rt and riscv-rt call once the stack and the
+        // statics are set up; no other function of the program has this name.
         #[cfg(target_os = "none")]
         #[unsafe(export_name = "main")]
         extern "C" fn start_of_program() -> ! {
@@ -57,10 +58,13 @@ macro_rules! entry {
     };
 }
 
-/// A whole firmware whose robot goes by a guidance law of one's own, `$law`: `staya hil` and its library step it over the part's serial
-/// line. On Arm the crate needs `cortex-m-rt` (with its feature `device`) among its dependencies. The law is a `LinkedLaw` of `staya_link::own` in the part's numbers (`f32`, on the nRF51 `Q16`). The firmware calls
-/// itself by name and version of the package that it is written in, and links only if no panic is reachable, unless it is built for
-/// debugging.
+/// Defines a complete firmware for a robot with the user-defined guidance law `$law`, which
+/// `staya hil` and its library step over the part's serial line.
+///
+/// The law is a `LinkedLaw` of `staya_link::own` in the part's number format (`f32`; `Q16` on the
+/// nRF51). On Arm the crate needs the dependency `cortex-m-rt` (with its feature `device`). The
+/// firmware's name and version are those of the calling package. It links only if no panic is
+/// reachable, except in debug builds.
 ///
 /// ```text
 /// #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -77,14 +81,16 @@ macro_rules! lockstep {
     };
 }
 
-/// The same for any robot that has a `const fn new()`, with frames of at most `$content` bytes, under this name.
+/// Like `lockstep!`, for any robot with a `const fn new()`: frames of at most `$content` bytes of
+/// content, and the name `$firmware`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! lockstep_as {
     ($robot:ty, $content:expr, $firmware:expr) => {
         $crate::entry!(staya_program::run);
-        // What is flashed has no panic, which the linker has seen: start-up, interrupts, logs and exceptions included. Built for
-        // debugging it has those of the checks that are on then.
+        // In optimised firmware the linker proves that no panic is reachable, in start-up,
+        // interrupts, logs and exceptions too. A debug build contains the panics of its debug
+        // checks.
         #[cfg(debug_assertions)]
         $crate::faults_go_over_the_link!();
         #[cfg(not(debug_assertions))]
@@ -99,17 +105,19 @@ macro_rules! lockstep_as {
 
             const FIRMWARE: &str = $firmware;
 
-            // SAFETY: no other section has this name; the linker script takes it out of what is loaded.
+            // SAFETY: no other section has this name; the linker script excludes it from the loaded
+            // image.
             #[unsafe(link_section = ".staya")]
             #[used]
             static NOTE: $crate::lockstep::Note = $crate::lockstep::note(FIRMWARE);
 
-            /// Too large for a stack, so made where it stays; what the part is, is known only later.
+            /// A static, because it is too large for the stack. The description of the part follows
+            /// at runtime.
             static mut SESSION: $crate::link::session::Session<$robot, { $content }> =
                 $crate::link::session::Session::unnamed(<$robot>::new());
 
             pub fn run() -> ! {
-                // SAFETY: the only place that names it, which runs once.
+                // SAFETY: the only use of the static, and it runs once.
                 let session = unsafe { &mut *core::ptr::addr_of_mut!(SESSION) };
                 $crate::lockstep::run(session, FIRMWARE)
             }
@@ -117,8 +125,7 @@ macro_rules! lockstep_as {
     };
 }
 
-/// A panic and an exception of the processor are said over the link as a fault, then the part
-/// starts anew.
+/// Reports panics and processor exceptions as faults over the link, then resets the part.
 #[macro_export]
 macro_rules! faults_go_over_the_link {
     () => {
@@ -126,7 +133,7 @@ macro_rules! faults_go_over_the_link {
     };
 }
 
-/// An exception of the processor is said over the link as a fault, then the part starts anew.
+/// Reports processor exceptions as faults over the link, then resets the part.
 #[macro_export]
 macro_rules! exceptions_go_over_the_link {
     () => {
@@ -134,8 +141,8 @@ macro_rules! exceptions_go_over_the_link {
     };
 }
 
-/// A panic and an exception of the processor are printed, and end the emulator with exit code 101.
-/// On a board they are printed over RTT, and the part stops.
+/// Prints panics and processor exceptions, and ends the emulator with exit code 101. A board prints
+/// them over RTT and stops.
 #[macro_export]
 macro_rules! faults_are_printed {
     () => {
@@ -143,8 +150,8 @@ macro_rules! faults_are_printed {
     };
 }
 
-/// No panic is left: the panic handler calls a function that exists nowhere, which the linker notices unless the optimiser has
-/// thrown the handler out.
+/// Makes linking fail if a panic is reachable: the panic handler calls an undefined function, so
+/// the program links only if the optimiser has removed the handler.
 #[macro_export]
 macro_rules! panics_do_not_link {
     () => {
@@ -152,16 +159,17 @@ macro_rules! panics_do_not_link {
         #[panic_handler]
         fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
             unsafe extern "C" {
-                /// Defined nowhere.
+                /// Not defined anywhere.
                 fn staya_panic_is_reachable() -> !;
             }
-            // SAFETY: never called: a program in which this call is left does not link.
+            // SAFETY: never executed, because a program that still contains this call does not
+            // link.
             unsafe { staya_panic_is_reachable() }
         }
     };
 }
 
-/// Gives panics and exceptions to `$report`, a `fn(impl Display) -> !`.
+/// Passes panics and exceptions to `$report`, a `fn(impl Display) -> !`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! on_fault {
@@ -176,7 +184,7 @@ macro_rules! on_fault {
     };
 }
 
-/// Gives exceptions to `$report`, a `fn(impl Display) -> !`.
+/// Passes exceptions to `$report`, a `fn(impl Display) -> !`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! on_exception {
@@ -187,8 +195,8 @@ macro_rules! on_exception {
             $report($crate::fault::trap(frame.pc()))
         }
 
-        // SAFETY: the name and the argument that riscv-rt gives to what handles every exception
-        // that has no handler of its own.
+        // SAFETY: name and argument are those of riscv-rt's handler for exceptions without a
+        // handler of their own.
         #[cfg(all(target_os = "none", target_arch = "riscv32"))]
         #[unsafe(export_name = "ExceptionHandler")]
         extern "C" fn exception(_: &$crate::riscv_rt::TrapFrame) -> ! {

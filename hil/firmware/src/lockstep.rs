@@ -1,5 +1,6 @@
-//! The device's side of the link as a whole program: a robot that steps when the host says so. `lockstep!` makes a
-//! firmware of it for a guidance law of one's own; `src/bin/lockstep.rs` is the one for all laws of Staya's.
+//! The device's end of the link as a whole program: a robot that steps on request of the host.
+//! `lockstep!` defines such a firmware for a user-defined guidance law; `src/bin/lockstep.rs` is
+//! the one for all built-in laws.
 
 use crate::fault;
 use crate::runtime::{self, Start};
@@ -9,20 +10,20 @@ use staya_link::message::Cost;
 use staya_link::robot::{self, Controller};
 use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
 
-/// The robot with law `G` that this part has room for.
+/// The robot with law `G` that fits this part.
 #[cfg(not(part = "nrf51"))]
 pub type Own<G> = staya_link::own::OwnLarge<G>;
 #[cfg(not(part = "nrf51"))]
-/// Bytes of the content of its longest frame, see [`content_bytes`].
+/// Content of its longest frame, bytes; see [`content_bytes`].
 pub const OWN_CONTENT: usize = content_bytes(0, 32, robot::LARGE_INBOX);
-/// The robot with law `G` that this part has room for.
+/// The robot with law `G` that fits this part.
 #[cfg(part = "nrf51")]
 pub type Own<G> = staya_link::own::OwnSmall<G>;
 #[cfg(part = "nrf51")]
-/// Bytes of the content of its longest frame, see [`content_bytes`].
+/// Content of its longest frame, bytes; see [`content_bytes`].
 pub const OWN_CONTENT: usize = content_bytes(0, 16, robot::SMALL_INBOX);
 
-/// Is the robot of `session`, which must not be known to anybody else, for good. `firmware` is what it says that it runs.
+/// Runs the robot of `session` forever. `firmware` is the name that it reports.
 pub fn run<C: Controller, const CONTENT: usize>(
     session: &'static mut Session<C, CONTENT>,
     firmware: &'static str,
@@ -65,7 +66,6 @@ fn about(start: &Start, firmware: &'static str) -> About {
     About { part: start.part, firmware, boot: start.boots, ticks_per_second: start.tick_hz }
 }
 
-/// Ticks and stack of a step.
 #[derive(Default)]
 struct Gauge {
     painted: Option<Painted>,
@@ -82,18 +82,20 @@ impl Meter for Gauge {
         let ticks = runtime::ticks().wrapping_sub(self.began);
         let painted = self.painted.take();
         if painted.is_some_and(|painted| !painted.has_room()) {
-            // What lies below the stack is not to be trusted any more.
+            // The memory below the stack may be corrupted.
             fault::over_the_link(format_args!("stack overflow: all of {} bytes used", stack::size()));
         }
         Cost { ticks, stack_bytes: painted.map_or(0, |painted| painted.deepest()) }
     }
 }
 
-/// What stands in the ELF file beside the program, and takes no flash: which part it is for and what it is, so that a host need not
-/// start it to know. `staya`, the link's version, the part's name and the firmware's, filled up with zeros.
+/// Identification of a firmware in its ELF file, from which a host identifies it without starting
+/// it. It takes no flash. Contents: `staya`, the link's version, the part's name and the firmware's
+/// name, padded with zeros.
 pub type Note = [u8; 62];
 
-/// The note of a firmware; what is too long is cut, as [`Hello`](staya_link::message::Hello) cuts it.
+/// Creates the note of a firmware. Longer names are cut as in
+/// [`Hello`](staya_link::message::Hello).
 #[must_use]
 pub const fn note(firmware: &str) -> Note {
     let note = write([0; 62], 0, 5, "staya");
@@ -103,7 +105,6 @@ pub const fn note(firmware: &str) -> Note {
     note
 }
 
-/// Writes text of at most `room` bytes.
 const fn write(mut note: Note, at: usize, room: usize, text: &str) -> Note {
     let (text, mut count) = (text.as_bytes(), 0);
     while count < text.len() && count < room {

@@ -1,17 +1,17 @@
-//! Where logs and prints go: semihosting in the emulator, RTT on a board. `defmt` frames use it.
+//! Output of logs and prints: semihosting in the emulator, RTT on a board. Logs are `defmt` frames.
 
 use core::fmt;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
-/// Channels. Until one is chosen bytes are dropped.
+/// Output channels. Until one is selected, bytes are dropped.
 const NONE: u8 = 0;
 const SEMIHOSTING: u8 = 1;
 const RTT: u8 = 2;
 static CHANNEL: AtomicU8 = AtomicU8::new(NONE);
-/// The handle of the host's console, plus one; 0 while it is not open.
+/// Handle of the host's console plus one; 0 while it is not open.
 static CONSOLE: AtomicU32 = AtomicU32::new(0);
 
-/// Chooses the channel. An emulator that serves no semihosting gets nothing.
+/// Selects the channel. An emulator without semihosting gets no output.
 pub fn choose(emulated: bool, is_mute: bool) {
     if emulated {
         if is_mute {
@@ -24,7 +24,8 @@ pub fn choose(emulated: bool, is_mute: bool) {
     }
 }
 
-/// Writes bytes to the chosen channel. RTT drops what has no room: nobody may be reading.
+/// Writes bytes to the selected channel. RTT drops bytes when its buffer is full, because there may
+/// be no reader.
 fn write(bytes: &[u8]) {
     match CHANNEL.load(Ordering::Relaxed) {
         SEMIHOSTING => console::write(bytes),
@@ -54,12 +55,12 @@ mod console {
         };
         // SAFETY: it was opened above and is never closed.
         let console = unsafe { BorrowedFd::borrow_raw(raw) };
-        // A host that takes no output changes nothing for the robot.
+        // Output errors of the host must not affect the robot.
         let _ = sys_write_orig(console, bytes);
     }
 }
 
-/// `rtt_init!` would do it, but for a check that it runs once, which is a panic.
+/// Replaces `rtt_init!`, which panics if it runs twice.
 #[cfg(target_arch = "arm")]
 mod rtt {
     use core::mem::MaybeUninit;
@@ -67,22 +68,23 @@ mod rtt {
     use rtt_target::rtt::{RttChannel, RttHeader};
     use rtt_target::{ChannelMode, UpChannel};
 
-    /// What a debugger looks for in memory: the header, then the channels that it counts.
+    /// Control block that a debugger searches for in memory: the header and the channels that it
+    /// counts.
     #[repr(C)]
     struct Block {
         header: RttHeader,
         up: RttChannel,
     }
 
-    // SAFETY: the name that debuggers have for it, and nobody else.
+    // SAFETY: debuggers expect this name; no other symbol has it.
     #[unsafe(export_name = "_SEGGER_RTT")]
     static mut BLOCK: MaybeUninit<Block> = MaybeUninit::uninit();
     static mut BYTES: [u8; 256] = [0; 256];
     static mut UP: Option<UpChannel> = None;
 
     pub fn start() {
-        // SAFETY: once, at the start, before anything writes; zeros are a block without channels. The header comes last: a
-        // debugger may look at any time.
+        // SAFETY: runs once, at the start, before any write. Zeros are a block without channels.
+        // The header is written last because a debugger may read at any time.
         unsafe {
             let block = addr_of_mut!(BLOCK).cast::<Block>();
             block.write_bytes(0, 1);
@@ -94,7 +96,7 @@ mod rtt {
 
     pub fn write(bytes: &[u8]) {
         critical_section::with(|_| {
-            // SAFETY: interrupts are off, and there is one core.
+            // SAFETY: interrupts are disabled, and there is one core.
             if let Some(up) = unsafe { &mut *addr_of_mut!(UP) } {
                 up.write(bytes);
             }
@@ -109,7 +111,7 @@ mod rtt {
     pub fn write(_: &[u8]) {}
 }
 
-/// Gathers bytes, so that the emulator stops once per line and not once per piece.
+/// Line buffer, so that the emulator stops once per line and not once per piece.
 pub struct Text {
     bytes: [u8; 96],
     used: usize,
@@ -150,7 +152,7 @@ mod frames {
     use core::cell::UnsafeCell;
     use critical_section::RestoreState;
 
-    /// What is needed while one `defmt` frame is written. Interrupts are off meanwhile.
+    /// State while one `defmt` frame is written, with interrupts disabled.
     struct Frame {
         restore: RestoreState,
         encoder: defmt::Encoder,
@@ -158,7 +160,7 @@ mod frames {
     }
 
     struct Shared(UnsafeCell<Frame>);
-    // SAFETY: only touched with interrupts off, on one core.
+    // SAFETY: accessed only with interrupts disabled, on one core.
     unsafe impl Sync for Shared {}
     static FRAME: Shared = Shared(UnsafeCell::new(Frame {
         restore: RestoreState::invalid(),
@@ -169,13 +171,13 @@ mod frames {
     #[defmt::global_logger]
     struct Logger;
 
-    // SAFETY: `acquire` turns interrupts off and `release` on again, so that between them nobody
-    // else can acquire; defmt calls the others only between them.
+    // SAFETY: `acquire` disables interrupts and `release` restores them, so that no other code can
+    // acquire in between; defmt calls the other functions only in between.
     unsafe impl defmt::Logger for Logger {
         fn acquire() {
             // SAFETY: paired with the release in `release`.
             let restore = unsafe { critical_section::acquire() };
-            // SAFETY: interrupts are off.
+            // SAFETY: interrupts are disabled.
             let frame = unsafe { &mut *FRAME.0.get() };
             frame.restore = restore;
             frame.encoder.start_frame(|bytes| frame.text.add(bytes));
@@ -184,17 +186,17 @@ mod frames {
         unsafe fn flush() {}
 
         unsafe fn release() {
-            // SAFETY: interrupts have been off since `acquire`.
+            // SAFETY: interrupts have been disabled since `acquire`.
             let frame = unsafe { &mut *FRAME.0.get() };
             frame.encoder.end_frame(|bytes| frame.text.add(bytes));
             frame.text.flush();
             let restore = frame.restore;
-            // SAFETY: pairs with `acquire`.
+            // SAFETY: paired with `acquire`.
             unsafe { critical_section::release(restore) };
         }
 
         unsafe fn write(bytes: &[u8]) {
-            // SAFETY: interrupts have been off since `acquire`.
+            // SAFETY: interrupts have been disabled since `acquire`.
             let frame = unsafe { &mut *FRAME.0.get() };
             frame.encoder.write(bytes, |bytes| frame.text.add(bytes));
         }

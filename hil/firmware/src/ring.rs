@@ -1,23 +1,24 @@
-//! The queue between the receive interrupt and the main loop.
+//! Queue between the receive interrupt and the main loop.
 
 use core::sync::atomic::{AtomicU8, AtomicU32, AtomicUsize, Ordering};
 
-/// A first-in first-out queue of at most `N - 1` bytes for one writer and one reader, which may be
-/// an interrupt and what it interrupts. Loads and stores only: a Cortex-M0 has nothing else.
+/// First-in first-out queue of at most `N - 1` bytes for one writer and one reader. One of them may
+/// be an interrupt handler of the other. It uses loads and stores only, because a Cortex-M0 has no
+/// other atomic operations.
 pub struct Ring<const N: usize> {
     bytes: [AtomicU8; N],
-    /// Where the writer goes on; only the writer stores it.
+    /// Next index to write; stored by the writer only.
     head: AtomicUsize,
-    /// Where the reader goes on; only the reader stores it.
+    /// Next index to read; stored by the reader only.
     tail: AtomicUsize,
-    /// Bytes that came when there was no room; only the writer stores it.
+    /// Bytes lost because the queue was full; stored by the writer only.
     lost: AtomicU32,
 }
 
 impl<const N: usize> Ring<N> {
     const IS_POWER_OF_TWO: () = assert!(N.is_power_of_two() && N >= 2);
 
-    /// An empty queue.
+    /// Creates an empty queue.
     #[must_use]
     pub const fn new() -> Self {
         let () = Self::IS_POWER_OF_TWO;
@@ -29,7 +30,7 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Adds a byte. Without room the byte is dropped and counted. O(1).
+    /// Adds a byte. If the queue is full, the byte is dropped and counted. O(1).
     pub fn push(&self, byte: u8) {
         let head = self.head.load(Ordering::Relaxed);
         let next = head.wrapping_add(1) & (N - 1);
@@ -59,20 +60,20 @@ impl<const N: usize> Ring<N> {
         Some(byte)
     }
 
-    /// Whether there is nothing to take.
+    /// Whether the queue is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.tail.load(Ordering::Relaxed) == self.head.load(Ordering::Acquire)
     }
 
-    /// Whether there is room for a byte; for the writer.
+    /// Whether another byte fits; for the writer.
     #[must_use]
     pub fn has_room(&self) -> bool {
         let next = self.head.load(Ordering::Relaxed).wrapping_add(1) & (N - 1);
         next != self.tail.load(Ordering::Acquire)
     }
 
-    /// How many bytes were lost since the start.
+    /// Bytes lost since the start.
     #[must_use]
     pub fn lost(&self) -> u32 {
         self.lost.load(Ordering::Relaxed)
@@ -90,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_come_out_in_order_across_the_end_of_the_buffer() {
+    fn bytes_stay_in_order_across_the_end_of_the_buffer() {
         let ring = Ring::<8>::new();
         let mut next_out = 0u8;
         for byte in 0..200u8 {
@@ -108,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn full_ring_drops_the_newest_and_counts_it() {
+    fn full_ring_drops_and_counts_the_newest_byte() {
         let ring = Ring::<4>::new();
         for byte in 1..=5 {
             assert_eq!(ring.has_room(), byte <= 3);
@@ -122,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn writer_and_reader_may_run_at_the_same_time() {
+    fn writer_and_reader_may_run_concurrently() {
         let ring = Ring::<16>::new();
         std::thread::scope(|scope| {
             scope.spawn(|| {

@@ -1,28 +1,29 @@
-//! How deep the stack was: the unused part is painted before, and looked through after.
+//! Measures stack depth: paints the unused stack, and later finds how much paint was overwritten.
 
 use core::ptr::addr_of;
 
 const PAINT: u32 = 0xC5C5_C5C5;
-/// How much below the caller is painted at most, in bytes: what is deeper is not told apart. More
-/// costs two instructions per word painted and three per word looked at.
+/// Most bytes below the caller that are painted; greater depths are not distinguished. More costs
+/// two instructions per word painted and three per word checked.
 const WINDOW: usize = 16 * 1024;
-/// Left alone right below the frame of the painting function.
+/// Bytes right below the frame of the painting function that are not painted.
 const MARGIN: usize = 64;
 
 unsafe extern "C" {
-    /// The lowest address of the stack, and the one above its highest; the linker script has them.
+    /// Lowest address of the stack, and the address above its highest; defined by the linker
+    /// script.
     static _stack_end: u32;
     static _stack_start: u32;
 }
 
-/// A painted stretch of the stack.
+/// A painted range of the stack.
 #[derive(Clone, Copy, Debug)]
 pub struct Painted {
     low: usize,
     high: usize,
 }
 
-/// Paints the unused stack, at most 16 KiB of it. Interrupts may go on. O(bytes).
+/// Paints the unused stack, at most 16 KiB of it. Interrupts may occur. O(bytes).
 #[inline(never)]
 #[must_use]
 pub fn paint() -> Painted {
@@ -31,9 +32,9 @@ pub fn paint() -> Painted {
     let low = lowest().max(high.saturating_sub(WINDOW));
     let mut at = low;
     while at < high {
-        // SAFETY: from the end of the statics up to below this frame nobody owns the memory: an
-        // interrupt that comes meanwhile has left it again. Volatile, so that no call of memset
-        // puts a frame there.
+        // SAFETY: memory from the end of the statics to below this frame is unused: an interrupt
+        // that occurs meanwhile has returned. The write is volatile, so that it does not become a
+        // call of memset, whose frame would lie there.
         unsafe { (at as *mut u32).write_volatile(PAINT) };
         at = at.wrapping_add(4);
     }
@@ -41,26 +42,26 @@ pub fn paint() -> Painted {
 }
 
 impl Painted {
-    /// The most bytes of stack that were in use since, counted from the stack's start; interrupts
-    /// included. If the painted stretch was used up it is the depth of its end. O(bytes).
+    /// Most bytes of stack in use since, counted from the start of the stack, including interrupts.
+    /// If all paint was overwritten, the depth of its end. O(bytes).
     #[must_use]
     pub fn deepest(&self) -> u32 {
         let mut at = self.low;
-        // SAFETY: the words that `paint` wrote, or what ran over them since.
+        // SAFETY: the words that `paint` wrote, possibly overwritten since.
         while at < self.high && unsafe { (at as *const u32).read_volatile() } == PAINT {
             at = at.wrapping_add(4);
         }
         u32::try_from(top().saturating_sub(at)).unwrap_or(u32::MAX)
     }
 
-    /// How deep the stack was where [`paint`] was called, to within the frame of [`paint`].
+    /// Stack depth at the call of [`paint`], to within the frame of [`paint`].
     #[must_use]
     pub fn began(&self) -> u32 {
         u32::try_from(top().saturating_sub(self.high)).unwrap_or(u32::MAX)
     }
 
-    /// Whether the stack's last word is still as it was painted; if not, the stack has probably run
-    /// over the statics. Always true while the painted stretch ends above the stack's end.
+    /// Whether the last word of the stack still has its paint; if not, the stack has probably
+    /// overwritten the statics. Always true if the painted range ends above the stack's end.
     #[must_use]
     pub fn has_room(&self) -> bool {
         // SAFETY: as above.
@@ -68,7 +69,7 @@ impl Painted {
     }
 }
 
-/// The size of the stack in bytes: all RAM that is no static.
+/// Size of the stack, bytes: all RAM without statics.
 #[must_use]
 pub fn size() -> u32 {
     u32::try_from(top().saturating_sub(lowest())).unwrap_or(u32::MAX)

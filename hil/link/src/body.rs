@@ -1,5 +1,5 @@
-//! What robots on devices have in common, whatever their guidance law: room for one agent, and its step from the link's inputs to the
-//! link's results.
+//! Memory for one agent, whatever its guidance law, and the conversion of a step from link inputs
+//! to a link result.
 
 use crate::capacities::Capacities;
 use crate::message::{NumberFormat, StepInputs, StepResult};
@@ -16,17 +16,16 @@ use staya_controller::scalar::{Scalar, cast};
 use staya_controller::time::Instant;
 use staya_controller::wire::Wire;
 
-/// The kind of number that a robot computes with.
 pub(crate) const fn number<S: Scalar>() -> NumberFormat {
     if S::IS_FLOATING { NumberFormat::F32 } else { NumberFormat::Q16 }
 }
 
-/// A capacity as the link tells of it.
+/// Converts a capacity to its wire type; larger values saturate.
 pub(crate) fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
 }
 
-/// What a robot has room for that searches no land: neighbours, half-planes, obstacles.
+/// Capacities of a robot without a grid search.
 pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize) -> Capacities {
     Capacities {
         neighbors: count(neighbors),
@@ -38,7 +37,7 @@ pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize)
     }
 }
 
-/// What every robot must be told, and every firmware must have.
+/// Checks that a setup has a robot id and that the firmware speaks its packet format.
 pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
     if setup.agent.id == RobotId::NOBODY {
         return Err(Refusal::Nobody);
@@ -46,7 +45,8 @@ pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// An `Option` whose `None` is all zeros, so that a firmware's robot before its configuration takes no flash.
+/// An `Option` whose `None` is all zeros, so that an unconfigured robot lies in `.bss` and takes no
+/// flash.
 #[derive(Clone, Debug)]
 #[repr(u8)]
 enum Slot<A> {
@@ -70,7 +70,7 @@ impl<A> Slot<A> {
     }
 }
 
-/// Room for one agent and for what its step needs.
+/// Memory for one agent and for the decoded inputs and the result of its step.
 #[derive(Clone, Debug)]
 pub(crate) struct Body<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> {
     agent: Slot<Agent<S, G, N, A, W>>,
@@ -80,7 +80,6 @@ pub(crate) struct Body<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O:
 }
 
 impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G, A, W, N, O> {
-    /// Nobody yet.
     pub(crate) const fn new(workspace: G::Workspace) -> Self {
         Self {
             agent: Slot::Empty,
@@ -88,7 +87,8 @@ impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G,
             obstacles: Vec::new(),
             outputs: Outputs {
                 command: Command::Hold,
-                // Nobody sees it before it is configured; `None` would be the one byte here that is not zero.
+                // Not read before the robot is configured; `None` would be the only byte here that
+                // is not zero.
                 wait: Some(Wait::Formation),
                 received: 0,
                 rejected: 0,
@@ -101,12 +101,10 @@ impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G,
         }
     }
 
-    /// The robot, once there is one.
     pub(crate) const fn agent(&self) -> Option<&Agent<S, G, N, A, W>> {
         self.agent.as_ref()
     }
 
-    /// Is no robot any more.
     pub(crate) fn forget(&mut self) {
         self.agent = Slot::Empty;
     }
@@ -119,7 +117,8 @@ where
     A: Safety<S> + Serialize,
     W: Wire + Serialize,
 {
-    /// Becomes the robot that `make` makes, with this task; the digest of its state. Inlined, so that the agent is made where it stays.
+    /// Replaces the agent by the one that `make` builds, gives it `task`, and returns the digest of
+    /// its state. Inlined, so that the agent is built in place.
     #[inline(always)]
     pub(crate) fn start(
         &mut self,
@@ -137,7 +136,6 @@ where
         Err(Refusal::Task)
     }
 
-    /// One step, as the controller of a session has it.
     pub(crate) fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal> {
         let agent = self.agent.as_mut().ok_or(Refusal::NotConfigured)?;
         let window = match &inputs.window {
@@ -179,7 +177,7 @@ where
         Ok(())
     }
 
-    /// What the last step decided; `None` for no robot.
+    /// Result of the last step; `None` before the robot is configured.
     pub(crate) fn result(&self) -> Option<StepResult> {
         let agent = self.agent.as_ref()?;
         Some(StepResult {

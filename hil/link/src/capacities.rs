@@ -1,44 +1,46 @@
-//! What a device has room for.
+//! Capacities of a device, and the buffer sizes that follow from them.
 
 use crate::frame;
 use crate::surroundings::OBSTACLE_BYTES;
 use serde::{Deserialize, Serialize};
 
-/// Bytes of a step without terrain, obstacles and inbox, at most: overhead included (a test fills one).
+/// Bytes of an encoded step without terrain, obstacles and inbox, at most; includes the frame
+/// overhead. A test fills one.
 const FIXED: usize = 104;
 
-/// What a device has room for.
+/// Largest inputs and tables that a device can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Capacities {
-    /// Neighbours that its robot knows.
+    /// Neighbours in the robot's table.
     pub neighbors: u16,
-    /// Cells of a search: (2 r + 3)^2 for a radius r.
+    /// Cells of a grid search: (2 r + 3)^2 for a search radius r.
     pub search_cells: u16,
-    /// Cells whose visits its robot remembers.
+    /// Cells in the robot's memory of visits.
     pub visits: u16,
-    /// Half-planes that its safety layer reckons with.
+    /// Half-planes of the safety layer.
     pub half_planes: u16,
-    /// Obstacles in sight.
+    /// Obstacles in one step.
     pub obstacles: u16,
-    /// Bytes that its radio delivers in a step.
+    /// Bytes of received packets in one step.
     pub inbox_bytes: u16,
 }
 
-/// Cells of the largest window that a search of `search_cells` uses: its border lies outside of the window.
+/// Cells of the largest terrain window that a search of `search_cells` uses. The outermost ring of
+/// the search lies outside the window.
 #[must_use]
 pub const fn window_cells(search_cells: usize) -> usize {
     let side = search_cells.isqrt().saturating_sub(2);
     side * side
 }
 
-/// Bytes of the content of a step's frame, at most.
+/// Largest content of a step's frame, bytes.
 #[must_use]
 pub const fn step_bytes(search_cells: usize, obstacles: usize, inbox_bytes: usize) -> usize {
     FIXED + window_cells(search_cells) + obstacles * OBSTACLE_BYTES + inbox_bytes
 }
 
 impl Capacities {
-    /// Bytes of the longest frame from the host, delimiters included.
+    /// Length of the longest frame from the host, bytes, delimiters included.
     #[must_use]
     pub const fn frame_bytes(&self) -> usize {
         frame::frame_len(step_bytes(self.search_cells as usize, self.obstacles as usize, self.inbox_bytes as usize))

@@ -1,4 +1,4 @@
-//! Inputs cut to what a device has room for.
+//! Cuts the inputs of a step to the capacities of a device.
 
 use crate::capacities::{Capacities, window_cells};
 use crate::message::StepInputs;
@@ -9,19 +9,20 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::Instant;
 use staya_controller::wire::Wire;
 
-/// What [`Capacities::fit`] cut.
+/// Amount of input that [`Capacities::fit`] removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cut {
-    /// Bytes of the inbox.
+    /// Bytes removed from the inbox.
     pub inbox_bytes: usize,
-    /// Obstacles.
+    /// Obstacles removed.
     pub obstacles: usize,
 }
 
-/// The terrain has more cells than the device can hold. What cannot be cut without changing what the robot sees is an error.
+/// The terrain window has more cells than the device can hold. Terrain is never cut, because
+/// cutting it would change the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WindowTooLarge {
-    /// Cells in sight.
+    /// Cells of the window.
     pub cells: usize,
     /// Cells that fit.
     pub room: usize,
@@ -37,13 +38,17 @@ impl core::fmt::Display for WindowTooLarge {
 impl core::error::Error for WindowTooLarge {}
 
 impl Capacities {
-    /// Makes a step of inputs. What is too much is cut by these rules, so that all that see the same inputs cut alike:
+    /// Converts inputs to a step that fits the device.
     ///
-    /// - of the inbox, in the robot's wire format, the newest whole frames that fit stay: news replace older ones;
-    /// - of the obstacles the nearest ones stay (of two equally near ones that which comes first), in their order.
+    /// Every host that fits the same inputs to the same capacities cuts them in the same way:
     ///
-    /// `packed` is scratch memory of at least 17 bytes per obstacle; with less, fewer obstacles stay. O(obstacles^2) when
-    /// there are too many, otherwise O(obstacles).
+    /// - Inbox: the newest whole frames that fit are kept. Frames are split in the robot's wire
+    ///   format.
+    /// - Obstacles: the nearest ones are kept, in their original order. Of two equally near
+    ///   obstacles, the first one is kept.
+    ///
+    /// `packed` is scratch memory of at least 17 bytes per obstacle; a shorter buffer keeps fewer
+    /// obstacles. O(obstacles^2) if some have to be removed, otherwise O(obstacles).
     ///
     /// # Errors
     /// [`WindowTooLarge`]: terrain is not cut.
@@ -87,7 +92,6 @@ impl Capacities {
         Ok((step, cut))
     }
 
-    /// Writes the obstacles that stay and returns their bytes.
     fn pack(&self, obstacles: &[Obstacle<f32>], packed: &mut [u8]) -> usize {
         let (free, _) = packed.as_chunks_mut::<OBSTACLE_BYTES>();
         let room = free.len().min(self.obstacles.into());
@@ -102,7 +106,8 @@ impl Capacities {
     }
 }
 
-/// How many obstacles are nearer than that of this number; one without a nearest point is the farthest.
+/// Number of obstacles nearer than `obstacles[index]`. An obstacle without a nearest point counts
+/// as the farthest.
 fn rank(obstacles: &[Obstacle<f32>], index: usize) -> usize {
     let distance = |obstacle: &Obstacle<f32>| {
         let nearest = obstacle.nearest_point();
@@ -113,7 +118,7 @@ fn rank(obstacles: &[Obstacle<f32>], index: usize) -> usize {
     others.filter(|(other, obstacle)| distance(obstacle).order(own).then(other.cmp(&index)).is_lt()).count()
 }
 
-/// The newest whole frames of `inbox` that fit into `room` bytes.
+/// Returns the newest whole frames of `inbox` that fit into `room` bytes.
 fn newest<'a>(inbox: &'a [u8], room: usize, wire: &impl Wire) -> &'a [u8] {
     let mut rest = inbox;
     while rest.len() > room && wire.next_frame(&mut rest).is_some() {}

@@ -1,53 +1,55 @@
-//! Frames of the link: one message each, checked, between zero bytes.
+//! Framing: one message per frame, protected by a CRC, between zero bytes.
 //!
 //! ```text
 //! frame   = 0x00 COBS(content) 0x00
 //! content = version:u8 kind:u8 body:postcard crc:u32
 //! ```
 //!
-//! - Every version keeps COBS, the version in front and the CRC at the end, so that another version can be told from
-//!   damage.
-//! - The zero in front ends whatever noise or text came before, so that it costs no frame.
-//! - CRC-32C (Castagnoli; iSCSI) covers everything before it and finds every 1 to 5 flipped bits in contents of up to
-//!   655 bytes, every 1 to 3 beyond; of anything else 1 in 4 * 10^9 passes. Integers are little-endian.
-//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) in blocks of 254, byte by byte in
-//!   both directions: no second buffer, and it visibly never panics. (The controller's own packets fit one block.)
+//! - COBS, the version in front and the CRC at the end are the same in every version of the link. A
+//!   receiver can therefore tell a frame of another version from a damaged frame.
+//! - The leading zero ends any noise or boot text before the frame, so that noise does not cost a
+//!   frame.
+//! - CRC-32C (Castagnoli; iSCSI) covers everything before it. It detects every error of 1 to 5 bits
+//!   in contents of up to 655 bytes and every error of 1 to 3 bits in longer ones; other errors
+//!   pass with a probability of 1 in 4 * 10^9. Integers are little-endian.
+//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) with blocks of 254
+//!   bytes, processed byte by byte in both directions. It needs no second buffer and cannot panic.
+//!   The controller's radio packets fit one block; frames of the link do not.
 
 use crc::{CRC_32_ISCSI, Crc, Digest, Table};
 use heapless::Vec;
 use postcard::ser_flavors::Flavor;
 use serde::Serialize;
 
-/// The version of the link that this code speaks.
+/// Version of the link protocol.
 pub const VERSION: u8 = 9;
 
-/// Version, kind and CRC.
+/// Bytes of version, kind and CRC.
 pub const OVERHEAD: usize = 1 + 1 + CRC_LEN;
 const CRC_LEN: usize = 4;
-/// Data bytes of a full block of COBS.
 const BLOCK: usize = 254;
-/// The code of a full block: no zero follows it.
+/// COBS code of a full block, which is not followed by a zero.
 const FULL: u8 = 0xFF;
 
 static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISCSI);
 
-/// Bytes of a frame with so much content, at most.
+/// Largest length of a frame with `content` bytes of content.
 #[must_use]
 pub const fn frame_len(content: usize) -> usize {
-    // Two delimiters, one code per block, and one after a last block that is full.
+    // Two delimiters, one code per block, and one code after a last block that is full.
     2 + content + content.div_ceil(BLOCK) + 1
 }
 
-/// Why a frame was refused.
+/// Reason for rejecting a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameError {
-    /// More content than there is room for.
+    /// The content is longer than the receive buffer.
     TooLong,
-    /// The stuffing does not end where the frame ends.
+    /// The last COBS block does not end at the end of the frame.
     Cobs,
-    /// The CRC differs, or the frame is too short for one: damaged or cut.
+    /// The CRC does not match, or the frame is too short to have one: damaged or truncated.
     Crc,
-    /// Sound, but of another version of the link.
+    /// An intact frame of another link version.
     Version(u8),
 }
 
@@ -66,7 +68,7 @@ impl core::fmt::Display for FrameError {
 
 impl core::error::Error for FrameError {}
 
-/// The body does not fit; the frame is empty.
+/// The body does not fit the frame's buffer; the frame is empty.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLong;
 
@@ -78,29 +80,29 @@ impl core::fmt::Display for TooLong {
 
 impl core::error::Error for TooLong {}
 
-/// A frame ready to be sent, of at most `N` bytes.
+/// An encoded frame of at most `N` bytes.
 #[derive(Clone, Debug, Default)]
 pub struct Frame<const N: usize> {
     bytes: Vec<u8, N>,
 }
 
 impl<const N: usize> Frame<N> {
-    /// An empty one.
+    /// Creates an empty frame.
     #[must_use]
     pub const fn new() -> Self {
         Self { bytes: Vec::new() }
     }
 
-    /// The frame, delimiters included; no bytes before [`Frame::fill`].
+    /// The encoded frame, delimiters included; empty before the first [`Frame::fill`].
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Replaces the frame by one that carries `body`. O(bytes).
+    /// Replaces the frame by one with this `kind` and `body`. O(bytes).
     ///
     /// # Errors
-    /// [`TooLong`] when it has more than `N` bytes.
+    /// [`TooLong`] if the frame has more than `N` bytes; the frame is then empty.
     pub fn fill<T: Serialize + ?Sized>(&mut self, kind: u8, body: &T) -> Result<(), TooLong> {
         self.bytes.clear();
         let writer = Stuffer::new(&mut self.bytes).ok_or(TooLong)?;
@@ -113,12 +115,12 @@ impl<const N: usize> Frame<N> {
     }
 }
 
-/// Stuffs and checks bytes on their way into a frame.
+/// Encoder: updates the CRC and applies COBS to each byte of the content.
 struct Stuffer<'a, const N: usize> {
     out: &'a mut Vec<u8, N>,
-    /// Where the code of the open block goes.
+    /// Index of the open block's code.
     code_at: usize,
-    /// Distance from there to the next byte.
+    /// Code of the open block so far: distance to the next byte.
     code: u8,
     crc: Digest<'static, u32, Table<1>>,
 }
@@ -129,7 +131,7 @@ impl<'a, const N: usize> Stuffer<'a, N> {
         Some(Self { out, code_at: 1, code: 1, crc: CRC.digest() })
     }
 
-    /// Not inlined: every kind of message calls it for each of its fields.
+    /// Not inlined: every field of every message calls it.
     #[inline(never)]
     fn check_and_stuff(&mut self, byte: u8) -> Option<()> {
         self.crc.update(&[byte]);
@@ -172,17 +174,16 @@ impl<const N: usize> Flavor for Stuffer<'_, N> {
     }
 }
 
-/// Finds frames of at most `N` bytes of content in a stream of bytes.
+/// Decoder: finds frames with at most `N` bytes of content in a stream of bytes.
 #[derive(Clone, Debug)]
 pub struct Deframer<const N: usize> {
     content: Vec<u8, N>,
-    /// Bytes up to the next code.
+    /// Bytes before the next COBS code.
     left: u8,
-    /// Whether a zero stands between this block and the next.
     zero_follows: bool,
     has_begun: bool,
     is_too_long: bool,
-    /// The content was handed out; the next byte starts anew.
+    /// The content was returned to the caller; the next byte starts a new frame.
     is_over: bool,
 }
 
@@ -193,14 +194,14 @@ impl<const N: usize> Default for Deframer<N> {
 }
 
 impl<const N: usize> Deframer<N> {
-    /// Between two frames.
+    /// Creates a decoder that waits for a frame to start.
     #[must_use]
     pub const fn new() -> Self {
         Self { content: Vec::new(), left: 0, zero_follows: false, has_begun: false, is_too_long: false, is_over: false }
     }
 
-    /// Takes a byte; at the end of a frame its kind and body, or what is wrong with it. O(1), at the end of a frame
-    /// O(`N`).
+    /// Takes one byte. At the end of a frame, returns its kind and body, or the reason for
+    /// rejecting it. O(1), at the end of a frame O(`N`).
     pub fn push(&mut self, byte: u8) -> Option<Result<(u8, &[u8]), FrameError>> {
         if self.is_over {
             self.content.clear();

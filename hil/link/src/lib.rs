@@ -1,9 +1,10 @@
-//! The contract between a host and a device that runs the controller, and nothing else. Read [`session`] first.
+//! The protocol between a host that simulates the world and a device that runs the controller.
+//! Start with [`session`].
 //!
-//! The host knows the world; the device decides. In each tick the host sends [`message::Step`] (what the robot senses,
-//! what its radio received) and the device answers with [`message::Stepped`] (what the robot does and says, and a
-//! digest of its whole state). Both ends are state machines without I/O: [`session::Session`] on the device takes bytes
-//! and gives bytes, [`port::Port`] on the host also takes the time.
+//! In each tick the host sends [`message::Step`] (sensor readings and received packets). The device
+//! answers with [`message::Stepped`] (command, packets to send, and a digest of its entire state).
+//! Both ends are state machines without I/O: [`session::Session`] on the device takes and returns
+//! bytes; [`port::Port`] on the host takes the time as well.
 //!
 //! ```text
 //! host                                   device
@@ -15,11 +16,12 @@
 //!                               <-       Stepped { seq + 1, outputs, digest, cost }
 //! ```
 //!
-//! One request is on its way at a time. The host resends it until it is answered; the device answers a repeated `seq`
-//! with the very same bytes and decides nothing a second time, so that a line that loses, repeats, delays, reorders or
-//! damages frames changes no result. What cannot go on is a [`message::Fault`] with its reason.
+//! There is one outstanding request at a time, and the host resends it until it is answered. The
+//! device answers a repeated `seq` with identical bytes and does not execute the request again. A
+//! line that loses, duplicates, delays, reorders or damages frames therefore changes no result. A
+//! device that cannot execute a request answers with a [`message::Fault`] and its reason.
 #![no_std]
-// What may panic has no place on a robot; tests may.
+// Code that may panic is forbidden in firmware, but allowed in tests.
 #![cfg_attr(
     not(test),
     deny(

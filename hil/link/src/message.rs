@@ -1,9 +1,9 @@
-//! The messages. The order and the types of the fields are the wire format (postcard): a change is a new
-//! [`VERSION`](crate::frame::VERSION).
+//! The messages. Order and types of the fields are the wire format (postcard): any change needs a
+//! new [`VERSION`](crate::frame::VERSION).
 //!
-//! Numbers are `f32` in SI units, whatever the device computes with; the device casts them to its own kind of number
-//! and back, and the host's shadow of the device does the same. That both decide alike shows in the digest of their states, which
-//! covers the device's own numbers.
+//! Numbers on the wire are `f32` in SI units. A device converts them to and from its own number
+//! format, and the host's shadow of the device does the same. Digests cover the state in the
+//! device's own number format, so equal digests show that both decided alike.
 
 use crate::capacities::Capacities;
 use crate::surroundings::{PackedSurroundings, TerrainWindow};
@@ -14,12 +14,12 @@ use staya_controller::grid::Cell;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
 
-/// Bytes of a frame from the device, at most: delimiters included (a test fills one).
+/// Largest frame from the device, bytes, delimiters included. A test fills one.
 pub const MAX_ANSWER: usize = 512;
-/// Bytes of what is in a [`Configure`], at most: overhead included (a test fills one).
+/// Largest content of a [`Configure`] frame, bytes, overhead included. A test fills one.
 pub const MAX_CONFIGURE: usize = 640;
 
-/// Kinds of messages: from the host, then from the device.
+/// Message kinds: below 0x80 from the host, otherwise from the device.
 pub mod kind {
     /// [`Greeting`](super::Greeting).
     pub const GREETING: u8 = 1;
@@ -39,137 +39,140 @@ pub mod kind {
     pub const FAULT: u8 = 0x84;
 }
 
-/// Names a stretch of work with one host, so that what was delayed from another one is told apart.
+/// Identifies a session with one host, so that delayed frames of another session are recognised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Token {
-    /// Chosen anew by each run of a host.
+    /// Drawn by the host at each start.
     pub run: u32,
-    /// Counts the greetings of the run, wraps.
+    /// Number of the greeting within the run; wraps.
     pub number: u16,
 }
 
-/// Host: who are you? One with a new token makes the device forget what it was.
+/// Host: asks the device to introduce itself. A new token makes the device forget its robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Greeting {
-    /// Of this greeting.
+    /// Token of the new session.
     pub token: Token,
 }
 
-/// Host: start anew, as if by the reset button. A device that has another token only says [`Hello`].
+/// Host: asks the device to reset. A device whose token differs only answers with [`Hello`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Restart {
-    /// Of the last greeting.
+    /// Token of the last greeting.
     pub token: Token,
 }
 
-/// Host: be this robot, just started.
+/// Host: asks the device to become this robot, in its initial state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Configure {
-    /// Any number ahead of the last one.
+    /// Any number ahead of the previous request's.
     pub seq: u16,
-    /// What the robot is.
+    /// Configuration of the agent.
     pub setup: Setup,
-    /// What it has to do, if anything. The rest of the frame is the guidance law, if it is one of somebody's [own](crate::own).
+    /// Initial task, if any. The rest of the frame is the guidance law if it is an
+    /// [own](crate::own) one.
     pub task: Option<Task>,
 }
 
-/// Host: this is what you sense; decide.
+/// Host: asks the device to execute a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step<'a> {
-    /// One more than that of the last request.
+    /// Number of the previous request plus one.
     pub seq: u16,
-    /// What the robot senses.
+    /// Sensor readings and received packets.
     #[serde(borrow)]
     pub inputs: StepInputs<'a>,
 }
 
-/// What a robot gets in a step: [`Inputs`](staya_controller::agent::Inputs) as the link carries them. Terrain and inbox stay in the
-/// buffer that they were received in.
+/// Inputs of one step: [`Inputs`](staya_controller::agent::Inputs) in wire format. Terrain and
+/// inbox borrow from the receive buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepInputs<'a> {
-    /// The host's count of steps, for people who read reports.
+    /// The host's step count, for reports only.
     pub tick: u32,
-    /// The time of the step.
+    /// Time of the step.
     pub now: Instant,
-    /// Own state.
+    /// The robot's own state.
     pub state: KinematicState<f32>,
-    /// Own state on the grid.
+    /// The robot's own state on the grid.
     pub cell: Option<CellState>,
-    /// Terrain in sight.
+    /// Terrain in view.
     #[serde(borrow)]
     pub window: Option<TerrainWindow<'a>>,
     /// Surroundings in the plane or in space.
     #[serde(borrow)]
     pub surroundings: Option<PackedSurroundings<'a>>,
-    /// What the radio delivered.
+    /// Packets that the radio delivered.
     pub inbox: &'a [u8],
 }
 
-/// The kind of number that a device computes with.
+/// Number format of a device's arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NumberFormat {
     /// `f32`.
     F32,
-    /// Q16.16.
+    /// Q16.16 fixed point.
     Q16,
 }
 
-/// Device: this is what I am. Also said once after each start, then without a token.
+/// Device: introduces itself. Sent in answer to a greeting and, without a token, once after each
+/// start.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hello {
-    /// Of the greeting that this answers; `None` if nobody has greeted since the device started.
+    /// Token of the greeting that this answers; `None` if the device has not been greeted since its
+    /// start.
     pub token: Option<Token>,
-    /// Another one after each start, if the part's memory allows.
+    /// Start number. Differs after each start if the part's memory allows.
     pub boot: u32,
     /// Rate of [`Cost::ticks`], per second.
     pub ticks_per_second: u32,
-    /// What it computes with.
+    /// Number format of its arithmetic.
     pub number: NumberFormat,
-    /// What it has room for.
+    /// Its capacities.
     pub capacities: Capacities,
-    /// Which part it is, such as `stm32f405`.
+    /// Name of the part, such as `stm32f405`.
     pub part: String<24>,
-    /// Which firmware it runs.
+    /// Name of the firmware.
     pub firmware: String<32>,
 }
 
-/// Device: I am that robot.
+/// Device: confirms [`Configure`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Configured {
-    /// Of the request.
+    /// Number of the request.
     pub seq: u16,
-    /// Fingerprint of the robot's state.
+    /// Digest of the robot's state.
     pub digest: u64,
 }
 
-/// Device: this is what I decided.
+/// Device: result of a [`Step`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stepped {
-    /// Of the request.
+    /// Number of the request.
     pub seq: u16,
-    /// What must be the same on every device.
+    /// The part that must be identical on every device.
     pub result: StepResult,
-    /// What differs between devices.
+    /// The part that differs between devices.
     pub cost: Cost,
 }
 
-/// A decision and what came of it.
+/// Outputs of a step and the agent's state after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepResult {
-    /// What the step gave.
+    /// Command and packets.
     pub outputs: Outputs<f32>,
-    /// What the robot is doing.
+    /// The agent's mode.
     pub mode: Mode,
-    /// Whom it follows.
+    /// The robot that it follows.
     pub leader: RobotId,
-    /// Where it is going.
+    /// The cell that it moves to.
     pub target: Option<Cell>,
-    /// Fingerprint of its state after the step.
+    /// Digest of the agent's state after the step.
     pub digest: u64,
 }
 
 impl StepResult {
-    /// Whether both say the same to the last bit (`==` takes the two zeros for equal).
+    /// Whether both are bitwise identical (`==` considers 0.0 and -0.0 equal).
     #[must_use]
     pub fn is_identical(&self, other: &Self) -> bool {
         let bytes = |result: &Self| {
@@ -183,41 +186,41 @@ impl StepResult {
     }
 }
 
-/// What a step cost.
+/// Time and memory that a step took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cost {
-    /// Ticks of the device's clock, see [`Hello::ticks_per_second`].
+    /// Ticks of the device's clock; see [`Hello::ticks_per_second`].
     pub ticks: u32,
     /// Bytes of stack that the step touched.
     pub stack_bytes: u32,
 }
 
-/// Why a device cannot go on.
+/// Reason why a device cannot execute a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FaultKind {
-    /// A step before [`Configure`]: the device has started anew, or nobody told it what to be.
+    /// A step before [`Configure`]: the device has restarted or was never configured.
     NotConfigured,
-    /// A step went missing: its `seq` is ahead by more than one.
+    /// A step is missing: its `seq` is ahead by more than one.
     Gap,
-    /// What was asked does not fit the device.
+    /// The inputs or the setup exceed the device's capacities.
     Capacity,
-    /// The setup makes no sense to the device.
+    /// The device cannot use the setup.
     Setup,
-    /// A sound frame whose body cannot be read.
+    /// An intact frame whose body cannot be parsed.
     Malformed,
-    /// Another version of the link.
+    /// A frame of another link version.
     Version,
     /// The firmware panicked and restarts.
     Panic,
 }
 
-/// Device: I cannot.
+/// Device: reports that it cannot execute a request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault {
-    /// Of the request; of no meaning for [`FaultKind::Panic`] and [`FaultKind::Version`].
+    /// Number of the request; meaningless for [`FaultKind::Panic`] and [`FaultKind::Version`].
     pub seq: u16,
-    /// Why.
+    /// Machine-readable reason.
     pub kind: FaultKind,
-    /// Why, for people.
+    /// Human-readable reason.
     pub text: String<80>,
 }

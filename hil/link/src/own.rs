@@ -1,5 +1,7 @@
-//! Robots that go by a guidance law of somebody's own. Such a firmware has one law; what it keeps, the host tells, as postcard writes
-//! it: what a simulation makes by `|index| MyLaw { .. }` is what the device steps.
+//! Robots with a user-defined guidance law.
+//!
+//! Such a firmware contains exactly one law. The host sends the law's initial state in postcard
+//! format: the device steps the value that the simulation built with `|index| MyLaw { .. }`.
 
 use crate::body::{Body, capacities, check, number};
 use crate::capacities::Capacities;
@@ -18,7 +20,7 @@ pub type OwnLarge<G> = Own<f32, G, NEIGHBORS, HALF_PLANES, 32, AnyWire>;
 /// A robot with law `G` on the micro:bit's nRF51: 8 neighbours, 16 obstacles, fixed point.
 pub type OwnSmall<G> = Own<Q16, G, 8, 16, 16, AnyWire>;
 
-/// A guidance law of somebody's own, in the plane or in space, that a host can tell a device of.
+/// A user-defined guidance law, in the plane or in space, whose state a host can send to a device.
 pub trait LinkedLaw<S: Scalar>:
     for<'a> Guidance<S, Input<'a> = InPlane<'a, S>, Workspace = ()> + Serialize + for<'de> Deserialize<'de>
 {
@@ -29,14 +31,15 @@ impl<S: Scalar, G> LinkedLaw<S> for G where
 {
 }
 
-/// A robot that goes by law `G` behind the safety layer that it is told of. `N` neighbours, `K` half-planes, `O` obstacles, wire format `W`.
+/// A robot with law `G` behind a configurable safety layer: `N` neighbours, `K` half-planes, `O`
+/// obstacles, wire format `W`.
 #[derive(Clone, Debug)]
 pub struct Own<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> {
     body: Body<S, AnyWorld<G>, AnySafety<S, K>, W, N, O>,
 }
 
 impl<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> Own<S, G, N, K, O, W> {
-    /// Nobody yet.
+    /// Creates a robot that is not configured.
     #[must_use]
     pub const fn new() -> Self {
         Self { body: Body::new(()) }

@@ -1,7 +1,8 @@
-//! The host's end of the link: what to send, and when to look again. Read [`Port::poll`] and [`Port::receive`] first.
+//! The host's end of the link: which frame to send, and when to call again. Start with
+//! [`Port::poll`] and [`Port::receive`].
 //!
-//! One request is on its way at a time. It is resent until its answer is there or the attempts are used up: nothing
-//! waits forever. Time comes in as an argument, in microseconds of any clock that does not go back.
+//! There is one outstanding request at a time. It is resent until it is answered or times out, so
+//! that no request waits forever. Time is an argument, in microseconds of any monotonic clock.
 
 use crate::frame::{Deframer, Frame, FrameError, TooLong, VERSION};
 use crate::message::{
@@ -12,34 +13,35 @@ use postcard::from_bytes;
 use serde::ser::{Serialize, SerializeTuple as _, Serializer};
 use staya_controller::agent::{Setup, Task};
 
-/// How long to wait for a device.
+/// Timeouts for a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// A request is sent again after this at the latest, microseconds: more than the line needs for a request and its answer. A step
-    /// is sent again sooner, by the round trips of steps before it (see [`Port`]).
+    /// Longest time before a request is resent, microseconds; must exceed the line's time for a
+    /// request and its answer. Steps are resent sooner, by the measured round trips (see [`Port`]).
     pub resend_after_us: u64,
-    /// A device that has not answered for so long is given up, microseconds; it is asked once at least.
+    /// Time without an answer after which the device counts as silent, microseconds. The request is
+    /// sent at least once.
     pub give_up_after_us: u64,
 }
 
-/// Steps are not sent again sooner than this: no host looks more often.
+/// Shortest time before a step is resent: no host polls more often.
 const LEAST_RESEND_US: u64 = 1000;
-/// The time to wait doubles at most so often.
 const MOST_DOUBLINGS: u32 = 10;
 
-/// How long steps have taken: the retransmission timer of RFC 6298 (section 2), in microseconds.
+/// Round-trip times of steps: the retransmission timer of RFC 6298 (section 2), in microseconds.
 #[derive(Clone, Copy, Debug, Default)]
 struct RoundTrip {
-    /// The mean, by an eighth of each; 0: none yet.
+    /// Smoothed mean with a gain of 1/8; 0 before the first measurement.
     mean_us: u64,
-    /// The mean distance from it, by a quarter of each.
+    /// Smoothed mean deviation with a gain of 1/4.
     deviation_us: u64,
-    /// How often the time to wait has doubled since the last step that was answered at once (section 5.5).
+    /// Doublings since the last step that was answered without a resend (section 5.5).
     doublings: u32,
 }
 
 impl RoundTrip {
-    /// A step that was sent once took so long. One that was sent again says nothing: which of them was answered, nobody knows (Karn).
+    /// Records the round trip of a step that was sent once. A resent step is not recorded, because
+    /// its answer may belong to either copy (Karn's algorithm).
     fn note(&mut self, took_us: u64) {
         let Self { mean_us, deviation_us, doublings } = self;
         *doublings = 0;
@@ -52,7 +54,7 @@ impl RoundTrip {
         *mean_us = mean_us.saturating_sub(*mean_us >> 3).saturating_add(took_us >> 3).max(1);
     }
 
-    /// How long to wait for the next one, at most `most_us`.
+    /// Time to wait for the next answer, at most `most_us`.
     fn patience_us(self, most_us: u64) -> u64 {
         if self.mean_us == 0 {
             return most_us;
@@ -66,16 +68,16 @@ impl RoundTrip {
     }
 }
 
-/// What the device was asked for.
+/// Kind of an outstanding request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// Its name.
+    /// Greeting.
     Hello,
-    /// To be a robot.
+    /// Configuration.
     Configure,
-    /// To start anew.
+    /// Restart.
     Restart,
-    /// A step, by the host's count.
+    /// Step, with the host's step count.
     Step(u32),
 }
 
@@ -90,28 +92,28 @@ impl fmt::Display for Asked {
     }
 }
 
-/// Why a device was given up.
+/// Reason for giving up on a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PortError {
-    /// No answer.
+    /// The device did not answer.
     Silent {
-        /// To what.
+        /// The outstanding request.
         asked: Asked,
-        /// How often.
+        /// Times that it was sent.
         attempts: u32,
-        /// Since the first of them, microseconds.
+        /// Time since it was first sent, microseconds.
         waited_us: u64,
     },
     /// The device speaks another version of the link.
     Version {
-        /// Its version.
+        /// The device's version.
         device: u8,
     },
-    /// The device says why it cannot.
+    /// The device reported a fault.
     Fault {
-        /// What it was asked for.
+        /// The outstanding request.
         asked: Option<Asked>,
-        /// Its answer.
+        /// The device's report.
         fault: Fault,
     },
 }
@@ -140,53 +142,55 @@ impl fmt::Display for PortError {
 
 impl core::error::Error for PortError {}
 
-/// What to do next.
+/// Next action of the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Next<'a> {
-    /// Send this frame, then ask again.
+    /// Send this frame, then poll again.
     Send(&'a [u8]),
-    /// Nothing before this time unless bytes arrive.
+    /// Poll again at this time, microseconds, or when bytes arrive.
     WaitUntil(u64),
-    /// Nothing: no request is on its way.
+    /// Nothing to do: there is no outstanding request.
     Idle,
 }
 
-/// What came of the bytes.
+/// Result of received bytes.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is no allocator, and it is taken apart at once")]
 pub enum Event {
-    /// The answer to a greeting.
+    /// Answer to a greeting.
     Hello(Hello),
-    /// The answer to a setup.
+    /// Answer to a configuration.
     Configured(Configured),
-    /// The answer to a step.
+    /// Answer to a step.
     Stepped(Stepped),
-    /// The device has started anew, asked or not: greet it and tell it what to be. The request is over.
+    /// The device has restarted, requested or not: greet and configure it. There is no outstanding
+    /// request.
     Restarted,
 }
 
-/// What went over the line; the counts wrap.
+/// Traffic counters; they wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Frames sent, resent ones included.
     pub sent: u32,
-    /// Frames sent again.
+    /// Frames resent.
     pub resent: u32,
     /// Bytes sent.
     pub sent_bytes: u64,
     /// Bytes received.
     pub received_bytes: u64,
-    /// Frames damaged, too long or unreadable.
+    /// Frames that were damaged, too long or unreadable.
     pub damaged: u32,
-    /// Sound frames that nobody waited for.
+    /// Intact frames that answer no outstanding request.
     pub stale: u32,
 }
 
-/// The host's end for one device; requests of at most `N` bytes.
+/// The host's end of the link to one device, with requests of at most `N` bytes.
 ///
-/// A lost frame costs about a round trip: a step is sent again after the mean of the round trips and four times their deviation,
-/// then after twice as long, and so on up to [`Limits::resend_after_us`]. The device answers a repeated step with the same bytes.
+/// A lost frame costs about one round trip. A step is resent after the mean round trip plus four
+/// times its deviation; the wait then doubles up to [`Limits::resend_after_us`]. The device answers
+/// a repeated step with identical bytes.
 #[derive(Clone, Debug)]
 pub struct Port<const N: usize> {
     deframer: Deframer<MAX_ANSWER>,
@@ -209,8 +213,8 @@ struct Waiting {
 }
 
 impl<const N: usize> Port<N> {
-    /// Nothing is known of the device yet: the first thing is [`Port::greet`]. `run` tells this run of the host from
-    /// others that have talked to the same device.
+    /// Creates a port to an unknown device; call [`Port::greet`] first. `run` distinguishes this
+    /// run of the host from others that have used the same device.
     #[must_use]
     pub const fn new(run: u32, limits: Limits) -> Self {
         Self {
@@ -226,44 +230,45 @@ impl<const N: usize> Port<N> {
         }
     }
 
-    /// Changes how long to wait, from the next request on.
+    /// Changes the timeouts, from the next request on.
     pub const fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
     }
 
-    /// What went over the line.
+    /// Traffic counters.
     #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// What the device was asked for, while it has not answered.
+    /// The outstanding request, if any.
     #[must_use]
     pub fn asked(&self) -> Option<Asked> {
         self.waiting.map(|waiting| waiting.asked)
     }
 
-    /// Asks the device who it is; it forgets what it was. Replaces a request that is on its way.
+    /// Sends a greeting, which makes the device forget its robot. Replaces an outstanding request.
     pub fn greet(&mut self, now_us: u64) {
         self.token.number = self.token.number.wrapping_add(1);
         let token = self.token;
-        // A greeting always fits: `N` has room for more than a dozen bytes.
+        // A greeting always fits: `N` exceeds a dozen bytes.
         let _ = self.request.fill(kind::GREETING, &Greeting { token });
         self.ask(Asked::Hello, now_us);
     }
 
-    /// Asks the device to start anew. Replaces a request that is on its way.
+    /// Requests a reset of the device. Replaces an outstanding request.
     pub fn restart(&mut self, now_us: u64) {
         let token = self.token;
         let _ = self.request.fill(kind::RESTART, &Restart { token });
         self.ask(Asked::Restart, now_us);
     }
 
-    /// Tells the device what to be; `law` as in [`Controller::configure`](crate::robot::Controller::configure). Replaces a request that
-    /// is on its way.
+    /// Sends the robot's configuration; `law` as in
+    /// [`Controller::configure`](crate::robot::Controller::configure). Replaces an outstanding
+    /// request.
     ///
     /// # Errors
-    /// [`TooLong`] for `N`; then nothing is on its way.
+    /// [`TooLong`] if the request exceeds `N` bytes; then there is no outstanding request.
     pub fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8], now_us: u64) -> Result<(), TooLong> {
         self.waiting = None;
         self.seq = self.seq.wrapping_add(1);
@@ -272,11 +277,13 @@ impl<const N: usize> Port<N> {
         Ok(())
     }
 
-    /// Asks for a step. Replaces a request that is on its way, which the device will take for a gap: wait for answers.
+    /// Requests a step. Replaces an outstanding request, which the device will report as a gap:
+    /// wait for each answer.
     ///
     /// # Errors
-    /// [`TooLong`] for `N`; then nothing is on its way. [`Capacities::fit`](crate::capacities::Capacities::fit) sees to
-    /// it that [`Capacities::frame_bytes`](crate::capacities::Capacities::frame_bytes) suffice.
+    /// [`TooLong`] if the request exceeds `N` bytes; then there is no outstanding request. Inputs
+    /// cut by [`Capacities::fit`](crate::capacities::Capacities::fit) fit into
+    /// [`Capacities::frame_bytes`](crate::capacities::Capacities::frame_bytes).
     pub fn step(&mut self, inputs: &StepInputs<'_>, now_us: u64) -> Result<(), TooLong> {
         self.waiting = None;
         let seq = self.seq.wrapping_add(1);
@@ -291,10 +298,11 @@ impl<const N: usize> Port<N> {
         self.waiting = Some(Waiting { asked, attempts: 0, since_us: now_us, due_us: now_us });
     }
 
-    /// What to do next: call it after each request, each event and when the time that it gave has come.
+    /// Returns the next action. Call it after each request, after each event, and at the time that
+    /// it returned.
     ///
     /// # Errors
-    /// [`PortError::Silent`] when the attempts are used up; then nothing is on its way any more.
+    /// [`PortError::Silent`] on a timeout; then there is no outstanding request.
     pub fn poll(&mut self, now_us: u64) -> Result<Next<'_>, PortError> {
         let limits = self.limits;
         let Some(waiting) = &mut self.waiting else {
@@ -327,10 +335,12 @@ impl<const N: usize> Port<N> {
         Ok(Next::Send(frame))
     }
 
-    /// Takes a byte of the line; what came of it, if anything did. O(1), at the end of a frame O(its bytes).
+    /// Takes one byte from the line and returns the event that it completes, if any. O(1), at the
+    /// end of a frame O(its bytes).
     ///
     /// # Errors
-    /// What the device cannot do, see [`PortError`]; then nothing is on its way any more.
+    /// A fault or version mismatch reported by the device, see [`PortError`]; then there is no
+    /// outstanding request.
     pub fn receive(&mut self, byte: u8, now_us: u64) -> Result<Option<Event>, PortError> {
         self.counts.received_bytes = self.counts.received_bytes.wrapping_add(1);
         let said = match self.deframer.push(byte) {
@@ -359,7 +369,7 @@ impl<const N: usize> Port<N> {
         Ok(event)
     }
 
-    /// What a message means now; `None` for one that nobody waits for.
+    /// Interprets a message in the current state; `None` if it is stale.
     fn understand(&mut self, said: Said, now_us: u64) -> Result<Option<Event>, PortError> {
         let asked = self.asked();
         let is_step = matches!(asked, Some(Asked::Step(_)));
@@ -373,7 +383,8 @@ impl<const N: usize> Port<N> {
                 let is_answer = fault.seq == self.seq && asked.is_some();
                 match fault.kind {
                     FaultKind::NotConfigured if is_answer && is_step => Some(Event::Restarted),
-                    // Nothing but a step needs a setup: late, about one that was sent twice.
+                    // Only a step needs a configuration: this is a late answer to a request that
+                    // was sent twice.
                     FaultKind::NotConfigured => None,
                     FaultKind::Panic | FaultKind::Version => {
                         self.waiting = None;
@@ -397,13 +408,13 @@ impl<const N: usize> Port<N> {
             return is_answer.then_some(Event::Hello(hello));
         }
         match (asked, &mut self.waiting) {
-            // It has just started, and our greeting may have come too early.
+            // The device has just started and may have missed the greeting.
             (Some(Asked::Hello), Some(waiting)) => {
                 waiting.due_us = now_us;
                 None
             }
             (Some(Asked::Restart), _) => Some(Event::Restarted),
-            // Delayed from a start that is known.
+            // A delayed hello of the current start.
             _ if self.boot == Some(hello.boot) => None,
             _ => {
                 self.boot = Some(hello.boot);
@@ -413,7 +424,6 @@ impl<const N: usize> Port<N> {
     }
 }
 
-/// A message of the device.
 #[expect(clippy::large_enum_variant, reason = "there is no allocator, and it is taken apart at once")]
 enum Said {
     Hello(Hello),
@@ -434,7 +444,6 @@ impl Said {
     }
 }
 
-/// Bytes that end with the frame: without their number before them.
 struct Rest<'a>(&'a [u8]);
 
 impl Serialize for Rest<'_> {

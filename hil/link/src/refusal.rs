@@ -1,35 +1,36 @@
-//! Why a device is not the robot that it was told to be.
+//! Reasons why a device refuses a configuration or a step.
 
 use core::fmt;
 use staya_controller::agent::WrongTask;
 use staya_controller::wire::Format;
 
-/// Why a controller refused.
+/// Reason of a refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// It was not told what to be.
+    /// The device is not configured.
     NotConfigured,
-    /// The setup is for nobody.
+    /// The setup has no robot id.
     Nobody,
-    /// It does not speak this format.
+    /// The firmware does not speak this packet format.
     Format(Format),
-    /// The guidance law has no use for the task.
+    /// The guidance law does not accept the task.
     Task,
-    /// No guidance law of this firmware's reads so.
+    /// The bytes do not describe the firmware's guidance law.
     Law,
-    /// A search of so many cells.
+    /// The grid search needs more cells than the device has.
     Search {
-        /// Cells.
+        /// Cells needed.
         needs: usize,
-        /// Cells that fit.
+        /// Cells available.
         room: usize,
     },
-    /// More obstacles than this.
+    /// More obstacles than fit.
     Obstacles {
         /// Obstacles that fit.
         room: usize,
     },
-    /// A window whose cells are not as many as its sides say, an obstacle of no known shape, or neither a cell nor surroundings.
+    /// A window whose cell count does not match its sides, an obstacle of unknown shape, or inputs
+    /// with neither a cell nor surroundings.
     Nonsense,
 }
 

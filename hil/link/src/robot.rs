@@ -1,4 +1,4 @@
-//! What a session asks of a robot's controller, and the one controller that can be any robot with a law of this repository.
+//! The controller interface of a session, and the controller for all built-in guidance laws.
 
 use crate::body::{Body, capacities, check, count, number};
 use crate::capacities::Capacities;
@@ -12,45 +12,48 @@ use staya_controller::scalar::{Q16, Scalar};
 use staya_controller::wire::{FromFormat, Postcard};
 use staya_mavlink::any::AnyWire;
 
-/// The robot that an STM32F405 has room for. As the small one, it speaks whatever format it is told to.
+/// The robot of an STM32F405. Its packet format is configurable.
 pub type Large = Robot<f32, CELLS, VISITS, NEIGHBORS, HALF_PLANES, 32, AnyWire, LEARNED>;
-/// The robot that the micro:bit's nRF51 has room for.
+/// The robot of the micro:bit's nRF51. Its packet format is configurable.
 pub type Small = Robot<Q16, CELLS, VISITS, 8, 16, 16, AnyWire>;
-/// Bytes of the inbox beside a [`Large`].
+/// Inbox of a [`Large`], bytes.
 pub const LARGE_INBOX: usize = 8192;
-/// Bytes of the inbox beside a [`Small`].
+/// Inbox of a [`Small`], bytes.
 pub const SMALL_INBOX: usize = 1024;
 
-/// The part of a device that decides. Object-safe, so that a host can hold the shadows of different parts.
+/// The deciding part of a device. Object-safe, so that a host can hold shadows of different parts.
 pub trait Controller {
-    /// What it computes with.
+    /// Number format of the arithmetic.
     fn number(&self) -> NumberFormat;
 
-    /// What it has room for; the inbox is up to who owns the buffer.
+    /// Capacities; the inbox depends on the owner of the receive buffer.
     fn capacities(&self) -> Capacities;
 
-    /// Becomes this robot, just started; the digest of its state. `law` is a guidance law of somebody's own as postcard writes it,
-    /// empty where [`Setup::guidance`] names one.
+    /// Replaces the robot by a new one in its initial state and returns the digest of that state.
+    /// `law` is a user-defined guidance law in postcard format; it is empty if [`Setup::guidance`]
+    /// names a built-in law.
     ///
     /// # Errors
-    /// What does not fit, see [`Refusal`]; then it is no robot at all.
+    /// See [`Refusal`]; the controller is then not configured.
     fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8]) -> Result<u64, Refusal>;
 
-    /// One step of the robot. What it decided is kept for [`Controller::result`]: on the way through a step it would only take stack.
+    /// Executes one step. The result is kept for [`Controller::result`], because returning it would
+    /// cost stack.
     ///
     /// # Errors
-    /// [`Refusal::NotConfigured`], or inputs that do not fit or make no sense; the robot is as it was.
+    /// [`Refusal::NotConfigured`], or inputs that do not fit or are inconsistent; the robot's state
+    /// is unchanged.
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal>;
 
-    /// What the last step decided; `None` for no robot.
+    /// Result of the last step; `None` before the robot is configured.
     fn result(&self) -> Option<StepResult>;
 
-    /// Is no robot any more.
+    /// Removes the robot.
     fn forget(&mut self);
 }
 
-/// A robot that is told what to be. `CELLS` of a search, `M` remembered visits, `N` neighbours, `K` half-planes, `O` obstacles,
-/// wire format `W`.
+/// A robot with a configurable law: `CELLS` of a search, `M` remembered visits, `N` neighbours, `K`
+/// half-planes, `O` obstacles, wire format `W`.
 #[derive(Clone, Debug)]
 pub struct Robot<
     S: Scalar,
@@ -76,13 +79,13 @@ impl<
     const L: usize,
 > Robot<S, CELLS, M, N, K, O, W, L>
 {
-    /// Nobody yet.
+    /// Creates a robot that is not configured.
     #[must_use]
     pub const fn new() -> Self {
         Self { body: Body::new(GridWorkspace::new()) }
     }
 
-    /// The robot, once it was told what to be.
+    /// The agent, once it is configured.
     #[must_use]
     pub const fn agent(&self) -> Option<&AnyAgent<S, CELLS, M, N, K, W, L>> {
         self.body.agent()

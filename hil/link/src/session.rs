@@ -1,4 +1,5 @@
-//! The device's end of the link: bytes in, answers out. Read [`Session::receive`] first.
+//! The device's end of the link: takes received bytes and returns answers. Start with
+//! [`Session::receive`].
 //!
 //! ```
 //! use staya_link::robot::{SMALL_INBOX, Small};
@@ -8,13 +9,13 @@
 //! let about = About { part: "nrf51", firmware: "lockstep", boot: 0, ticks_per_second: 16_000_000 };
 //! let mut session = Session::<Small, CONTENT>::new(Small::new(), about);
 //! let mut meter = ();
-//! // Said once after each start; then each byte of the line.
+//! // Sent once after each start; then feed each received byte.
 //! assert!(!session.hello().is_empty());
 //! for byte in [0, 1, 2, 0] {
 //!     match session.receive(byte, &mut meter) {
 //!         Reaction::None => {}
-//!         Reaction::Answer(frame) => drop(frame), // to the line
-//!         Reaction::Restart => {}                 // by the reset register
+//!         Reaction::Answer(frame) => drop(frame), // send it
+//!         Reaction::Restart => {}                 // write the reset register
 //!     }
 //! }
 //! assert_eq!(session.counts().damaged, 1);
@@ -31,23 +32,24 @@ use core::fmt::{Display, Write};
 use heapless::String;
 use postcard::take_from_bytes;
 
-/// Bytes of a frame that is no decision, at most (a test fills one).
+/// Largest frame other than answers to requests, bytes. A test fills one.
 const MAX_NOTE: usize = 128;
 
-/// `CONTENT` of a [`Session`] whose controller searches so many cells and sees so many obstacles, for an inbox of so
-/// many bytes.
+/// Computes `CONTENT` of a [`Session`] for a search of `search_cells`, this number of obstacles and
+/// an inbox of `inbox_bytes`.
 #[must_use]
 pub const fn content_bytes(search_cells: usize, obstacles: usize, inbox_bytes: usize) -> usize {
     let step = capacities::step_bytes(search_cells, obstacles, inbox_bytes);
     if step > MAX_CONFIGURE { step } else { MAX_CONFIGURE }
 }
 
-/// Measures what a step costs.
+/// Measures the cost of a step.
 pub trait Meter {
-    /// Right before the step: paints the free stack and reads the clock.
+    /// Called right before the step: paints the free stack and reads the clock.
     fn start(&mut self);
 
-    /// Right after the step: reads the clock and looks how far the paint is gone.
+    /// Called right after the step: reads the clock and finds how far the stack paint was
+    /// overwritten.
     fn finish(&mut self) -> Cost;
 }
 
@@ -60,45 +62,46 @@ impl Meter for () {
     }
 }
 
-/// What a device says of itself besides its controller's capacities.
+/// Description of a device, without its controller's capacities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct About {
-    /// Which part it is; 24 bytes.
+    /// Name of the part; at most 24 bytes.
     pub part: &'static str,
-    /// Which firmware it runs, with its version; 32 bytes.
+    /// Name and version of the firmware; at most 32 bytes.
     pub firmware: &'static str,
-    /// Another one after each start, if the part's memory allows.
+    /// Start number. Differs after each start if the part's memory allows.
     pub boot: u32,
     /// Rate of the meter's clock, per second.
     pub ticks_per_second: u32,
 }
 
-/// What the device has to do after a byte.
+/// Action of the device after a received byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Reaction<'a> {
-    /// Nothing.
+    /// Do nothing.
     None,
-    /// Send this frame; it stays as it is until the next byte.
+    /// Send this frame; it is unchanged until the next byte.
     Answer(&'a [u8]),
-    /// Start anew, as if by the reset button.
+    /// Reset the device.
     Restart,
 }
 
-/// Frames that were of no use; the counts wrap.
+/// Counters of steps and of unusable frames; they wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Steps taken.
+    /// Steps executed.
     pub steps: u32,
     /// Requests answered a second time.
     pub repeated: u32,
-    /// Requests from before the last one.
+    /// Requests older than the last one.
     pub stale: u32,
-    /// Frames damaged or too long.
+    /// Frames that were damaged or too long.
     pub damaged: u32,
 }
 
-/// The device's end: controller `C`, frames of at most `CONTENT` bytes of content, see [`content_bytes`].
+/// The device's end of the link, with controller `C` and frames of at most `CONTENT` bytes of
+/// content; see [`content_bytes`].
 #[derive(Clone, Debug)]
 pub struct Session<C, const CONTENT: usize> {
     deframer: Deframer<CONTENT>,
@@ -110,26 +113,26 @@ struct Core<C, const CONTENT: usize> {
     controller: C,
     about: Option<About>,
     token: Option<Token>,
-    /// The request that `answer` answers; `None`: no robot yet.
+    /// Number of the request that `answer` answers; `None` if no robot is configured.
     last: Option<u16>,
     answer: Frame<MAX_ANSWER>,
-    /// What is said besides: the answer must stay for a repeated request.
+    /// Any other frame; `answer` must be kept for a repeated request.
     note: Frame<MAX_NOTE>,
     counts: Counts,
 }
 
-/// How a request stands to the last one.
+/// Order of a request relative to the last one.
 enum Freshness {
     Repeated,
     Stale,
     Next,
     Ahead,
-    /// There is no last one.
+    /// There was no previous request.
     First,
 }
 
 impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
-    /// Nobody yet.
+    /// Creates a session with no robot configured.
     #[must_use]
     pub const fn new(controller: C, about: About) -> Self {
         let mut session = Self::unnamed(controller);
@@ -137,8 +140,9 @@ impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
         session
     }
 
-    /// The same for a device whose clock and count of starts are not known yet: [`Session::introduce`] it before the first
-    /// word. All zeros if `controller` is, so that a firmware's static of it takes no flash.
+    /// Creates a session without a description, for a device that does not yet know its clock and
+    /// start number. Call [`Session::introduce`] before [`Session::hello`]. All zeros if
+    /// `controller` is, so that a static session lies in `.bss` and takes no flash.
     #[must_use]
     pub const fn unnamed(controller: C) -> Self {
         const { assert!(CONTENT >= MAX_CONFIGURE, "no room for a setup") };
@@ -156,30 +160,30 @@ impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
         }
     }
 
-    /// Says what the device is.
+    /// Sets the description of the device.
     pub const fn introduce(&mut self, about: About) {
         self.core.about = Some(about);
     }
 
-    /// What the device says by itself after each start.
+    /// Returns the frame that the device sends after each start.
     pub fn hello(&mut self) -> &[u8] {
         self.core.say_hello();
         self.core.note.bytes()
     }
 
-    /// What it is that decides.
+    /// The controller.
     pub const fn controller(&self) -> &C {
         &self.core.controller
     }
 
-    /// What has come over the line.
+    /// Counters of steps and of unusable frames.
     #[must_use]
     pub const fn counts(&self) -> Counts {
         self.core.counts
     }
 
-    /// Takes a byte of the line. Bounded work: O(1), at the end of a frame O(its bytes), and a step of the robot if it
-    /// asks for one.
+    /// Takes one byte from the line. Bounded work: O(1), at the end of a frame O(its bytes), plus
+    /// one step of the robot if the frame requests it.
     pub fn receive(&mut self, byte: u8, meter: &mut impl Meter) -> Reaction<'_> {
         match self.deframer.push(byte) {
             None => Reaction::None,
@@ -225,7 +229,8 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
                 Err(_) => self.malformed(0),
             },
             kind::CONFIGURE | kind::STEP => {
-                // The number comes first in both: what was answered or is stale is not read any further.
+                // Both messages start with the number, so the rest of a repeated or stale one is
+                // not parsed.
                 let Ok((seq, rest)) = take_from_bytes::<u16>(body) else {
                     return self.malformed(0);
                 };
@@ -281,7 +286,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         }
     }
 
-    /// Not inlined: its setup must not take stack away from a step.
+    /// Not inlined: its setup would take stack from a step.
     #[inline(never)]
     fn configure(&mut self, seq: u16, body: &[u8]) -> Reaction<'_> {
         self.last = None;
@@ -291,7 +296,6 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         };
         match self.controller.configure(&setup, task.as_ref(), law) {
             Ok(digest) => {
-                // An answer has room for it.
                 let _ = self.answer.fill(kind::CONFIGURED, &Configured { seq, digest });
                 self.last = Some(seq);
                 Reaction::Answer(self.answer.bytes())
@@ -313,7 +317,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         }
     }
 
-    /// Not inlined: the result must not take stack away from the step.
+    /// Not inlined: the result would take stack from the step.
     #[inline(never)]
     fn tell(&mut self, seq: u16, cost: Cost) -> Reaction<'_> {
         let Some(result) = self.controller.result() else {
@@ -361,11 +365,10 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
             part: text(about.part),
             firmware: text(about.firmware),
         };
-        // A note has room for it.
         let _ = self.note.fill(kind::HELLO, &hello);
     }
 
-    /// What the buffer has room for besides the rest is the inbox.
+    /// The rest of the frame buffer is available to the inbox.
     fn capacities(controller: &C) -> Capacities {
         let capacities = controller.capacities();
         let (cells, obstacles) = (capacities.search_cells, capacities.obstacles);
@@ -375,14 +378,14 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     }
 }
 
-/// [`Configure`](crate::message::Configure) without its number and without the law behind it.
+/// [`Configure`](crate::message::Configure) without its number and without the law after it.
 #[derive(serde::Deserialize)]
 struct Setting {
     setup: staya_controller::agent::Setup,
     task: Option<staya_controller::agent::Task>,
 }
 
-/// The frame of a fault, for a panic handler that has no session. Text beyond 80 bytes is cut.
+/// Builds a fault frame for a panic handler, which has no session. Text beyond 80 bytes is cut.
 #[must_use]
 pub fn fault_frame(kind: FaultKind, text: impl Display) -> Frame<MAX_NOTE> {
     let mut frame = Frame::new();
@@ -392,14 +395,12 @@ pub fn fault_frame(kind: FaultKind, text: impl Display) -> Frame<MAX_NOTE> {
 
 fn fill_fault(frame: &mut Frame<MAX_NOTE>, seq: u16, kind: FaultKind, text: impl Display) {
     let mut cut = Cut(String::new());
-    // What does not fit is cut.
     let _ = write!(cut, "{text}");
     let text = cut.0;
-    // A note has room for it.
     let _ = frame.fill(kind::FAULT, &Fault { seq, kind, text });
 }
 
-/// Keeps as much text as fits.
+/// Writer that keeps the text that fits and drops the rest.
 struct Cut<const N: usize>(String<N>);
 
 impl<const N: usize> Write for Cut<N> {
@@ -413,7 +414,6 @@ impl<const N: usize> Write for Cut<N> {
 
 fn text<const N: usize>(text: &str) -> String<N> {
     let mut cut = Cut(String::new());
-    // What does not fit is cut.
     let _ = cut.write_str(text);
     cut.0
 }

@@ -1,4 +1,5 @@
-//! What a robot sees, as the link carries it: terrain stays in the buffer that it was received in, obstacles are packed.
+//! Wire format of a robot's surroundings: terrain borrows from the receive buffer; obstacles are
+//! packed.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::InCell;
@@ -10,10 +11,10 @@ use staya_controller::scalar::Scalar;
 /// Bytes of a packed obstacle.
 pub const OBSTACLE_BYTES: usize = 17;
 
-/// A [`Window`] as the link carries it.
+/// Wire format of a [`Window`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TerrainWindow<'a> {
-    /// The south-west cell.
+    /// South-west cell.
     pub origin: Cell,
     /// Cells from west to east.
     pub width: u16,
@@ -30,33 +31,34 @@ impl<'a> From<Window<'a>> for TerrainWindow<'a> {
 }
 
 impl<'a> TerrainWindow<'a> {
-    /// The window; `None` unless there are as many cells as width and height say.
+    /// Converts to a window; `None` if the cell count is not width times height.
     #[must_use]
     pub fn window(&self) -> Option<Window<'a>> {
         Window::new(self.cells, self.origin, self.width, self.height)
     }
 }
 
-/// [`InPlane`](staya_controller::agent::InPlane) with packed obstacles, and what [`InCells`](staya_controller::agent::InCells) says besides.
+/// Wire format of [`InPlane`](staya_controller::agent::InPlane), with packed obstacles, and of the
+/// additional fields of [`InCells`](staya_controller::agent::InCells).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PackedSurroundings<'a> {
-    /// How fast the body can go where it is, m/s.
+    /// Highest speed of the body at its position, m/s.
     pub max_speed_mps: f32,
-    /// Where in its cell the robot is.
+    /// Position of the robot within its cell.
     pub in_cell: Option<InCell<f32>>,
-    /// [`OBSTACLE_BYTES`] bytes each, see [`pack`].
+    /// Obstacles of [`OBSTACLE_BYTES`] bytes each, see [`pack`].
     pub obstacles: &'a [u8],
 }
 
 impl PackedSurroundings<'_> {
-    /// The obstacles in the device's own numbers; `None` for one of no known shape. What is left over at the end is
-    /// [`PackedSurroundings::is_whole`]'s matter.
+    /// Unpacks the obstacles into the device's number format; yields `None` for an unknown shape.
+    /// Trailing bytes are ignored; check [`PackedSurroundings::is_whole`].
     pub fn obstacles<S: Scalar>(&self) -> impl Iterator<Item = Option<Obstacle<S>>> {
         let (packed, _) = self.obstacles.as_chunks();
         packed.iter().map(unpack)
     }
 
-    /// Whether the packed obstacles end where the last one does.
+    /// Whether the length is a multiple of [`OBSTACLE_BYTES`].
     #[must_use]
     pub const fn is_whole(&self) -> bool {
         let (_, rest) = self.obstacles.as_chunks::<OBSTACLE_BYTES>();
@@ -64,7 +66,7 @@ impl PackedSurroundings<'_> {
     }
 }
 
-/// An obstacle as its shape's number (0 wall, 1 ball, 2 plane) and four `f32`, little-endian.
+/// Packs an obstacle: shape number (0 wall, 1 ball, 2 plane) and four `f32`, little-endian.
 #[must_use]
 pub fn pack(obstacle: &Obstacle<f32>) -> [u8; OBSTACLE_BYTES] {
     let (shape, numbers) = match *obstacle {
@@ -81,7 +83,7 @@ pub fn pack(obstacle: &Obstacle<f32>) -> [u8; OBSTACLE_BYTES] {
     packed
 }
 
-/// The inverse of [`pack`], in any kind of number; `None` for a shape that is not known. No number becomes 0.
+/// Inverse of [`pack`], in any number format; `None` for an unknown shape. NaN becomes 0.
 #[must_use]
 pub fn unpack<S: Scalar>(packed: &[u8; OBSTACLE_BYTES]) -> Option<Obstacle<S>> {
     let (shape, numbers) = packed.split_first()?;

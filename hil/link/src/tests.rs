@@ -1,4 +1,4 @@
-//! Tests of the whole link; what they share.
+//! Tests of the whole link, and their common parts.
 
 mod channel;
 mod fit;
@@ -35,7 +35,7 @@ pub fn small() -> Session<Small, SMALL> {
     Session::new(Small::new(), About { part, ..ABOUT })
 }
 
-/// A robot in the plane behind ORCA that goes to a place.
+/// A robot in the plane with ORCA that moves to a waypoint.
 pub fn in_plane() -> Setup {
     Setup {
         agent: AgentConfig {
@@ -53,7 +53,7 @@ pub fn in_plane() -> Setup {
     }
 }
 
-/// A robot that goes cell by cell, searching so far.
+/// A robot on the grid with this search radius.
 pub fn on_grid(radius: u8) -> (Setup, Task) {
     let params = RouteParams { radius, ..RouteParams::default() };
     let setup = Setup {
@@ -68,14 +68,13 @@ pub fn on_grid(radius: u8) -> (Setup, Task) {
     (setup, Task::Cell(Cell::new(40, 17)))
 }
 
-/// The frame of a message.
 pub fn frame<T: serde::Serialize>(kind: u8, body: &T) -> Vec<u8> {
     let mut frame = crate::frame::Frame::<16384>::new();
     frame.fill(kind, body).expect("it fits");
     frame.bytes().to_vec()
 }
 
-/// All that comes out of a session for these bytes.
+/// All frames that a session returns for these bytes.
 pub fn answers<B: crate::robot::Controller, const N: usize>(session: &mut Session<B, N>, bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut answers = Vec::new();
     for byte in bytes {
@@ -88,7 +87,7 @@ pub fn answers<B: crate::robot::Controller, const N: usize>(session: &mut Sessio
     answers
 }
 
-/// What a frame says, which must be of this kind.
+/// Decodes a frame, which must be of this kind.
 pub fn read<T: serde::de::DeserializeOwned>(expected: u8, frame: &[u8]) -> T {
     let mut deframer = crate::frame::Deframer::<16384>::new();
     for byte in frame {

@@ -1,4 +1,4 @@
-//! The answers of a fleet's devices.
+//! Results of a step on the devices of a fleet.
 
 use crate::channel::OpenError;
 use crate::device::DeviceError;
@@ -8,32 +8,32 @@ use staya_link::fit::WindowTooLarge;
 use staya_link::message::{Hello, StepResult};
 use staya_link::port::PortError;
 
-/// What came of a robot's step.
+/// Result of a robot's step.
 #[derive(Debug)]
 pub enum Answer {
-    /// Device and shadow decided the same.
+    /// Device and shadow decided alike.
     Decided(Box<StepResult>),
-    /// The device has started anew: the robot stands in this step.
+    /// The device has restarted: the robot is stationary in this step.
     Down,
     /// Device and shadow differ.
     Mismatch(Box<Mismatch>),
-    /// The device is of no use any more.
+    /// The device has failed for good.
     Failed(FleetError),
 }
 
-/// What is wrong with a device.
+/// Failure of a device.
 #[derive(Debug, thiserror::Error)]
 #[error("robot {} on {device}: {cause}", .robot.0)]
 pub struct FleetError {
-    /// Which robot.
+    /// The robot that runs on it.
     pub robot: RobotId,
-    /// Which device.
+    /// The device, in the notation of [`Device`](crate::Device).
     pub device: String,
-    /// What.
+    /// Reason of the failure.
     pub cause: Box<Cause>,
 }
 
-/// Why a device is of no use.
+/// Reason of a device's failure.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each text says it")]
 pub enum Cause {

@@ -1,4 +1,4 @@
-//! Byte lines to devices.
+//! Byte streams to devices.
 
 use crate::device::Device;
 use crate::emulator::{self, Emulator, EmulatorError};
@@ -8,10 +8,10 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// How long a read or a write waits; who reads asks again, what cannot be written counts as lost.
+/// Timeout of a read, which is then repeated, and of a write, whose bytes then count as lost.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Why there is no line to a device.
+/// Reason why a device cannot be opened.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each text says it")]
 pub enum OpenError {
@@ -21,14 +21,14 @@ pub enum OpenError {
     Serial(#[from] staya_serial::OpenError),
 }
 
-/// A line to a device, in both directions.
+/// A bidirectional byte stream to a device.
 pub struct Channel {
-    /// Bytes from the device. An error of the kinds `TimedOut`, `WouldBlock` and `Interrupted` means that there are
-    /// none now; the end means that the device is gone.
+    /// Bytes from the device. An error of kind `TimedOut`, `WouldBlock` or `Interrupted` means that
+    /// there are none yet; the end of the stream means that the device is gone.
     pub read: Box<dyn Read + Send>,
     /// Bytes to the device.
     pub write: Box<dyn Write + Send>,
-    /// How long the line takes per byte; nothing for one that is as fast as its ends.
+    /// Transmission time per byte; zero for a line that does not limit its ends.
     pub per_byte: Duration,
     pub(crate) emulator: Option<Emulator>,
     pub(crate) part: Option<Part>,
@@ -41,14 +41,15 @@ impl fmt::Debug for Channel {
 }
 
 impl Channel {
-    /// A line over anything that can be read and written, for instance a socket to a device on another machine.
+    /// Creates a channel over any reader and writer, for instance a socket to a device on another
+    /// machine.
     #[must_use]
     pub fn new(read: impl Read + Send + 'static, write: impl Write + Send + 'static) -> Self {
         Self { read: Box::new(read), write: Box::new(write), per_byte: Duration::ZERO, emulator: None, part: None }
     }
 
-    /// Starts the emulator or opens the port. `firmware` is the folder that `cargo xtask firmware` writes to; an
-    /// emulator's log goes to the file `log`.
+    /// Starts the emulator or opens the port. `firmware` is the output folder of
+    /// `cargo xtask firmware`; an emulator's log goes to the file `log`.
     ///
     /// # Errors
     /// See [`OpenError`].

@@ -1,4 +1,4 @@
-//! The configuration of a fleet.
+//! Configuration of a fleet.
 
 use crate::line::LineFaults;
 use staya_controller::agent::{Setup, Task};
@@ -8,63 +8,65 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// What one device is to be.
+/// Configuration of one device.
 #[derive(Clone, Debug)]
 pub struct DeviceConfig {
-    /// Where, for people; see [`Device`](crate::Device).
+    /// The device as text; see [`Device`](crate::Device).
     pub device: String,
-    /// What the robot is.
+    /// The robot's setup.
     pub setup: Setup,
-    /// What it has to do.
+    /// The robot's initial task.
     pub task: Option<Task>,
-    /// The guidance law if it is one of somebody's own, as postcard writes it; otherwise empty.
+    /// A user-defined guidance law in postcard format; empty for a built-in law.
     pub law: Vec<u8>,
-    /// What the line does to frames.
+    /// Simulated faults of the line.
     pub faults: LineFaults,
-    /// When the device starts anew.
+    /// Scheduled resets of the device.
     pub resets: Vec<Reset>,
 }
 
-/// A reset on request.
+/// A scheduled reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reset {
-    /// In place of this step.
+    /// The step that the reset replaces.
     pub tick: u32,
-    /// For so many steps the robot stands; at least 1. How long the device really takes plays no part, so that runs
-    /// repeat.
+    /// Steps in which the robot is stationary; at least 1. It does not depend on how long the
+    /// device really takes, so that runs are reproducible.
     pub down_ticks: u32,
 }
 
-/// Robots in this process, one of which computes as a device does.
+/// Creates the candidate shadows: robots in this process, one of which computes like the device.
 pub type Shadows = fn() -> Vec<Box<dyn Controller + Send>>;
 
-/// How a fleet is run.
+/// Options of a fleet.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The folder that `cargo xtask firmware` writes to, or one ELF file for all emulated devices.
+    /// The output folder of `cargo xtask firmware`, or one ELF file for all emulated devices.
     pub firmware: PathBuf,
-    /// What devices must say that they run, such as `lockstep 0.1.0`; `None`: anything.
+    /// Name that the firmware of all devices must have, such as `lockstep 0.1.0`; `None`: any.
     pub program: Option<String>,
-    /// Among which a device's shadow is looked for, by its numbers and capacities: by default the robots that can have any law of Staya's.
+    /// Candidate shadows, chosen by number format and capacities. The default is the robots with
+    /// all built-in laws.
     pub shadows: Shadows,
-    /// The folder for the logs of emulated devices, one file per robot; `None`: no logs.
+    /// Folder for the logs of emulated devices, one file per robot; `None`: no logs.
     pub logs: Option<PathBuf>,
-    /// A request is sent again after this, and the time that the line takes for it, at the latest; a step sooner, by the round trips
-    /// of steps before it ([`Port`](staya_link::port::Port)).
+    /// Longest time before a request is resent, plus its transmission time. Steps are resent
+    /// sooner, by the measured round trips ([`Port`](staya_link::port::Port)).
     pub resend_after: Duration,
-    /// A step that takes longer is an error.
+    /// Timeout of a step.
     pub step_limit: Duration,
-    /// A start that takes longer is an error.
+    /// Timeout of a start.
     pub start_limit: Duration,
-    /// Tells this run from others that have talked to the same devices.
+    /// Distinguishes this run from others that have used the same devices.
     pub run: u32,
-    /// When this becomes true, [`Fleet::collect`](crate::Fleet::collect) ends at once and all its answers are
-    /// [`Cause::Stopped`](crate::Cause::Stopped).
+    /// When this becomes true, [`Fleet::collect`](crate::Fleet::collect) returns at once with
+    /// [`Cause::Stopped`](crate::Cause::Stopped) for all robots.
     pub stop: Arc<AtomicBool>,
 }
 
 impl Options {
-    /// Requests are resent after half a second; 10 seconds for a step and 20 for a start.
+    /// Creates the defaults: requests are resent after 0.5 s; timeouts are 10 s for a step and 20 s
+    /// for a start.
     #[must_use]
     pub fn new(firmware: PathBuf) -> Self {
         Self {

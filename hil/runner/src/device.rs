@@ -1,26 +1,26 @@
-//! What a device is, as people write it: `qemu:stm32f405`, `serial:/dev/ttyACM0,baud=115200`.
+//! Textual notation of devices: `qemu:stm32f405`, `serial:/dev/ttyACM0,baud=115200`.
 
 use crate::part::Part;
 use staya_serial::SerialPort;
 use std::fmt;
 use std::str::FromStr;
 
-/// Where a robot's controller runs.
+/// The place where a robot's controller runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Device {
-    /// In an emulator that is started for it.
+    /// In an emulator process of its own.
     Emulated(Part),
     /// On a board behind a serial port.
     Serial(SerialPort),
 }
 
-/// A text that names no device.
+/// Text that does not denote a device.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{text}` is no device: {what}")]
 pub struct DeviceError {
-    /// All of it.
+    /// The whole text.
     pub text: String,
-    /// What is wrong, and what there is.
+    /// The error, and the permitted values.
     pub what: String,
 }
 
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn written_devices_are_read_back() {
         for text in ["qemu:stm32f405", "qemu:microbit", "qemu:riscv32", "serial:/dev/ttyACM0,baud=9600"] {
             let device: Device = text.parse().expect(text);
             assert_eq!(device.to_string(), text);
@@ -71,7 +71,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_name_the_wrong_piece_and_what_there_is() {
+    fn errors_name_the_wrong_piece_and_the_permitted_values() {
         for (text, pieces) in [
             ("qemu:avr", ["`avr`", "qemu:stm32f405, qemu:microbit, qemu:riscv32"]),
             ("qemu", ["``", "qemu:microbit"]),

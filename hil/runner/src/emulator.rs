@@ -1,9 +1,9 @@
-//! An emulated part: one QEMU process, its UART on a socket.
+//! An emulated part: one QEMU process with its UART on a socket.
 //!
-//! The socket is the process's standard input (`-chardev socket,fd=0`), so that no name in the file system and no port
-//! of the network is needed; semihosting, which carries the firmware's logs, has the standard output for itself. Unix
-//! sockets in pairs, named Unix sockets and FIFOs take the same time per byte: the emulator takes and hands out one
-//! byte at a time.
+//! The socket is the process's standard input (`-chardev socket,fd=0`), so that it needs neither a
+//! file name nor a network port. Semihosting, which carries the firmware's logs, uses the standard
+//! output. Unix socket pairs, named Unix sockets and FIFOs are equally fast, because the emulator
+//! transfers one byte at a time.
 
 use crate::note::{Note, NoteError};
 use crate::part::Part;
@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Bytes of an emulator's complaints that are kept.
+/// Bytes of an emulator's error output that are stored.
 const COMPLAINTS: usize = 2048;
-/// Ends the emulator when the thread that started it dies, however it dies; part of util-linux.
+/// Kills the emulator when the thread that started it ends for any reason; part of util-linux.
 const GUARD: &str = "/usr/bin/setpriv";
 
-/// Why there is no emulator.
+/// Reason why an emulator cannot be started.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each text says it")]
 pub enum EmulatorError {
@@ -39,18 +39,19 @@ pub enum EmulatorError {
     Log { path: PathBuf, source: io::Error },
 }
 
-/// A running emulator; ends with this value.
+/// A running emulator, which is killed on drop.
 #[derive(Debug)]
 pub struct Emulator {
     child: Child,
     complaints: Arc<Mutex<String>>,
 }
 
-/// The emulator `program` of a part with this firmware, as it is started. One instruction takes a nanosecond of the
-/// emulated clock.
+/// Command line of the emulator `program` for a part with this firmware. One instruction takes 1 ns
+/// of the emulated clock.
 pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
     let (_, machine, _) = part.machine();
-    // In its own process group, so that Ctrl-C in a terminal reaches the runner alone, which ends it in order.
+    // Its own process group, so that Ctrl-C in a terminal reaches the runner alone, which shuts it
+    // down.
     let mut command = if Path::new(GUARD).is_file() {
         let mut command = Command::new(GUARD);
         command.args(["--pdeathsig", "KILL"]).arg(program);
@@ -68,7 +69,7 @@ pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
     command
 }
 
-/// Starts the emulator of a part; its logs go to the file `log` or nowhere.
+/// Starts the emulator of a part; its logs go to the file `log`, if given.
 pub fn start(part: Part, elf: &Path, log: Option<&Path>) -> Result<(Emulator, UnixStream), EmulatorError> {
     let (program, _, package) = part.machine();
     if !elf.is_file() {
@@ -100,8 +101,8 @@ pub fn start(part: Part, elf: &Path, log: Option<&Path>) -> Result<(Emulator, Un
     Ok((Emulator { child, complaints }, ours))
 }
 
-/// The emulator of this name: on the path, or where `cargo xtask qemu` unpacks it, beside the folder that this program
-/// was built in (`target/release/staya`, `target/debug/deps/a-test`).
+/// Finds an emulator in the `PATH` or in the folder where `cargo xtask qemu` unpacks it, which is
+/// beside the folder of this program (`target/release/staya`, `target/debug/deps/a-test`).
 #[must_use]
 pub fn find_emulator(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -113,7 +114,6 @@ pub fn find_emulator(program: &str) -> Option<PathBuf> {
         .find(|program| program.is_file())
 }
 
-/// Reads to the end and keeps the first bytes.
 fn listen(mut stderr: ChildStderr, complaints: &Mutex<String>) {
     let mut buffer = [0; 512];
     while let Ok(count @ 1..) = stderr.read(&mut buffer) {
@@ -126,14 +126,14 @@ fn listen(mut stderr: ChildStderr, complaints: &Mutex<String>) {
 }
 
 impl Emulator {
-    /// Its process id.
+    /// Process id.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// How it ended and what it said, for people; `None` while it runs.
+    /// Exit status and error output, as text; `None` while it runs.
     pub fn epitaph(&mut self) -> Option<String> {
-        // Its end of the socket closes a moment before it can be waited for.
+        // The socket closes shortly before the process can be waited for.
         for _ in 0..50 {
             if let Ok(Some(status)) = self.child.try_wait() {
                 let complaints = self.complaints.lock().unwrap_or_else(PoisonError::into_inner);
@@ -147,7 +147,7 @@ impl Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // By its own process id; one that has ended already is no concern.
+        // Kills by the own process id; errors mean that it has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn missing_firmware_is_named_with_the_command_that_builds_it() {
+    fn missing_firmware_error_names_the_build_command() {
         let error = start(Part::Microbit, Path::new("no/nrf51/lockstep"), None).expect_err("none");
         let text = error.to_string();
         assert!(text.contains("no/nrf51/lockstep"), "{text}");
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_program_is_named_with_its_package() {
+    fn missing_program_error_names_its_package() {
         assert!(find_emulator("sh").is_some() && find_emulator("qemu-system-abacus").is_none());
         let (program, _, package) = Part::Riscv32.machine();
         let text = EmulatorError::NoEmulator { program, package }.to_string();

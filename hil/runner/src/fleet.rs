@@ -1,7 +1,7 @@
-//! All devices of a run, in parallel. Read [`Fleet::send`] and [`Fleet::collect`] first.
+//! All devices of a run, in parallel. Start with [`Fleet::send`] and [`Fleet::collect`].
 //!
-//! One thread per device reads; everything else happens in the caller's thread. Nothing waits longer than its limit, and each
-//! error names the robot, the device, what it was asked for and how long that was waited for.
+//! Each device has a reader thread; everything else runs in the caller's thread. Each wait has a
+//! timeout, and each error names the robot, the device, the request and the waiting time.
 
 use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
@@ -18,18 +18,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// Bytes of a device; none: its end.
+/// Bytes from a device; empty at the end of the stream.
 struct Arrival {
     index: usize,
     at_us: u64,
     bytes: Vec<u8>,
 }
 
-/// All devices of a run. Dropping it ends the emulators.
+/// All devices of a run. Emulators end when it is dropped.
 pub struct Fleet {
     units: Vec<Unit>,
     arrivals: Receiver<Arrival>,
-    // Kept, so that the receiver never finds itself alone.
+    // Kept, so that the channel never closes.
     _sender: Sender<Arrival>,
     epoch: std::time::Instant,
     stop: Arc<AtomicBool>,
@@ -43,11 +43,11 @@ impl std::fmt::Debug for Fleet {
 }
 
 impl Fleet {
-    /// Starts all devices and makes each of them its robot. Call it from a thread that outlives the fleet: emulators die with the
-    /// thread that started them.
+    /// Starts all devices and configures their robots. Call it from a thread that outlives the
+    /// fleet, because emulators end with the thread that started them.
     ///
     /// # Errors
-    /// The first device that cannot be opened, does not answer or refuses.
+    /// The first device that cannot be opened, does not answer or refuses its configuration.
     pub fn start(configs: Vec<DeviceConfig>, options: Options) -> Result<Self, FleetError> {
         let mut lines = Vec::new();
         for config in configs {
@@ -62,10 +62,10 @@ impl Fleet {
         Self::over(lines, options)
     }
 
-    /// The same over lines that are there already.
+    /// Like [`Fleet::start`], over channels that are already open.
     ///
     /// # Errors
-    /// Those of [`Fleet::start`] but for opening.
+    /// Those of [`Fleet::start`], except for opening.
     pub fn over(lines: Vec<(DeviceConfig, Channel)>, options: Options) -> Result<Self, FleetError> {
         let (sender, arrivals) = channel();
         let mut fleet = Self {
@@ -97,28 +97,29 @@ impl Fleet {
         Ok(fleet)
     }
 
-    /// How many devices there are; numbers below are those of the configs.
+    /// Number of devices. Indices are those of the configurations.
     #[must_use]
     pub fn len(&self) -> usize {
         self.units.len()
     }
 
-    /// Whether there is none.
+    /// Whether the fleet has no device.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.units.is_empty()
     }
 
-    /// The process ids of the emulators.
+    /// Process ids of the emulators.
     #[must_use]
     pub fn processes(&self) -> Vec<u32> {
         self.units.iter().filter_map(Unit::process).collect()
     }
 
-    /// Asks device number `index` for a step and returns at once; its shadow has stepped then. Inputs beyond its capacities are
-    /// cut as [`Capacities::fit`](staya_link::capacities::Capacities::fit) says, for both alike, and counted.
+    /// Requests a step from device `index` and steps its shadow, without waiting for the device.
+    /// Inputs beyond its capacities are cut by
+    /// [`Capacities::fit`](staya_link::capacities::Capacities::fit) for both and counted.
     ///
-    /// What is wrong shows in [`Fleet::collect`]. A number that there is none of is ignored.
+    /// Errors are returned by [`Fleet::collect`]. An `index` out of range is ignored.
     pub fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>) {
         let now_us = self.now_us();
         if let Some(unit) = self.units.get_mut(index) {
@@ -126,10 +127,11 @@ impl Fleet {
         }
     }
 
-    /// Makes device number `index` another robot, or the same one just started, and waits until it is. A device that has been another
-    /// robot before gets a boot number of its own in any case, so that nobody takes its packets for old ones.
+    /// Assigns another robot, or the same one in its initial state, to device `index` and waits
+    /// until it is configured. A device that ran another robot before gets a new boot number, so
+    /// that receivers do not take its packets for repeated ones.
     ///
-    /// What is wrong shows in [`Fleet::collect`]. A number that there is none of is ignored.
+    /// Errors are returned by [`Fleet::collect`]. An `index` out of range is ignored.
     pub fn assign(&mut self, index: usize, setup: Setup, task: Option<Task>) {
         let now_us = self.now_us();
         if let Some(unit) = self.units.get_mut(index) {
@@ -138,26 +140,27 @@ impl Fleet {
         }
     }
 
-    /// Whether the robot of device number `index` stands in the next step, because its device was reset.
+    /// Whether the robot of device `index` is down in the next step because of a reset.
     #[must_use]
     pub fn is_down(&self, index: usize) -> bool {
         self.units.get(index).is_some_and(Unit::is_down)
     }
 
-    /// Waits for all devices, at most for the limits of the [`Options`]; an answer for each that was asked since the last call, in their order:
-    /// one for each device, if all were asked. A device that has started anew by itself is made its robot again before this returns.
+    /// Waits for all devices, within the timeouts of the [`Options`]. Returns one answer for each
+    /// step requested since the last call, in the order of the devices. A device that restarted by
+    /// itself is configured again before this returns.
     pub fn collect(&mut self) -> Vec<Answer> {
         self.settle();
         self.units.iter_mut().filter_map(Unit::answer).collect()
     }
 
-    /// What is known of the devices so far.
+    /// Statistics of the devices so far.
     #[must_use]
     pub fn statistics(&self) -> Vec<Statistics> {
         self.units.iter().map(Unit::statistics).collect()
     }
 
-    /// What the last steps cost each device, in the order in which they were started. O(devices).
+    /// Cost of the last steps on each device, in the order of the devices. O(devices).
     pub fn loads(&self) -> impl Iterator<Item = Load> {
         self.units.iter().map(Unit::load)
     }
@@ -174,7 +177,7 @@ impl Fleet {
             for unit in &mut self.units {
                 let due_us = unit.advance(now_us);
                 if !unit.is_settled() {
-                    // Without a time of its own there is more to do at once.
+                    // Without a due time, the unit has more to do at once.
                     let due_us = due_us.unwrap_or(now_us);
                     next_us = Some(next_us.map_or(due_us, |next: u64| next.min(due_us)));
                 }
@@ -186,7 +189,7 @@ impl Fleet {
                 }
                 return;
             }
-            // Looks at the flag now and then.
+            // The stop flag is checked at least every 100 ms.
             let patience = next_us.saturating_sub(self.now_us()).min(100_000);
             match self.arrivals.recv_timeout(Duration::from_micros(patience)) {
                 Ok(first) => {
@@ -216,7 +219,6 @@ fn open(config: &DeviceConfig, options: &Options) -> Result<Channel, Cause> {
     Ok(Channel::open(&device, &options.firmware, log.as_deref())?)
 }
 
-/// Reads until the device or the fleet ends.
 fn read(
     mut reader: Box<dyn Read + Send>,
     index: usize,

@@ -1,5 +1,5 @@
-//! Robots on devices: starts emulators, opens serial ports, steps all of them in lockstep and compares each with its shadow, the same
-//! robot in this process. Read [`Fleet`] first.
+//! Runs robots on devices: starts emulators, opens serial ports, steps all devices in lockstep and
+//! compares each with its shadow, the same robot in this process. Start with [`Fleet`].
 //!
 //! `tests/fleet.rs` steps fleets in the same way:
 //!
@@ -18,11 +18,11 @@
 //!     for index in 0..fleet.len() {
 //!         fleet.send(index, tick, now, &inputs(index));
 //!     }
-//!     // While the devices decide, the host steps the other robots.
+//!     // While the devices decide, the host can step other robots.
 //!     for answer in fleet.collect() {
 //!         match answer {
 //!             Answer::Decided(result) => println!("{:?}", result.outputs.command),
-//!             Answer::Down => println!("stands"),
+//!             Answer::Down => println!("down"),
 //!             Answer::Mismatch(mismatch) => println!("{mismatch}"),
 //!             Answer::Failed(error) => return Err(error),
 //!         }

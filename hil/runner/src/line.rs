@@ -1,40 +1,40 @@
-//! Faults of a line on request: what a bad cable, or a radio instead of one, would do to frames.
+//! Simulated line faults: the effects of a bad cable, or of a radio in its place, on frames.
 
 use staya_controller::rand::Rng;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Keeps the draws of both directions apart from other uses of randomness.
+/// Random number streams of the two directions.
 const PURPOSES: [u32; 2] = [u32::from_be_bytes(*b"to d"), u32::from_be_bytes(*b"from")];
 
-/// What a line does to frames, the same in both directions. The default does nothing.
+/// Faults of a line, equal in both directions. The default is a perfect line.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineFaults {
     /// Probability that a frame is lost.
     pub loss: f64,
     /// Probability that a bit flips.
     pub bit_errors: f64,
-    /// How long each frame takes besides.
+    /// Additional delay of each frame.
     pub delay: Duration,
-    /// Seed of what is drawn.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// Frames on the way in one direction.
+/// Frames in transit in one direction.
 #[derive(Debug)]
 pub struct Line {
     faults: LineFaults,
     purpose: u32,
     robot: u32,
-    /// Frames so far: each has random numbers of its own.
+    /// Frames so far; each has its own random numbers.
     frames: u32,
-    /// The beginning of a frame.
+    /// The incomplete frame at the end.
     open: Vec<u8>,
     on_the_way: VecDeque<(u64, Vec<u8>)>,
 }
 
 impl Line {
-    /// To the device (0) or from it (1).
+    /// Creates the direction to the device (0) or from it (1).
     pub fn new(faults: LineFaults, direction: usize, robot: u32) -> Self {
         Self {
             faults,
@@ -46,7 +46,7 @@ impl Line {
         }
     }
 
-    /// Takes bytes in; whole frames go on their way.
+    /// Takes bytes; complete frames are put in transit.
     pub fn push(&mut self, bytes: &[u8], now_us: u64) {
         let is_perfect = self.faults.loss <= 0.0 && self.faults.bit_errors <= 0.0;
         let due_us = now_us.saturating_add(micros(self.faults.delay));
@@ -83,7 +83,7 @@ impl Line {
         Some(frame)
     }
 
-    /// When the next bytes arrive.
+    /// Arrival time of the next bytes.
     pub fn next_us(&self) -> Option<u64> {
         self.on_the_way.front().map(|(due, _)| *due)
     }
@@ -98,12 +98,12 @@ impl Line {
     }
 }
 
-/// A probability as the controller's generator takes it.
+/// Converts a probability to the format of the controller's generator.
 fn q32(probability: f64) -> u32 {
     (probability * 4_294_967_296.0) as u32
 }
 
-/// Whole microseconds.
+/// Whole microseconds of a duration.
 pub fn micros(span: Duration) -> u64 {
     u64::try_from(span.as_micros()).unwrap_or(u64::MAX)
 }
@@ -116,7 +116,6 @@ mod tests {
         let mut line = Line::new(faults, 0, 7);
         let frame = [0, 1, 2, 3, 0];
         for _ in 0..frames {
-            // In two pieces, as they may come.
             line.push(&frame[..2], 10);
             line.push(&frame[2..], 10);
         }

@@ -4,18 +4,18 @@ use staya_controller::robot::RobotId;
 use staya_link::message::StepResult;
 use std::fmt;
 
-/// What a device decided, and what the same robot in this process did.
+/// Different results of a device and of its shadow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// Which robot.
+    /// The robot.
     pub robot: RobotId,
-    /// Which device.
+    /// The device.
     pub device: String,
-    /// Which step.
+    /// The host's step count.
     pub tick: u32,
-    /// The device's decision.
+    /// The device's result.
     pub on_device: StepResult,
-    /// The shadow's.
+    /// The shadow's result.
     pub in_shadow: StepResult,
 }
 

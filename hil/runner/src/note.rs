@@ -1,25 +1,26 @@
-//! What a firmware says of itself in its ELF file, so that nobody has to start it to know.
+//! Identification of a firmware in its ELF file, so that it need not be started to be identified.
 
 use crate::part::Part;
 use staya_link::frame::VERSION;
 use std::path::{Path, PathBuf};
 
-/// The section, and its bytes: `staya`, the link's version, the part's name (24) and the firmware's (32), filled up with zeros.
+/// ELF section of the note. Its bytes: `staya`, the link's version, the names of the part (24) and
+/// of the firmware (32), padded with zeros.
 const SECTION: &[u8] = b".staya\0";
 const MAGIC: &[u8] = b"staya";
 
-/// The note of a firmware with a session; `Note` in hil/firmware/src/lockstep.rs is the other side of it.
+/// The note of a firmware with a session; written by `note` in hil/firmware/src/lockstep.rs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Of the link.
+    /// Version of the link.
     pub version: u8,
-    /// Which part it is for.
+    /// Name of the part.
     pub part: String,
-    /// What it is, as it says in its [`Hello`](staya_link::message::Hello): name and version.
+    /// Name and version of the firmware, as in its [`Hello`](staya_link::message::Hello).
     pub program: String,
 }
 
-/// A file that is no firmware for a part.
+/// Reason why a file is not a firmware for a part.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "each text says it")]
 pub enum NoteError {
@@ -51,7 +52,7 @@ impl Note {
     /// Reads the note of an ELF file.
     ///
     /// # Errors
-    /// It cannot be read, is no ELF file, or has no note.
+    /// The file cannot be read, is not an ELF file, or has no note.
     pub fn read(path: &Path) -> Result<Self, NoteError> {
         let path = path.to_owned();
         let elf = match std::fs::read(&path) {
@@ -64,10 +65,11 @@ impl Note {
         section(&elf).and_then(Self::parse).ok_or(NoteError::NoSession { path })
     }
 
-    /// Reads the note of the firmware `elf` for a part and checks that it is for that one, speaks this link and is `program`, if given.
+    /// Reads the note of the firmware `elf` and checks its part, its link version and, if given,
+    /// its name `program`.
     ///
     /// # Errors
-    /// Those of [`Note::read`], and what does not fit.
+    /// Those of [`Note::read`], and any mismatch.
     pub fn check(elf: &Path, part: Part, program: Option<&str>) -> Result<Self, NoteError> {
         let (note, path) = (Self::read(elf)?, elf.to_owned());
         if note.part != part.firmware_name() {
@@ -95,7 +97,7 @@ impl Note {
     }
 }
 
-/// The contents of the note's section, by the section headers.
+/// Finds the contents of the note's section through the section headers.
 fn section(elf: &[u8]) -> Option<&[u8]> {
     let half = |at: usize| Some(usize::from(u16::from_le_bytes(elf.get(at..)?.first_chunk().copied()?)));
     let word = |at: usize| usize::try_from(u32::from_le_bytes(elf.get(at..)?.first_chunk().copied()?)).ok();
@@ -112,7 +114,6 @@ fn section(elf: &[u8]) -> Option<&[u8]> {
 mod tests {
     use super::*;
 
-    /// An ELF file with one section and the section of names.
     fn elf(name: &[u8], contents: &[u8]) -> Vec<u8> {
         let mut elf = vec![0u8; 52];
         elf[..6].copy_from_slice(b"\x7fELF\x01\x01");
@@ -153,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn files_that_are_no_firmware_for_the_part_are_told_apart() {
+    fn each_unsuitable_file_has_its_own_error() {
         let good = note(VERSION, "stm32f405", "patrol 0.1.0");
         assert!(checked(&elf(SECTION, &good)).starts_with("Note {"));
         for (file, why) in [
@@ -173,7 +174,7 @@ mod tests {
             assert!(said.contains(why), "{said}");
         }
         let whole = elf(SECTION, &good);
-        // The last 20 bytes are of the last header, and nobody reads them.
+        // The last 20 bytes belong to unused fields of the last header.
         for cut in 6..whole.len() - 20 {
             let said = checked(&whole[..cut]);
             assert!(said.contains("no session"), "{cut}: {said}");

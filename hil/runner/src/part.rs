@@ -1,8 +1,8 @@
-//! The parts that emulators run.
+//! The parts that can be emulated.
 
 use std::path::{Path, PathBuf};
 
-/// A microcontroller that an emulator runs.
+/// A microcontroller that can be emulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
     /// STM32F405 (Cortex-M4F), QEMU's `netduinoplus2`.
@@ -14,10 +14,10 @@ pub enum Part {
 }
 
 impl Part {
-    /// Every part.
+    /// All parts.
     pub const ALL: [Self; 3] = [Self::Stm32f405, Self::Microbit, Self::Riscv32];
 
-    /// As people write it.
+    /// Name in options and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -27,7 +27,7 @@ impl Part {
         }
     }
 
-    /// As its firmware says it, and the folder that the firmware is built in.
+    /// Name in the firmware's hello, and of the folder that the firmware is built in.
     #[must_use]
     pub const fn firmware_name(self) -> &'static str {
         match self {
@@ -37,13 +37,14 @@ impl Part {
         }
     }
 
-    /// The program that emulates it.
+    /// The emulator's program name.
     #[must_use]
     pub const fn emulator(self) -> &'static str {
         self.machine().0
     }
 
-    /// The program that emulates it, the machine and what else that needs; the Debian package of the program.
+    /// The emulator's program name, its machine and further arguments, and the Debian package of
+    /// the program.
     pub(crate) const fn machine(self) -> (&'static str, &'static [&'static str], &'static str) {
         match self {
             Self::Stm32f405 => ("qemu-system-arm", &["-machine", "netduinoplus2"], "qemu-system-arm"),
@@ -52,7 +53,8 @@ impl Part {
         }
     }
 
-    /// Its firmware below a folder of firmware, as `cargo xtask firmware` lays it out; or the file itself, if it is one.
+    /// Path of the part's firmware in a folder written by `cargo xtask firmware`; or `folder`
+    /// itself if it is a file.
     #[must_use]
     pub fn elf(self, folder: &Path) -> PathBuf {
         if folder.is_file() {

@@ -1,25 +1,25 @@
-//! What is known of a device after a run.
+//! Statistics of a device.
 
 use serde::Serialize;
 
-/// Of many values.
+/// Quantiles of a set of values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Spread {
-    /// Half of them are at most this.
+    /// 50th percentile.
     pub median: u64,
-    /// 99 of 100 are at most this.
+    /// 99th percentile.
     pub p99: u64,
-    /// The greatest.
+    /// Largest value.
     pub max: u64,
 }
 
 impl Spread {
-    /// Of these values; `None` if there are none. O(n log n).
+    /// Computes the quantiles; `None` if there are no values. O(n log n).
     #[must_use]
     pub fn of(values: &[u32]) -> Option<Self> {
         let mut sorted = values.to_vec();
         sorted.sort_unstable();
-        // The least value that so many in a hundred do not exceed.
+        // The smallest value with at least `percent` % of the values at or below it.
         let quantile = |percent: usize| {
             let rank = (sorted.len() * percent).div_ceil(100).max(1);
             sorted.get(rank - 1).copied().map(u64::from)
@@ -27,73 +27,73 @@ impl Spread {
         Some(Self { median: quantile(50)?, p99: quantile(99)?, max: quantile(100)? })
     }
 
-    /// Each value otherwise.
+    /// Applies a monotonic function to each quantile.
     fn map(self, of: impl Fn(u64) -> u64) -> Self {
         Self { median: of(self.median), p99: of(self.p99), max: of(self.max) }
     }
 }
 
-/// What the last steps cost a device, while it runs. O(1) to ask for.
+/// Cost of the last steps of a device, readable during a run in O(1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Load {
-    /// Steps that it decided.
+    /// Steps decided.
     pub steps: u64,
-    /// Steps in which it and its shadow differed.
+    /// Steps in which device and shadow differed.
     pub mismatches: u64,
-    /// Ticks of the device's clock in the last step; `None` before the first one.
+    /// Ticks of the device's clock in the last step; `None` before the first step.
     pub ticks: Option<u32>,
-    /// Instructions of the last step; of emulated devices.
+    /// Instructions of the last step; for emulated devices.
     pub instructions: Option<u64>,
-    /// Those of the step that took most.
+    /// Instructions of the most expensive step.
     pub most_instructions: Option<u64>,
-    /// The most stack that a step touched, bytes.
+    /// Most stack that a step touched, bytes.
     pub stack_bytes: u32,
-    /// Times that it started anew.
+    /// Restarts.
     pub resets: u64,
 }
 
-/// What is known of a device after a run.
+/// Statistics of a device after a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Statistics {
-    /// Which robot it is.
+    /// Id of its robot.
     pub robot: u32,
-    /// As people wrote it.
+    /// The device as written in the configuration.
     pub device: String,
-    /// As it calls itself.
+    /// The part's name in its hello.
     pub part: String,
-    /// What it runs.
+    /// The firmware's name in its hello.
     pub firmware: String,
-    /// Steps that it decided.
+    /// Steps decided.
     pub steps: u64,
-    /// Steps in which it and its shadow differed.
+    /// Steps in which device and shadow differed.
     pub mismatches: u64,
-    /// From a request to its answer, microseconds.
+    /// Time from a request to its answer, microseconds.
     pub round_trip_us: Option<Spread>,
     /// Ticks of the device's clock per step.
     pub ticks: Option<Spread>,
     /// Rate of that clock, per second.
     pub ticks_per_second: u32,
-    /// Instructions per step; of emulated devices, where an instruction takes a nanosecond of their clock.
+    /// Instructions per step; for emulated devices, where an instruction takes 1 ns of their clock.
     pub instructions: Option<Spread>,
-    /// The most stack that a step touched, bytes.
+    /// Most stack that a step touched, bytes.
     pub stack_bytes: u32,
-    /// Requests sent again.
+    /// Requests resent.
     pub resent: u64,
-    /// Frames from the device that were damaged on the way.
+    /// Frames from the device that were damaged in transit.
     pub damaged: u64,
-    /// Times that it started anew.
+    /// Restarts.
     pub resets: u64,
-    /// Bytes of inboxes for which it had no room.
+    /// Inbox bytes removed because they did not fit.
     pub cut_inbox_bytes: u64,
-    /// Obstacles for which it had no room.
+    /// Obstacles removed because they did not fit.
     pub cut_obstacles: u64,
-    /// Bytes sent to it.
+    /// Bytes sent to the device.
     pub sent_bytes: u64,
-    /// Bytes received from it.
+    /// Bytes received from the device.
     pub received_bytes: u64,
 }
 
-/// What is collected on the way there.
+/// Counters and samples of a running device.
 #[derive(Clone, Debug, Default)]
 pub struct Collector {
     pub steps: u64,
@@ -108,18 +108,19 @@ pub struct Collector {
 }
 
 impl Collector {
-    /// Notes what a step took of the device's clock.
+    /// Records the ticks of a step.
     pub fn took(&mut self, ticks: u32) {
         self.ticks.push(ticks);
         self.most_ticks = self.most_ticks.max(ticks);
     }
 
-    /// Instructions of an emulated device.
+    /// Instructions per step of an emulated device.
     pub fn instructions(&self, ticks_per_second: u32) -> Option<Spread> {
         Some(Spread::of(&self.ticks)?.map(|ticks| instructions(ticks, ticks_per_second)))
     }
 
-    /// What the last steps cost; instructions where an emulated device's clock has so many ticks per second.
+    /// Cost of the last steps. Instructions are given for an emulated device, whose clock rate is
+    /// known.
     pub fn load(&self, emulated_ticks_per_second: Option<u32>) -> Load {
         let ticks = self.ticks.last().copied();
         let of = |ticks: u32| Some(instructions(ticks.into(), emulated_ticks_per_second?));
@@ -135,7 +136,7 @@ impl Collector {
     }
 }
 
-/// Ticks of an emulated device's clock as instructions, of which each takes a nanosecond.
+/// Converts ticks of an emulated device's clock to instructions, each of which takes 1 ns.
 fn instructions(ticks: u64, ticks_per_second: u32) -> u64 {
     let scaled = u128::from(ticks) * 1_000_000_000 / u128::from(ticks_per_second.max(1));
     u64::try_from(scaled).unwrap_or(u64::MAX)
@@ -146,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quantiles_are_values_that_were_there() {
+    fn quantiles_are_among_the_values() {
         assert_eq!(Spread::of(&[]), None);
         let one = Spread::of(&[7]);
         let all = Spread { median: 7, p99: 7, max: 7 };
@@ -164,14 +165,14 @@ mod tests {
     }
 
     #[test]
-    fn the_load_is_that_of_the_last_step_and_of_the_worst() {
+    fn load_covers_the_last_and_the_most_expensive_step() {
         let mut tally = Collector { stack_bytes: 900, mismatches: 1, ..Collector::default() };
         assert_eq!(tally.load(Some(168_000_000)).instructions, None);
         [168, 16_800, 336].into_iter().for_each(|ticks| tally.took(ticks));
         let load = tally.load(Some(168_000_000));
         assert_eq!((load.ticks, load.instructions, load.most_instructions), (Some(336), Some(2000), Some(100_000)));
         assert_eq!((load.stack_bytes, load.mismatches), (900, 1));
-        // Of a board only its clock is known.
+        // On a board, only the clock is known.
         let load = tally.load(None);
         assert_eq!((load.ticks, load.instructions, load.most_instructions), (Some(336), None, None));
     }

@@ -1,4 +1,4 @@
-//! One device: its port, its shadow, and what it is busy with.
+//! One device: its port, its shadow, and its phase.
 
 use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
@@ -18,27 +18,25 @@ use staya_mavlink::any::AnyWire;
 use std::io::Write;
 use std::time::Duration;
 
-/// Bytes of the longest request: as many as the largest device's frames have, and half as many again.
+/// Largest request, bytes: 1.5 times the frame length of the largest device.
 const REQUEST: usize = 16_384;
 
-/// What a device is busy with.
 #[derive(Debug)]
 enum Phase {
-    /// Saying who it is.
+    /// Identifying itself.
     Greeting,
-    /// Becoming its robot.
+    /// Being configured.
     Configuring,
-    /// Nothing.
+    /// Idle.
     Ready,
-    /// Deciding; its shadow has decided.
+    /// Stepping; the shadow has already decided.
     Stepping(Box<Expected>),
-    /// Starting anew on request.
+    /// Restarting on request.
     Restarting,
-    /// Nothing ever again.
+    /// Failed for good.
     Failed,
 }
 
-/// A step on its way.
 #[derive(Debug)]
 struct Expected {
     tick: u32,
@@ -51,7 +49,6 @@ pub struct Unit {
     config: DeviceConfig,
     channel: Channel,
     port: Box<Port<REQUEST>>,
-    /// What it must say that it runs.
     program: Option<String>,
     shadows: Shadows,
     shadow: Option<Box<dyn Controller + Send>>,
@@ -59,10 +56,10 @@ pub struct Unit {
     there: Line,
     back: Line,
     phase: Phase,
-    /// Steps that the robot still stands after a reset that was ordered.
+    /// Steps for which the robot stays down after a scheduled reset.
     down: u32,
     answer: Option<Answer>,
-    /// Why nothing will come any more.
+    /// How the device ended, if it has.
     gone: Option<String>,
     tally: Collector,
     packed: Vec<u8>,
@@ -72,7 +69,7 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// A device that is being greeted.
+    /// Creates a unit and greets its device.
     pub fn new(config: DeviceConfig, channel: Channel, options: &Options, now_us: u64) -> Self {
         let robot = config.setup.agent.id.0;
         let faults = config.faults;
@@ -90,7 +87,7 @@ impl Unit {
             gone: None,
             tally: Collector::default(),
             packed: Vec::new(),
-            // Both ways.
+            // Delayed in both directions.
             resend_after: options.resend_after + faults.delay * 2,
             start_limit: options.start_limit,
             step_limit: options.step_limit,
@@ -105,12 +102,11 @@ impl Unit {
         self.config.setup.agent.id.0
     }
 
-    /// Its process, if it is emulated.
+    /// Process id of an emulated device.
     pub fn process(&self) -> Option<u32> {
         self.channel.emulator.as_ref().map(|emulator| emulator.id())
     }
 
-    /// How long to wait for an answer to a request of so many bytes.
     fn set_limits(&mut self, bytes: usize, limit: Duration) {
         let bytes = u32::try_from(bytes + MAX_ANSWER).unwrap_or(u32::MAX);
         let line = self.channel.per_byte.saturating_mul(bytes);
@@ -123,7 +119,7 @@ impl Unit {
         self.phase = Phase::Greeting;
     }
 
-    /// Becomes another robot.
+    /// Assigns another robot.
     pub fn assign(&mut self, setup: Setup, task: Option<Task>, now_us: u64) {
         if matches!(self.phase, Phase::Failed) {
             return;
@@ -135,7 +131,7 @@ impl Unit {
         self.greet(now_us);
     }
 
-    /// Asks for a step; the shadow decides at once.
+    /// Requests a step; the shadow steps at once.
     pub fn send(&mut self, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>, now_us: u64) {
         if matches!(self.phase, Phase::Failed) {
             self.answer = Some(self.failed(Cause::GivenUp));
@@ -181,7 +177,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Bytes that the reader got at this time; none: the device is gone.
+    /// Takes bytes that the reader received at this time; empty if the device is gone.
     pub fn arrived(&mut self, bytes: &[u8], at_us: u64) {
         if bytes.is_empty() {
             let emulator = self.channel.emulator.as_mut();
@@ -192,10 +188,11 @@ impl Unit {
         self.back.push(bytes, at_us);
     }
 
-    /// Does what is to be done now. When to call again; `None` when there is nothing to wait for.
+    /// Does everything that is due. Returns when to call again; `None` if there is nothing to wait
+    /// for.
     pub fn advance(&mut self, now_us: u64) -> Option<u64> {
         self.hear(now_us);
-        // What it said before it went still counts.
+        // Bytes received before the device was gone still count.
         if !self.is_settled()
             && self.back.next_us().is_none()
             && let Some(why) = self.gone.take()
@@ -207,7 +204,6 @@ impl Unit {
         Some(lines.into_iter().flatten().fold(due, u64::min))
     }
 
-    /// What came back.
     fn hear(&mut self, now_us: u64) {
         while let Some(due_us) = self.back.next_us() {
             let Some(bytes) = self.back.pop(now_us) else {
@@ -223,7 +219,8 @@ impl Unit {
         }
     }
 
-    /// Sends what is due. When to look again; `None` when no request is on its way.
+    /// Sends frames that are due. Returns when to call again; `None` without an outstanding
+    /// request.
     fn pump(&mut self, now_us: u64) -> Option<u64> {
         let due = loop {
             match self.port.poll(now_us) {
@@ -237,7 +234,8 @@ impl Unit {
             }
         };
         while let Some(bytes) = self.there.pop(now_us) {
-            // What does not get through in time is lost like anything on a bad line; a device that is gone shows at the reading end.
+            // Bytes that cannot be written in time count as lost; a lost device is detected by the
+            // reader.
             let _ = self.channel.write.write_all(&bytes);
             let _ = self.channel.write.flush();
         }
@@ -271,12 +269,13 @@ impl Unit {
                         self.tally.resets += 1;
                         self.answer = Some(Answer::Down);
                     }
-                    // Right after its answer: the next step is that in which it is down.
+                    // Reset right after an answer: the robot is down in the next step.
                     Phase::Ready => {
                         self.tally.resets += 1;
                         self.down = self.down.max(1);
                     }
-                    // Ordered and counted, or once more on its way back.
+                    // A scheduled reset is already counted, and so is one whose recovery was
+                    // interrupted by another.
                     Phase::Restarting | Phase::Greeting | Phase::Configuring | Phase::Failed => {}
                 }
                 self.config.setup.agent.boot = self.config.setup.agent.boot.wrapping_add(1);
@@ -285,7 +284,7 @@ impl Unit {
         }
     }
 
-    /// Checks who it is, and tells it what to be.
+    /// Checks the device's identity and configures it.
     fn meet(&mut self, hello: Hello, now_us: u64) -> Result<(), Cause> {
         if let Some(part) = self.channel.part
             && hello.part != part.firmware_name()
@@ -338,7 +337,7 @@ impl Unit {
     }
 
     pub fn fail(&mut self, cause: Cause) {
-        // The first cause counts; what follows comes from it.
+        // Only the first cause is reported; others follow from it.
         if matches!(self.phase, Phase::Failed) {
             return;
         }
@@ -354,17 +353,17 @@ impl Unit {
         })
     }
 
-    /// Whether the robot stands in the next step, because of a reset.
+    /// Whether the robot is down in the next step because of a reset.
     pub const fn is_down(&self) -> bool {
         self.down > 0
     }
 
-    /// Whether nothing is to be waited for.
+    /// Whether there is nothing to wait for.
     pub fn is_settled(&self) -> bool {
         matches!(self.phase, Phase::Ready | Phase::Failed)
     }
 
-    /// What came of the last [`Unit::send`].
+    /// Takes the answer to the last [`Unit::send`].
     pub fn answer(&mut self) -> Option<Answer> {
         self.answer.take()
     }
@@ -404,12 +403,12 @@ impl Unit {
     }
 }
 
-/// Resends until the limit is over.
+/// Resends until the timeout.
 fn limits(resend_after: Duration, limit: Duration) -> Limits {
     Limits { resend_after_us: micros(resend_after).max(1), give_up_after_us: micros(limit) }
 }
 
-/// The robot among `shadows` that computes as the device does: the same numbers, the same capacities.
+/// Finds the shadow that computes like the device: equal number format and capacities.
 fn shadow(shadows: Shadows, hello: &Hello) -> Option<Box<dyn Controller + Send>> {
     let is_same = |controller: &dyn Controller| {
         let inbox_bytes = hello.capacities.inbox_bytes;

@@ -1,7 +1,9 @@
-//! Fleets of emulated parts. `cargo xtask test` builds the firmware of two parts and runs these on them, `cargo xtask test --all`
-//! does so with all parts; by hand: `cargo xtask firmware && cargo test -p staya-runner --test emulated`.
+//! Fleets of emulated parts. `cargo xtask test` builds the firmware and runs these tests on two
+//! parts, `cargo xtask test --all` on all parts. By hand: `cargo xtask firmware`, then
+//! `cargo test -p staya-runner --test emulated`.
 //!
-//! The firmware is looked for in `$STAYA_FIRMWARE`, or in `firmware` beside the folder that this test was built in.
+//! Firmware is expected in `$STAYA_FIRMWARE`, or in `firmware` beside the build folder of this
+//! test.
 
 mod common;
 
@@ -22,7 +24,8 @@ fn firmware() -> PathBuf {
     target.join("firmware")
 }
 
-/// The parts in `$STAYA_PARTS`, by the folders of their firmware (`stm32f405,nrf51`); without it, all.
+/// The parts in `$STAYA_PARTS`, named by their firmware folders (`stm32f405,nrf51`); all if it is
+/// unset.
 fn parts() -> Vec<Part> {
     let wanted = std::env::var("STAYA_PARTS");
     let is_wanted = |part: &Part| match &wanted {
@@ -45,7 +48,7 @@ fn send(fleet: &mut Fleet, tick: u32) {
     }
 }
 
-/// Steps all robots; how often each of them was down.
+/// Steps all robots and returns in how many steps each was down.
 fn run(fleet: &mut Fleet, ticks: u32) -> Vec<u32> {
     let mut down = vec![0; fleet.len()];
     for tick in 0..ticks {
@@ -75,14 +78,14 @@ fn print(statistics: &Statistics) {
     );
 }
 
-/// Whether a process of this id runs the emulator; one that has ended and only waits to be asked how does not.
+/// Whether a process with this id runs the emulator; a zombie process does not count.
 fn is_alive(process: u32) -> bool {
     let state = std::fs::read_to_string(Path::new("/proc").join(process.to_string()).join("stat"));
     state.is_ok_and(|state| state.contains("(qemu") && !state.contains(") Z"))
 }
 
 #[test]
-fn every_part_decides_as_its_shadow() {
+fn every_part_decides_like_its_shadow() {
     let parts = parts().into_iter().cycle().take(6);
     let configs = parts.zip(1..).map(|(part, robot)| config(robot, &format!("qemu:{}", part.name())));
     let mut fleet = Fleet::start(configs.collect(), options()).expect("they start");
@@ -118,7 +121,7 @@ fn every_part_speaks_mavlink() {
 }
 
 #[test]
-fn emulated_parts_restart_on_request_and_rejoin_over_a_bad_line() {
+fn emulated_parts_restart_on_request_and_rejoin_over_a_faulty_line() {
     let configs = parts().into_iter().zip(1..).map(|(part, robot)| {
         let mut config = config(robot, &format!("qemu:{}", part.name()));
         config.faults = LineFaults { loss: 0.05, bit_errors: 1e-5, delay: Duration::from_millis(1), seed: 9 };
@@ -134,7 +137,7 @@ fn emulated_parts_restart_on_request_and_rejoin_over_a_bad_line() {
 }
 
 #[test]
-fn emulators_end_with_their_fleet_also_on_panic() {
+fn emulators_end_with_their_fleet_even_on_panic() {
     let configs = || vec![config(1, "qemu:microbit"), config(2, "qemu:stm32f405")];
     let fleet = Fleet::start(configs(), options()).expect("they start");
     let processes = fleet.processes();
@@ -154,7 +157,7 @@ fn emulators_end_with_their_fleet_also_on_panic() {
 }
 
 #[test]
-fn emulator_that_is_killed_is_named() {
+fn killed_emulator_is_named_in_the_error() {
     let configs = vec![config(1, "qemu:microbit")];
     let mut fleet = Fleet::start(configs, options()).expect("it starts");
     run(&mut fleet, 3);
@@ -174,7 +177,7 @@ fn emulator_that_is_killed_is_named() {
 fn killed_runner_leaves_no_emulator() {
     const WAITS: &str = "STAYA_RUNNER_WAITS";
     if std::env::var_os(WAITS).is_some() {
-        // This is the runner that is to be killed; if nobody does, it ends by itself.
+        // This process is the runner to be killed; it ends by itself if that does not happen.
         let fleet = Fleet::start(vec![config(1, "qemu:microbit")], options()).expect("it starts");
         println!("\nemulator {}", fleet.processes()[0]);
         std::thread::sleep(Duration::from_secs(120));

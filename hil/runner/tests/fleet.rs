@@ -45,7 +45,7 @@ fn four(change: impl Fn(&mut DeviceConfig)) -> Fleet {
     Fleet::over(lines.collect(), options()).expect("they start")
 }
 
-/// One tick of the whole fleet, whose robots count from 1.
+/// Steps the whole fleet once; robot ids start at 1.
 fn tick(fleet: &mut Fleet, tick: u32) -> Vec<Answer> {
     for index in 0..fleet.len() {
         let scene = Scene::new(index as u32 + 1, tick);
@@ -61,7 +61,6 @@ fn decided(answer: Answer) -> StepResult {
     }
 }
 
-/// The digests of all robots after each of these ticks.
 fn run(fleet: &mut Fleet, ticks: u32) -> Vec<Vec<u64>> {
     let digests = |t| {
         let answers = tick(fleet, t);
@@ -72,7 +71,7 @@ fn run(fleet: &mut Fleet, ticks: u32) -> Vec<Vec<u64>> {
 }
 
 #[test]
-fn devices_of_two_kinds_decide_as_their_shadows_and_are_counted() {
+fn devices_of_two_kinds_decide_like_their_shadows_and_are_counted() {
     let mut fleet = four(|_| {});
     run(&mut fleet, 200);
     for (statistics, robot) in fleet.statistics().into_iter().zip(1..) {
@@ -87,9 +86,9 @@ fn devices_of_two_kinds_decide_as_their_shadows_and_are_counted() {
     }
 }
 
-/// A pair of pseudo-terminals in place of a board's port.
+/// A pair of pseudo-terminals replaces the board's port.
 #[test]
-fn robot_behind_a_serial_port_decides_as_its_shadow() {
+fn robot_behind_a_serial_port_decides_like_its_shadow() {
     let (board, port) = serialport::TTYPort::pair().expect("pseudo-terminals");
     let device = format!("serial:{},baud=1000000", port.name().expect("a path"));
     let mut configs = vec![config(1, &device)];
@@ -113,7 +112,7 @@ fn robot_behind_a_serial_port_decides_as_its_shadow() {
 }
 
 #[test]
-fn faults_of_the_line_change_no_decision() {
+fn line_faults_change_no_decision() {
     let clean = run(&mut four(|_| {}), 100);
     let mut fleet = four(|config| {
         config.faults = LineFaults { loss: 0.1, bit_errors: 2e-5, delay: Duration::from_micros(300), seed: 5 };
@@ -125,7 +124,7 @@ fn faults_of_the_line_change_no_decision() {
 }
 
 #[test]
-fn ordered_reset_takes_so_many_steps_and_the_robot_rejoins() {
+fn scheduled_reset_takes_the_given_number_of_steps_and_the_robot_rejoins() {
     let reset = |tick, down_ticks| Reset { tick, down_ticks };
     let runs: Vec<_> = (0..2)
         .map(|_| {
@@ -166,13 +165,13 @@ fn device_that_resets_by_itself_is_down_for_a_step_and_rejoins() {
             answer => drop(decided(answer)),
         }
     }
-    // Its answer to step 29 is out, and it has forgotten all when step 30 comes.
+    // The answer to step 29 was sent, and step 30 finds the device without its state.
     assert_eq!(down, [30]);
     let statistics = &fleet.statistics()[0];
     assert_eq!((statistics.resets, statistics.steps), (1, 59));
 }
 
-/// A device that counts wrong from its fiftieth step on.
+/// A device that computes wrongly from its fiftieth step on.
 struct Wrong {
     controller: Large,
     steps: u32,
@@ -211,7 +210,7 @@ impl Controller for Wrong {
 }
 
 #[test]
-fn first_difference_is_found_and_both_sides_can_be_printed() {
+fn first_difference_is_found_and_both_results_are_printed() {
     let new = || Wrong { controller: Large::new(), steps: 0 };
     let channel = device::<Wrong, LARGE>(new, "stm32f405", Mischief::default());
     let mut fleet = one(config(1, "qemu:stm32f405"), channel);
@@ -240,7 +239,7 @@ fn cause(answers: Vec<Answer>) -> String {
 }
 
 #[test]
-fn silent_device_is_named_with_its_step_and_the_time() {
+fn silent_device_error_names_the_step_and_the_waiting_time() {
     let mischief = Mischief { silent_at: Some(7), ..Mischief::default() };
     let options = Options { step_limit: Duration::from_millis(100), ..options() };
     let mut fleet = Fleet::over(
@@ -250,12 +249,12 @@ fn silent_device_is_named_with_its_step_and_the_time() {
     .expect("they start");
     run(&mut fleet, 7);
     let mut answers = tick(&mut fleet, 7);
-    // The others are not held up.
+    // The others are not delayed.
     let _ = decided(answers.pop().expect("two"));
     let text = cause(answers);
     let known = "robot 1 on qemu:microbit: no answer to step 7 within ";
     assert!(text.starts_with(known) && text.ends_with(" attempts)"), "{text}");
-    // It stays out.
+    // The failed device stays out.
     let mut answers = tick(&mut fleet, 8);
     let _ = decided(answers.pop().expect("two"));
     assert_eq!(cause(answers), "robot 1 on qemu:microbit: it was given up before");
@@ -273,7 +272,7 @@ fn second_step_before_the_first_is_collected_is_an_error() {
 }
 
 #[test]
-fn device_that_leaves_is_named() {
+fn lost_device_is_named_in_the_error() {
     let mischief = Mischief { leaves_at: Some(3), ..Mischief::default() };
     let mut fleet = one(config(5, "thread"), large(mischief));
     run(&mut fleet, 3);
@@ -303,7 +302,7 @@ fn setup_that_does_not_fit_is_an_error_of_the_start() {
 }
 
 #[test]
-fn robots_that_speak_mavlink_decide_as_those_that_speak_postcard() {
+fn robots_decide_alike_in_mavlink_and_postcard() {
     let digests = |format: Format| {
         let lines = (1..=2).map(|robot| {
             let mut config = config(robot, "thread");

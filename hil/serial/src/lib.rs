@@ -1,4 +1,5 @@
-//! Serial ports as people write them, opened as a reader and a writer: for devices in the loop and for MAVLink alike.
+//! Serial ports in textual notation, opened as a reader and a writer. Used for hardware in the loop
+//! and for MAVLink.
 //!
 //! ```ignore
 //! use std::io::{Read, Write};
@@ -16,19 +17,19 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Bits per second when nothing else is said.
+/// Default baud rate, bits per second.
 pub const DEFAULT_BAUD: u32 = 115_200;
 
 /// A serial port and its speed, written `PORT[,baud=N]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialPort {
-    /// The port's file, or its name where ports are no files.
+    /// Path of the device file, or the port's name where ports are not files.
     pub path: PathBuf,
     /// Bits per second, above 0.
     pub baud: u32,
 }
 
-/// Why a text names no port.
+/// Reason why a text does not denote a port.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "each text says it")]
 pub enum ParseError {
@@ -40,26 +41,26 @@ pub enum ParseError {
     Baud(String),
 }
 
-/// Why a port cannot be opened.
+/// Reason why a port cannot be opened.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot open {}: {source}{}", .path.display(), there_are(.ports))]
 pub struct OpenError {
-    /// Which one.
+    /// The port.
     pub path: PathBuf,
-    /// Why.
+    /// The error of the operating system.
     pub source: serialport::Error,
-    /// The ports that this machine has.
+    /// The ports of this machine.
     pub ports: Vec<String>,
 }
 
-/// What comes in.
+/// Receiving side of a port.
 pub type Reader = Box<dyn Read + Send>;
-/// What goes out.
+/// Sending side of a port.
 pub type Writer = Box<dyn Write + Send>;
 
 impl SerialPort {
-    /// Opens the port: 8 bits, no parity, one stop bit. A read or a write that takes longer than `timeout` ends with
-    /// [`TimedOut`](std::io::ErrorKind::TimedOut).
+    /// Opens the port with 8 bits, no parity and one stop bit. A read or write that takes longer
+    /// than `timeout` fails with [`TimedOut`](std::io::ErrorKind::TimedOut).
     ///
     /// # Errors
     /// See [`OpenError`].
@@ -75,14 +76,13 @@ impl SerialPort {
         Ok((Box::new(reader), Box::new(writer)))
     }
 
-    /// How long a byte takes: a start bit, eight bits, a stop bit.
+    /// Transmission time of a byte: start bit, eight bits, stop bit.
     #[must_use]
     pub fn byte_time(&self) -> Duration {
         Duration::from_secs(10) / self.baud.max(1)
     }
 }
 
-/// The ports of a machine, as the end of a sentence.
 fn there_are(ports: &[String]) -> String {
     if ports.is_empty() {
         return String::from("; this machine shows no serial port");
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn written_ports_are_read_back() {
         let port: SerialPort = "/dev/ttyACM0,baud=9600".parse().expect("a port");
         assert_eq!(port.to_string(), "/dev/ttyACM0,baud=9600");
         let port: SerialPort = "/dev/ttyUSB1".parse().expect("a port");

@@ -1,4 +1,5 @@
-//! Scenarios of robots in the plane or in space, put together by an experiment and not read from a file.
+//! Scenarios of robots in the plane or in space that an experiment builds instead of reading a
+//! file.
 
 use staya_controller::agent::{GuidanceSetup, SafetyKind};
 use staya_controller::orca::AvoidParams;
@@ -8,10 +9,9 @@ use staya_sim::radio::RadioParams;
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario, Start, Target};
 use staya_sim::world::plane::{Abilities, Solid};
 
-/// Fastest speed that a beacon can tell, metres per second.
+/// Highest speed that a beacon can represent, metres per second.
 pub(super) const FASTEST_MPS: f64 = 32.0;
 
-/// What all robots of a run have in common.
 #[derive(Clone, Debug)]
 pub(super) struct Arena {
     pub name: &'static str,
@@ -20,7 +20,7 @@ pub(super) struct Arena {
     pub seconds: f64,
     pub radius_m: f64,
     pub max_speed_mps: f64,
-    /// Of the radio.
+    /// Range of the radio, metres.
     pub range_m: f64,
     pub loss: f64,
     pub sight_m: f64,
@@ -32,7 +32,7 @@ pub(super) struct Arena {
 }
 
 impl Arena {
-    /// The part for the plane with robots that start so.
+    /// Setup in the plane, with robots at these starts.
     pub fn setup(&self, starts: Vec<Start>) -> PlaneSetup {
         let abilities =
             Abilities { max_speed_mps: self.max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
@@ -44,7 +44,7 @@ impl Arena {
         PlaneSetup { solids: self.solids.clone(), ..PlaneSetup::new(group, starts) }
     }
 
-    /// The scenario of robots 1, 2, ... as they are set up.
+    /// Scenario of robots 1, 2, ... with this setup.
     pub fn scenario(&self, setup: PlaneSetup) -> Scenario {
         let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = ticks(self.seconds, self.step_s);
@@ -52,28 +52,29 @@ impl Arena {
     }
 }
 
-/// Whole steps in a time.
+/// Number of steps in a time, rounded.
 pub(super) fn ticks(seconds: f64, step_s: f64) -> u32 {
     libm::round(seconds / step_s) as u32
 }
 
-/// Evenly on [low, high).
+/// Uniform random number in [low, high).
 pub(super) fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * ((rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64)
 }
 
-/// A draw of the normal distribution with mean 0 (Box and Muller).
+/// Normally distributed random number with mean 0 (Box and Muller).
 pub(super) fn normal(rng: &mut Rng, deviation: f64) -> f64 {
     // 1 - u is never 0.
     let length = libm::sqrt(-2.0 * libm::log(1.0 - uniform(rng, 0.0, 1.0)));
     deviation * length * libm::cos(2.0 * std::f64::consts::PI * uniform(rng, 0.0, 1.0))
 }
 
-/// Draws of a place before nobody finds room any more.
+/// Draws of a place before the arena counts as full.
 const TRIES: u32 = 1000;
 
-/// Draws `count` starts by `draw` (place and velocity of robot i by its own generator), each again until it is
-/// `apart_m` or more from those before; all are told `targets`. `None`: there is no room.
+/// Draws `count` starts that are at least `apart_m` from each other and have these `targets`.
+/// `draw` returns place and velocity of robot i from its own generator; it is repeated until the
+/// distance fits. `None` if there is no room.
 pub(super) fn starts(
     count: u32,
     apart_m: f64,
@@ -91,7 +92,6 @@ pub(super) fn starts(
     Some(starts)
 }
 
-/// Distance of two places, metres.
 pub(super) fn distance_m(a: [f64; 3], b: [f64; 3]) -> f64 {
     let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
     libm::sqrt(squares.sum())
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn draws_have_their_mean_and_deviation() {
+    fn normal_draws_have_the_given_mean_and_deviation() {
         let mut rng = Rng::new(1);
         let drawn: Vec<f64> = (0..20_000).map(|_| normal(&mut rng, 3.0)).collect();
         let mean = drawn.iter().sum::<f64>() / 20_000.0;
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn starts_are_apart_or_there_is_no_room() {
+    fn starts_keep_their_distance_or_fail() {
         let square = |rng: &mut Rng| ([uniform(rng, 0.0, 10.0), uniform(rng, 0.0, 10.0), 0.0], [0.0; 3]);
         let keyed = |robot| Rng::keyed(1, 2, robot, 0);
         let some = starts(30, 1.0, &[], keyed, square).unwrap();

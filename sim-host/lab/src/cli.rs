@@ -1,6 +1,8 @@
-//! The command line of `staya-lab`: `staya sweep`, and `staya experiment` for papers and benchmarks, run again.
+//! The command line of `staya-lab`: `staya sweep`, and `staya experiment`, which repeats papers and
+//! benchmarks.
 //!
-//! Where a plan's fields are not its options one by one, a module here makes the plan of them.
+//! If the options of an experiment are not simply the fields of its plan, a module here converts
+//! them.
 
 mod crossing;
 mod flock;
@@ -54,31 +56,37 @@ enum Experiment {
     Route(Box<route::RouteArgs>),
     /// What a map is worth on land that changes, with some of it blank or wrong.
     Scouting(Box<scouting::Plan>),
-    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8, figure 6).
+    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8,
+    /// figure 6).
     Formation(Box<formation::FormationArgs>),
-    /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they come.
+    /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they
+    /// come.
     Swap(crossing::SwapArgs),
     /// Two crowds pass one gap in opposite directions.
     Doorway(crossing::DoorwayArgs),
-    /// Fourteen ways to get in each other's way: crossings, doors, corridors, sizes, intruders, dead ends, in space.
+    /// Fourteen ways to get in each other's way: crossings, doors, corridors, sizes, intruders,
+    /// dead ends, in space.
     Crossing(Box<crossing::CrossingArgs>),
     /// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
     Movingai(movingai::MovingAiArgs),
-    /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova, section 2.3).
+    /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova,
+    /// section 2.3).
     Boids(Box<boids::Plan>),
     /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
     Flock(Box<flock::FlockArgs>),
-    /// 225 robots travel to three goals: how much of a group they are, and gains tuned (Pavlovsky and Pavlovsky).
+    /// 225 robots travel to three goals: how much of a group they are, and gains tuned (Pavlovsky
+    /// and Pavlovsky).
     Goals(Box<goals::GoalsArgs>),
-    /// What a robot costs in time and memory, in swarms of a thousand to a million, on the grid and in the plane.
+    /// What a robot costs in time and memory, in swarms of a thousand to a million, on the grid and
+    /// in the plane.
     Scale(Box<scale::Plan>),
 }
 
 impl ExperimentArgs {
-    /// Runs the command.
+    /// Runs the experiment.
     ///
     /// # Errors
-    /// A parameter out of range, a file that cannot be read or written.
+    /// A parameter is out of range, or a file cannot be read or written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let stop = Stop::on_ctrl_c()?;
         let keeping = &self.keeping;
@@ -115,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arguments_of_all_experiments_agree_with_each_other() {
+    fn options_of_all_experiments_are_consistent() {
         ExperimentArgs::augment_args(clap::Command::new("experiment")).debug_assert();
     }
 }

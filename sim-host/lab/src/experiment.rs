@@ -1,6 +1,7 @@
-//! What every experiment is: a plan with a check, runs made in parallel until Ctrl-C, rows, a report, pictures.
+//! Common parts of all experiments: a checked plan, parallel runs until Ctrl-C, rows, a report,
+//! pictures.
 //!
-//! A further experiment is a module with a plan that implements [`Experiment`], and one variant in
+//! To add an experiment, implement [`Experiment`] for its plan in a new module and add a variant in
 //! [`cli`](crate::cli).
 
 pub mod rows;
@@ -17,62 +18,64 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
 
-/// Largest number of runs per point: some hundred megabytes of results.
+/// Most runs per point: some hundred megabytes of results.
 pub(crate) const MAX_RUNS: u32 = 1_000_000;
 
-/// Is told how much is done, from any thread, and says whether to go on.
+/// Progress callback, called from any thread: takes the number of finished runs and returns whether
+/// to continue.
 pub type GoesOn<'a> = dyn Fn(usize) -> bool + Sync + 'a;
 
-/// A plan that can be carried out: the same plan gives the same report on any number of threads.
+/// A plan of runs. Equal plans give equal reports on any number of threads.
 ///
-/// Its runs are those of `points()` points, `runs()` each. What is a run's own is in its row: what was given, seed, figures.
+/// A plan has `points()` points with `runs()` runs each. Each run has a row with its parameters,
+/// its seed and its figures.
 pub trait Experiment: Sized + Sync {
-    /// What rows call it.
+    /// Name of the experiment in rows.
     const NAME: &'static str;
-    /// What there is a number of: `runs`, `queries`.
+    /// Plural noun for the runs: `runs`, `queries`.
     const UNIT: &'static str;
-    /// Whether a run needs the machine for itself, since it is timed.
+    /// Whether a run needs the machine for itself because it is timed.
     const ALONE: bool = false;
-    /// What JSON calls the list of files left.
+    /// JSON key of the list of written files.
     const FILES: &'static str = "pictures";
-    /// What one run gives.
+    /// Result of one run.
     type Run: Record;
-    /// The numbers: fields of the JSON object, displayed as tables.
+    /// Results of the experiment: serialised as a JSON object, displayed as tables.
     type Report: Serialize + Display;
 
-    /// Whether the plan can be carried out.
+    /// Checks the plan.
     ///
     /// # Errors
-    /// What is out of range, and what is in it.
+    /// Names the value that is out of range, and the range.
     fn check(&self) -> Result<()>;
 
-    /// How many points there are.
+    /// Number of points.
     fn points(&self) -> usize;
 
-    /// Runs of each point.
+    /// Runs per point.
     fn runs(&self) -> u32;
 
-    /// All parameters of a point, always the same ones in the same order: whatever a run depends on besides its seed. Points of
-    /// equal parameters would be one.
+    /// All parameters of a point, in a fixed order: everything that its runs depend on besides
+    /// their seeds. Two points must not have equal parameters.
     fn given(&self, point: usize) -> Vec<(&'static str, Value)>;
 
-    /// The seed of a run: with it and the parameters anybody makes the run again.
+    /// Seed of a run. Seed and parameters suffice to repeat the run.
     fn seed(&self, point: usize, run: u32) -> u64;
 
-    /// A run as it is before its figures are known; rows are read into it.
+    /// A run without figures, into which a row is read.
     fn blank(&self, point: usize, run: u32) -> Self::Run;
 
-    /// Makes the runs of a plan that was checked: for each point those that there are, in order, from the first one on.
-    /// Most plans call [`Jobs::each`] and no more.
+    /// Makes the runs of a checked plan. Returns the runs of each point in order, without gaps,
+    /// from the first one. Most plans only call [`Jobs::each`].
     ///
     /// # Errors
-    /// A run that cannot be made, rows that cannot be kept.
+    /// A run fails, or a row cannot be written.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Self::Run>>>;
 
-    /// The numbers, of what rows say. Points without a run are left out.
+    /// Computes the report from the runs. Points without runs are left out.
     fn report(&self, runs: &[Vec<Self::Run>]) -> Self::Report;
 
-    /// Leaves files in `dir` and names them.
+    /// Writes pictures or other files to `dir` and returns their paths.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -81,7 +84,7 @@ pub trait Experiment: Sized + Sync {
         Ok(Vec::new())
     }
 
-    /// What is to be said after a report that shows a defect.
+    /// Turns a report that shows a defect into an error, after it has been printed.
     ///
     /// # Errors
     /// The defect.
@@ -90,39 +93,40 @@ pub trait Experiment: Sized + Sync {
         Ok(())
     }
 
-    /// Runs in all.
+    /// Number of runs of all points.
     fn total(&self) -> usize {
         self.points() * self.runs() as usize
     }
 
-    /// Checks the plan and makes its runs, without rows in files; see [`Experiment::perform`].
+    /// Checks the plan and makes its runs without writing rows; see [`Experiment::perform`].
     ///
     /// # Errors
-    /// A parameter out of range, a job that cannot be done.
+    /// A parameter is out of range, or a run fails.
     fn carry_out(&self, goes_on: impl Fn(usize) -> bool + Sync) -> Result<Vec<Vec<Self::Run>>> {
         self.check()?;
         self.perform(&Jobs::new(self, &goes_on, None))
     }
 
-    /// The numbers of the whole plan.
+    /// Makes all runs and computes the report.
     ///
     /// # Errors
-    /// A parameter out of range, a job that cannot be done.
+    /// A parameter is out of range, or a run fails.
     fn measure(&self) -> Result<Self::Report> {
         Ok(self.report(&self.carry_out(|_| true)?))
     }
 
-    /// The whole command: a folder for rows and pictures, the runs under a progress bar, files, the report on standard output.
+    /// Executes the experiment's command: makes the runs under a progress bar, writes rows and
+    /// pictures to a folder, and prints the report to standard output.
     ///
     /// # Errors
-    /// A parameter out of range, rows that are not to be touched, a file that cannot be written, an end before there was
-    /// anything to show, a defect.
+    /// A parameter is out of range, existing rows must not be replaced, a file cannot be written,
+    /// the command was stopped before any result, or the report shows a defect.
     fn command(&self, out: &Path, keeping: &Keeping, global: &Global, stop: &Stop) -> Result<Ended> {
         self.check()?;
         prepare_dir(out).context("results have no place")?;
         let since = Instant::now();
         let progress = Mutex::new((Progress::new(Self::UNIT, self.total() as u64, global), 0));
-        // Several threads may tell it, and late.
+        // Calls may arrive out of order from several threads.
         let goes_on = |done| {
             if let Ok(mut progress) = progress.lock()
                 && done > progress.1
@@ -181,7 +185,6 @@ pub trait Experiment: Sized + Sync {
     }
 }
 
-/// What `--json` prints.
 #[derive(Debug, Serialize)]
 struct Output<'a, R> {
     #[serde(flatten)]
@@ -192,18 +195,14 @@ struct Output<'a, R> {
     files: BTreeMap<&'static str, &'a [PathBuf]>,
 }
 
-/// How an experiment went.
 #[derive(Debug)]
 struct Course {
     unit: &'static str,
     done: usize,
-    /// Those that had been done before.
     found: u64,
     total: usize,
-    /// Wall time of the runs.
     wall_seconds: f64,
     files: Vec<PathBuf>,
-    /// Rows, what their columns are, means.
     rows: Vec<PathBuf>,
 }
 
@@ -227,7 +226,7 @@ impl Course {
     }
 }
 
-/// Refuses a number of runs that nothing can be made of.
+/// Refuses a number of runs of 0 or above the limit.
 pub(crate) fn check_runs(runs: u32, what: &str) -> Result<()> {
     match runs {
         0 => bail!("0 runs; make 1 or more {what}"),
@@ -236,7 +235,7 @@ pub(crate) fn check_runs(runs: u32, what: &str) -> Result<()> {
     }
 }
 
-/// A value with so many decimals, `-` for a missing one; it can be padded.
+/// A value with a number of decimals, or `-` if it is missing. Supports padding.
 pub(crate) struct Maybe(pub Option<f64>, pub usize);
 
 impl Display for Maybe {
@@ -254,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_early_end_is_told() {
+    fn early_end_is_reported() {
         let mut course = Course {
             unit: "landscapes",
             done: 7,

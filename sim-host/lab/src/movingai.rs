@@ -1,9 +1,11 @@
-//! The queries of a Moving AI benchmark (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding", IEEE TCIAIG 2012).
+//! The queries of a Moving AI benchmark (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding",
+//! IEEE TCIAIG 2012).
 //!
-//! With a window as large as the map the controller must find the optimal lengths that the benchmark states; with a
-//! small one the question is how many robots get out of the dead ends that they cannot see, and how late. What gets them out
-//! is what they learn of the costs of ways, as far as they can remember it ([`Learning`]), and at last the wall. A map
-//! that is too large for the router's search is answered by the planner ([`optimal`]).
+//! With a window as large as the map, the controller must find the optimal lengths given by the
+//! benchmark. With a small window, the question is how many robots leave dead ends that they cannot
+//! see as a whole, and how late. They leave a dead end by learning travel costs, as far as their
+//! memory allows ([`Learning`]), and finally by following the wall. A map that is too large for the
+//! router's search is answered by the planner ([`optimal`]).
 
 mod groups;
 mod report;
@@ -27,15 +29,15 @@ use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
 use std::path::{Path, PathBuf};
 
-/// Cells of the largest search, border included: 255 x 255, as many as 16-bit numbers can tell apart.
+/// Cells of the largest search, border included: 255 x 255, the limit of 16-bit indices.
 const CELLS: usize = 255 * 255;
 
-/// How far the robot sees.
+/// Range of sight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sight {
-    /// So many cells in each direction, 1 or more.
+    /// This number of cells in each direction, at least 1.
     Radius(u8),
-    /// All of the map.
+    /// The whole map.
     Map,
 }
 
@@ -55,7 +57,7 @@ pub enum Memory {
 }
 
 impl Memory {
-    /// The number of cells.
+    /// Number of cells.
     #[must_use]
     pub const fn cells(self) -> usize {
         match self {
@@ -81,7 +83,7 @@ pub enum Learning {
 }
 
 impl Learning {
-    /// The number of cells.
+    /// Number of cells.
     #[must_use]
     pub const fn cells(self) -> usize {
         match self {
@@ -92,24 +94,25 @@ impl Learning {
     }
 }
 
-/// The robots that answer the queries.
+/// Properties of the robots that answer the queries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Robots {
-    /// How far they see.
+    /// Range of sight.
     pub sight: Sight,
-    /// How much they remember of their way.
+    /// Size of the memory of visits.
     pub memory: Memory,
-    /// How much they learn of the costs of ways.
+    /// Size of the memory of learned costs.
     pub learning: Learning,
-    /// What they take ways to cost. Radius and moves do not count: [`Robots::sight`] is the radius, and moves
-    /// are those of the benchmark (diagonals are sqrt 2 long and cut no corners).
+    /// Parameters of routing. Radius and moves are ignored: the radius is that of
+    /// [`Robots::sight`], and moves are those of the benchmark (diagonals are sqrt 2 long and cut
+    /// no corners).
     pub params: RouteParams,
-    /// When they search anew.
+    /// When the robots repeat their search.
     pub replan: Replan,
 }
 
 impl Robots {
-    /// Robots with the controller's defaults.
+    /// Creates robots with the controller's defaults.
     #[must_use]
     pub fn new(sight: Sight) -> Self {
         Self {
@@ -122,22 +125,23 @@ impl Robots {
     }
 }
 
-/// A map and what to do on it.
+/// A map and its queries.
 #[derive(Clone, Debug)]
 pub struct Benchmark {
-    /// The map's file.
+    /// File of the map.
     pub map: PathBuf,
-    /// The land; swamp is ground, as the benchmark has it.
+    /// Terrain; swamp counts as ground, as in the benchmark.
     pub land: Terrain,
     /// Starts, goals and optimal lengths.
     pub queries: Vec<Query>,
 }
 
 impl Benchmark {
-    /// Reads a scenario and its map, by default the one beside it that it names.
+    /// Reads a scenario and its map, by default the file named by the scenario in the same folder.
     ///
     /// # Errors
-    /// A file that cannot be read, a scenario without queries or for another map; naming file and remedy.
+    /// A file cannot be read, or the scenario has no queries or belongs to another map. Names file
+    /// and remedy.
     pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self> {
         let at = scen.display();
         let queries = parse_scen(&read(scen)?, scen)?;
@@ -171,12 +175,12 @@ impl Benchmark {
     }
 }
 
-/// What to do: a benchmark's queries, answered by robots.
+/// Parameters of the experiment: queries and robots.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Map and queries.
     pub benchmark: Benchmark,
-    /// Who answers them.
+    /// Properties of the robots.
     pub robots: Robots,
 }
 
@@ -194,7 +198,8 @@ impl Plan {
         }
     }
 
-    /// The answer of a planner that sees all of a map that is too large for the router's search.
+    /// Answers a query with a planner that sees the whole of a map too large for the router's
+    /// search.
     fn planned(&self, query: &Query) -> Answer {
         let RouteParams { norm, corner_cutting, .. } = self.params();
         let route = optimal::route(&self.benchmark.land, query.start, query.goal, norm, corner_cutting);
@@ -245,7 +250,7 @@ impl Experiment for Plan {
 
     fn check(&self) -> Result<()> {
         let land = &self.benchmark.land;
-        // A window that reaches beyond the map holds no more than the map.
+        // A window that extends beyond the map contains no more than the map.
         let sees_all = self.robots.sight != Sight::Map && self.params().radius > 126;
         ensure!(
             holds(CELLS, land) || !sees_all,
@@ -292,7 +297,7 @@ impl Experiment for Plan {
         given
     }
 
-    /// Nothing is drawn.
+    /// The experiment has no random numbers.
     fn seed(&self, _: usize, _: u32) -> u64 {
         0
     }

@@ -1,13 +1,14 @@
-//! The globally optimal route: what a robot that sees the whole map would do.
+//! The globally optimal route, as a robot with the whole map would find it.
 //!
-//! Dijkstra's algorithm with buckets as wide as the cheapest move (E. V. Denardo and B. L. Fox, "Shortest-route methods: 1. Reaching,
-//! pruning, and buckets", Operations Research 27, 1979): no cell of a bucket can improve another one of the same
-//! bucket, so that the order within it does not matter and the result is exact.
+//! Dijkstra's algorithm with buckets as wide as the cheapest move (E. V. Denardo and B. L. Fox,
+//! "Shortest-route methods: 1. Reaching, pruning, and buckets", Operations Research 27, 1979). A
+//! cell cannot improve another one in its own bucket, so the order within a bucket does not matter
+//! and the result is exact.
 
 use staya_controller::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT};
 use staya_sim::terrain::Terrain;
 
-/// Buckets in the ring: more than the dearest move (a diagonal into class 255) is wide.
+/// Buckets in the ring: more than the most expensive move spans (a diagonal into class 255).
 const RING: usize = 512;
 const _: () = assert!(RING > (DIAGONAL * 255 / UNIT) as usize + 1);
 
@@ -16,9 +17,10 @@ const UNKNOWN: u64 = u64::MAX;
 /// A route from cell to cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Route {
-    /// Travel time: over all moves, length times impassability of the cell entered, in [`UNIT`]s per tick.
+    /// Travel time: sum over all moves of length times impassability of the entered cell, in
+    /// [`UNIT`]s per tick.
     pub cost: u64,
-    /// The cells, start and goal included.
+    /// The cells, including start and goal.
     pub cells: Vec<Cell>,
 }
 
@@ -30,36 +32,37 @@ impl Route {
     }
 }
 
-/// Length of a chain of adjacent cells in [`UNIT`]s per cell; equal neighbours add nothing.
+/// Length of a chain of adjacent cells in [`UNIT`]s per cell; repeated cells add nothing.
 #[must_use]
 pub fn length(cells: &[Cell], norm: Norm) -> u64 {
     let moves = cells.windows(2).filter(|pair| pair[0] != pair[1]);
     moves.filter_map(|pair| Dir::between(pair[0], pair[1])).map(|dir| u64::from(dir.length(norm))).sum()
 }
 
-/// The cheapest route; see [`Planner::route`]. For many routes keep a [`Planner`].
+/// Finds the cheapest route; see [`Planner::route`]. Use a [`Planner`] for many routes.
 #[must_use]
 pub fn route(terrain: &Terrain, from: Cell, to: Cell, norm: Norm, corner_cutting: bool) -> Option<Route> {
     Planner::default().route(terrain, from, to, norm, corner_cutting)
 }
 
-/// Scratch memory for routes, reusable: 9 bytes per cell of the largest map so far, and the buckets.
+/// Reusable scratch memory: 9 bytes per cell of the largest map so far, plus the buckets.
 #[derive(Debug, Default)]
 pub struct Planner {
-    /// Impassability with a blocked rim around the map.
+    /// Impassability, with a blocked border around the map.
     land: Vec<u8>,
-    /// Cost from the start, by the index of `land`.
+    /// Cost from the start, indexed like `land`.
     cost: Vec<u64>,
-    /// Cells to visit with the cost that brought them here.
+    /// Cells to visit, with the cost at which they were inserted.
     buckets: Vec<Vec<(u64, u32)>>,
     stride: usize,
 }
 
 impl Planner {
-    /// The cheapest route, exact and the same on every machine; `None` when there is none, or an end is blocked or off
-    /// the map.
+    /// Finds the cheapest route. The result is exact and identical on every machine. `None` if
+    /// there is no route, or if an end is blocked or off the map.
     ///
-    /// With `corner_cutting` off a diagonal move needs both orthogonal neighbours passable. O(size).
+    /// Without `corner_cutting`, a diagonal move needs both orthogonal neighbours passable.
+    /// O(size).
     pub fn route(
         &mut self,
         terrain: &Terrain,
@@ -86,7 +89,7 @@ impl Planner {
         let (mut here, mut cell) = (goal, to);
         while here != start {
             let price = u64::from(self.land[here]);
-            // The move that led here, walked backwards: corners are the same from both ends.
+            // The move that led here, searched backwards; the corner rule is symmetric.
             let back = moves.iter().find(|step| {
                 let before = here.wrapping_add_signed(-step.offset);
                 self.cost[before] != UNKNOWN
@@ -119,7 +122,6 @@ impl Planner {
         }
     }
 
-    /// Index of a cell of the map.
     fn index(&self, cell: Cell) -> usize {
         (cell.y as usize + 1) * self.stride + cell.x as usize + 1
     }
@@ -143,7 +145,7 @@ impl Planner {
             .is_none_or(|beside| beside.iter().all(|offset| self.land[at.wrapping_add_signed(*offset)] != BLOCKED))
     }
 
-    /// Settles cells in the order of their costs until the goal is settled or nothing is left.
+    /// Settles cells in the order of their costs until the goal is settled or no cell is left.
     fn spread(&mut self, goal: usize, moves: &[Step; 8], corner_cutting: bool) {
         let mut waiting = 1_usize;
         let mut number = 0_u64;
@@ -174,7 +176,7 @@ impl Planner {
     }
 }
 
-/// A unit move in terms of indices.
+/// A unit move as index offsets.
 struct Step {
     dir: Dir,
     offset: isize,
@@ -188,7 +190,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Relaxes every move until nothing changes.
+    /// Reference solution: relaxes all moves until nothing changes.
     fn by_definition(land: &Terrain, from: Cell, norm: Norm, corner_cutting: bool) -> Vec<u64> {
         let cells = || (0..land.height() as i16).flat_map(|y| (0..land.width() as i16).map(move |x| Cell::new(x, y)));
         let mut costs = vec![UNKNOWN; land.cells().len()];
@@ -223,7 +225,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn routes_are_walkable_and_as_cheap_as_any(
+        fn routes_are_walkable_and_optimal(
             cells in prop::collection::vec(prop_oneof![2 => Just(BLOCKED), 4 => 1..=4_u8, 1 => Just(255)], 81),
             from in cell(),
             to in cell(),
@@ -248,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_planner_forgets_the_map_before() {
+    fn planner_keeps_nothing_of_the_previous_map() {
         let mut planner = Planner::default();
         let big = Terrain::flat(30, 20);
         let mut small = Terrain::flat(3, 3);
@@ -263,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_off_the_map_or_in_walls_have_no_route_and_equal_ends_an_empty_one() {
+    fn no_route_from_blocked_or_outside_ends_and_an_empty_one_between_equal_ends() {
         let mut land = Terrain::flat(3, 1);
         let at = |x| Cell::new(x, 0);
         assert_eq!(route(&land, at(0), at(3), Norm::Euclidean, false), None);
@@ -275,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn cost_counts_the_cells_entered_and_length_the_moves() {
+    fn cost_sums_entered_cells_and_length_sums_moves() {
         let land = Terrain::from_cells(3, 1, vec![9, 2, 255]).unwrap();
         let found = route(&land, Cell::new(0, 0), Cell::new(2, 0), Norm::Euclidean, false).unwrap();
         assert_eq!(found.cost, 70 * 257);

@@ -1,4 +1,4 @@
-//! A rollover of the swarm's key, with everything that can happen to its frames and to the robots.
+//! A rollover of the swarm's key, with faults of the radio and restarts of robots.
 
 use heapless::Vec as Bounded;
 use staya_controller::auth::{Key, Master};
@@ -7,7 +7,7 @@ use staya_controller::wire::{Beacon, Header, KeyPhase, MAX_FRAME_LEN, Message, O
 
 type Bytes = Bounded<u8, MAX_FRAME_LEN>;
 
-/// The robot that is sent no key.
+/// The robot that receives no new key.
 const LEFT_OUT: usize = 2;
 
 fn robot(index: usize, generation: u16, starts: u32) -> Sealed<8> {
@@ -29,8 +29,11 @@ fn hears(by: &mut Sealed<8>, bytes: &[u8]) -> bool {
     is_heard
 }
 
-/// Frames are lost, doubled, late, damaged, for others, of any generation and phase, robots start anew with what they stored or without: a robot
-/// that runs never goes back, who is left out learns nothing, and at the end all others hear each other and not him.
+/// Frames are lost, duplicated, delayed, damaged, or addressed to other robots, and carry any
+/// generation and phase. Robots restart with or without their stored keys.
+///
+/// A running robot never returns to an older key. The robot that is left out learns no new key. At
+/// the end all other robots hear each other and not that one.
 pub fn keys(bytes: &[u8]) {
     let mut operator = OperatorWire::<8>::at_start(master(), RobotId(99), 0).expect("a low number");
     let mut robots = [robot(0, 0, 0), robot(1, 0, 0), robot(LEFT_OUT, 0, 0)];

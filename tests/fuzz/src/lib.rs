@@ -1,8 +1,8 @@
-//! What must hold for any bytes whatever.
+//! Invariants that must hold for arbitrary bytes.
 //!
-//! Each function takes bytes, does what they say and panics when something does not hold. A fuzzer
-//! looks for bytes that make it panic (`cargo xtask fuzz`); the tests here try random ones and those
-//! that once did.
+//! Each function interprets its bytes as data or as a sequence of actions and panics if an
+//! invariant is violated. A fuzzer searches for such bytes (`cargo xtask fuzz`); the tests here try
+//! random ones and earlier findings.
 
 mod keys;
 mod mavlink;
@@ -23,12 +23,12 @@ mod tests {
     use super::*;
     use staya_controller::rand::Rng;
 
-    /// Runs a model on random bytes: `rounds` inputs of up to `longest` bytes.
+    /// Runs a model on `rounds` random inputs of up to `longest` bytes.
     fn on_random_bytes(model: fn(&[u8]), rounds: u32, longest: u32) {
         for round in 0..rounds {
             let mut rng = Rng::keyed(0, u32::from_be_bytes(*b"fuzz"), round, 0);
             let len = rng.below(longest + 1);
-            // Small bytes, so that choices repeat, in every other round.
+            // Every other round uses small values, so that choices repeat.
             let limit = if round % 2 == 0 { 256 } else { 8 };
             let bytes: Vec<u8> = (0..len).map(|_| rng.below(limit) as u8).collect();
             model(&bytes);
@@ -36,32 +36,32 @@ mod tests {
     }
 
     #[test]
-    fn wire_decode_holds_for_random_bytes() {
+    fn wire_decode_invariants_hold_for_random_bytes() {
         on_random_bytes(wire_decode, 20_000, 120);
     }
 
     #[test]
-    fn mavlink_decode_holds_for_random_bytes() {
+    fn mavlink_decode_invariants_hold_for_random_bytes() {
         on_random_bytes(mavlink_decode, 20_000, 300);
     }
 
     #[test]
-    fn keys_holds_for_random_bytes() {
+    fn keys_invariants_hold_for_random_bytes() {
         on_random_bytes(keys, 1_000, 400);
     }
 
     #[test]
-    fn sealed_holds_for_random_bytes() {
+    fn sealed_invariants_hold_for_random_bytes() {
         on_random_bytes(sealed, 5_000, 120);
     }
 
     #[test]
-    fn requests_model_holds_for_random_bytes() {
+    fn requests_model_invariants_hold_for_random_bytes() {
         on_random_bytes(requests_model, 300, 1_000);
     }
 
     #[test]
-    fn templates_holds_for_random_bytes() {
+    fn templates_invariants_hold_for_random_bytes() {
         on_random_bytes(templates, 2_000, 1_000);
     }
 }

@@ -1,4 +1,4 @@
-//! Bytes from the air that may be MAVLink.
+//! Arbitrary received bytes that may be MAVLink.
 
 use heapless::Vec as Bounded;
 use staya_controller::wire::DecodeError;
@@ -6,11 +6,12 @@ use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::mavlink_core::{Message as _, calculate_crc};
 use staya_mavlink::wire::{COMPONENT, decode, encode, next_frame};
 
-/// The first of the swarm's messages; there are seven.
+/// Id of the first of the swarm's seven messages.
 const FIRST_ID: u32 = 9_500_000;
 
-/// Bytes as they come from a radio, and as the payload of a sound frame, get an answer; no byte is lost between frames; what is believed is said
-/// again, and is believed again.
+/// Decodes the bytes both as a radio stream and as the payload of an intact frame, without panics.
+/// No byte between frames is lost. An accepted message can be encoded, and its encoding is accepted
+/// again.
 pub fn mavlink_decode(bytes: &[u8]) {
     let (mut rest, mut pieces) = (bytes, Vec::new());
     while let Some(piece) = next_frame(&mut rest) {
@@ -20,7 +21,7 @@ pub fn mavlink_decode(bytes: &[u8]) {
     }
     assert!(rest.is_empty() && pieces == bytes);
     judge(bytes);
-    // Random bytes hardly ever have the right sum: give it to them.
+    // Random bytes hardly ever have a valid checksum, so it is added here.
     let Some((which, payload)) = bytes.split_first() else {
         return;
     };
@@ -36,7 +37,6 @@ pub fn mavlink_decode(bytes: &[u8]) {
     judge(&frame);
 }
 
-/// Decodes one frame and checks what is believed.
 fn judge(piece: &[u8]) {
     let Ok(frame) = decode(piece) else { return };
     assert!(frame.header.sender.is_somebody() && frame.tag.is_none());

@@ -1,5 +1,5 @@
-//! Two robots that ask each other things over a radio that loses, doubles and reorders, while
-//! either may start anew at any time.
+//! Two robots that exchange requests over a radio that loses, duplicates and reorders packets,
+//! while either robot may restart at any time.
 
 use arbitrary::{Result, Unstructured};
 use heapless::Vec as Bounded;
@@ -11,38 +11,35 @@ use staya_controller::wire::{
 };
 use std::collections::BTreeMap;
 
-/// Enough for every matter: two origins, standing and direction each.
+/// Enough for every matter: two origins, with standing requests and direction requests of each.
 const LINES: usize = 4;
-/// The longest that a packet is in the air.
 const DELAY_MS: i32 = 500;
-/// More than all attempts of a request and the delay of the last.
+/// Longer than all attempts of a request and the delay of the last one.
 const MEMORY: Duration = Duration::from_millis(5_000);
-/// Time between two things that happen: numbers must not come round while packets are in the air.
+/// Time between two actions, so that sequence numbers do not wrap while packets are in the air.
 const STEP_MS: i32 = 100;
-/// All times are multiples of it.
+/// All times are multiples of this.
 const GRAIN_MS: i32 = 10;
-/// A robot that was silent for so long is forgotten by whoever listens to it.
+/// A listener forgets a robot after this silence.
 const SILENCE_MS: i32 = 3_000;
 
-/// A frame in the air.
 struct Packet {
     to: usize,
     sent_ms: i32,
     bytes: Vec<u8>,
-    /// The request that it carries or acknowledges, by its place in the order of asking.
+    /// Index of the request that the frame carries or acknowledges, in the order of asking.
     place: usize,
 }
 
-/// One request in the model.
 struct Asked {
     request: Request,
     sends: u32,
     was_delivered: bool,
-    /// Acknowledged, replaced, expired, or lost in a reboot of the one who asked: how often.
+    /// How often it ended: acknowledged, replaced, expired, or lost when its sender rebooted.
     ends: u32,
 }
 
-/// The latest request on one matter that was heard.
+/// The latest received request on one matter.
 struct Line {
     boot: u8,
     place: usize,
@@ -50,7 +47,6 @@ struct Line {
     until_ms: i32,
 }
 
-/// A robot, and beside it what the model knows.
 struct Robot {
     id: RobotId,
     boot: u8,
@@ -58,13 +54,13 @@ struct Robot {
     requests: Requests<LINES>,
     orders: Orders<LINES>,
     window: SequenceWindow,
-    /// Model: every request of this robot, in all its lives.
+    /// Model: all requests of this robot, across restarts.
     asked: Vec<Asked>,
-    /// Model: the requests on their way, by number.
+    /// Model: the pending requests, by number.
     pending: BTreeMap<u8, usize>,
-    /// Model: what it was asked, by origin and whether that bears on standing.
+    /// Model: received requests, by origin and whether they are standing.
     lines: BTreeMap<(RobotId, bool), Line>,
-    /// Model: when it last accepted a frame.
+    /// Model: time of the last accepted frame.
     heard_ms: i32,
 }
 
@@ -84,7 +80,7 @@ impl Robot {
         }
     }
 
-    /// Forgets everything but its number and the next boot's.
+    /// Restarts the robot: all state is lost except its id and its boot counter.
     fn reboot(&mut self, sequence: u16) {
         for place in std::mem::take(&mut self.pending).into_values() {
             self.asked[place].ends += 1;
@@ -97,7 +93,7 @@ impl Robot {
         self.lines.clear();
     }
 
-    /// Asks, and follows in the model what became of it.
+    /// Makes a request and records in the model which requests it replaces.
     fn ask(&mut self, to: RobotId, origin: RobotId, kind: RequestKind, valid_ms: u16, now: Instant) {
         let same_matter =
             |request: &Request| request.origin == origin && request.kind.is_standing() == kind.is_standing();
@@ -125,7 +121,7 @@ impl Robot {
         });
     }
 
-    /// What it wants to send at `now`.
+    /// Sends the packets that are due at `now`.
     fn poll(&mut self, to: usize, now_ms: i32, now: Instant, air: &mut Vec<Packet>) {
         while let Some(due) = self.requests.poll(now) {
             let (Due::Send(request) | Due::Expired(request)) = due;
@@ -154,7 +150,7 @@ impl Robot {
         out[..out.len() - 1].to_vec()
     }
 
-    /// Takes a frame in and gives the frame that answers it.
+    /// Receives a frame and returns the answering frame.
     fn receive(&mut self, packet: &Packet, peer: &mut Self, now_ms: i32, now: Instant) -> Option<Vec<u8>> {
         let frame = decode(&packet.bytes).expect("the radio damages nothing here");
         let arrival = self.window.check(frame.header);
@@ -162,7 +158,7 @@ impl Robot {
             self.orders.forget(frame.header.sender);
             self.lines.clear();
         }
-        // What came twice is let through: requests must bear that as well.
+        // Duplicates are passed on: the request layer must tolerate them too.
         if matches!(arrival, Arrival::PreviousBoot | Arrival::TooOld) {
             return None;
         }
@@ -195,7 +191,8 @@ impl Robot {
         }
     }
 
-    /// Whether a request should be accepted and whether it is new, by the model, which remembers it.
+    /// The model's answer: whether the request is accepted and whether it is new. Records the
+    /// request.
     fn expected_answer(&mut self, header: Header, request: &Request, place: usize, now_ms: i32) -> (bool, bool) {
         let matter = (request.origin, request.kind.is_standing());
         let line = self.lines.get(&matter);
@@ -210,7 +207,7 @@ impl Robot {
         (true, true)
     }
 
-    /// What holds at any time.
+    /// Checks the invariants that hold at any time.
     fn check(&mut self, now_ms: i32, now: Instant) {
         let until = self
             .lines
@@ -229,7 +226,6 @@ impl Robot {
     }
 }
 
-/// The robots, the air between them, and the time.
 struct World {
     robots: [Robot; 2],
     air: Vec<Packet>,
@@ -242,8 +238,8 @@ impl World {
         self.start + Duration::from_millis(self.now_ms)
     }
 
-    /// Lets time pass, in steps of [`GRAIN_MS`] as far as anybody can tell: only those are taken in which something can happen, and the ones before,
-    /// in which nothing may.
+    /// Advances the time by [`GRAIN_MS`] steps. Skips all but the steps in which something can
+    /// happen and the steps right before them, in which nothing may happen.
     fn pass(&mut self, span_ms: i32) {
         let end_ms = self.now_ms + span_ms / GRAIN_MS * GRAIN_MS;
         while self.now_ms < end_ms {
@@ -266,7 +262,7 @@ impl World {
         }
     }
 
-    /// When something can happen next: a request is due, or the time of what was asked is up.
+    /// Time of the next event: a request is due or expires.
     fn next_ms(&self) -> Option<i32> {
         let now = self.now();
         let moments = self.robots.iter().flat_map(|robot| {
@@ -294,7 +290,6 @@ impl World {
         }
     }
 
-    /// Does one thing.
     fn act(&mut self, choice: &mut Unstructured<'_>) -> Result<()> {
         match choice.int_in_range(0..=7_u8)? {
             0 | 1 => {
@@ -315,7 +310,8 @@ impl World {
             3 => {
                 let which = usize::from(choice.arbitrary::<bool>()?);
                 self.robots[which].reboot(choice.arbitrary()?);
-                // Starting takes a while: of one robot, the air holds frames of at most two lives.
+                // A start takes time, so that the air holds frames of at most two lives of one
+                // robot.
                 self.pass(DELAY_MS / 2 + 10);
             }
             4 if !self.air.is_empty() => {
@@ -329,9 +325,9 @@ impl World {
         Ok(())
     }
 
-    /// Over a radio that loses nothing, everybody can stop everybody and let him go again.
+    /// Over a loss-free radio, each robot can stop each other robot and release it again.
     fn end(&mut self) {
-        // Whatever is on its way ends by itself, and stops run out.
+        // All pending requests end by themselves, and stops expire.
         self.pass(10_000);
         for robot in &mut self.robots {
             assert!(robot.requests.is_empty() && robot.pending.is_empty());
@@ -356,7 +352,8 @@ impl World {
     }
 }
 
-/// Does what the bytes say; both robots are compared with the model at each step.
+/// Executes the actions that the bytes describe and compares both robots with the model at each
+/// step.
 pub fn requests_model(bytes: &[u8]) {
     let mut choice = Unstructured::new(bytes);
     let start = Instant::from_micros(choice.arbitrary().unwrap_or_default());
@@ -369,12 +366,10 @@ pub fn requests_model(bytes: &[u8]) {
 mod tests {
     use super::*;
 
-    /// Two robots, and nothing in the air between them.
     fn world() -> World {
         World { robots: [Robot::new(1), Robot::new(2)], air: Vec::new(), start: Instant::default(), now_ms: 0 }
     }
 
-    /// The first robot asks the second.
     fn ask(world: &mut World, kind: RequestKind) {
         let now = world.now();
         world.robots[0].ask(RobotId(2), RobotId(1), kind, 1_000, now);
@@ -382,8 +377,8 @@ mod tests {
     }
 
     #[test]
-    fn late_acknowledgement_from_a_former_life_ends_nothing() {
-        // As many requests before the reboot as make the numbers meet, and some more and fewer.
+    fn late_acknowledgement_from_before_a_reboot_ends_no_request() {
+        // Around the number of requests before the reboot at which the numbers meet.
         for requests in 90..=100 {
             let mut world = world();
             for _ in 0..requests {
@@ -399,7 +394,8 @@ mod tests {
             world.robots[0].reboot(0);
             world.pass(DELAY_MS / 2 + 10);
             ask(&mut world, RequestKind::Stop);
-            // The acknowledgement from before, then what is in the air since.
+            // The acknowledgement from before the reboot first, then the other packets in their
+            // order.
             while !world.air.is_empty() {
                 let oldest = (0..world.air.len()).min_by_key(|at| world.air[*at].sent_ms);
                 world.deliver(oldest.unwrap_or(0), false);

@@ -1,4 +1,4 @@
-//! Formation templates in parts, over a radio that does what it likes.
+//! Formation templates in parts, over a radio that loses, duplicates and reorders them.
 
 use arbitrary::{Result, Unstructured};
 use heapless::Vec as Bounded;
@@ -12,26 +12,26 @@ use staya_controller::wire::{
 const F: usize = 7;
 const TO: RobotId = RobotId(3);
 const HEADER: Header = Header { boot: 0, sender: RobotId(1), sequence: 0 };
-/// How many versions a late part may lie behind the newest; the assembler tells 127 apart.
+/// Largest age of a late part, in versions; the assembler distinguishes 127.
 const LATE: usize = 60;
 
-/// Does what the bytes say: a commander sends one template after the other, their parts come in any
-/// order, more than once or never; or anybody sends any parts at all.
+/// Executes the actions that the bytes describe. Either a commander sends one template after the
+/// other and their parts arrive in any order, repeatedly or never; or arbitrary parts arrive.
 pub fn templates(bytes: &[u8]) {
     let mut choice = Unstructured::new(bytes);
-    // Running out of bytes ends the story.
+    // Running out of bytes ends the sequence.
     let _ = match choice.arbitrary() {
         Ok(true) => from_one_commander(&mut choice),
         _ => from_anybody(&mut choice),
     };
 }
 
-/// Only what was sent comes out, whole, once, and never an older one after a newer one.
+/// Each template that comes out was sent, is complete, comes out once, and never after a newer one.
 fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut version: u8 = choice.arbitrary()?;
     let mut sent: Vec<(Template<F>, Vec<TemplateAssignment>)> = Vec::new();
     let mut assembler = TemplateAssembler::<F>::new();
-    // The parts of the newest template that came, and which one that is.
+    // The newest template of which a part arrived, and its parts.
     let mut newest = None;
     let mut there = Vec::new();
     while !choice.is_empty() {
@@ -66,8 +66,8 @@ fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Any parts get an answer, a refused one changes nothing, and what comes out was brought by parts
-/// of one version.
+/// Arbitrary parts are answered without panics. A refused part changes nothing. A completed
+/// template consists of parts of one version.
 fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut assembler = TemplateAssembler::<F>::new();
     let mut seen: Vec<TemplateAssignment> = Vec::new();
@@ -86,7 +86,7 @@ fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
             entries,
         };
         if choice.arbitrary()? {
-            // Numbers that have a chance to fit together.
+            // Small values, so that parts may fit together.
             part.version &= 3;
             part.part &= 3;
             part.parts &= 3;
@@ -109,7 +109,7 @@ fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
             };
             assert!(seen.iter().any(came));
         }
-        // Nothing comes out twice.
+        // No template comes out twice.
         for part in seen.iter().filter(|part| part.version == version) {
             assert!(!matches!(assembler.put(part), Ok(Some(_))));
         }
@@ -133,7 +133,6 @@ fn entry(choice: &mut Unstructured<'_>, least_hops: u8) -> Result<TemplateEntry>
     })
 }
 
-/// The part after its way through a frame.
 fn carried(part: TemplateAssignment) -> TemplateAssignment {
     let mut out = Bounded::<u8, MAX_FRAME_LEN>::new();
     let message = Message::Template(part);

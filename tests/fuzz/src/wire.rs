@@ -1,4 +1,4 @@
-//! Bytes from the air.
+//! Arbitrary received bytes.
 
 use crc::{CRC_16_IBM_SDLC, Crc};
 use heapless::Vec as Bounded;
@@ -6,25 +6,25 @@ use staya_controller::wire::{
     DecodeError, EncodeError, Frame, MAX_FRAME_LEN, TAG_LEN, decode, decode_verified, encode, encode_tagged, frames,
 };
 
-/// The catalogue's own, to be checked against the controller's.
+/// The CRC catalogue's parameters, to check the controller's CRC.
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_SDLC);
 
-/// Bytes as they come from a radio, and as the content of a sound frame, get an answer; what is
-/// believed is said again in at most the same bytes, and is believed again.
+/// Decodes the bytes both as a radio stream and as the content of an intact frame, without panics.
+/// An accepted message can be encoded in at most as many bytes, and its encoding is accepted again.
 pub fn wire_decode(bytes: &[u8]) {
     for piece in frames(bytes) {
         assert!(!piece.is_empty() && !piece.contains(&0));
         judge(piece);
     }
     judge(bytes);
-    // A stream cut at any place gives the same frames but for the one that was cut.
+    // A stream cut at any place gives the same frames, except for the frame that was cut.
     if let Some(&at) = bytes.first() {
         let (front, back) = bytes.split_at(usize::from(at).min(bytes.len()));
         let whole = frames(bytes).count();
         let cut = frames(front).count() + frames(back).count();
         assert!(cut == whole || cut == whole + 1);
     }
-    // Random bytes hardly ever have the right sum: give it to them.
+    // Random bytes hardly ever have a valid checksum, so it is added here.
     let mut content = bytes.to_vec();
     content.extend(CRC.checksum(bytes).to_le_bytes());
     let frame = stuffed(&content);
@@ -33,7 +33,6 @@ pub fn wire_decode(bytes: &[u8]) {
     judge(&frame);
 }
 
-/// Decodes one frame and checks what is believed.
 fn judge(piece: &[u8]) {
     let Ok(frame) = decode(piece) else {
         assert!(decode_verified(piece, |_, _| Ok(())).is_err());
@@ -47,11 +46,11 @@ fn judge(piece: &[u8]) {
     });
     assert_eq!(refused, Err(DecodeError::Forged));
     let Some(again) = encoded(&frame) else {
-        // Somebody who writes large numbers of robots into a frame with a tag.
+        // Only a tagged frame with large robot ids can be decoded but not encoded.
         assert!(frame.tag.is_some());
         return;
     };
-    // Numbers may come in more bytes than they need.
+    // A number may have been encoded in more bytes than it needs.
     assert!(again.len() <= piece.len() + 1);
     let (delimiter, again) = again.split_last().expect("a frame has bytes");
     assert_eq!(*delimiter, 0);
@@ -79,7 +78,7 @@ fn encoded(frame: &Frame) -> Option<Bounded<u8, MAX_FRAME_LEN>> {
     Some(out)
 }
 
-/// COBS as its paper describes it, block by block, for contents of any length; without delimiter.
+/// COBS block by block, as in its paper, for contents of any length; without delimiter.
 fn stuffed(content: &[u8]) -> Vec<u8> {
     let mut out = Vec::new();
     for block in content.split(|byte| *byte == 0) {
@@ -90,7 +89,7 @@ fn stuffed(content: &[u8]) -> Vec<u8> {
         while let Some(chunk) = chunks.next() {
             out.push(chunk.len() as u8 + 1);
             out.extend(chunk);
-            // A full chunk ends without a zero; one that ends the block needs an empty one after.
+            // A full chunk ends without a zero; if it also ends the block, an empty chunk follows.
             if chunk.len() == 254 && chunks.peek().is_none() {
                 out.push(1);
             }

@@ -1,8 +1,10 @@
-//! One whole step of the robot in the middle of a formation of nine: it hears eight beacons, searches
-//! its window of radius 5 (once; with reflexive prediction once more per neighbour in sight) and says its
-//! own beacon. It is free to move in every step, so that every step decides.
+//! Benchmarks of one whole step of an agent.
 //!
-//! And one of a disc in the plane that goes to a waypoint behind ORCA, among eight others that come and go.
+//! On the grid: the middle robot of a formation of nine. It receives eight beacons, searches its
+//! window of radius 5 and encodes its own beacon. With reflexive prediction it also searches once
+//! per visible neighbour. It is free to move in every step, so that every step decides.
+//!
+//! In the plane: a disc with ORCA on its way to a waypoint, among eight moving robots.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -22,7 +24,7 @@ use staya_controller::template::Template;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, Postcard, encode};
 
-/// Rows 1 2 3, 4 5 6, 7 8 9, robot 1 in front.
+/// Rows 1 2 3, 4 5 6, 7 8 9, with robot 1 in front.
 const PLACES: [Cell; 9] = [
     Cell::new(0, 0),
     Cell::new(-3, 0),
@@ -37,17 +39,18 @@ const PLACES: [Cell; 9] = [
 const EDGES: [(u16, u16); 12] =
     [(0, 1), (1, 2), (3, 4), (4, 5), (6, 7), (7, 8), (0, 3), (1, 4), (2, 5), (3, 6), (4, 7), (5, 8)];
 const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
-/// Robot 5, in the middle: eight neighbours within two steps of the graph.
+/// Robot 5, in the middle: all eight neighbours are within two steps of the graph.
 const OWN: usize = 4;
 const TICK: Duration = Duration::from_millis(100);
-/// Different windows in turn, so that no branch predictor learns one by heart.
+/// Alternating windows keep the branch predictor from learning a single one.
 const LANDSCAPES: usize = 32;
 const TOP: Cell = Cell::new(50, 50);
 
-/// What the robot hears in each of as many steps as sequence numbers exist: they may go round.
+/// Received bytes of each step. There is one step per sequence number, so that the benchmark can
+/// repeat them cyclically.
 fn inboxes() -> Vec<Vec<u8>> {
     let beacon = |robot: usize| Beacon {
-        // Nobody is quite in place: whoever foresees them has to search their ways.
+        // Each robot is off its place, so that prediction must search its route.
         cell: TOP + PLACES[robot] + Cell::new(i16::from(robot != 0), 0),
         heading: Dir::NorthEast,
         leader: RobotId(LEADERS[robot]),
@@ -99,7 +102,7 @@ fn agent_step(c: &mut Criterion) {
                 black_box(agent.step(black_box(&inputs(step)), now(step), &mut workspace))
             });
         });
-        // Not when another benchmark was asked for.
+        // The check does not apply if a filter skipped this benchmark.
         assert!(step == 0 || agent.neighbors().len() == 8);
     }
     let law = RouteGuidance::new(RouteParams::default());
@@ -115,10 +118,10 @@ fn agent_step(c: &mut Criterion) {
     group.finish();
 }
 
-/// Steps until eight discs on eight circles are where they were.
+/// Steps until the eight discs on their circles are back at their start.
 const ROUND: usize = 256;
 
-/// What a disc hears in each step: eight others, each on a small circle of its own at 1 to 3 m, at half a metre a second.
+/// Received bytes of each step: eight discs, each on a small circle 1 to 3 m away, at 0.5 m/s.
 fn in_plane_inboxes() -> Vec<Vec<u8>> {
     let turn = |step: usize, robot: usize| (step % ROUND) as f64 / ROUND as f64 * core::f64::consts::TAU + robot as f64;
     let milli = |metres: f64| libm::round(metres * 1e3) as i32;
@@ -136,7 +139,6 @@ fn in_plane_inboxes() -> Vec<Vec<u8>> {
             ..Beacon::default()
         }
     };
-    // As many as sequence numbers exist: they may go round.
     (0..=u16::MAX)
         .map(|sequence| {
             let mut bytes = heapless::Vec::<u8, 512>::new();
@@ -161,7 +163,7 @@ fn agent_step_in_plane(c: &mut Criterion) {
     let mut agent = OrcaAgent::new(&config, WaypointGuidance::new(0.5, 0.02), safety, Postcard);
     let goal = Waypoint::fixed(Position::from_mm([20_000, 3_000, 0]));
     assert!(agent.assign_waypoint(0, &goal));
-    // It stays where it is, so that the scene is the same in each round.
+    // The robot stays in place, so that the scene is identical in each round.
     let inputs = |step: usize| Inputs {
         state: KinematicState { velocity_mps: Vec3::new(0.3, 0.1, 0.0), ..KinematicState::default() },
         surroundings: InPlane { max_speed_mps: 0.5, obstacles: &[] },
@@ -174,7 +176,6 @@ fn agent_step_in_plane(c: &mut Criterion) {
             black_box(agent.step(black_box(&inputs(step)), now(step), &mut ()))
         });
     });
-    // Not when another benchmark was asked for.
     assert!(step == 0 || agent.neighbors().len() == 8);
 }
 

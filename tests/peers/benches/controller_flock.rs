@@ -1,5 +1,5 @@
-//! One decision of each flock, and of push-out behind it, among ten neighbours. Different neighbourhoods in turn, so that no branch
-//! predictor learns one by heart.
+//! Benchmarks of one decision of each flocking law, and of push-out behind it, among ten
+//! neighbours. Alternating neighbourhoods keep the branch predictor from learning a single one.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -19,7 +19,6 @@ const CASES: usize = 64;
 
 type Others = [Nearby<f32>; NEIGHBORS];
 
-/// Neighbours up to `range` metres away along each axis, none of them touching.
 fn others(rng: &mut Rng, range: f32) -> Others {
     let mut within = |range: f32| (rng.below(2001) as f32 / 1000.0 - 1.0) * range;
     let mut id = 1;

@@ -1,5 +1,5 @@
-//! A full table of 16 neighbours: hearing from one of them, from a stranger, and asking for the
-//! nearest 8.
+//! Benchmarks of a full table of 16 neighbours: storing a known robot, storing an unknown robot,
+//! and finding the nearest 8.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -15,7 +15,6 @@ const AGES: Ages = Ages { stale_after: Duration::from_millis(500), expire_after:
 
 type Table = NeighborTable<f32, { ROBOTS as usize }>;
 
-/// Robot `id` somewhere within `range_mm` of the origin on each axis, moving.
 fn neighbor(id: u32, range_mm: i32, rng: &mut Rng) -> Neighbor<f32> {
     let mut within = |range: i32| rng.below(range.cast_unsigned() * 2).cast_signed() - range;
     let beacon = Beacon {
@@ -37,7 +36,7 @@ fn neighbor_table(c: &mut Criterion) {
         assert_eq!(put, Put::Inserted);
     }
     let known = neighbor(8 * 7, 10_000, &mut rng);
-    // Two strangers at one place, nearer than everybody else, push each other out by turns.
+    // Two unknown robots at one place, nearer than all others, evict each other in turn.
     let strangers = [neighbor(60, 1, &mut rng), neighbor(61, 1, &mut rng)];
 
     let mut group = c.benchmark_group("neighbors_16");
@@ -47,7 +46,7 @@ fn neighbor_table(c: &mut Criterion) {
     group.bench_function("put_evicting", |bencher| {
         let mut full = table.clone();
         let mut turn = strangers.iter().cycle();
-        // Everybody else is protected, so that one stranger always takes the other's place.
+        // All others are protected, so that each unknown robot evicts the other one.
         let others = |id: RobotId| !strangers.iter().any(|stranger| stranger.id == id);
         let _ = full.put(strangers[0], here, now, |_| false);
         turn.next();

@@ -1,4 +1,5 @@
-//! Half-planes by formula and by template, in floats and in fixed point, and what is left of ten of them.
+//! Benchmarks of half-planes by formula and by template, in floating and fixed point, and of the
+//! intersection of ten of them.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -7,11 +8,10 @@ use staya_controller::orca::{Analytic, HalfPlane, HalfSpaces, MovingBall, Params
 use staya_controller::rand::Rng;
 use staya_controller::scalar::{Q16, Scalar};
 
-/// Scenes in turn, so that no branch predictor learns one by heart.
+/// Alternating scenes keep the branch predictor from learning a single one.
 const SCENES: usize = 256;
 const NEIGHBORS: usize = 10;
 
-/// A number from -`most` to `most`.
 fn within<S: Scalar>(rng: &mut Rng, most: f64) -> S {
     let share = f64::from(rng.below(1 << 16)) / f64::from(1 << 15) - 1.0;
     S::from_f64(share * most).unwrap()
@@ -25,7 +25,7 @@ fn params<S: Scalar>() -> Params<S> {
     Params { horizon_s: S::TWO, separation_s: S::from_milli(50), share: S::HALF }
 }
 
-/// Own velocity and a robot of the same radius 0.3 m within 5 m that does not overlap.
+/// Own velocity, and a robot of the same radius 0.3 m within 5 m that does not overlap.
 fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, MovingBall<Vec2<S>>) {
     let radii_m = S::from_milli(600);
     let mut offset_m = Vec2::ZERO;
@@ -36,7 +36,6 @@ fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, MovingBall<Vec2<S>>) {
     (vector(rng, 1.5), other)
 }
 
-/// Where a half-plane comes from.
 type Source<'a, S> = &'a dyn Fn(Vec2<S>, &MovingBall<Vec2<S>>) -> Option<HalfPlane<S>>;
 
 fn half_planes<S: Scalar>(c: &mut Criterion, scalar: &str) {

@@ -1,5 +1,5 @@
-//! The weights of the eight moves in a window of radius 5 over land of impassability 1 to 9. Larger
-//! windows, beside another crate, are in `tests/peers`.
+//! Benchmark of the weights of the eight moves in a window of radius 5, over terrain of
+//! impassability 1 to 9. `tests/peers` compares larger windows with another crate.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -9,7 +9,7 @@ use staya_controller::route::{CostField, ExitRule, RouteParams, VisitMemory};
 
 const SIDE: u16 = 11;
 const CELLS: usize = SIDE as usize * SIDE as usize;
-/// Different landscapes in turn, so that no branch predictor learns one by heart.
+/// Alternating landscapes keep the branch predictor from learning a single one.
 const LANDSCAPES: usize = 32;
 
 fn cost_field(c: &mut Criterion) {

@@ -1,4 +1,4 @@
-//! Encoding and decoding one frame of each kind of message, longest form.
+//! Benchmarks of encoding and decoding one frame of each message kind, in its longest form.
 
 use core::hint::black_box;
 use core::time::Duration;
@@ -81,7 +81,7 @@ fn wire(c: &mut Criterion) {
     group.finish();
 }
 
-/// What a tag adds to a beacon: to make it, and to check it.
+/// Cost of a beacon's authentication tag, when sending and when receiving.
 fn sealed(c: &mut Criterion) {
     let header = Header { boot: 1, sender: TO, sequence: 4_711 };
     let [(_, beacon), ..] = messages();
@@ -95,7 +95,7 @@ fn sealed(c: &mut Criterion) {
             sender.encode(header, black_box(&beacon), &mut out)
         });
     });
-    // The benchmark before may have been left out.
+    // A filter may have skipped the previous benchmark.
     out.clear();
     sender.encode(header, &beacon, &mut out).unwrap();
     let (_delimiter, frame) = out.split_last().unwrap();
@@ -105,7 +105,7 @@ fn sealed(c: &mut Criterion) {
     });
 }
 
-/// Fourteen benchmarks of tens of nanoseconds need no five seconds each.
+/// Fourteen benchmarks of tens of nanoseconds do not need five seconds each.
 fn short() -> Criterion {
     Criterion::default().warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2))
 }

@@ -1,11 +1,12 @@
-//! One cost field over a window of natural land: Staya's reverse search beside `pathfinding`.
+//! Benchmark of one cost field over a window of natural terrain: Staya's reverse search and
+//! `pathfinding`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::route::CostField;
 use staya_peers::Task;
 use std::hint::black_box;
 
-/// Different landscapes in turn, so that no branch predictor learns one by heart.
+/// Alternating landscapes keep the branch predictor from learning a single one.
 const LANDSCAPES: u64 = 32;
 
 fn cost_field<const CELLS: usize>(c: &mut Criterion, side: u16, peaks: usize) {

@@ -1,7 +1,8 @@
-//! A step of a flock of 100,000: Staya's cells and boids, on one thread and on all, beside `krabmaga`.
+//! Benchmark of one step of a flock of 100,000: Staya's cell index and boids, on one and on all
+//! threads, and `krabmaga`.
 //!
-//! Every sample begins with the same even start and makes the same few steps, so that nobody is measured in a
-//! denser flock than the other. Times are per step of the whole flock.
+//! Every sample starts with the same uniform flock and runs the same few steps, so that both are
+//! measured at the same density. Times are per step of the whole flock.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_lab::boids::Flock;
@@ -10,10 +11,8 @@ use staya_sim::nearby::{Cells, Space};
 use std::time::{Duration, Instant};
 
 const BOIDS: u32 = 100_000;
-/// Steps from one start.
 const STEPS: u64 = 4;
 
-/// Time of `count` steps, `STEPS` from each start.
 fn run<T>(count: u64, start: impl Fn() -> T, mut step: impl FnMut(&mut T)) -> Duration {
     let mut sum = Duration::ZERO;
     let mut left = count;

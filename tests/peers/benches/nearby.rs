@@ -1,5 +1,6 @@
-//! Who is near whom, of all boids of a flock at the paper's density (STA, section 2.3): the project's searches, the
-//! library's k-d tree among them, beside the grid of `krabmaga`. A sample takes the places in and asks once for each boid, as a step does.
+//! Benchmark of neighbour searches for all boids of a flock at the paper's density (STA, section
+//! 2.3): the project's searches, including the library's k-d tree, and the grid of `krabmaga`. As
+//! in a simulation step, a sample inserts all places and queries once for each boid.
 
 use core::hint::black_box;
 use criterion::measurement::WallTime;
@@ -10,10 +11,9 @@ use staya_lab::boids::searches::{MidpointTree, MutualPairs, Tree};
 use staya_sim::nearby::{AllPairs, Cells, Query, Search, Space};
 use std::time::Duration;
 
-/// Beyond this, all pairs take minutes.
+/// Above this number, all pairs take minutes.
 const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
-/// Neighbours of all boids.
 fn neighbours(flock: &Flock, radius: f32, search: &mut impl Search<f32, 2>) -> usize {
     search.rebuild(flock.places());
     let mut found = Vec::new();

@@ -1,5 +1,5 @@
-//! ORCA among ten neighbours: half-planes and solution, beside `dodgy_2d`; and a whole step of 1000 robots with the
-//! search for their neighbours.
+//! Benchmarks of ORCA and `dodgy_2d`: half-planes and solution among ten neighbours, and a whole
+//! step of 1000 robots with the neighbour search.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -7,7 +7,7 @@ use staya_peers::crowd::Crowd;
 use staya_peers::swarm::Swarm;
 
 fn orca(c: &mut Criterion) {
-    // Different crowds in turn, so that no branch predictor learns one by heart.
+    // Alternating crowds keep the branch predictor from learning a single one.
     let crowds: Vec<Crowd> = (0..256).map(Crowd::new).collect();
     let mut group = c.benchmark_group("orca_10");
     let mut turn = crowds.iter().cycle();
@@ -21,7 +21,7 @@ fn orca(c: &mut Criterion) {
     group.finish();
 }
 
-/// Times are for all 1000 robots: a microsecond here is a nanosecond a robot.
+/// Times are for all 1000 robots: 1 us here is 1 ns per robot.
 fn step(c: &mut Criterion) {
     let mut swarm = Swarm::new(1000, 1);
     let mut group = c.benchmark_group("orca_step_1000");

@@ -1,4 +1,4 @@
-//! A robot among others, avoided by Staya's ORCA and by `dodgy_2d`'s.
+//! A robot among others that avoids them with Staya's ORCA or with `dodgy_2d`.
 
 use dodgy_2d::{Agent, AvoidanceOptions};
 use staya_controller::geom::Vec2;
@@ -6,14 +6,14 @@ use staya_controller::orca::{HalfPlane, MovingBall, Params, half_plane, solve};
 use staya_controller::rand::Rng;
 use std::borrow::Cow;
 
-/// Neighbours of the robot.
+/// Number of neighbours.
 pub const NEIGHBORS: usize = 10;
 pub(crate) const RADIUS_M: f32 = 0.3;
 pub(crate) const SPEED_MPS: f32 = 1.5;
 pub(crate) const STEP_S: f32 = 0.05;
 pub(crate) const HORIZON_S: f32 = 2.0;
 
-/// A robot in the origin among [`NEIGHBORS`] others, in the terms of both crates.
+/// A robot at the origin among [`NEIGHBORS`] others, in the types of both crates.
 #[derive(Clone, Debug)]
 pub struct Crowd {
     own_velocity: Vec2<f32>,
@@ -24,7 +24,7 @@ pub struct Crowd {
 }
 
 impl Crowd {
-    /// A random crowd within 6 m; nobody overlaps the robot.
+    /// Creates a random crowd within 6 m in which no neighbour overlaps the robot.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         let mut rng = Rng::new(seed);
@@ -39,8 +39,9 @@ impl Crowd {
                 neighbors.push(MovingBall { offset_m, velocity_mps, radii_m: 2.0 * RADIUS_M, tie: Vec2::ZERO });
             }
         }
-        // The robot takes the whole correction: `dodgy_2d` shares it only inside the velocity obstacle
-        // and hands out all room outside of it to each of both, Staya (as ORCA) shares always.
+        // The robot takes the whole correction. `dodgy_2d` shares it only inside the velocity
+        // obstacle and grants the whole free space outside to both robots; Staya, like ORCA, always
+        // shares.
         let agent = |position: Vec2<f32>, velocity: Vec2<f32>, responsibility: f32| Agent {
             position: dodgy_2d::Vec2::new(position.x, position.y),
             velocity: dodgy_2d::Vec2::new(velocity.x, velocity.y),
@@ -56,7 +57,7 @@ impl Crowd {
         }
     }
 
-    /// The half-planes of all neighbours and the velocity, by Staya; with how far it violates them, m/s.
+    /// Staya's velocity, and its violation of the half-planes, m/s.
     #[must_use]
     pub fn staya(&self) -> ([f32; 2], f32) {
         let params = Params { horizon_s: HORIZON_S, separation_s: STEP_S, share: 1.0 };
@@ -91,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn both_choose_the_same_velocity_where_there_is_one() {
+    fn both_choose_the_same_velocity_if_a_permitted_one_exists() {
         let mut compared = 0;
         for seed in 0..2000 {
             let crowd = Crowd::new(seed);

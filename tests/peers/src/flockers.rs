@@ -1,5 +1,5 @@
-//! The same flock in Staya's simulator and in `krabmaga`: one law, one torus, one start; each finds neighbours and moves
-//! agents in its own way.
+//! One flock in Staya's simulator and in `krabmaga`, with the same law, torus and start. Each finds
+//! neighbours and moves agents in its own way.
 
 use krabmaga::engine::agent::Agent;
 use krabmaga::engine::fields::field::Field;
@@ -17,14 +17,14 @@ use std::cell::RefCell;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
-/// The paper's flock; crowded enough that boids align and turn away.
+/// The paper's flock, dense enough for boids to align and to turn away.
 #[must_use]
 pub fn plan() -> Plan {
     Plan::default()
 }
 
-/// About `boids` boids at the paper's density. The torus has whole cells of the visible distance on
-/// both sides, because `krabmaga`'s grid closes around it only then.
+/// Creates about `boids` boids at the paper's density. Both sides of the torus are multiples of the
+/// visible distance, because only then does `krabmaga`'s grid wrap around.
 #[must_use]
 pub fn flock(boids: u32) -> Flock {
     let plan = plan();
@@ -33,7 +33,7 @@ pub fn flock(boids: u32) -> Flock {
     plan.flock_on(boids, [whole; 2])
 }
 
-/// A boid as `krabmaga` wants it: an agent that is also what the field holds.
+/// A boid as `krabmaga` expects it: an agent that is also the field's item.
 #[derive(Clone, Copy, Debug)]
 struct Boid {
     id: u32,
@@ -71,7 +71,6 @@ impl Location2D<Real2D> for Boid {
     }
 }
 
-/// What all boids share.
 struct World {
     field: Field2D<Boid>,
     torus: Torus<f32>,
@@ -82,15 +81,14 @@ struct World {
 }
 
 impl World {
-    /// A flock that nobody has put into the field yet.
     fn new(flock: &Flock) -> Self {
         let plan = plan();
         let [width, height] = flock.sides();
         let boids = flock.places().iter().zip(flock.headings());
         let start = (0..).zip(boids).map(|(id, (&[x, y], &heading))| Boid { id, place: Real2D { x, y }, heading });
         Self {
-            // Not "toroidal": then the field's own search stops at the borders (version 0.6.2), while
-            // otherwise it goes on at the other side.
+            // Not "toroidal": with that option, the field's search stops at the borders (version
+            // 0.6.2); without it, the search wraps around.
             field: Field2D::new(width, height, plan.closest, false),
             torus: Torus { size_m: [width, height] },
             params: BoidsParams::new(plan.crowded, plan.closest, plan.max_turn, plan.max_turn_away),
@@ -137,7 +135,8 @@ impl Agent for Boid {
         let Some(world) = state.as_any().downcast_ref::<World>() else {
             return;
         };
-        // Everybody in the nine cells around; who is too far is left out by the law, the boid itself too.
+        // All boids in the nine surrounding cells. The law skips those out of range and the boid
+        // itself.
         let others = world.field.get_neighbors_within_relax_distance(self.place, world.closest);
         let seen = others.iter().map(|other| {
             let offset = Vec2::new(other.place.x - self.place.x, other.place.y - self.place.y);
@@ -168,7 +167,7 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// The same start.
+    /// Creates the peer with the same start.
     #[must_use]
     pub fn new(flock: &Flock) -> Self {
         let mut world = World::new(flock);
@@ -177,12 +176,12 @@ impl Peer {
         Self { schedule, world }
     }
 
-    /// All boids turn and move.
+    /// Turns and moves all boids.
     pub fn step(&mut self) {
         self.schedule.step(&mut self.world);
     }
 
-    /// Headings by number of the boid.
+    /// Headings, in the order of boid numbers.
     #[must_use]
     pub fn headings(&self) -> Vec<Vec2<f32>> {
         let all = RefCell::new(vec![Vec2::ZERO; self.world.start.len()]);
@@ -202,15 +201,15 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The grid of this flock's torus.
+    /// Creates the grid of this flock's torus.
     #[must_use]
     pub fn new(flock: &Flock) -> Self {
         let World { field, torus, closest, start, .. } = World::new(flock);
         Self { field, torus, closest, boids: start }
     }
 
-    /// Takes all places in and counts the neighbours of all boids. The field hands out who is in the cells around; who is too far is
-    /// left out here.
+    /// Inserts all places and counts the neighbours of all boids. The field returns the boids of
+    /// the surrounding cells; those out of range are filtered here.
     pub fn neighbours(&mut self) -> usize {
         for boid in &self.boids {
             self.field.set_object_location(*boid, boid.place);
@@ -234,7 +233,7 @@ mod tests {
     use staya_sim::nearby::{Cells, Query, Search, Space};
 
     #[test]
-    fn both_fly_the_same_way() {
+    fn both_flocks_fly_alike() {
         let mut flock = flock(2000);
         let mut peer = Peer::new(&flock);
         let space = Space::torus(flock.sides()).expect("a torus");
@@ -244,13 +243,14 @@ mod tests {
             peer.step();
         }
         let same = flock.headings().iter().zip(peer.headings());
-        // Sums of neighbours run in another order; a boid between two choices may take the other one.
+        // Sums over neighbours run in another order, so a boid between two choices may take the
+        // other one.
         let alike = same.filter(|(one, other)| (**one - *other).norm() < 1e-4).count();
         assert!(alike >= 1990, "{alike} of 2000");
     }
 
     #[test]
-    fn the_grid_finds_the_same_neighbours() {
+    fn both_grids_find_the_same_neighbours() {
         let flock = flock(2000);
         let mut cells = Cells::new(Space::torus(flock.sides()).expect("a torus"), plan().closest);
         cells.rebuild(flock.places());

@@ -1,5 +1,5 @@
-//! The same task for Staya and for a peer, so that their results can be compared and their speed
-//! means something.
+//! Tasks that Staya and comparable crates both solve, so that their results agree before their
+//! speed is compared.
 
 pub mod crowd;
 pub mod flockers;
@@ -11,7 +11,7 @@ use staya_controller::grid::{BLOCKED, Cell, Dir, Window};
 use staya_controller::route::{CostField, RouteParams, VisitMemory};
 use std::collections::HashMap;
 
-/// A square window of land with a robot and its target in it.
+/// A square window of terrain with a robot and its target.
 pub struct Task {
     cells: Vec<u8>,
     side: u16,
@@ -20,14 +20,14 @@ pub struct Task {
 }
 
 impl Task {
-    /// Natural land as in KUZ section 5: `peaks` cells of impassability 9, and one less with each
-    /// cell of distance down to 1; robot and target in opposite quarters. `walls` cells of it are
-    /// blocked instead. Anything is a function of `seed`.
+    /// Creates natural terrain as in KUZ section 5: `peaks` cells of impassability 9, falling by
+    /// one per cell of distance down to 1. Robot and target are in opposite quadrants, and `walls`
+    /// cells are blocked. The result is a function of the arguments.
     #[must_use]
     pub fn natural(side: u16, peaks: usize, walls: usize, seed: u64) -> Self {
         let mut state = seed;
         let mut below = |limit: u16| {
-            // Knuth's MMIX generator; its upper bits are good enough to scatter peaks.
+            // Knuth's MMIX generator; its upper bits are random enough to scatter peaks.
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             ((state >> 33) % u64::from(limit)) as i16
         };
@@ -59,20 +59,20 @@ impl Task {
         (0..side).flat_map(move |y| (0..side).map(move |x| Cell::new(x, y)))
     }
 
-    /// The cost of travel to the target from every cell, by Staya.
+    /// Computes the cost of travel to the target from every cell with Staya.
     pub fn staya<const CELLS: usize>(&self, field: &mut CostField<CELLS>) {
         let window = Window::new(&self.cells, Cell::default(), self.side, self.side);
         let none: Option<&VisitMemory<0>> = None;
         let (from, target) = (self.from, self.target);
         if let Some(window) = window {
-            // A robot that is walled in has a cost field too: nothing in it is reached.
+            // A robot enclosed by walls has a cost field too; it reaches no cell.
             let _ = field.weights(&self.params(), &window, from, target, [], none);
             field.complete(&self.params());
         }
     }
 
-    /// The cost of travel to the target from every cell, by the `pathfinding` crate. Cells without
-    /// a way are missing.
+    /// Cost of travel to the target from every cell by the `pathfinding` crate, without unreachable
+    /// cells.
     pub fn pathfinding(&self) -> impl Iterator<Item = (Cell, Cost)> + use<> {
         // No route uses the robot's own cell.
         let others = |(cell, _): &(Cell, Cost)| *cell != self.from;
@@ -113,14 +113,14 @@ impl Task {
         self.cells[at + usize::from(cell.x.cast_unsigned())]
     }
 
-    /// Checks that both find the same costs; returns from how many cells there is a way. `None` if
+    /// Checks that both find the same costs and returns the number of cells with a route. `None` if
     /// the robot itself has none: Staya then answers another question, how to leave the window.
     ///
     /// # Panics
-    /// When the costs differ.
+    /// If the costs differ.
     pub fn assert_equal<const CELLS: usize>(&self, field: &mut CostField<CELLS>) -> Option<usize> {
         let mut theirs: HashMap<Cell, Cost> = self.pathfinding().collect();
-        theirs.insert(self.target, 0); // the peer leaves its start out
+        theirs.insert(self.target, 0); // the peer omits its start
         let mut first_moves = theirs.keys().flat_map(|&cell| self.moves_into(cell));
         if !first_moves.any(|(cell, _)| cell == self.from) {
             return None;

@@ -1,5 +1,5 @@
-//! A whole step of collision avoidance for many robots: neighbours by Staya's cell index, velocities by Staya's ORCA or by
-//! `dodgy_2d`'s.
+//! A whole step of collision avoidance for many robots: neighbours from Staya's cell index,
+//! velocities from Staya's ORCA or from `dodgy_2d`.
 
 use crate::crowd::{HORIZON_S, NEIGHBORS, RADIUS_M, SPEED_MPS, STEP_S};
 use dodgy_2d::{Agent, AvoidanceOptions};
@@ -9,14 +9,12 @@ use staya_controller::rand::Rng;
 use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 use std::borrow::Cow;
 
-/// How far robots see each other, metres.
 const RANGE_M: f32 = 5.0;
-/// Side of the index's cells, metres.
 const CELL_M: f32 = 2.5;
-/// Ground per robot, square metres: about 22 others in range, of which the nearest ten count.
+/// Area per robot, square metres: about 22 robots are in range, of which the nearest ten are used.
 const GROUND_M2: f32 = 3.6;
 
-/// Robots on a square, each with a wish.
+/// Robots on a square, each with a preferred velocity.
 #[derive(Clone, Debug)]
 pub struct Swarm {
     places: Vec<[f32; 2]>,
@@ -29,7 +27,7 @@ pub struct Swarm {
 }
 
 impl Swarm {
-    /// `robots` robots at random; nobody overlaps anybody.
+    /// Creates `robots` robots at random, non-overlapping places.
     #[must_use]
     pub fn new(robots: usize, seed: u64) -> Self {
         let mut rng = Rng::new(seed);
@@ -71,7 +69,7 @@ impl Swarm {
         Query { at, radius: RANGE_M, most: NEIGHBORS, except: Some(robot) }
     }
 
-    /// One step by Staya: index, neighbours, half-planes, velocities.
+    /// One step with Staya: index, neighbours, half-planes, velocities.
     pub fn staya(&mut self) {
         let params = Params { horizon_s: HORIZON_S, separation_s: STEP_S, share: 0.5 };
         let nowhere = HalfPlane { point: Vec2::ZERO, normal: Vec2::ZERO };
@@ -102,7 +100,7 @@ impl Swarm {
         }
     }
 
-    /// The same neighbours, velocities by `dodgy_2d`.
+    /// One step with the same neighbours and velocities by `dodgy_2d`.
     pub fn dodgy(&mut self) {
         let options =
             AvoidanceOptions { obstacle_margin: 0.0, time_horizon: HORIZON_S, obstacle_time_horizon: HORIZON_S };
@@ -120,7 +118,7 @@ impl Swarm {
         }
     }
 
-    /// The index and the neighbours alone; how many were found.
+    /// The neighbour search alone; returns the number of neighbours found.
     pub fn search(&mut self) -> usize {
         self.cells.rebuild(&self.places);
         let mut count = 0;
@@ -138,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn everybody_has_about_ten_neighbours_and_keeps_the_speed_limit() {
+    fn robots_have_about_ten_neighbours_and_keep_the_speed_limit() {
         let mut swarm = Swarm::new(1000, 1);
         assert!(swarm.search() > 9500);
         let is_sound = |swarm: &Swarm| {
@@ -150,7 +148,7 @@ mod tests {
         assert!(is_sound(&swarm));
         swarm.dodgy();
         assert!(is_sound(&swarm));
-        // The shares differ outside of velocity obstacles (see `crowd`), yet most robots are of one mind.
+        // The shares differ outside velocity obstacles (see `crowd`), yet most robots choose alike.
         let off = |(a, b): (&[f32; 2], &[f32; 2])| Vec2::new(a[0] - b[0], a[1] - b[1]).norm();
         let alike = own.iter().zip(&swarm.chosen).filter(|pair| off(*pair) < 0.5);
         assert!(alike.count() > 500);

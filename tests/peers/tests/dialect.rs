@@ -1,5 +1,6 @@
-//! Compares `controller/mavlink/src/dialect.rs` with the output of `mavlink-bindgen` for its XML, from
-//! which code for missing features is removed. `STAYA_BLESS=1 cargo test --test dialect` writes the file.
+//! Compares `controller/mavlink/src/dialect.rs` with the output of `mavlink-bindgen` for its XML,
+//! after removing code for missing features. `STAYA_BLESS=1 cargo test --test dialect` writes the
+//! file.
 
 use mavlink_bindgen::{XmlDefinitions, generate};
 use std::path::Path;
@@ -7,7 +8,7 @@ use syn::visit_mut::{self, VisitMut};
 use syn::{Attribute, Block, Fields, File, ImplItem, Item, Meta, Stmt, UseTree};
 
 #[test]
-fn dialect_in_rust_is_that_of_its_xml() {
+fn rust_dialect_matches_its_xml() {
     let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../controller/mavlink");
     let file = package.join("src/dialect.rs");
     let fresh = generated(&package.join("messages/staya.xml"));
@@ -20,7 +21,6 @@ fn dialect_in_rust_is_that_of_its_xml() {
     assert!(there == fresh, "{} differs from its XML from line {:?} on", file.display(), line.map(|line| line + 1));
 }
 
-/// The dialect's module, formatted.
 fn generated(xml: &Path) -> String {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     generate(XmlDefinitions::Files(vec![xml]), folder).unwrap();

@@ -1,5 +1,6 @@
-/* An app for the Crazyflie's firmware: Staya flies the copter to a waypoint and keeps it clear of the others, which it hears by
-   peer-to-peer packets. A template: it has been compiled against declarations of what it calls, not flown. Steps: docs/c.md. */
+/* Template of an app for the Crazyflie's firmware: the copter flies to a waypoint and avoids other
+   copters, whose beacons arrive as peer-to-peer packets. It has been compiled against stub
+   declarations, but not flown. Steps: docs/c.md. */
 
 #include "FreeRTOS.h"
 #include "app.h"
@@ -16,7 +17,7 @@
 
 #define TICK_MS 100
 #define HEIGHT_M 0.5f
-/* Frames that wait for the next step. */
+/* Capacity of the queue of frames for the next step. */
 #define FRAMES 16
 
 typedef struct Frame {
@@ -39,7 +40,7 @@ static int is_well(StayaStatus status)
     return status == STAYA_STATUS_OK;
 }
 
-/* In the radio's task. What the queue has no room for is lost, as on the air. */
+/* Runs in the radio's task. If the queue is full, the packet is dropped. */
 static void on_packet(P2PPacket *packet)
 {
     Frame frame = {.size = packet->size};
@@ -51,7 +52,7 @@ static void on_packet(P2PPacket *packet)
     }
 }
 
-/* On the air a packet is a frame; in an inbox a zero byte ends each. */
+/* Each packet is a frame; in the inbox a zero byte ends each frame. */
 static size_t fill_inbox(void)
 {
     size_t used = 0;
@@ -90,7 +91,7 @@ static void fly(const float velocity_mps[3])
     setpoint.velocity.x = velocity_mps[0];
     setpoint.velocity.y = velocity_mps[1];
     setpoint.position.z = HEIGHT_M;
-    setpoint.velocity_body = false; /* Staya's velocities are of the world */
+    setpoint.velocity_body = false; /* Staya's velocities are in the world frame */
     setpoint.attitudeRate.yaw = 0.0f;
     commanderSetSetpoint(&setpoint, 3);
 }
@@ -101,7 +102,7 @@ void appMain(void)
     logVarId_t place[3], speed[3];
     StayaAgent *agent = NULL;
     StayaWaypoint goal = {.position_mm = {1000, 0, 500}};
-    /* Each copter has its own address: its last byte is the robot's number, 1 and up. */
+    /* The last byte of the copter's unique radio address is its robot id, 1 or more. */
     const uint32_t id = (uint32_t)(configblockGetRadioAddress() & 0xFF);
 
     for (int axis = 0; axis < 3; axis++) {
@@ -109,7 +110,7 @@ void appMain(void)
         speed[axis] = logGetVarId("stateEstimate", SPEEDS[axis]);
     }
     staya_setup_defaults(&setup, id, 0.12f, TICK_MS * 1000);
-    setup.boot = (uint8_t)usecTimestamp(); /* drawn: the copter has no counter of its starts */
+    setup.boot = (uint8_t)usecTimestamp(); /* random: the copter has no boot counter */
     setup.latency_us = TICK_MS * 1000;
     setup.max_acceleration_mps2 = 2.0f;
     setup.orca.growth_mps = setup.speed_mps;
@@ -133,7 +134,7 @@ void appMain(void)
         inputs.inbox = inbox;
         inputs.inbox_bytes = fill_inbox();
         if (!is_well(staya_step(agent, &inputs, &out))) {
-            return; /* without setpoints the commander lands or levels the copter */
+            return; /* without setpoints, the commander lands or levels the copter */
         }
         send_outbox();
         static const float STAND[3];

@@ -1,4 +1,5 @@
-/* Declarations of what the app calls, to compile it where the firmware is not: names and types as in crazyflie-firmware. */
+/* Declarations that the app needs, with the names and types of crazyflie-firmware, so that it
+   compiles without the firmware. */
 #ifndef STUB_FREERTOS_H
 #define STUB_FREERTOS_H
 #include <stdbool.h>

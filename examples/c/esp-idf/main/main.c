@@ -1,5 +1,6 @@
-/* A robot on an ESP32-C6 or -C3: Staya decides ten times a second, frames go over ESP-NOW. `read_odometry` and `drive` are yours.
-   A template: it has been compiled against declarations of what it calls, not run on a part. Steps: docs/c.md. */
+/* Template of a robot on an ESP32-C6 or -C3: a decision every 100 ms, packets over ESP-NOW. Write
+   `read_odometry` and `drive` for your robot. It has been compiled against stub declarations, but
+   not run on a part. Steps: docs/c.md. */
 
 #include "esp_event.h"
 #include "esp_log.h"
@@ -31,14 +32,14 @@ static StayaInputs inputs;
 static StayaOutputs out;
 static uint8_t inbox[FRAMES * (FRAME_BYTES + 1)];
 
-/* Yours: where the robot is, in the world that all share, and how fast. */
+/* To be written: position and velocity in the world frame that all robots share. */
 static void read_odometry(int32_t position_mm[3], float velocity_mps[3])
 {
     (void)position_mm;
     (void)velocity_mps;
 }
 
-/* Yours: go with this world velocity until the next call. */
+/* To be written: move with this velocity in the world frame until the next call. */
 static void drive(const float velocity_mps[3])
 {
     (void)velocity_mps;
@@ -52,7 +53,7 @@ static int is_well(StayaStatus status)
     return status == STAYA_STATUS_OK;
 }
 
-/* In Wi-Fi's task. What the queue has no room for is lost, as on the air. */
+/* Runs in Wi-Fi's task. If the queue is full, the packet is dropped. */
 static void on_packet(const esp_now_recv_info_t *from, const uint8_t *data, int size)
 {
     (void)from;
@@ -65,7 +66,7 @@ static void on_packet(const esp_now_recv_info_t *from, const uint8_t *data, int 
     }
 }
 
-/* On the air a packet is a frame; in an inbox a zero byte ends each. */
+/* Each packet is a frame; in the inbox a zero byte ends each frame. */
 static size_t fill_inbox(void)
 {
     size_t used = 0;
@@ -115,7 +116,7 @@ void app_main(void)
     static const float STAND[3];
 
     staya_setup_defaults(&setup, CONFIG_STAYA_ROBOT, 0.1f, TICK_MS * 1000);
-    setup.boot = (uint8_t)esp_timer_get_time(); /* better: a counter of starts in NVS */
+    setup.boot = (uint8_t)esp_timer_get_time(); /* better: a boot counter in NVS */
     setup.latency_us = TICK_MS * 1000;
     setup.orca.growth_mps = setup.speed_mps;
     if (!is_well(staya_init(memory, sizeof memory, &setup, &agent)) ||

@@ -1,4 +1,5 @@
-//! The law as firmware for an STM32F405, an nRF51 or a RISC-V: `cargo xtask firmware --crate examples/own_part`.
+//! Firmware with this law for an STM32F405, an nRF51 or a RISC-V part:
+//! `cargo xtask firmware --crate examples/own_part`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::lockstep!(patrol::Patrol);

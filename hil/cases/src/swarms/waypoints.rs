@@ -1,4 +1,4 @@
-//! Cases in which each robot has a waypoint of its own.
+//! Cases in which each robot has its own waypoint.
 
 use crate::grid::{Route, workspace};
 use crate::land::Land;
@@ -21,16 +21,15 @@ use staya_controller::scalar::Scalar;
 use staya_controller::wire::Postcard;
 
 const RADIUS_MM: i32 = 150;
-/// Half-planes that a robot reckons with.
 const PLANES: usize = 16;
 
-/// A pentagon with a radius of 1.5 m, not quite even, so that no symmetry helps.
+/// A pentagon with a radius of 1.5 m, slightly irregular to avoid symmetry.
 const PENTAGON: [[i32; 3]; 5] = [[1500, 0, 0], [464, 1427, 0], [-1214, 882, 0], [-1214, -885, 0], [464, -1420, 0]];
 
 pub(super) fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
     AgentConfig {
         seed: 11,
-        // What others say was said a step ago.
+        // Received states are one step old.
         latency: STEP,
         ..AgentConfig::new(RobotId(index as u32 + 1), S::from_milli(RADIUS_MM), STEP)
     }
@@ -40,7 +39,8 @@ fn inflation<S: Scalar>() -> StalenessInflation<S> {
     StalenessInflation { growth_mps: S::HALF, max_m: S::from_milli(300) }
 }
 
-/// Adds one robot for each start, standing there. To a vector of the caller's: a small part has no room for two.
+/// Adds one stationary robot at each start. It fills the caller's vector because a small part has
+/// no memory for two.
 #[inline(never)]
 pub(super) fn add_movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
     movers: &mut Vec<Mover<S, G, A>, R>,
@@ -49,7 +49,6 @@ pub(super) fn add_movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize
     safety: impl Fn() -> A,
 ) {
     for (index, start) in starts.iter().enumerate() {
-        // As many places as robots.
         let _ = movers.push(Mover {
             agent: PlaneAgent::new(&config(index), guidance(index), safety(), Postcard),
             position: Position::from_mm(*start),
@@ -66,7 +65,6 @@ fn waypoint<S: Scalar>() -> WaypointGuidance<S> {
     WaypointGuidance::new(S::HALF, S::from_milli(30))
 }
 
-/// Sends each robot to its place and runs until all are there.
 fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
     scene: &Scene<S>,
     starts: &[[i32; 3]; R],
@@ -78,7 +76,7 @@ fn to_places<S: Scalar, A: Safety<S> + Serialize, P: Probe<S>, const R: usize>(
     add_movers(&mut movers, starts, |_| waypoint(), safety);
     for (mover, goal) in movers.iter_mut().zip(goals) {
         let waypoint = Waypoint::fixed(Position::from_mm(*goal));
-        // There is room for one, number 0.
+        // A law has at least waypoint 0.
         let _ = mover.agent.assign_waypoint(0, &waypoint);
     }
     run(scene, &mut movers, &mut (), probe)
@@ -98,7 +96,6 @@ pub(super) fn swap<S: Scalar, H: HalfSpaces<S> + Clone + Serialize, P: Probe<S>>
 
 #[inline(never)]
 pub(super) fn doorway<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
-    // A gap of 0.5 m between two rooms.
     const WALLS: [Solid; 2] = [Solid::Wall([[0, -9000], [0, -250]]), Solid::Wall([[0, 250], [0, 9000]])];
     let starts = [[-1500, 0, 0], [-2500, 300, 0], [1500, 100, 0], [2500, -300, 0]];
     let goals = [[2500, 300, 0], [1500, 0, 0], [-2500, -300, 0], [-1500, 100, 0]];
@@ -115,7 +112,7 @@ pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         for (place, height) in places.iter_mut().zip(heights) {
             let [x, y, z] = place;
             (*x, *y) = (*x * sign, *y * sign);
-            // Who starts low ends high.
+            // A robot that starts low ends high.
             *z = 1400 + sign * (height - 1400);
         }
         places

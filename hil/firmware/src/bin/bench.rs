@@ -1,8 +1,12 @@
-//! What a step costs: instructions and stack, for each canned swarm and for an agent in the worst company; and what a beacon costs in each wire
-//! format. Prints `case scalar steps median max stack agent workspace`: counts, instructions (on a board: clock cycles), bytes. For a
-//! wire format there is no scalar (`-`), and `agent` is what the format keeps.
+//! Measures the instructions and the stack of a step, for each canned swarm and for an agent under
+//! heavy load, and of a beacon in each wire format.
 //!
-//! Emulated with `-icount shift=0` an instruction takes a nanosecond, and the tick counter tells them apart.
+//! Prints `case scalar steps median max stack agent workspace`: counts, instructions (on a board:
+//! clock cycles), bytes. Wire formats have no scalar (`-`), and their `agent` is the state of the
+//! format.
+//!
+//! In an emulator with `-icount shift=0`, an instruction takes 1 ns, and the tick counter resolves
+//! single instructions.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -33,18 +37,15 @@ mod program {
         staya_mavlink::wire::Mavlink,
     };
 
-    /// Samples that the median is of. When there are more steps, every second, fourth, ... counts.
+    /// Samples for the median. If there are more steps, every second, fourth, ... step is sampled.
     const SAMPLES: usize = if cfg!(part = "nrf51") { 64 } else { 1024 };
 
-    /// Counts ticks and stack of each step.
     struct Meter {
         samples: Vec<u32, SAMPLES>,
-        /// One step of so many is a sample.
         stride: u32,
         steps: u32,
         most_ticks: u32,
         deepest: u32,
-        /// What measuring itself takes, ticks.
         empty: u32,
     }
 
@@ -78,7 +79,6 @@ mod program {
                 self.stride *= 2;
             }
             if self.steps.is_multiple_of(self.stride) {
-                // There is room.
                 let _ = self.samples.push(ticks);
             }
             self.steps += 1;
@@ -103,7 +103,7 @@ mod program {
         }
     }
 
-    /// A call of its own, so that the caller's frame is not counted.
+    /// Not inlined, so that the caller's frame does not count.
     #[inline(never)]
     fn step<S: Scalar, G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
         agent: &mut Agent<S, G, N, A, W>,
@@ -150,10 +150,10 @@ mod program {
             swarms::<f32>("f32", &row);
             worst::<f32, 16, 32>("f32", &row);
         }
-        // Needs an FPU; the flash has no room for it unoptimised.
+        // Needs an FPU, and does not fit the flash without optimisation.
         #[cfg(all(part = "stm32f405", not(debug_assertions)))]
         worst::<Fast32, 16, 32>("Fast32", &row);
-        // The micro:bit has room for the worst cases alone; `replay` runs the swarms there.
+        // The micro:bit's flash fits the worst cases only; `replay` runs the swarms there.
         #[cfg(not(part = "nrf51"))]
         {
             swarms::<Q16>("Q16", &row);
@@ -164,19 +164,16 @@ mod program {
         runtime::exit(0)
     }
 
-    /// MAVLink with signatures.
     #[cfg(not(part = "nrf51"))]
     fn signed() -> Signed {
         Signed::new(Signing::new(Key::new(black_box([7; KEY_LEN])), 0, 0))
     }
 
-    /// Postcard with a tag.
     #[cfg(not(part = "nrf51"))]
     fn sealed() -> Option<Sealed> {
         Sealed::at_start(&Key::new(black_box([7; KEY_LEN])), 0)
     }
 
-    /// Prints a row.
     trait Print: Fn(&str, &str, &mut Meter, [u32; 2]) {}
     impl<F: Fn(&str, &str, &mut Meter, [u32; 2])> Print for F {}
 
@@ -184,7 +181,7 @@ mod program {
         [summary.agent_bytes, summary.workspace_bytes]
     }
 
-    /// What it costs `own` to say beacons and `other` to hear them: find the frame, then read it.
+    /// Measures how `own` encodes beacons and how `other` finds and decodes their frames.
     #[inline(never)]
     fn format<W: Wire>(mut own: W, mut other: W, names: [&str; 2], row: &impl Print) {
         let (mut saying, mut hearing) = (Meter::new(), Meter::new());
@@ -214,7 +211,7 @@ mod program {
         row(decode, "-", &mut hearing, kept);
     }
 
-    /// Calls of their own, as [`step`]: what they need of flash is told by their names.
+    /// Not inlined, like [`step`]: `cargo xtask size` finds their flash by their names.
     #[inline(never)]
     fn encode<W: Wire>(
         wire: &mut W,

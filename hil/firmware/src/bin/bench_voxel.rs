@@ -1,7 +1,8 @@
-//! What functional voxel models cost: a reading of each kind, what a room forbids, one neighbour's half-plane, and
-//! whole steps
-//! of an agent in the worst company by them. Prints `case scalar calls median max`: instructions (on a board: clock
-//! cycles). Emulated as `bench`, with `-icount shift=0`.
+//! Measures functional voxel models: a query of each kind, the half-planes of a room, one
+//! neighbour's half-plane, and whole steps of an agent under heavy load with them.
+//!
+//! Prints `case scalar calls median max`: instructions (on a board: clock cycles). Emulated like
+//! `bench`, with `-icount shift=0`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -28,18 +29,16 @@ mod program {
     /// `staya voxel build room --resolution 33 --depth 8` and `--depth 16`.
     const ROOMS: [(&str, &[u8]); 2] =
         [("8", include_bytes!("../../models/room-8.fvm")), ("16", include_bytes!("../../models/room-16.fvm"))];
-    /// `staya voxel build neighbor --resolution 17`, the same depths.
+    /// `staya voxel build neighbor --resolution 17` with the same depths.
     const PAIRS: [(&str, &[u8]); 2] =
         [("8", include_bytes!("../../models/neighbor-8.fvm")), ("16", include_bytes!("../../models/neighbor-16.fvm"))];
     const CALLS: u32 = 256;
-    /// In the worst company, as `bench` has it.
+    /// As many as in `bench`.
     const NEIGHBORS: usize = if cfg!(part = "nrf51") { 8 } else { 16 };
     const HALF_PLANES: usize = 2 * NEIGHBORS;
 
-    /// Counts ticks.
     struct Meter {
         ticks: Vec<u32, { CALLS as usize }>,
-        /// What measuring itself takes.
         empty: u32,
     }
 
@@ -54,7 +53,6 @@ mod program {
             let before = runtime::ticks();
             let out = work();
             let ticks = runtime::ticks().wrapping_sub(before).saturating_sub(self.empty);
-            // There is room for as many as are measured.
             let _ = self.ticks.push(ticks);
             out
         }
@@ -73,7 +71,6 @@ mod program {
     }
 
     pub fn run() -> ! {
-        // Starts the clock that is measured by.
         let start = &runtime::start();
         #[cfg(not(part = "nrf51"))]
         all::<f32>(&Table { scalar: "f32", start });
@@ -83,7 +80,6 @@ mod program {
         runtime::exit(0)
     }
 
-    /// What the rows of one kind of number have in common.
     struct Table<'a> {
         scalar: &'static str,
         start: &'a Start,
@@ -117,7 +113,6 @@ mod program {
         }
     }
 
-    /// A number within so many thousandths around 0.
     fn about<S: Scalar>(rng: &mut Rng, milli: i32) -> S {
         S::from_milli(rng.below(2 * milli.unsigned_abs() + 1) as i32 - milli)
     }

@@ -1,5 +1,5 @@
-//! Goes wrong on purpose, one way per start: a panic, then an exception of the processor. At the third start it ends
-//! the emulator. `cargo xtask test` reads from the line what it said.
+//! Fails on purpose: a panic in the first start, a processor exception in the second. The third
+//! start ends the emulator. `cargo xtask test` checks the messages on the line.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -10,7 +10,6 @@ mod program {
     use core::hint::black_box;
     use staya_firmware::runtime;
 
-    /// The part has nothing there.
     const NOWHERE: usize = if cfg!(part = "nrf51") { 0x7000_0000 } else { 0xF000_0000 };
 
     pub fn run() -> ! {
@@ -18,7 +17,8 @@ mod program {
         match start.boots {
             1 => panic!("on purpose on {}", start.part),
             2 => {
-                // SAFETY: there is none: the exception is what is wanted, and nothing is read.
+                // SAFETY: unsound on purpose: the read raises the exception under test, and its
+                // value is unused.
                 let _ = unsafe { (black_box(NOWHERE) as *const u32).read_volatile() };
                 runtime::exit(1)
             }

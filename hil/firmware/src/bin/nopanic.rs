@@ -1,9 +1,10 @@
-//! Links only if no panic is reachable from any step of any behaviour, from packets, or from the link's device side: its panic
-//! handler calls a function that exists nowhere, which the linker notices unless the optimiser has thrown the
-//! handler out. It is not meant to be run.
+//! Links only if no panic is reachable from a step of any behaviour, from received packets, or from
+//! the device's end of the link. It is not meant to be run.
 //!
-//! Everything that a step gets goes through `black_box`, so that the optimiser cannot lean on what the canned
-//! swarms happen to do. `cargo xtask plants` shows that a panic does not link.
+//! The panic handler calls an undefined function. Linking therefore fails unless the optimiser has
+//! removed the handler. All inputs go through `black_box`, so that the optimiser cannot rely on the
+//! inputs of the canned swarms. `cargo xtask plants` shows that a program with a panic does not
+//! link.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -14,7 +15,7 @@ mod program {
     use core::hint::black_box;
     #[cfg(not(part = "nrf51"))]
     use staya_cases::Opaque;
-    // Only its inbox is cut: how long it is makes no difference to the code.
+    // Only its inbox is smaller: the length makes no difference to the code.
     #[cfg(not(part = "nrf51"))]
     use staya_link::robot::{Large as Robot, SMALL_INBOX};
     #[cfg(part = "nrf51")]
@@ -22,7 +23,8 @@ mod program {
     use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
 
     pub fn run() -> ! {
-        // The flash of the small part holds the link with its agent that can be anything, and not each kind of agent beside it.
+        // The small part's flash fits the link with its configurable agent, but not each kind of
+        // agent as well.
         #[cfg(not(part = "nrf51"))]
         swarms();
         link();
@@ -44,7 +46,6 @@ mod program {
         }
     }
 
-    /// Any bytes from the line.
     fn link() {
         const CONTENT: usize = content_bytes(169, 32, SMALL_INBOX);
         let about = About { part: "nopanic", firmware: "nopanic", boot: 0, ticks_per_second: 1 };

@@ -1,6 +1,6 @@
-//! Links only if no panic is reachable from what firmware may have besides the steps of `nopanic`: an operator who takes a robot over,
-//! parameters that change while it runs, every kind of number that a part can compute with, and MAVLink messages of any kind. Works as `nopanic`
-//! does; it is not meant to be run.
+//! Links only if no panic is reachable from optional parts of a firmware that `nopanic` does not
+//! cover: an operator who takes over a robot, parameter changes at runtime, every number format of
+//! a part, and MAVLink messages of any kind. Works like `nopanic`; it is not meant to be run.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -10,7 +10,8 @@ staya_firmware::panics_do_not_link!();
 mod program {
     use core::hint::black_box;
 
-    // On one part: there are so many kinds of agents that each part would take its minutes, and what can panic in them does not depend on it.
+    // Built for one part only: the many kinds of agents take minutes per part, and their panics do
+    // not depend on the part.
     #[cfg(part = "stm32f405")]
     mod agents {
         use core::hint::black_box;
@@ -20,7 +21,7 @@ mod program {
         use staya_controller::time::Instant;
         use staya_controller::wire::Wire;
 
-        /// Changes an agent's parameters, and has an operator take it over.
+        /// Changes an agent's parameters and lets an operator take it over.
         struct Operator;
 
         impl<S: Scalar> Probe<S> for Operator {
@@ -31,7 +32,7 @@ mod program {
                 now: Instant,
                 workspace: &mut G::Workspace,
             ) -> Outputs<S> {
-                // There is none, which the optimiser does not know.
+                // Always `None`, which the optimiser does not know.
                 let mut commanded = black_box(None::<Agent<S, Commanded<S, G>, N, A, W>>);
                 if let Some(agent) = black_box(&mut commanded) {
                     tune(agent);
@@ -63,7 +64,6 @@ mod program {
         }
     }
 
-    /// Bytes from a line, as messages of whatever kind.
     fn messages() {
         let mut rest = black_box(&[1; 300][..]);
         while let Some(frame) = staya_mavlink::frame::next_frame(&mut rest) {

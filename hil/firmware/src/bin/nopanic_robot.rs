@@ -1,5 +1,6 @@
-//! Links only if no panic is reachable from `staya-robot`, from packets over a line, wheels, odometry and range scans, nor from
-//! `staya-voxel`'s models, in `f32` and in Q16.16. Works as `nopanic` does, which has the steps of the controller; it is not meant to be run.
+//! Links only if no panic is reachable from `staya-robot` (packets over a line, wheels, odometry,
+//! range scans) or from the models of `staya-voxel`, in `f32` and in Q16.16. Works like `nopanic`,
+//! which covers the controller's steps; it is not meant to be run.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -42,7 +43,7 @@ mod program {
         }
     }
 
-    /// A number of which nothing is known.
+    /// A number that the optimiser does not know.
     fn any<S: Scalar>() -> S {
         black_box(S::ONE)
     }
@@ -55,7 +56,7 @@ mod program {
         Duration::from_micros(black_box(1))
     }
 
-    /// Every pin and line at once: it takes everything, and answers anything that the traits allow.
+    /// Stub of every pin and line: accepts everything and returns any value that the traits allow.
     struct Pin;
 
     impl PinError for Pin {
@@ -198,7 +199,6 @@ mod program {
         }
     }
 
-    /// Models in bytes of which nothing is known.
     fn voxels<S: Scalar>() {
         let bytes: &[u8] = black_box(&[1; 100]);
         if let Ok(model) = Model::<S, 2>::from_bytes(bytes) {

@@ -1,4 +1,4 @@
-//! The parts: each file sets up one and offers the same names.
+//! Drivers of the parts: each file sets up one part, with the same functions.
 
 #[cfg(part = "nrf51")]
 mod nrf51;
@@ -18,20 +18,20 @@ pub use stm32f405::*;
 #[cfg(not(any(part = "stm32f405", part = "nrf51", part = "riscv32")))]
 compile_error!("no part has this target triple: see the table in src/lib.rs");
 
-/// What the clocks came to.
+/// Clock rates after the set-up.
 #[derive(Clone, Copy)]
 pub struct Clocks {
-    /// Of the processor.
+    /// Processor clock, hertz.
     pub clock_hz: u32,
-    /// Of [`ticks`].
+    /// Rate of [`ticks`], hertz.
     pub tick_hz: u32,
 }
 
-/// Bits per second, from `STAYA_BAUD` when the firmware is built.
+/// Baud rate, from `STAYA_BAUD` at build time.
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const BAUD: u32 = number(env!("STAYA_BAUD"));
 
-/// A decimal number that the build script has checked.
+/// Parses a decimal number that the build script has checked.
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const fn number(text: &str) -> u32 {
     let mut rest = text.as_bytes();

@@ -1,7 +1,8 @@
-//! nRF51822 of the micro:bit (version 1): UART0 on P0.24 (TX) and P0.25 (RX), which its debug chip passes on over USB.
+//! nRF51822 of the micro:bit (version 1): UART0 on P0.24 (TX) and P0.25 (RX), which its debug chip
+//! forwards over USB.
 //!
-//! 16 MHz from the crystal, or from the internal oscillator if that does not start. The part has no SysTick; TIMER0
-//! counts. Sections: Nordic's nRF51 Series Reference Manual 3.0.
+//! 16 MHz from the crystal, or from the internal oscillator if the crystal does not start. The part
+//! has no SysTick, so TIMER0 counts ticks. Sections: Nordic's nRF51 Series Reference Manual 3.0.
 
 use super::{BAUD, Clocks};
 use crate::ring::Ring;
@@ -15,21 +16,21 @@ pub static RECEIVED: Ring<256> = Ring::new();
 const HZ: u32 = 16_000_000;
 const TX_PIN: usize = 24;
 const RX_PIN: usize = 25;
-/// How often a flag that tells of an oscillator is read before it counts as missing: tens of milliseconds.
+/// Reads of an oscillator's status flag before it counts as missing: tens of milliseconds.
 const PATIENCE: u32 = 50_000;
-/// How long a byte may take before the line counts as dead, in ticks: two seconds, for the sake of an emulator whose
-/// host is slow to read.
+/// Ticks after which sending a byte is given up: two seconds, because the host of an emulator may
+/// read slowly.
 const SEND_PATIENCE: u32 = 2 * HZ;
-/// Capture and compare channels of TIMER0: what [`ticks`] reads, and what wakes the main loop.
+/// Capture and compare channels of TIMER0: one for [`ticks`], one to wake the main loop.
 const NOW: usize = 0;
 const WAKE: usize = 1;
-/// How many ticks apart the main loop is woken: 0.26 s.
+/// Ticks between two wake-ups of the main loop: 0.26 s.
 const WAKE_EVERY: u32 = 1 << 22;
-/// Bytes that the receiver holds (section 29.4): at most so many are taken in one interrupt.
+/// Size of the receiver's FIFO (section 29.4): the most bytes taken in one interrupt.
 const FIFO: usize = 6;
 
 pub fn start() -> Clocks {
-    // The internal oscillator is good to 1 % at best; a UART wants the crystal.
+    // The internal oscillator is accurate to 1 % at best; a UART needs the crystal.
     CLOCK.tasks_hfclkstart().write_value(1);
     let _ = (0..PATIENCE).any(|_| CLOCK.events_hfclkstarted().read() != 0);
     timer0();
@@ -37,7 +38,8 @@ pub fn start() -> Clocks {
     Clocks { clock_hz: HZ, tick_hz: HZ }
 }
 
-/// QEMU has one constant device number, and one word further up than Nordic, whose numbers are random.
+/// QEMU has a constant device number, one word later than Nordic's registers, whose numbers are
+/// random.
 pub fn is_emulated() -> bool {
     FICR.deviceid(0).read() == 3 && FICR.deviceid(1).read() == 0x1234_5678
 }
@@ -50,12 +52,12 @@ fn timer0() {
     TIMER0.cc(WAKE).write_value(WAKE_EVERY);
     TIMER0.intenset().write(|int| int.set_compare(WAKE, true));
     TIMER0.tasks_start().write_value(1);
-    // SAFETY: its handler is below and shares no memory.
+    // SAFETY: the handler is below and shares no memory.
     unsafe { NVIC::unmask(Interrupt::TIMER0) };
 }
 
-/// Wakes the main loop and sets the next time.
-// SAFETY: the name that nrf-pac's interrupt table has for it; a handler without arguments.
+/// Wakes the main loop and schedules the next wake-up.
+// SAFETY: nrf-pac's interrupt table has this name for it; a handler without arguments.
 #[unsafe(export_name = "TIMER0")]
 extern "C" fn on_timer() {
     TIMER0.events_compare(WAKE).write_value(0);
@@ -68,17 +70,17 @@ pub fn ticks() -> u32 {
     TIMER0.cc(NOW).read()
 }
 
-/// 8 bits, no parity, one stop bit, no flow control.
 fn uart0() {
-    // The line idles high, also before the UART takes the pin.
+    // The line must idle high even before the UART drives the pin.
     GPIO.outset().write(|pins| pins.set_pin(TX_PIN, true));
     GPIO.pin_cnf(TX_PIN).write(|pin| pin.set_dir(gpio::vals::Dir::Output));
-    // An open input would read noise.
+    // An open input would receive noise.
     GPIO.pin_cnf(RX_PIN).write(|pin| pin.set_pull(gpio::vals::Pull::Pullup));
     UART0.pseltxd().write_value(TX_PIN as u32);
     UART0.pselrxd().write_value(RX_PIN as u32);
     UART0.baudrate().write(|baud| {
-        // Steps of 2^12 of a fraction of 2^32 of 16 MHz: gives the values of the manual's table.
+        // The rate as a fraction of 2^32 of 16 MHz, in steps of 2^12: gives the values of the
+        // manual's table.
         let fraction = (((BAUD as u64) << 32) / HZ as u64) as u32;
         let rounded = fraction.wrapping_add(0x800) & 0xFFFF_F000;
         baud.set_baudrate(uart::vals::Baudrate::from_bits(rounded));
@@ -92,13 +94,13 @@ fn uart0() {
     });
     UART0.tasks_starttx().write_value(1);
     UART0.tasks_startrx().write_value(1);
-    // SAFETY: its handler is below and shares only the ring.
+    // SAFETY: the handler is below and shares only the ring.
     unsafe { NVIC::unmask(Interrupt::UART0) };
 }
 
-/// Wakes [`send`], which looks at the event itself, and takes what the receiver's FIFO holds. The event goes first: a
-/// byte that comes meanwhile sets it again.
-// SAFETY: the name that nrf-pac's interrupt table has for it; a handler without arguments.
+/// Wakes [`send`], which checks the event itself, and empties the receiver's FIFO. The event is
+/// cleared first, so that a byte received meanwhile sets it again.
+// SAFETY: nrf-pac's interrupt table has this name for it; a handler without arguments.
 #[unsafe(export_name = "UART0")]
 extern "C" fn on_uart() {
     if UART0.events_txdrdy().read() != 0 {
@@ -109,8 +111,8 @@ extern "C" fn on_uart() {
             break;
         }
         if !RECEIVED.has_room() {
-            // The emulator's line has no pace of its own: it fills the FIFO as fast as it is read, and the main loop
-            // would not get a word in. What stays in the FIFO is taken once the main loop has caught up.
+            // The emulator refills the FIFO as fast as it is read, which would starve the main
+            // loop. The rest stays in the FIFO until the main loop has caught up.
             UART0.intenclr().write(|int| int.set_rxdrdy(true));
             break;
         }
@@ -127,12 +129,12 @@ extern "C" fn on_uart() {
     }
 }
 
-/// The main loop has taken everything: goes on receiving if there was no room.
+/// Called when the main loop has taken all bytes: resumes reception if the ring was full.
 pub fn listen() {
     UART0.intenset().write(|int| int.set_rxdrdy(true));
 }
 
-/// Sleeps until the byte's end: the event says that one has left, not that there is room.
+/// Sleeps until the byte has left: the event signals completion, not free space.
 pub fn send(byte: u8) -> bool {
     let began = ticks();
     let is_sent = || UART0.events_txdrdy().read() != 0;
@@ -151,7 +153,7 @@ pub fn send(byte: u8) -> bool {
 /// Nothing is left to send when [`send`] returns.
 pub fn flush() {}
 
-/// With interrupts masked, an interrupt that comes after the question still ends the wait.
+/// With interrupts masked, an interrupt after the check still ends the wait.
 pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     cortex_m::interrupt::free(|_| {
         if !is_due() {
@@ -160,7 +162,8 @@ pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     });
 }
 
-/// Four seconds of the 32 kHz clock, which the watchdog starts itself; it stops while a debugger holds the core.
+/// Four seconds of the 32 kHz clock, which the watchdog starts itself. It pauses while a debugger
+/// halts the core.
 pub fn start_watchdog() {
     WDT.config().write(|config| {
         config.set_sleep(wdt::vals::Sleep::Run);

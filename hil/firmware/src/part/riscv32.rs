@@ -1,6 +1,8 @@
-//! RISC-V as QEMU's machine `virt` has it: a 16550 UART behind the platform's interrupt controller. Only emulated.
+//! RISC-V as QEMU's machine `virt`: a 16550 UART behind the platform-level interrupt controller.
+//! Only emulated.
 //!
-//! Addresses: QEMU's `hw/riscv/virt.c`. UART: National's data sheet PC16550D. PLIC: RISC-V's specification 1.0.0.
+//! Addresses: QEMU's `hw/riscv/virt.c`. UART: National's data sheet PC16550D. PLIC: RISC-V's
+//! specification 1.0.0.
 
 use super::Clocks;
 use crate::ring::Ring;
@@ -10,20 +12,20 @@ pub const NAME: &str = "riscv32";
 /// Bytes between interrupt and main loop.
 pub static RECEIVED: Ring<1024> = Ring::new();
 
-/// `minstret` counts instructions; said in nanoseconds of one each, as with `-icount shift=0`.
+/// `minstret` counts instructions, reported as 1 ns each, as with `-icount shift=0`.
 const TICK_HZ: u32 = 1_000_000_000;
-/// At most so many bytes are taken in one interrupt: what the FIFO holds.
+/// Size of the FIFO: the most bytes taken in one interrupt.
 const FIFO: usize = 16;
-/// The FIFO's control: on, both sides empty, an interrupt at 14 bytes (or after a pause of four). The emulator hands
-/// over as many at once, which is several times as fast as one by one.
+/// FIFO control: enabled, both sides cleared, an interrupt at 14 bytes or after a pause of four
+/// byte times. The emulator delivers that many bytes at once, which is several times as fast as
+/// single bytes.
 const FIFO_ON: u8 = 0b1100_0111;
-/// The line control's bit that shows the divisor in place of the data, and 8 bits per byte.
+/// Line control: access to the divisor in place of the data, and 8 bits per byte.
 const SHOW_DIVISOR: u8 = 1 << 7;
 const EIGHT_BITS: u8 = 3;
-/// How often the transmitter is asked for room: seconds, for the sake of a host that is slow to read.
+/// Polls of the transmitter before a byte is dropped: seconds, because the host may read slowly.
 const SEND_PATIENCE: u32 = 5_000_000;
 
-/// A register of the machine, by its address.
 #[derive(Clone, Copy)]
 struct Register<T>(usize, core::marker::PhantomData<T>);
 
@@ -33,7 +35,7 @@ impl<T: Copy> Register<T> {
     }
 
     fn read(self) -> T {
-        // SAFETY: only the constants below are registers: mapped, aligned, of this width.
+        // SAFETY: only the constants below are registers: mapped, aligned and of this width.
         unsafe { (self.0 as *const T).read_volatile() }
     }
 
@@ -50,7 +52,7 @@ const UART_FIFO: Register<u8> = Register::at(UART + 2);
 const UART_LINE: Register<u8> = Register::at(UART + 3);
 const UART_STATUS: Register<u8> = Register::at(UART + 5);
 const UART_IRQ: u32 = 10;
-/// Bits of the line status: a byte is there, a byte was lost, a byte can be sent, all bytes have left.
+/// Line status: byte received, byte lost, transmitter ready, all bytes sent.
 const RECEIVED_ONE: u8 = 1;
 const OVERRUN: u8 = 1 << 1;
 const HAS_ROOM: u8 = 1 << 5;
@@ -62,12 +64,13 @@ const PLIC_ENABLE: Register<u32> = Register::at(PLIC + 0x2000);
 const PLIC_THRESHOLD: Register<u32> = Register::at(PLIC + 0x20_0000);
 const PLIC_CLAIM: Register<u32> = Register::at(PLIC + 0x20_0004);
 
-/// SiFive's test device: this value resets the machine.
+/// SiFive's test device; this value resets the machine.
 const TEST: Register<u32> = Register::at(0x0010_0000);
 const TEST_RESET: u32 = 0x7777;
 
 pub fn start() -> Clocks {
-    // Nobody hears the speed, but the pause after which a started FIFO is handed over goes by it.
+    // The divisor has no effect on the speed, but it determines the pause after which a partly
+    // filled FIFO is delivered.
     UART_LINE.write(SHOW_DIVISOR | EIGHT_BITS);
     UART_DATA.write(1);
     UART_INTERRUPTS.write(0); // the divisor's upper half
@@ -89,7 +92,7 @@ pub fn is_emulated() -> bool {
     true
 }
 
-/// The one external interrupt is the UART's.
+/// Handler of the only external interrupt, the UART's.
 #[riscv_rt::core_interrupt(riscv::interrupt::Interrupt::MachineExternal)]
 fn uart() {
     let source = PLIC_CLAIM.read();
@@ -110,7 +113,7 @@ pub fn ticks() -> u32 {
     minstret::read() as u32
 }
 
-/// Receives all the time.
+/// Reception is always enabled.
 pub fn listen() {}
 
 pub fn send(byte: u8) -> bool {
@@ -126,7 +129,7 @@ pub fn flush() {
     let _ = (0..SEND_PATIENCE).any(|_| UART_STATUS.read() & ALL_SENT != 0);
 }
 
-/// With interrupts masked, an interrupt that comes after the question still ends the wait.
+/// With interrupts masked, an interrupt after the check still ends the wait.
 pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     riscv::interrupt::free(|| {
         if !is_due() {
@@ -135,7 +138,7 @@ pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     });
 }
 
-/// The machine has none.
+/// The machine has no watchdog.
 pub fn start_watchdog() {}
 
 pub fn feed_watchdog() {}

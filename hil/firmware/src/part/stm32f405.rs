@@ -1,7 +1,8 @@
-//! STM32F405: USART1 on PA9 (TX) and PA10 (RX), 168 MHz from the crystal or from the internal oscillator.
+//! STM32F405: USART1 on PA9 (TX) and PA10 (RX), 168 MHz from the crystal or the internal
+//! oscillator.
 //!
-//! USART1 on these pins is also what the part's own boot loader listens to, and the first serial port of QEMU's
-//! `netduinoplus2`. Sections and tables: ST's reference manual RM0090.
+//! USART1 on these pins is also the port of the part's boot loader and the first serial port of
+//! QEMU's `netduinoplus2`. Sections and tables: ST's reference manual RM0090.
 
 use super::{BAUD, Clocks, number};
 use crate::ring::Ring;
@@ -13,27 +14,24 @@ pub const NAME: &str = "stm32f405";
 /// Bytes between interrupt and main loop: 90 ms at 115200 baud.
 pub static RECEIVED: Ring<1024> = Ring::new();
 
-/// The internal oscillator, which runs after reset.
 const HSI_HZ: u32 = 16_000_000;
 const HSE_HZ: u32 = number(env!("STAYA_HSE_HZ"));
 const PLL_HZ: u32 = 168_000_000;
-/// Pins of port A.
 const TX_PIN: usize = 9;
 const RX_PIN: usize = 10;
-/// How often a bit that tells of an oscillator is read before it counts as missing: tens of
-/// milliseconds at 16 MHz; crystals need a few, the PLL 0.3.
+/// Reads of an oscillator's status bit before it counts as missing: tens of milliseconds at 16 MHz.
+/// Crystals need a few milliseconds, the PLL 0.3.
 const PATIENCE: u32 = 50_000;
-/// How often the transmitter is asked for room: more than one byte's time at 9600 baud.
+/// Polls of the transmitter before a byte is dropped: more than one byte's time at 9600 baud.
 const SEND_PATIENCE: u32 = 200_000;
 /// SysTick counts down from here, 24 bits.
 const SYSTICK_TOP: u32 = 0x00FF_FFFF;
-/// How often SysTick began again.
 static WRAPS: AtomicU32 = AtomicU32::new(0);
 
 pub fn start() -> Clocks {
     let clock_hz = clocks();
     usart(if clock_hz == PLL_HZ { PLL_HZ / 2 } else { HSI_HZ });
-    // SAFETY: the only place that takes the core's peripherals, once, at the start.
+    // SAFETY: the only code that takes the core's peripherals; it runs once, at the start.
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.SYST.set_clock_source(SystClkSource::Core);
     core.SYST.set_reload(SYSTICK_TOP);
@@ -42,7 +40,7 @@ pub fn start() -> Clocks {
     core.SYST.enable_interrupt();
     Clocks {
         clock_hz,
-        // The emulator's SysTick runs at 168 MHz whatever the clock tree says.
+        // The emulator's SysTick always runs at 168 MHz.
         tick_hz: if is_emulated() { PLL_HZ } else { clock_hz },
     }
 }
@@ -52,8 +50,8 @@ pub fn is_emulated() -> bool {
     DBGMCU.idcode().read().0 == 0
 }
 
-/// Brings the processor to 168 MHz by the crystal, else by the internal oscillator, else leaves it
-/// at 16 MHz. Returns what it is.
+/// Sets the processor to 168 MHz from the crystal, else from the internal oscillator; else leaves
+/// it at 16 MHz. Returns the clock, hertz.
 fn clocks() -> u32 {
     RCC.cr().modify(|cr| cr.set_hseon(true));
     let crystal = comes(|| RCC.cr().read().hserdy());
@@ -76,7 +74,7 @@ fn clocks() -> u32 {
         RCC.cr().modify(|cr| cr.set_pllon(false));
         return HSI_HZ;
     }
-    // Flash is slower than that: five wait states at 3.3 V (table 10), before the switch.
+    // Flash is slower: it needs five wait states at 3.3 V (table 10), set before the switch.
     FLASH.acr().modify(|acr| {
         acr.set_latency(flash::vals::Latency::WS5);
         acr.set_prften(true);
@@ -92,18 +90,18 @@ fn clocks() -> u32 {
     if comes(|| RCC.cfgr().read().sws() == rcc::vals::Sw::PLL1_P) { PLL_HZ } else { HSI_HZ }
 }
 
-/// Asks until it is so, a bounded number of times.
+/// Polls a condition a bounded number of times; whether it came true.
 fn comes(mut is_so: impl FnMut() -> bool) -> bool {
     (0..PATIENCE).any(|_| is_so())
 }
 
-/// USART1, 8 bits, no parity, one stop bit, an interrupt per byte received.
+/// Sets up USART1: 8 bits, no parity, one stop bit, an interrupt per received byte.
 fn usart(bus_hz: u32) {
     RCC.ahb1enr().modify(|enable| enable.set_gpioaen(true));
     RCC.apb2enr().modify(|enable| enable.set_usart1en(true));
-    // A clock that was just turned on needs two cycles (section 7.3.14): reading back takes them.
+    // A newly enabled clock needs two cycles (section 7.3.14), which the read takes.
     let _ = RCC.apb2enr().read();
-    // Written out: in a loop the compiler could not see that the registers have these fields.
+    // Not a loop, in which the compiler could not prove that the registers have these fields.
     GPIOA.afr(1).modify(|afr| {
         afr.set_afr(TX_PIN - 8, 7); // AF7: USART1
         afr.set_afr(RX_PIN - 8, 7);
@@ -112,9 +110,9 @@ fn usart(bus_hz: u32) {
         moder.set_moder(TX_PIN, gpio::vals::Moder::ALTERNATE);
         moder.set_moder(RX_PIN, gpio::vals::Moder::ALTERNATE);
     });
-    // An open input would read noise.
+    // An open input would receive noise.
     GPIOA.pupdr().modify(|pupdr| pupdr.set_pupdr(RX_PIN, gpio::vals::Pupdr::PULL_UP));
-    // Sixteen samples per bit: the register holds the ratio in sixteenths, so bus / baud.
+    // Oversampling by 16: the register holds the ratio in sixteenths, so bus / baud.
     USART1.brr().write(|brr| brr.0 = (bus_hz + BAUD / 2) / BAUD);
     USART1.cr1().write(|cr1| {
         cr1.set_ue(true);
@@ -122,12 +120,12 @@ fn usart(bus_hz: u32) {
         cr1.set_re(true);
         cr1.set_rxneie(true);
     });
-    // SAFETY: its handler is below and shares only the ring.
+    // SAFETY: the handler is below and shares only the ring.
     unsafe { NVIC::unmask(Interrupt::USART1) };
 }
 
-/// One interrupt per byte; reading SR, then DR, clears every flag that can have caused it.
-// SAFETY: the name that the PAC's interrupt table has for it; a handler without arguments.
+/// One interrupt per byte. Reading SR, then DR, clears every flag that can have raised it.
+// SAFETY: the PAC's interrupt table has this name for it; a handler without arguments.
 #[unsafe(export_name = "USART1")]
 extern "C" fn on_usart() {
     let status = USART1.sr().read();
@@ -144,7 +142,7 @@ extern "C" fn on_usart() {
 
 #[cortex_m_rt::exception]
 fn SysTick() {
-    // One writer: a load and a store are enough.
+    // There is one writer, so a load and a store are enough.
     WRAPS.store(WRAPS.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
 }
 
@@ -152,7 +150,7 @@ pub fn ticks() -> u32 {
     loop {
         let wraps = WRAPS.load(Ordering::Relaxed);
         let left = SYST::get_current();
-        // It may have begun again without its interrupt having been served yet.
+        // SysTick may have wrapped while its interrupt is still pending.
         let pending = SCB::is_pendst_pending() && left > SYSTICK_TOP / 2;
         if wraps == WRAPS.load(Ordering::Relaxed) {
             let wraps = wraps.wrapping_add(u32::from(pending));
@@ -161,7 +159,7 @@ pub fn ticks() -> u32 {
     }
 }
 
-/// Receives all the time.
+/// Reception is always enabled.
 pub fn listen() {}
 
 pub fn send(byte: u8) -> bool {
@@ -177,7 +175,7 @@ pub fn flush() {
     let _ = (0..SEND_PATIENCE).any(|_| USART1.sr().read().tc());
 }
 
-/// With interrupts masked, an interrupt that comes after the question still ends the wait.
+/// With interrupts masked, an interrupt after the check still ends the wait.
 pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     cortex_m::interrupt::free(|_| {
         if !is_due() {
@@ -186,11 +184,11 @@ pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     });
 }
 
-/// The independent watchdog: its own oscillator of 32 kHz (17 to 47), divided by 64, 2048 steps: four
-/// seconds (section 21.3). It stops while a debugger holds the core.
+/// The independent watchdog: its own oscillator of 32 kHz (17 to 47), divided by 64, 2048 steps:
+/// four seconds (section 21.3). It pauses while a debugger halts the core.
 pub fn start_watchdog() {
     DBGMCU.apb1fzr().modify(|freeze| freeze.set_iwdg(true));
-    // Its oscillator has to run before it takes the two values.
+    // The watchdog accepts the two values only once its oscillator runs.
     IWDG.kr().write(|kr| kr.set_key(iwdg::vals::Key::START));
     IWDG.kr().write(|kr| kr.set_key(iwdg::vals::Key::ENABLE));
     IWDG.pr().write(|pr| pr.set_pr(iwdg::vals::Pr::DIVIDE_BY64));

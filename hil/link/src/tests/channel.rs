@@ -1,4 +1,4 @@
-//! Both ends over a line with faults, in simulated time.
+//! Both ends over a faulty line, in simulated time.
 
 mod bench;
 mod world;
@@ -20,13 +20,13 @@ use staya_controller::wire::Postcard;
 use staya_mavlink::any::AnyWire;
 use std::vec::Vec;
 
-/// A step of a controller without a line.
 fn decide(controller: &mut impl Controller, step: &StepInputs<'_>) -> StepResult {
     controller.step(step).expect("fits");
     controller.result().expect("a robot")
 }
 
-/// A thousand steps of a robot over a line, beside the same robot without one; what the line cost.
+/// Runs a thousand steps over a line and compares them with a controller without one. Returns the
+/// bench for its counters.
 fn thousand_steps<B: Controller + Default>(
     faults: Faults,
     seed: u64,
@@ -66,7 +66,7 @@ fn to_the_east() -> Task {
 }
 
 #[test]
-fn steps_over_a_bad_line_are_those_of_a_plain_agent() {
+fn steps_over_a_faulty_line_equal_those_of_a_local_agent() {
     let (setup, task) = (in_plane(), to_the_east());
     let (on_grid, to_a_cell) = on_grid(5);
     for (setup, task) in [(setup, task), (on_grid, to_a_cell)] {
@@ -94,7 +94,7 @@ fn steps_over_a_bad_line_are_those_of_a_plain_agent() {
 }
 
 #[test]
-fn fixed_point_steps_over_a_bad_line_are_those_of_its_shadow() {
+fn fixed_point_steps_over_a_faulty_line_equal_those_of_the_shadow() {
     let (setup, task) = (in_plane(), to_the_east());
     let mut shadow = Small::new();
     shadow.configure(&setup, Some(&task), &[]).expect("fits");
@@ -105,7 +105,7 @@ fn fixed_point_steps_over_a_bad_line_are_those_of_its_shadow() {
 }
 
 #[test]
-fn device_that_resets_is_noticed_and_rejoins() {
+fn reset_of_the_device_is_detected_and_it_rejoins() {
     let (setup, task) = (in_plane(), to_the_east());
     for (faults, by_host) in [(Faults::default(), false), (BAD, false), (Faults::default(), true), (BAD, true)] {
         let mut bench = Bench::<Large>::new(faults, 5);
@@ -149,7 +149,6 @@ fn device_that_resets_is_noticed_and_rejoins() {
     }
 }
 
-/// A step of a robot that stands and hears nothing.
 fn nothing_new(tick: u32) -> StepInputs<'static> {
     StepInputs {
         tick,
@@ -162,7 +161,7 @@ fn nothing_new(tick: u32) -> StepInputs<'static> {
     }
 }
 
-/// Half of the steps, and 99 of 100, took at most so long, microseconds.
+/// Median and 99th percentile of the time of a step, microseconds.
 fn median_and_p99(faults: Faults, seed: u64) -> (u64, u64) {
     let mut bench = Bench::<Large>::new(Faults { lost: 0, ..faults }, seed);
     bench.port.set_limits(Limits { resend_after_us: 500_000, give_up_after_us: 10_000_000 });
@@ -179,14 +178,14 @@ fn median_and_p99(faults: Faults, seed: u64) -> (u64, u64) {
     (took_us[999], took_us[1979])
 }
 
-/// One frame in twenty is lost in each direction: one step in a hundred is sent three times.
+/// 5 % of the frames are lost in each direction, so that one step in a hundred is sent three times.
 #[test]
-fn a_lost_frame_costs_round_trips_and_not_the_longest_wait() {
+fn lost_frame_costs_round_trips_and_not_the_longest_wait() {
     for delay_us in [1, 2000, 20_000] {
         for seed in 0..3 {
             let lossy = Faults { lost: 5, delay_us, ..Faults::default() };
             let (median_us, p99_us) = median_and_p99(lossy, seed);
-            // The host looks once a millisecond at most.
+            // The host polls at most once a millisecond.
             assert!(p99_us <= 3100 + 11 * median_us, "delay {delay_us}: {median_us} {p99_us}");
             let (_, most_us) = median_and_p99(Faults { lost: 0, ..lossy }, seed);
             assert!(most_us <= 2 * (100 + u64::from(delay_us)), "what is not lost waits for nothing: {most_us}");
@@ -195,7 +194,7 @@ fn a_lost_frame_costs_round_trips_and_not_the_longest_wait() {
 }
 
 #[test]
-fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
+fn silent_device_times_out_with_the_request_and_the_waiting_time() {
     let deaf = Faults { lost: 100, ..Faults::default() };
     let mut bench = Bench::<Small>::new(deaf, 1);
     bench.port.greet(0);
@@ -204,7 +203,7 @@ fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
     assert_eq!(error, PortError::Silent { asked, attempts: 60, waited_us });
     assert_eq!(std::format!("{error}"), "no answer to greeting within 1200 ms (60 attempts)");
     assert_eq!(bench.port.poll(bench.now), Ok(Next::Idle));
-    // In the middle of a run the step is named.
+    // In the middle of a run, the error names the step.
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
     bench.configure(&in_plane(), None);
     bench.there.faults = deaf;
@@ -214,7 +213,7 @@ fn silent_device_is_given_up_with_what_was_asked_and_for_how_long() {
 }
 
 #[test]
-fn device_of_another_version_is_a_clear_error() {
+fn device_of_another_version_is_reported() {
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
     let other = VERSION + 1;
     let mut content = std::vec![other, 0x81, 1, 2];
@@ -232,7 +231,7 @@ fn device_of_another_version_is_a_clear_error() {
 }
 
 #[test]
-fn refusal_names_what_was_asked_and_why() {
+fn refusal_names_the_request_and_the_reason() {
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
     bench.port.greet(0);
     assert!(matches!(bench.wait(), Ok(Event::Hello(_))));
@@ -258,9 +257,8 @@ fn requests_longer_than_the_buffer_are_not_sent() {
 }
 
 proptest! {
-    /// Any line that lets something through is only slow.
     #[test]
-    fn any_faults_change_no_result(
+    fn line_faults_change_no_result(
         seed: u64,
         lost in 0_u32..40,
         repeated in 0_u32..60,

@@ -1,4 +1,4 @@
-//! What is cut when inputs are more than a device has room for.
+//! Inputs that exceed the capacities of a device.
 
 use crate::capacities::{Capacities, window_cells};
 use crate::fit::{Cut, WindowTooLarge};
@@ -64,14 +64,14 @@ fn nearest_obstacles_stay_in_their_order() {
     };
     assert_eq!(kept(4), far_first);
     assert_eq!(kept(3), far_first[1..]);
-    // Of two equally near ones that which comes first.
+    // Of two equally near obstacles, the first one is kept.
     assert_eq!(kept(2), [ball(3.0), ball(1.0)]);
     assert_eq!(kept(1), [ball(1.0)]);
     assert!(kept(0).is_empty());
 }
 
 #[test]
-fn an_obstacle_that_is_nowhere_goes_first() {
+fn obstacle_without_a_position_is_removed_first() {
     let nowhere = Obstacle::Wall([Vec2::new(f32::NAN, 0.0); 2]);
     let obstacles = [nowhere, ball(4.0), ball(2.0)];
     let mut packed = [0; 3 * OBSTACLE_BYTES];
@@ -81,7 +81,7 @@ fn an_obstacle_that_is_nowhere_goes_first() {
 }
 
 #[test]
-fn land_is_never_cut() {
+fn terrain_is_never_cut() {
     assert_eq!(window_cells(169), 121);
     assert_eq!((window_cells(0), window_cells(8), window_cells(9)), (0, 0, 1));
     let cells = [1; 144];
@@ -102,9 +102,9 @@ fn land_is_never_cut() {
 }
 
 proptest! {
-    /// What stays is a tail of the inbox that begins with a frame, fits, and leaves no room for one frame more.
+    /// The kept inbox is a suffix that starts with a frame and fits; one more frame would not.
     #[test]
-    fn any_inbox_is_cut_at_a_frame(frames in vec(vec(1_u8..4, 1..8), 0..12), bytes in 0_u16..70) {
+    fn inbox_is_cut_between_frames(frames in vec(vec(1_u8..4, 1..8), 0..12), bytes in 0_u16..70) {
         let inbox: Vec<u8> = frames.iter().flat_map(|frame| frame.iter().copied().chain([0])).collect();
         let (step, _) = room(0, bytes).fit(1, NOW, &inputs(&inbox, &[]), &Postcard, &mut []).expect("no window");
         let kept = step.inbox;
@@ -119,7 +119,7 @@ proptest! {
 }
 
 #[test]
-fn an_inbox_of_another_format_is_cut_at_its_frames() {
+fn inbox_of_another_format_is_cut_between_its_frames() {
     let (header, mut inbox) = (Header { boot: 0, sender: RobotId(2), sequence: 0 }, heapless::Vec::<u8, 256>::new());
     let mut wire: AnyWire = AnyWire::new(Format::Mavlink);
     let message = Message::Beacon(Beacon::default());

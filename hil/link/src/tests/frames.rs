@@ -1,4 +1,4 @@
-//! Frames: stuffing against the `cobs` crate, damage, noise, lengths.
+//! Frames: COBS compared with the `cobs` crate, damage, noise, lengths.
 
 use crate::frame::{Deframer, Frame, FrameError, OVERHEAD, VERSION, frame_len};
 use proptest::collection::vec;
@@ -10,7 +10,6 @@ const N: usize = 2048;
 
 type Found = Result<(u8, Vec<u8>), FrameError>;
 
-/// Everything that comes out of a stream.
 fn deframe<const N: usize>(bytes: &[u8]) -> Vec<Found> {
     let mut deframer = Deframer::<N>::new();
     let found = bytes.iter().filter_map(|byte| {
@@ -20,7 +19,6 @@ fn deframe<const N: usize>(bytes: &[u8]) -> Vec<Found> {
     found.collect()
 }
 
-/// These bytes and nothing else.
 struct Raw<'a>(&'a [u8]);
 
 impl Serialize for Raw<'_> {
@@ -31,12 +29,11 @@ impl Serialize for Raw<'_> {
     }
 }
 
-/// A frame whose body is these bytes.
 fn raw(kind: u8, body: &[u8]) -> Vec<u8> {
     super::frame(kind, &Raw(body))
 }
 
-/// Bodies with runs of zeros and of other bytes around the length of a block.
+/// Bodies with runs of zeros and of other bytes of about the length of a block.
 fn body() -> impl Strategy<Value = Vec<u8>> {
     let run = (prop_oneof![Just(0_u8), 1..=u8::MAX], 0_usize..520);
     vec(run, 0..4).prop_map(|runs| {
@@ -47,7 +44,7 @@ fn body() -> impl Strategy<Value = Vec<u8>> {
 
 proptest! {
     #[test]
-    fn what_goes_in_comes_out(kind: u8, body in body(), random in vec(any::<u8>(), 0..1500)) {
+    fn encoded_frames_decode_to_their_content(kind: u8, body in body(), random in vec(any::<u8>(), 0..1500)) {
         for body in [body, random] {
             let frame = raw(kind, &body);
             prop_assert!(frame.len() <= frame_len(body.len() + OVERHEAD));
@@ -57,7 +54,7 @@ proptest! {
     }
 
     #[test]
-    fn the_cobs_crate_reads_what_is_written_here_and_the_other_way_round(body in body()) {
+    fn frames_are_compatible_with_the_cobs_crate_in_both_directions(body in body()) {
         let frame = raw(9, &body);
         let stuffed = &frame[1..frame.len() - 1];
         let content = cobs::decode_vec(stuffed).expect("stuffed");
@@ -69,7 +66,7 @@ proptest! {
     }
 
     #[test]
-    fn random_bytes_are_refused_and_the_next_frame_is_read(
+    fn random_bytes_are_rejected_and_the_next_frame_is_read(
         noise in vec(any::<u8>(), 0..3000),
         body in body(),
     ) {
@@ -82,7 +79,7 @@ proptest! {
 }
 
 #[test]
-fn every_changed_byte_and_every_cut_is_recognised() {
+fn every_changed_byte_and_every_truncation_is_detected() {
     let body: Vec<u8> = (0..300_u32).map(|i| (i * i % 7 * 40) as u8).collect();
     let frame = raw(3, &body);
     for at in 1..frame.len() - 1 {
@@ -100,9 +97,9 @@ fn every_changed_byte_and_every_cut_is_recognised() {
 }
 
 #[test]
-fn lost_delimiter_costs_no_frame_but_its_own() {
+fn lost_delimiter_costs_only_its_own_frame() {
     let (a, b) = (raw(1, &[1, 2, 3]), raw(2, &[4, 5]));
-    // The zero in front of the second one ends the first.
+    // The leading zero of the second frame ends the first.
     let mut stream = a[..a.len() - 1].to_vec();
     stream.extend(&b);
     let both = [Ok((1, std::vec![1, 2, 3])), Ok((2, std::vec![4, 5]))];
@@ -110,7 +107,7 @@ fn lost_delimiter_costs_no_frame_but_its_own() {
 }
 
 #[test]
-fn frames_of_other_versions_are_told_from_damage() {
+fn frames_of_other_versions_are_distinguished_from_damaged_ones() {
     let mut content = std::vec![VERSION + 1, 7, 1, 2, 3];
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI).checksum(&content);
     content.extend(crc.to_le_bytes());
@@ -121,7 +118,7 @@ fn frames_of_other_versions_are_told_from_damage() {
 }
 
 #[test]
-fn one_byte_more_than_there_is_room_for_is_too_long() {
+fn one_byte_above_the_capacity_is_too_long() {
     let body = [5; 100];
     let frame = raw(3, &body);
     assert_eq!(deframe::<{ 100 + OVERHEAD }>(&frame), [Ok((3, body.to_vec()))]);
@@ -133,7 +130,7 @@ fn one_byte_more_than_there_is_room_for_is_too_long() {
 }
 
 #[test]
-fn endless_noise_keeps_no_more_than_fits() {
+fn endless_noise_never_exceeds_the_buffer() {
     let mut deframer = Deframer::<16>::new();
     for _ in 0..100_000 {
         assert!(deframer.push(0x55).is_none());

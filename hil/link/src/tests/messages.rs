@@ -1,4 +1,4 @@
-//! The messages: round trips, and that the longest of each fits.
+//! The messages: round trips, and the size of the longest of each.
 
 use super::{frame, read};
 use crate::capacities::Capacities;
@@ -21,7 +21,6 @@ use staya_controller::template::TemplateEntry;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Postcard, RequestKind};
 
-/// Bytes of a frame's content.
 fn content(frame: &[u8]) -> usize {
     let mut deframer = crate::frame::Deframer::<16384>::new();
     let bodies = frame.iter().filter_map(|byte| {
@@ -31,7 +30,6 @@ fn content(frame: &[u8]) -> usize {
     bodies.last().expect("a frame") + crate::frame::OVERHEAD
 }
 
-/// The numbers that take most bytes.
 const FAR: Cell = Cell::new(i16::MIN, i16::MIN);
 const LATE: Duration = Duration::from_micros(i32::MIN);
 const LAST: Instant = Instant::from_micros(u32::MAX);
@@ -132,7 +130,7 @@ fn longest_setup_fits() {
     let configure = Configure { seq: u16::MAX, setup, task: Some(Task::Waypoints(waypoints)) };
     let bytes = frame(kind::CONFIGURE, &configure);
     let len = content(&bytes);
-    // Room for parameters that take more bytes than their defaults.
+    // Spare room for parameters that take more bytes than their defaults.
     assert!(len + 100 <= MAX_CONFIGURE, "{len}");
     assert_eq!(read::<Configure>(kind::CONFIGURE, &bytes), configure);
 }
@@ -165,15 +163,15 @@ fn longest_step_fits_its_buffer() {
     let capacities = super::hello(session.hello()).capacities;
     assert_eq!(usize::from(capacities.inbox_bytes), crate::robot::LARGE_INBOX);
     assert!(bytes.len() <= capacities.frame_bytes());
-    // It is read and refused for what it says, not for its length.
+    // It is parsed and refused for its content, not for its length.
     let answers = super::answers(&mut session, &bytes);
     let fault: Fault = read(kind::FAULT, &answers[0]);
     assert_eq!(fault.kind, FaultKind::NotConfigured);
 }
 
 #[test]
-fn sessions_are_as_large_as_documented() {
-    // On a 64-bit host, pointers and alignment make them a little larger than on the parts.
+fn session_sizes_match_the_documentation() {
+    // Pointers and alignment make them a little larger on a 64-bit host than on the parts.
     let small = size_of::<Session<Small, { super::SMALL }>>();
     assert!(small <= 9 * 1024, "{small}");
     let large = size_of::<Session<Large, { super::LARGE }>>();
@@ -196,9 +194,9 @@ fn obstacle() -> impl Strategy<Value = Obstacle<f32>> {
 
 proptest! {
     #[test]
-    fn obstacles_come_out_as_they_went_in(obstacle in obstacle()) {
+    fn obstacles_survive_a_round_trip(obstacle in obstacle()) {
         prop_assert_eq!(unpack(&pack(&obstacle)), Some(obstacle));
-        // Sixteenths are exact in Q16 too.
+        // Multiples of 1/16 are exact in Q16 too.
         let fixed = unpack::<Q16>(&pack(&obstacle)).expect("known");
         let back = |v: Q16| v.to_f32();
         let same = match (obstacle, fixed) {
@@ -215,7 +213,7 @@ proptest! {
     }
 
     #[test]
-    fn steps_come_out_as_they_went_in(
+    fn steps_survive_a_round_trip(
         seq: u16,
         (tick, now) in any::<(u32, u32)>(),
         mm: [i32; 3],
@@ -264,7 +262,7 @@ proptest! {
     }
 
     #[test]
-    fn reports_come_out_as_they_went_in(
+    fn reports_survive_a_round_trip(
         seq: u16,
         digest: u64,
         moves in vec(0_u8..9, 0..8),
@@ -324,12 +322,12 @@ fn unknown_shapes_are_refused() {
 }
 
 #[test]
-fn robots_speak_any_format_and_one_that_was_built_for_one_says_so() {
+fn robots_speak_any_format_unless_built_for_a_single_one() {
     let setup = |format| Setup { format, ..super::in_plane() };
     let (mut large, mut small) = (Large::new(), Small::new());
     let mut lean = Robot::<Q16, CELLS, VISITS, 8, 16, 16, Postcard>::new();
     let postcard = large.configure(&setup(Format::Postcard), None, &[]);
-    // How it speaks is no part of what it knows.
+    // The packet format is not part of the state.
     assert_eq!(large.configure(&setup(Format::Mavlink), None, &[]), postcard);
     let in_small = small.configure(&setup(Format::Mavlink), None, &[]);
     assert_eq!(lean.configure(&setup(Format::Postcard), None, &[]), in_small);

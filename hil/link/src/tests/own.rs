@@ -1,4 +1,4 @@
-//! Robots by laws that the link does not know.
+//! Robots with user-defined guidance laws.
 
 use super::{ABOUT, LARGE, SMALL, answers, frame, in_plane, large, read, stepped};
 use crate::message::{Configured, Fault, FaultKind, Greeting, NumberFormat, Step, StepInputs, Token, kind};
@@ -18,7 +18,6 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::Instant;
 use std::vec::Vec;
 
-/// Goes east, a little faster at each decision.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct East {
     mmps: u16,
@@ -73,7 +72,7 @@ fn inputs(tick: u32) -> StepInputs<'static> {
     }
 }
 
-/// Steps a session and a shadow of it; how fast the robot wants to go east, m/s.
+/// Steps a session and its shadow; returns the last eastward speed, m/s.
 fn run<C: Controller, const N: usize>(mut session: Session<C, N>, mut shadow: C, ticks: u16) -> f32 {
     let mut law = [0; 16];
     let law = postcard::to_slice(&LAW, &mut law).expect("fits");
@@ -97,7 +96,7 @@ fn run<C: Controller, const N: usize>(mut session: Session<C, N>, mut shadow: C,
 }
 
 #[test]
-fn a_device_steps_the_law_that_the_host_tells_it_in_both_kinds_of_numbers() {
+fn device_steps_the_law_sent_by_the_host_in_both_number_formats() {
     let session = Session::<OwnLarge<East>, LARGE>::new(OwnLarge::new(), ABOUT);
     assert!((run(session, OwnLarge::new(), 4) - 0.06).abs() < 1e-6);
     let about = About { part: "nrf51", ..ABOUT };
@@ -107,7 +106,7 @@ fn a_device_steps_the_law_that_the_host_tells_it_in_both_kinds_of_numbers() {
 }
 
 #[test]
-fn laws_that_do_not_read_so_are_refused() {
+fn laws_that_cannot_be_parsed_are_refused() {
     let fault = |answer: &[Vec<u8>]| {
         let Fault { kind, text, .. } = read(kind::FAULT, &answer[0]);
         assert_eq!(kind, FaultKind::Setup);
@@ -115,18 +114,18 @@ fn laws_that_do_not_read_so_are_refused() {
     };
     let mut own = Session::<OwnLarge<East>, LARGE>::new(OwnLarge::new(), ABOUT);
     drop(answers(&mut own, &greeting()));
-    // Nothing, too little, too much.
+    // No law, too few bytes, too many bytes.
     fault(&answers(&mut own, &configure(&())));
     fault(&answers(&mut own, &configure(&5_u8)));
     fault(&answers(&mut own, &configure(&(LAW, 1_u8))));
-    // A firmware of Staya's own laws takes none.
+    // Firmware with the built-in laws does not accept a user-defined one.
     let mut ours = large();
     drop(answers(&mut ours, &greeting()));
     fault(&answers(&mut ours, &configure(&LAW)));
 }
 
 #[test]
-fn tasks_that_the_law_has_no_use_for_are_refused() {
+fn tasks_that_the_law_does_not_accept_are_refused() {
     let mut robot = OwnLarge::<East>::new();
     let mut law = [0; 16];
     let law = postcard::to_slice(&LAW, &mut law).expect("fits");

@@ -1,4 +1,4 @@
-//! The device's end by itself: what it answers to what is out of order.
+//! The device's end alone: its answers to requests that are out of order.
 
 use super::{answers, frame, hello, in_plane, large, on_grid, read, small, stepped};
 use crate::frame::VERSION;
@@ -41,7 +41,7 @@ fn fault(frames: &[Vec<u8>]) -> (FaultKind, u16, std::string::String) {
 }
 
 #[test]
-fn repeated_request_gets_the_very_same_answer_and_no_second_step() {
+fn repeated_request_gets_an_identical_answer_without_a_second_step() {
     let mut session = small();
     let configured = answers(&mut session, &configure(9));
     assert_eq!(answers(&mut session, &configure(9)), configured);
@@ -58,7 +58,7 @@ fn repeated_request_gets_the_very_same_answer_and_no_second_step() {
 }
 
 #[test]
-fn what_is_out_of_order_is_named_or_ignored() {
+fn requests_out_of_order_are_reported_or_ignored() {
     let mut session = small();
     let (kind, seq, text) = fault(&answers(&mut session, &step(3)));
     assert_eq!((kind, seq), (FaultKind::NotConfigured, 3), "{text}");
@@ -67,11 +67,11 @@ fn what_is_out_of_order_is_named_or_ignored() {
     assert_eq!((kind, seq), (FaultKind::Gap, 1));
     assert_eq!(text, "request 1 after 65535");
     assert_eq!(answers(&mut session, &step(0)).len(), 1, "after the wrap");
-    // From before the last one: nobody waits for an answer.
+    // Older than the last request: the host no longer waits for an answer.
     assert!(answers(&mut session, &step(u16::MAX)).is_empty());
     assert!(answers(&mut session, &configure(u16::MAX - 5)).is_empty());
     assert_eq!(session.counts().stale, 2);
-    // A fault in between does not cost the answer.
+    // A fault in between does not discard the answer.
     let _ = answers(&mut session, &step(7));
     assert_eq!(stepped(&answers(&mut session, &step(0))[0]).seq, 0);
 }
@@ -94,7 +94,7 @@ fn setups_that_do_not_fit_are_refused_with_the_reason() {
             assert_eq!(text, "a search of 225 cells, and room for 169");
         }
     }
-    // What was refused is no robot.
+    // A refused configuration leaves the device unconfigured.
     let (kind, ..) = fault(&answers(&mut session, &step(7)));
     assert_eq!(kind, FaultKind::NotConfigured);
     let mut setup = in_plane();
@@ -110,7 +110,7 @@ fn setups_that_do_not_fit_are_refused_with_the_reason() {
 }
 
 #[test]
-fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
+fn too_many_obstacles_and_inconsistent_inputs_are_refused_without_stopping_the_robot() {
     let mut session = small();
     let request = Configure { seq: 1, setup: in_plane(), task: None };
     answers(&mut session, &frame(kind::CONFIGURE, &request));
@@ -144,7 +144,7 @@ fn too_many_obstacles_and_nonsense_are_refused_and_the_robot_goes_on() {
 }
 
 #[test]
-fn other_versions_kinds_and_bodies_get_an_answer_that_says_so() {
+fn other_versions_kinds_and_bodies_are_answered_with_a_fault() {
     let mut session = small();
     let mut content = std::vec![VERSION + 1, kind::GREETING, 1, 2];
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI).checksum(&content);
@@ -162,7 +162,7 @@ fn other_versions_kinds_and_bodies_get_an_answer_that_says_so() {
 }
 
 #[test]
-fn greeting_with_a_new_token_makes_it_forget_and_a_delayed_one_does_not() {
+fn new_greeting_resets_the_session_and_a_delayed_one_does_not() {
     let mut session = small();
     let greet = |token| frame(kind::GREETING, &Greeting { token });
     let said = |answers: Vec<Vec<u8>>| hello(&answers[0]).token;
@@ -183,7 +183,7 @@ fn greeting_with_a_new_token_makes_it_forget_and_a_delayed_one_does_not() {
 }
 
 #[test]
-fn restarts_only_for_the_host_that_greeted_last() {
+fn only_the_host_that_greeted_last_can_restart_the_device() {
     let mut session = small();
     let restart = frame(kind::RESTART, &Restart { token: TOKEN });
     assert_eq!(hello(&answers(&mut session, &restart)[0]).token, None);
@@ -195,7 +195,7 @@ fn restarts_only_for_the_host_that_greeted_last() {
 }
 
 #[test]
-fn meter_runs_around_each_step_and_only_there() {
+fn meter_runs_only_around_each_step() {
     #[derive(Default)]
     struct Counting {
         started: u32,
@@ -226,9 +226,9 @@ fn meter_runs_around_each_step_and_only_there() {
 }
 
 proptest! {
-    /// Whatever comes over the line, the session answers or does not, and then goes on as if nothing had been.
+    /// After any bytes, answered or not, the session still works as before.
     #[test]
-    fn any_bytes_leave_it_working(
+    fn session_works_after_any_bytes(
         noise in vec(vec(any::<u8>(), 0..200), 0..20),
         bodies in vec((0_u8..6, vec(any::<u8>(), 0..80)), 0..20),
     ) {
@@ -259,7 +259,7 @@ proptest! {
 }
 
 #[test]
-fn part_and_numbers_are_said() {
+fn hello_names_part_and_number_format() {
     let about = About { part: "nrf51", firmware: "lockstep", boot: 3, ticks_per_second: 16 };
     let mut session = Session::<Small, { super::SMALL }>::new(Small::new(), about);
     let hello = hello(session.hello());
@@ -268,7 +268,7 @@ fn part_and_numbers_are_said() {
     assert_eq!(hello.number, NumberFormat::Q16);
     let controller = Small::new().capacities();
     let room = usize::from(hello.capacities.inbox_bytes);
-    // A micro:bit's buffer also holds what a setup needs.
+    // A micro:bit's buffer must also hold a setup.
     assert!(room >= crate::robot::SMALL_INBOX);
     let inbox_bytes = hello.capacities.inbox_bytes;
     assert_eq!(hello.capacities, crate::capacities::Capacities { inbox_bytes, ..controller });

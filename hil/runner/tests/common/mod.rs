@@ -1,4 +1,4 @@
-//! Robots, what they sense, and devices in threads.
+//! Robots, their sensor readings, and devices that run in threads.
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use staya_controller::agent::{
@@ -22,7 +22,7 @@ use staya_runner::{Channel, DeviceConfig, LineFaults};
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 
-/// A robot in the plane behind ORCA, or (every other number) one on the grid.
+/// Configures a robot in the plane with ORCA or, for every other number, one on the grid.
 pub fn config(robot: u32, device: &str) -> DeviceConfig {
     let agent = AgentConfig {
         seed: 7,
@@ -55,7 +55,7 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
     }
 }
 
-/// What a robot senses at a tick, whatever it has decided before.
+/// Sensor readings of a robot in one tick, which do not depend on its decisions.
 pub struct Scene {
     wire: AnyWire,
     inbox: Vec<u8>,
@@ -71,7 +71,7 @@ impl Scene {
         Self::over(Format::Postcard, robot, tick)
     }
 
-    /// The same with others that speak this format.
+    /// Like `new`, with neighbours that use this packet format.
     pub fn over(format: Format, robot: u32, tick: u32) -> Self {
         let cell = Cell::new((tick / 5) as i16, (robot % 7) as i16);
         let mm = [(tick * 60) as i32, robot as i32 * 300, 0];
@@ -93,7 +93,7 @@ impl Scene {
         scene
     }
 
-    /// Adds a beacon of a robot near by; some are damaged on the air.
+    /// Adds a beacon of a near robot; some beacons are damaged.
     pub fn hear(&mut self, sender: u32, tick: u32) {
         let [x, y, _] = self.position.mm;
         let aside = (sender % 5) as i32 * 700 - 1400;
@@ -116,7 +116,7 @@ impl Scene {
         self.inbox.extend(out);
     }
 
-    /// Adds a ball that is so far away.
+    /// Adds a ball at this distance.
     pub fn see(&mut self, distance_m: f32) {
         self.obstacles.push(Obstacle::Ball { center_m: Vec3::new(0.0, distance_m, 0.0), radius_m: 0.1 });
     }
@@ -140,18 +140,18 @@ pub fn now(tick: u32) -> Instant {
     Instant::from_micros(tick * 100_000)
 }
 
-/// What a device in a thread does at its step number so and so, counted over its whole life.
+/// Misbehaviour of a device at these steps, counted over its whole life.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mischief {
-    /// Starts anew.
+    /// Restarts.
     pub resets_at: Option<u32>,
-    /// Says nothing any more.
+    /// Falls silent.
     pub silent_at: Option<u32>,
     /// Closes the line.
     pub leaves_at: Option<u32>,
 }
 
-/// A device in a thread, and the line to it.
+/// Starts a device in a thread and returns the channel to it.
 pub fn device<B: Controller + Send + 'static, const N: usize>(
     new: fn() -> B,
     part: &'static str,
@@ -162,7 +162,7 @@ pub fn device<B: Controller + Send + 'static, const N: usize>(
     Channel::new(ours.try_clone().expect("a second handle"), ours)
 }
 
-/// The life of a device at its end of a line.
+/// Runs a device at its end of a line.
 pub fn live<B: Controller, const N: usize>(
     new: fn() -> B,
     part: &'static str,

@@ -1,28 +1,28 @@
-//! Ways to find neighbours.
+//! Neighbour searches of the boids experiment.
 
 use super::searches::{MidpointTree, MutualPairs, Tree};
 use staya_sim::nearby::{AllPairs, Cells, Space};
 
-/// Which search finds the neighbours.
+/// A neighbour search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Looks at everybody.
+    /// Compares each boid with all others.
     AllPairs,
-    /// Looks at each pair once.
+    /// Compares each pair once.
     MutualPairs,
     /// Lattice cells.
     Cells,
-    /// A k-d tree, the library's.
+    /// The k-d tree of a library.
     Tree,
-    /// A k-d tree by the sliding midpoint rule, which the paper describes.
+    /// A k-d tree by the sliding midpoint rule, as the paper describes.
     MidpointTree,
 }
 
 impl Method {
-    /// All of them.
+    /// All searches.
     pub const ALL: [Self; 5] = [Self::AllPairs, Self::MutualPairs, Self::Cells, Self::Tree, Self::MidpointTree];
 
-    /// What it is called.
+    /// Name in tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -34,12 +34,11 @@ impl Method {
         }
     }
 
-    /// A search in this space for queries of this radius.
     pub(super) fn search(self, space: Space<f32, 2>, radius: f32) -> AnySearch {
         match self {
             Self::AllPairs => AnySearch::AllPairs(AllPairs::new(space)),
             Self::MutualPairs => AnySearch::MutualPairs(MutualPairs::new(space, radius)),
-            // Neighbours of up to 150 among about 3: cells of the radius itself.
+            // Queries find up to 150 neighbours, where cells as large as the radius are fastest.
             Self::Cells => AnySearch::Cells(Cells::new(space, radius)),
             Self::Tree => AnySearch::Tree(Tree::new(space)),
             Self::MidpointTree => AnySearch::MidpointTree(MidpointTree::new(space)),
@@ -47,7 +46,6 @@ impl Method {
     }
 }
 
-/// One of them.
 #[derive(Clone, Debug)]
 pub(super) enum AnySearch {
     AllPairs(AllPairs<f32, 2>),

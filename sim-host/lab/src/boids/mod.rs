@@ -1,9 +1,9 @@
-//! Boids on a torus, and what finding neighbours costs (V. A. Starovoitova 2018, STA, section 2.3).
+//! Boids on a torus, and the cost of neighbour search (V. A. Starovoitova 2018, STA, section 2.3).
 //!
-//! The controller's boids ([`staya_controller::flock::boids`]) run directly on the host, without radio or packets: each
-//! knows the exact places and headings of its neighbours. Every number of boids is run once with each search of
-//! [`nearby`](staya_sim::nearby) from the same start; the trajectories must be equal to the bit, and the time they take
-//! is measured on one thread.
+//! The controller's boids ([`staya_controller::flock::boids`]) run directly on the host, without
+//! radio and packets: each knows the exact places and headings of its neighbours. For each number
+//! of boids, one run per search of [`nearby`](staya_sim::nearby) has the same start. Trajectories
+//! must be bitwise equal. Their time is measured on one thread.
 
 mod method;
 mod pictures;
@@ -32,17 +32,16 @@ use staya_sim::nearby::{Cells, Found, Query, Search, Space};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Purpose of the random numbers of boids' starts.
 const STARTS: u32 = 0x0045_0301;
 
-/// Boids that are steered in one piece of parallel work.
 const PIECE: usize = 256;
 
-/// The most boids that are searched by looking at all pairs, unless a plan says otherwise: 10,000 already take about
-/// a second a step, 100,000 would take a hundred.
+/// Default limit of boids for searches over all pairs: 10,000 take about a second per step, 100,000
+/// would take a hundred.
 pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
-/// What to do: boids on a torus, five ways to find neighbours, equal flights, and what they cost (Starovoitova, section 2.3).
+/// What to do: boids on a torus, five ways to find neighbours, equal flights, and what they cost
+/// (Starovoitova, section 2.3).
 ///
 /// Lengths, turns and area are the paper's unless told otherwise.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -94,7 +93,7 @@ impl Default for Plan {
     }
 }
 
-/// Boids on their torus.
+/// Boids on a torus.
 #[derive(Clone, Debug)]
 pub struct Flock {
     space: Space<f32, 2>,
@@ -108,15 +107,15 @@ pub struct Flock {
 }
 
 impl Plan {
-    /// The start of `boids` boids: places and headings even over the torus, a function of seed and number of the boid.
-    /// The torus has the paper's proportions, 4 to 3.
+    /// Creates `boids` boids whose places and headings are uniform over the torus; a function of
+    /// the seed and the boid's number. The sides of the torus have the paper's ratio of 4 to 3.
     #[must_use]
     pub fn flock(&self, boids: u32) -> Flock {
         let width = (boids as f32 * self.area_per_boid * 4.0 / 3.0).sqrt();
         self.flock_on(boids, [width, width * 0.75])
     }
 
-    /// The same on a torus of these sides, which must be above 0.
+    /// Like [`Plan::flock`], on a torus with these sides, which must be above 0.
     #[must_use]
     pub fn flock_on(&self, boids: u32, sides: [f32; 2]) -> Flock {
         let start = |boid: u32| {
@@ -140,13 +139,13 @@ impl Plan {
         }
     }
 
-    /// Whether this search is used for so many boids.
+    /// Whether this search is used for this number of boids.
     #[must_use]
     pub const fn is_run(&self, method: Method, boids: u32) -> bool {
         !matches!(method, Method::AllPairs | Method::MutualPairs) || boids <= self.most_by_all_pairs
     }
 
-    /// One line of the table; `None` when it was stopped, since an unfinished one compares nothing.
+    /// One row of the table; `None` if it was stopped, because an incomplete row compares nothing.
     fn row(&self, boids: u32, goes_on: &dyn Fn() -> bool) -> Option<Row> {
         let mut row = Row::new(boids, self.steps);
         for method in Method::ALL {
@@ -188,7 +187,8 @@ impl Plan {
         self.seconds_a_step(|| flock.step_in_parallel(&mut cells)) * 1e6 / f64::from(boids)
     }
 
-    /// Makes the plan's steps; the median of their times, which other work on the machine hardly moves.
+    /// Makes the plan's steps and returns the median of their times, which is robust against other
+    /// load.
     fn seconds_a_step(&self, mut step: impl FnMut()) -> f64 {
         let timed = |_| {
             let begun = Instant::now();
@@ -253,7 +253,7 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // By name, so that a new field is not forgotten.
+        // Destructured, so that a new field cannot be forgotten.
         let Self {
             boids,
             steps,
@@ -299,7 +299,7 @@ impl Experiment for Plan {
     fn report(&self, rows: &[Vec<Row>]) -> Report {
         let mut rows = rows.concat();
         rows.iter_mut().for_each(Row::tell_hashes);
-        // Who stopped the timing does not wait for the picture.
+        // After a stop, no picture is computed.
         let is_complete = rows.len() == self.boids.len();
         let picture = if is_complete { self.picture() } else { Vec::new() };
         Report::new(self, rows, picture)
@@ -322,7 +322,7 @@ impl Flock {
         &self.places
     }
 
-    /// Unit vectors.
+    /// Headings as unit vectors.
     #[must_use]
     pub fn headings(&self) -> &[Vec2<f32>] {
         &self.headings
@@ -344,7 +344,7 @@ impl Flock {
         }
     }
 
-    /// All boids turn at once, then all move. One thread.
+    /// Turns all boids at once, then moves them. One thread.
     pub fn step(&mut self, search: &mut impl Search<f32, 2>) {
         search.rebuild(&self.places);
         let mut scratch = Scratch::default();
@@ -356,7 +356,8 @@ impl Flock {
         self.advance();
     }
 
-    /// The same in the order of the cells, which keeps neighbours in the cache; the same result.
+    /// Like [`Flock::step`], in the order of the cells, which keeps neighbours in the cache; equal
+    /// results.
     pub fn step_by_cells(&mut self, cells: &mut Cells<f32, 2>) {
         cells.rebuild(&self.places);
         let mut scratch = Scratch::default();
@@ -368,7 +369,7 @@ impl Flock {
         self.advance();
     }
 
-    /// The same on all threads; the same result.
+    /// Like [`Flock::step`], on all threads; equal results.
     pub fn step_in_parallel(&mut self, cells: &mut Cells<f32, 2>) {
         cells.rebuild(&self.places);
         let (order, this) = (cells.order(), &*self);
@@ -383,7 +384,6 @@ impl Flock {
         self.advance();
     }
 
-    /// The next heading of a boid.
     fn steer(&self, search: &impl Search<f32, 2>, boid: u32, scratch: &mut Scratch) -> Vec2<f32> {
         let query = self.query(boid);
         search.within(&query, &mut scratch.found);
@@ -419,7 +419,7 @@ impl Flock {
         }
     }
 
-    /// Pairs of neighbours, each counted twice.
+    /// Number of neighbours of all boids; each pair counts twice.
     fn neighbours(&self, search: &impl Search<f32, 2>) -> u64 {
         let mut found = Vec::new();
         let mut count = 0;
@@ -430,10 +430,9 @@ impl Flock {
         count
     }
 
-    /// A hash of places and headings, bit for bit.
+    /// Hash of the bits of all places and headings.
     #[must_use]
     pub fn hash(&self) -> u64 {
-        // FNV-1a.
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         let headings = self.headings.iter().flat_map(|h| [h.x, h.y]);
         let places = self.places.iter().copied().flatten();
@@ -444,7 +443,6 @@ impl Flock {
     }
 }
 
-/// Buffers of a thread.
 #[derive(Debug, Default)]
 struct Scratch {
     found: Vec<Found<f32, 2>>,

@@ -1,4 +1,4 @@
-//! The pictures of the boids experiment: the flock at three moments, and the cost over the number of boids.
+//! Pictures of the boids experiment: the flock at three moments, and the cost by number of boids.
 
 use super::{Method, Report};
 use staya_plot::flock::{Sheet, Snapshot};
@@ -7,7 +7,7 @@ use staya_sim::record::Error;
 use std::path::{Path, PathBuf};
 
 impl Report {
-    /// Draws `flock` and `cost` into `dir`, each as SVG and PNG, and names the files.
+    /// Draws `flock` and `cost` into `dir`, each as SVG and PNG, and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.

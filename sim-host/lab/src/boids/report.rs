@@ -1,4 +1,4 @@
-//! The numbers of the boids experiment, ready to be printed or plotted.
+//! Results of the boids experiment, for tables and plots.
 
 use super::{Flock, Method, Plan};
 use crate::experiment::Maybe;
@@ -7,7 +7,7 @@ use serde::Serialize;
 use staya_sim::metrics::flock::polarisation;
 use std::fmt::{self, Display, Formatter};
 
-/// One search over so many boids.
+/// Time of one search for one number of boids.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Timing {
     /// Name of the search.
@@ -20,23 +20,21 @@ pub struct Timing {
     pub hash: String,
 }
 
-/// So many boids by each search.
+/// All searches for one number of boids.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Boids.
+    /// Number of boids.
     pub boids: u32,
-    /// Steps that were timed.
+    /// Timed steps.
     pub steps: u32,
     /// Mean number of neighbours in the last step.
     pub mean_neighbours: f64,
-    /// One entry per search that was run.
+    /// One entry per search that was used.
     pub timings: Vec<Timing>,
-    /// Lattice cells with all threads, microseconds per boid and step.
+    /// Lattice cells on all threads, microseconds per boid and step.
     pub parallel_us_per_boid: f64,
-    /// Whether all searches gave the same trajectories.
     #[serde(skip)]
     pub(super) is_equal: bool,
-    /// The hash of the first search.
     #[serde(skip)]
     pub(super) hash: u64,
 }
@@ -83,14 +81,14 @@ impl Row {
         }
     }
 
-    /// What a row says of the hashes.
     pub(super) fn settle(&mut self) {
         self.is_equal = self.timings.windows(2).all(|pair| pair[0].hash == pair[1].hash);
         let first = self.timings.first().and_then(|timing| u64::from_str_radix(&timing.hash, 16).ok());
         self.hash = first.unwrap_or_default();
     }
 
-    /// The hashes of what was read of a row; of several that differ the first alone is known.
+    /// Restores the hashes after reading a row, which contains only the first one and whether all
+    /// are equal.
     pub(super) fn tell_hashes(&mut self) {
         let (hash, is_equal) = (format!("{:016x}", self.hash), self.is_equal);
         for (index, timing) in self.timings.iter_mut().enumerate().filter(|(_, timing)| timing.hash.is_empty()) {
@@ -98,13 +96,13 @@ impl Row {
         }
     }
 
-    /// Whether all searches gave the same trajectories.
+    /// Whether all searches gave equal trajectories.
     #[must_use]
     pub const fn is_equal(&self) -> bool {
         self.is_equal
     }
 
-    /// Microseconds per boid and step by this search; `None`: not run.
+    /// Microseconds per boid and step with this search; `None` if it was not used.
     #[must_use]
     pub fn us_per_boid(&self, method: &str) -> Option<f64> {
         let timing = self.timings.iter().find(|timing| timing.method == method);
@@ -115,28 +113,28 @@ impl Row {
 /// The pictured flock at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Moment {
-    /// Steps done.
+    /// Steps made.
     pub step: u32,
     /// Length of the mean heading, 0 to 1.
     pub polarisation: f64,
 }
 
-/// What came out.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Seed of the starts.
     pub seed: u64,
-    /// Above this many boids, all pairs were not looked at.
+    /// Largest number of boids for searches over all pairs.
     pub most_by_all_pairs: u32,
     /// Area per boid.
     pub area_per_boid: f32,
-    /// Distance up to which neighbours count.
+    /// Range of sight.
     pub closest: f32,
     /// Threads of the parallel column.
     pub threads: usize,
     /// Whether all searches gave equal trajectories for every number of boids.
     pub equal: bool,
-    /// By rising number of boids as planned.
+    /// Rows in the order of the plan.
     pub rows: Vec<Row>,
     /// The pictured flock.
     pub moments: Vec<Moment>,

@@ -30,7 +30,7 @@ fn all_searches_and_all_threads_give_the_same_trajectories() {
 }
 
 #[test]
-fn flocks_are_pinned() {
+fn flocks_match_their_recorded_hashes() {
     let mut flock = small().flock(60);
     let mut cells = Cells::new(flock.space, 150.0);
     (0..100).for_each(|_| flock.step(&mut cells));
@@ -38,7 +38,7 @@ fn flocks_are_pinned() {
 }
 
 #[test]
-fn boids_fly_more_alike_than_they_started_and_stay_on_the_torus() {
+fn boids_align_and_stay_on_the_torus() {
     let plan = Plan { picture_steps: 600, ..small() };
     let report = plan.measure().expect("a plan");
     let steps: Vec<u32> = report.moments.iter().map(|moment| moment.step).collect();
@@ -53,7 +53,7 @@ fn boids_fly_more_alike_than_they_started_and_stay_on_the_torus() {
 }
 
 #[test]
-fn all_pairs_are_left_out_above_their_limit_and_an_early_end_keeps_whole_rows() {
+fn all_pairs_are_skipped_above_the_limit_and_an_early_end_keeps_complete_rows() {
     let plan = Plan { most_by_all_pairs: 2, ..small() };
     let rows = plan.carry_out(|done| done < 2).expect("a plan");
     let report = plan.report(&rows);
@@ -67,7 +67,7 @@ fn all_pairs_are_left_out_above_their_limit_and_an_early_end_keeps_whole_rows() 
 }
 
 #[test]
-fn plans_that_make_no_sense_are_refused() {
+fn invalid_plans_are_refused() {
     let refused = |plan: Plan| plan.check().expect_err("refused").to_string();
     let none = Plan { boids: Vec::new(), ..small() };
     assert!(refused(none).contains("one or more"));
@@ -88,7 +88,7 @@ fn plans_that_make_no_sense_are_refused() {
 }
 
 #[test]
-fn pictures_are_left() {
+fn pictures_are_written() {
     let dir = tempfile::tempdir().expect("a folder");
     let report = small().measure().expect("a plan");
     let files = report.draw(dir.path()).expect("drawn");
@@ -97,7 +97,7 @@ fn pictures_are_left() {
 }
 
 #[test]
-fn table_has_a_line_per_number_and_says_what_was_not_run() {
+fn table_has_a_row_per_number_and_marks_skipped_searches() {
     let plan = Plan { boids: vec![4, 9], steps: 2, most_by_all_pairs: 5, picture_steps: 2, ..small() };
     let text = plan.measure().expect("a plan").to_string();
     assert_eq!(text.matches(" yes ").count(), 2);

@@ -100,10 +100,11 @@ pub struct DoorwayArgs {
 
 /// Fourteen ways to get in each other's way: who arrives, how late, who overlaps.
 ///
-/// blocks, four_ways, tee, door, doors and corridor: groups among walls. parked_door: a crowd that goes through a door to
-/// places among others that stand behind it. parked: a goal behind a row of robots that stand.
-/// mixed: five sizes and three speeds. intruder: a vehicle that gives way to nobody. dead_end: a bag of walls, by routing.
-/// sphere: in space. blackout: the radio is dead while they meet. flock: an alpha flock between two balls.
+/// blocks, four_ways, tee, door, doors and corridor: groups among walls. parked_door: a crowd that
+/// goes through a door to places among others that stand behind it. parked: a goal behind a row of
+/// robots that stand. mixed: five sizes and three speeds. intruder: a vehicle that gives way to
+/// nobody. dead_end: a bag of walls, by routing. sphere: in space. blackout: the radio is dead
+/// while they meet. flock: an alpha flock between two balls.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct CrossingArgs {
@@ -119,7 +120,8 @@ pub struct CrossingArgs {
     /// How long the radio is dead in the case "blackout", seconds.
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     blackout: f64,
-    /// Everything so many times as large: bodies, ways, walls, speeds, noise and how far the radio reaches.
+    /// Everything so many times as large: bodies, ways, walls, speeds, noise and how far the radio
+    /// reaches.
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     size: f64,
     /// Move each start at random by up to this along both axes, metres.
@@ -136,7 +138,7 @@ pub struct CrossingArgs {
 }
 
 impl CrossingArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> cases::Plan {
         cases::Plan {
             cases: if self.cases.is_empty() { cases::Case::ALL.to_vec() } else { self.cases.clone() },
@@ -156,7 +158,6 @@ impl CrossingArgs {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Numbers(Vec<u32>);
 
-/// Reads numbers and spans.
 fn numbers(text: &str) -> Result<Numbers, String> {
     let wrong = || format!("\"{text}\": give numbers and spans of them, as in 4,6,8 or 2..64");
     let number = |word: &str| match word.trim().parse() {
@@ -182,7 +183,7 @@ fn numbers(text: &str) -> Result<Numbers, String> {
 }
 
 impl SwapArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> swap::Plan {
         swap::Plan {
             robots: self.robots.0.clone(),
@@ -202,7 +203,7 @@ impl SwapArgs {
 }
 
 impl DoorwayArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> doorway::Plan {
         doorway::Plan {
             widths_m: self.widths.clone(),
@@ -226,7 +227,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_and_spans_are_read_in_any_order() {
+    fn numbers_and_ranges_are_parsed_in_any_order() {
         assert_eq!(numbers("8,2..4, 3"), Ok(Numbers(vec![2, 3, 4, 8])));
         for bad in ["", "0", "4..2", "..", "a", "1,", "-3", "2..1000000"] {
             assert!(numbers(bad).is_err(), "{bad}");

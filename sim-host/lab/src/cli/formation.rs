@@ -11,7 +11,8 @@ use staya_controller::shuffle::Sharpness;
 use staya_sim::terrain::generate::Hills;
 use std::path::PathBuf;
 
-/// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8, figure 6).
+/// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8,
+/// figure 6).
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct FormationArgs {
@@ -42,7 +43,8 @@ pub struct FormationArgs {
         value_enum
     )]
     other_laws: Vec<Law>,
-    /// Sum of deviations from all neighbours found that the paper's law takes for too far (much more than r0), cells.
+    /// Sum of deviations from all neighbours found that the paper's law takes for too far (much
+    /// more than r0), cells.
     #[arg(long, value_name = "CELLS")]
     paper_halt: Option<f64>,
     /// Sum that it takes for near enough again (about r0), cells.
@@ -90,7 +92,8 @@ pub struct FormationArgs {
     /// What natural land is taken to mean; the paper says it in one sentence (docs/limits.md).
     #[arg(long, default_value = "even", value_parser = options::hills())]
     hills: Hills,
-    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half as often; 0 never draws.
+    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half
+    /// as often; 0 never draws.
     #[arg(long, value_name = "TICKS", default_value = "0", value_parser = options::shuffle)]
     shuffle: Sharpness,
     /// How the distance to an obstacle is measured.
@@ -108,10 +111,10 @@ pub struct FormationArgs {
 }
 
 impl FormationArgs {
-    /// What is to be done.
+    /// Converts the options to a plan.
     ///
     /// # Errors
-    /// A lag out of range.
+    /// A lag is out of range.
     pub fn plan(&self) -> Result<Plan> {
         let mut formation = FormationParams {
             eps: self.eps,
@@ -154,7 +157,6 @@ impl FormationArgs {
     }
 }
 
-/// A length on the command line in units of the grid.
 fn units(option: &str, cells: Option<f64>) -> Result<Option<u16>> {
     let Some(cells) = cells else { return Ok(None) };
     let units = cells * f64::from(UNIT);

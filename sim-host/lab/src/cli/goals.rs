@@ -4,15 +4,17 @@ use crate::goals::Plan;
 use crate::goals::tune::Tuning;
 use clap::Args;
 
-/// The goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order over K1 / K2 and R_nbh.
+/// The goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order over K1 / K2
+/// and R_nbh.
 ///
-/// All lists are crossed with each other; a further table has the K1 / K2 from which on robots are no longer a group.
+/// All lists are crossed with each other; a further table has the K1 / K2 from which on robots are
+/// no longer a group.
 #[derive(Args, Clone, Debug)]
 pub struct GoalsArgs {
     #[command(flatten)]
     pub plan: Plan,
-    /// Instead, search K2 / K1, K3 / K1 and R_nbh for each scene: those whose --seeds runs cost least, judged on
-    /// other runs.
+    /// Instead, search K2 / K1, K3 / K1 and R_nbh for each scene: those whose --seeds runs cost
+    /// least, judged on other runs.
     #[arg(long, conflicts_with_all = ["k1", "k2", "k3", "neighborhoods_m"])]
     tune: bool,
     /// Particles of the search.
@@ -27,7 +29,7 @@ pub struct GoalsArgs {
 }
 
 impl GoalsArgs {
-    /// The search, if that is asked for.
+    /// Plan of the search for gains, if requested.
     pub fn tuning(&self) -> Option<Tuning> {
         let &Self { particles, moves, judged, .. } = self;
         self.tune.then(|| Tuning { plan: self.plan.clone(), particles, moves, judged })

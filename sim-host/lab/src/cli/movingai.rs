@@ -15,21 +15,22 @@ pub struct MovingAiArgs {
     /// The map, if it is not beside the scenario under the name that the scenario gives.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Radius of the robot's window in cells, or "map": the robot sees everything, and the lengths that it
-    /// finds are compared with the benchmark's optimal ones.
+    /// Radius of the robot's window in cells, or "map": the robot sees everything, and the lengths
+    /// that it finds are compared with the benchmark's optimal ones.
     #[arg(long, value_name = "CELLS|map", default_value = "5", value_parser = sight)]
     radius: Sight,
-    /// How many visited cells the robot remembers, which gets it out of dead ends larger than its window.
+    /// How many visited cells the robot remembers, which gets it out of dead ends larger than its
+    /// window.
     #[arg(long, value_name = "CELLS", default_value = "64", value_enum)]
     visits: Memory,
-    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to its goal; 0 leaves
-    /// it the walls to follow.
+    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to
+    /// its goal; 0 leaves it the walls to follow.
     #[arg(long, value_name = "CELLS", default_value = "256", value_enum)]
     learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
-    /// Send groups of robots, each with a query of its own, through the whole simulator, with maps shared over the radio and
-    /// without; results go to the folder's `share`.
+    /// Send groups of robots, each with a query of its own, through the whole simulator, with maps
+    /// shared over the radio and without; results go to the folder's `share`.
     #[arg(long, conflicts_with_all = ["visits", "learned", "replan", "exit"])]
     share: bool,
     /// Robots of a group.
@@ -41,7 +42,8 @@ pub struct MovingAiArgs {
     /// Groups of each size.
     #[arg(long, default_value_t = 50, requires = "share")]
     runs: u32,
-    /// Equal seeds give equal results; what robots make of maps was chosen on seed 1 of natural land.
+    /// Equal seeds give equal results; what robots make of maps was chosen on seed 1 of natural
+    /// land.
     #[arg(long, default_value_t = 3, requires = "share")]
     seed: u64,
     /// Folder for the rows.
@@ -49,7 +51,6 @@ pub struct MovingAiArgs {
     pub out: PathBuf,
 }
 
-/// Reads a window radius.
 fn sight(word: &str) -> Result<Sight, String> {
     if word == "map" {
         return Ok(Sight::Map);
@@ -61,10 +62,10 @@ fn sight(word: &str) -> Result<Sight, String> {
 }
 
 impl MovingAiArgs {
-    /// What is to be done with groups, if that is asked for.
+    /// Plan for groups of robots, if requested.
     ///
     /// # Errors
-    /// As [`Self::plan`].
+    /// Those of [`Self::plan`].
     pub fn share(&self) -> Result<Option<GroupPlan>> {
         if !self.share {
             return Ok(None);
@@ -73,10 +74,10 @@ impl MovingAiArgs {
         Ok(Some(GroupPlan { robots: self.plan()?, groups, losses, runs: self.runs, seed: self.seed }))
     }
 
-    /// What is to be done.
+    /// Converts the options to a plan.
     ///
     /// # Errors
-    /// A file that cannot be read, a scenario of another map.
+    /// A file cannot be read, or the scenario belongs to another map.
     pub fn plan(&self) -> Result<Plan> {
         Ok(Plan {
             benchmark: Benchmark::load(&self.scen, self.map.as_deref())?,
@@ -84,7 +85,7 @@ impl MovingAiArgs {
                 sight: self.radius,
                 memory: self.visits,
                 learning: self.learned,
-                // The sight is the radius.
+                // The sight determines the radius.
                 params: self.route.params(1),
                 replan: self.route.replan,
             },
@@ -97,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn radius_is_a_number_or_the_map() {
+    fn radius_is_a_number_or_the_word_map() {
         assert_eq!(sight("5"), Ok(Sight::Radius(5)));
         assert_eq!(sight("255"), Ok(Sight::Radius(255)));
         assert_eq!(sight("map"), Ok(Sight::Map));

@@ -16,8 +16,8 @@ use std::path::PathBuf;
 enum LandArg {
     /// Hills of mud around the obstacles.
     Natural,
-    /// Cells without any order: one point per number of obstacles with the cells of such natural land shuffled
-    /// (equal entropy), and a last one with every cell of any class.
+    /// Cells without any order: one point per number of obstacles with the cells of such natural
+    /// land shuffled (equal entropy), and a last one with every cell of any class.
     Uniform,
 }
 
@@ -35,7 +35,7 @@ enum CoefficientArg {
 }
 
 impl CoefficientArg {
-    /// The coefficient, and the values in sixteenths that show what it does.
+    /// The coefficient and its default values in a sweep, sixteenths.
     const fn with_values(self) -> (Coefficient, &'static [u16]) {
         match self {
             Self::A0 => (Coefficient::A0, &[0, 4, 8, 12, 16, 24, 32, 64]),
@@ -46,7 +46,8 @@ impl CoefficientArg {
     }
 }
 
-/// Windowed routing against the global optimum on random land (Kuznetsov, section 5, figures 2 to 4).
+/// Windowed routing against the global optimum on random land (Kuznetsov, section 5, figures 2 to
+/// 4).
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct RouteArgs {
@@ -85,7 +86,8 @@ pub struct RouteArgs {
     /// What natural land is taken to mean; the paper says it in one sentence (docs/limits.md).
     #[arg(long, default_value = "even", value_parser = options::hills())]
     hills: Hills,
-    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half as often; 0 never draws.
+    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half
+    /// as often; 0 never draws.
     #[arg(long, value_name = "TICKS", default_value = "0", value_parser = options::shuffle)]
     shuffle: Sharpness,
     /// How the distance to an obstacle is measured.
@@ -97,15 +99,17 @@ pub struct RouteArgs {
     /// Equal seeds give equal results; parameters were chosen on seed 1.
     #[arg(long, default_value_t = 2, default_value_if("share", "true", "3"))]
     seed: u64,
-    /// Repeat everything for other values of these coefficients, one at a time, on the same landscapes.
+    /// Repeat everything for other values of these coefficients, one at a time, on the same
+    /// landscapes.
     #[arg(long, value_enum, value_name = "a0,a1,a2,a3", value_delimiter = ',')]
     sweep: Vec<CoefficientArg>,
     /// The values to sweep over [default: a selection for each coefficient].
     #[arg(long, value_name = "V,V,...", value_delimiter = ',', value_parser = gain, requires = "sweep")]
     values: Vec<Gain>,
-    /// Send groups of robots that share maps over the radio, through the whole simulator; results go to the folder's `share`. 50
-    /// landscapes per point, obstacles 70,100,130,160 and seed 3 unless given; nothing else of the above but radius, size, classes,
-    /// hills and coefficients counts.
+    /// Send groups of robots that share maps over the radio, through the whole simulator; results
+    /// go to the folder's `share`. 50 landscapes per point, obstacles 70,100,130,160 and seed 3
+    /// unless given; nothing else of the above but radius, size, classes, hills and coefficients
+    /// counts.
     #[arg(long, conflicts_with_all = ["sweep", "parked", "terrain", "shuffle", "replan", "exit"])]
     share: bool,
     /// Robots of a group.
@@ -133,7 +137,7 @@ pub struct RouteArgs {
 }
 
 impl RouteArgs {
-    /// What is to be done with shared maps, if that is asked for.
+    /// Plan for shared maps, if requested.
     pub fn share(&self) -> Option<share::Plan> {
         let route =
             RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };
@@ -153,7 +157,7 @@ impl RouteArgs {
         })
     }
 
-    /// What is to be done.
+    /// Converts the options to a plan.
     pub fn plan(&self) -> Plan {
         let params =
             RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };
@@ -211,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_are_the_papers_experiment() {
+    fn defaults_match_the_experiment_of_the_paper() {
         assert_eq!(read(&[]).unwrap().plan(), Plan::default());
     }
 
@@ -267,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_are_left_and_an_early_end_is_told() {
+    fn pictures_are_written_and_an_early_end_is_reported() {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("a/b");
         let folder = out.to_str().unwrap();

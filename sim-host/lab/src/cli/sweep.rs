@@ -18,15 +18,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// The merged rows, in the folder of results.
 const ROWS: &str = "rows.csv";
-/// Their means, medians and intervals.
 const AGGREGATES: &str = "aggregates.csv";
-/// What the columns of the merged rows are.
 const SCHEMA: &str = "rows.schema.json";
 /// Most points in the table on standard output.
 const SHOWN: usize = 40;
-/// Most figures in it.
+/// Most figures in that table.
 const FIGURES: usize = 4;
 
 /// Run a scenario thousands of times, with other values in its fields.
@@ -37,7 +34,8 @@ pub struct SweepArgs {
     command: Option<SweepCommand>,
     #[command(flatten)]
     target: TargetArgs,
-    /// Show how many runs there are, how long they will take and how much they will write; tries three of them.
+    /// Show how many runs there are, how long they will take and how much they will write; tries
+    /// three of them.
     #[arg(long)]
     dry_run: bool,
     /// Do one of N equal parts only, as in 3/8; `staya sweep merge` puts the parts together.
@@ -130,14 +128,15 @@ struct SlurmArgs {
 struct ParallelArgs {
     #[command(flatten)]
     script: ScriptArgs,
-    /// A host that ssh reaches, as GNU parallel has it (8/name: eight at once; `:` is this machine); may be repeated.
+    /// A host that ssh reaches, as GNU parallel has it (8/name: eight at once; `:` is this
+    /// machine); may be repeated.
     #[arg(long = "host", value_name = "HOST")]
     hosts: Vec<String>,
 }
 
 impl TargetArgs {
     fn load(&self) -> Result<(Plan, PathBuf)> {
-        // clap demands it.
+        // Clap guarantees a plan.
         let plan = Plan::load(self.plan.as_deref().unwrap_or(Path::new("")))?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&plan.name));
         Ok((plan, out))
@@ -148,7 +147,7 @@ impl SweepArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// A plan that cannot be read or is wrong, rows that do not go together, files that cannot be written.
+    /// The plan cannot be read or is wrong, rows are inconsistent, or a file cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.command {
             Some(SweepCommand::Merge(args)) => args.run(global),
@@ -237,7 +236,6 @@ impl SweepArgs {
     }
 }
 
-/// Says what was unusual.
 fn tell(course: &Course) {
     if course.torn > 0 {
         eprintln!("{} bytes of a row that had been cut off are gone; its run was done again", course.torn);
@@ -292,7 +290,7 @@ impl PlotArgs {
 impl ScriptArgs {
     fn with(&self, make: impl FnOnce(&Plan, &Job<'_>) -> Result<String, SweepError>) -> Result<String> {
         let (plan, out) = self.target.load()?;
-        // Jobs begin in folders of their own.
+        // Jobs start in other folders.
         let absolute = |path: &Path| std::path::absolute(path);
         let program = match &self.program {
             Some(program) => program.clone(),
@@ -304,16 +302,15 @@ impl ScriptArgs {
     }
 }
 
-/// What came of a sweep, for programs and for readers.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     plan: &'a str,
     fingerprint: String,
-    /// Of the plan or the shard.
+    /// Runs of the plan or of the shard.
     runs: u64,
     done_before: u64,
     done_now: u64,
-    /// Rows that stood in two files, alike.
+    /// Rows found in two files, identically.
     doubles: u64,
     interrupted: bool,
     wall_seconds: Option<f64>,
@@ -325,7 +322,6 @@ struct Report<'a> {
     source: &'a Plan,
 }
 
-/// A point and its figures.
 #[derive(Debug, Serialize)]
 struct PointFigures {
     runs: usize,
@@ -353,7 +349,6 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Writes rows, aggregates and pictures.
     fn take(&mut self, merged: &Merged) -> Result<()> {
         let (plan, out) = (self.source, self.out);
         make_dir(out)?;
@@ -409,7 +404,7 @@ impl<'a> Report<'a> {
         Ok(text)
     }
 
-    /// The first figures of each point: mean and half the width of its 95 % interval.
+    /// Table of the first figures of each point: mean, and half the width of its 95 % interval.
     fn points_table(&self, text: &mut String) -> std::fmt::Result {
         let plan = self.source;
         let measures = &plan.measures()[..plan.measures().len().min(FIGURES)];
@@ -433,7 +428,6 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Seconds as a person says them.
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{s:.1} s"),
@@ -442,7 +436,6 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Bytes as a person says them.
 fn size(bytes: u64) -> String {
     match bytes {
         b if b < 10_000 => format!("{b} bytes"),

@@ -1,7 +1,7 @@
-//! Fourteen ways to get in each other's way, one table: [`Case`].
+//! Fourteen scenes in which robots obstruct each other, and their common table: [`Case`].
 //!
-//! Where the same kind of scene is known of RVO2's library (plain ORCA with everybody's state), the report says what
-//! became of it there; sizes and walls are not those of these runs to the centimetre.
+//! If a similar scene is known from the RVO2 library (plain ORCA with perfect state), the report
+//! gives its outcome there. Sizes and walls are only approximately equal.
 
 mod scene;
 
@@ -33,7 +33,8 @@ pub enum Case {
     Door,
     /// Two crowds at a wall with two such doors.
     Doors,
-    /// A crowd that goes through a door to places among and beyond robots that are parked behind it.
+    /// A crowd that goes through a door to places among and beyond robots that are parked behind
+    /// it.
     ParkedDoor,
     /// Two groups in a corridor in which two robots pass each other.
     Corridor,
@@ -54,7 +55,7 @@ pub enum Case {
 }
 
 impl Case {
-    /// All.
+    /// All cases.
     pub const ALL: [Self; 14] = [
         Self::Blocks,
         Self::FourWays,
@@ -72,7 +73,7 @@ impl Case {
         Self::Flock,
     ];
 
-    /// As the command line and files call it.
+    /// Name in options and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -93,7 +94,7 @@ impl Case {
         }
     }
 
-    /// Robots of a group, or of all where there are none, unless the plan says otherwise.
+    /// Default number of robots per group, or of all robots in cases without groups.
     #[must_use]
     pub const fn robots(self) -> u32 {
         match self {
@@ -110,7 +111,6 @@ impl Case {
         }
     }
 
-    /// What became of it with RVO2, where that is known.
     const fn rvo2(self) -> &'static str {
         match self {
             Self::FourWays | Self::Tee => "20 of 20 in 87 to 95 s",
@@ -122,26 +122,26 @@ impl Case {
     }
 }
 
-/// Which cases to run.
+/// Parameters of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Which.
+    /// Cases to run.
     pub cases: Vec<Case>,
-    /// Robots of a group, or of all where there are none; `None`: [`Case::robots`].
+    /// Robots per group, or of all in cases without groups; `None`: [`Case::robots`].
     pub robots: Option<u32>,
-    /// Each start is off by up to this along both axes, metres.
+    /// Largest random displacement of a start along both axes, metres.
     pub noise_m: f64,
     /// Runs of each case.
     pub seeds: u32,
     /// The first seed.
     pub seed: u64,
-    /// A run ends after so many seconds.
+    /// Time limit of a run, seconds.
     pub longest_s: f64,
-    /// How long the radio is dead in [`Case::Blackout`], seconds.
+    /// Duration of the radio failure in [`Case::Blackout`], seconds.
     pub blackout_s: f64,
-    /// How many times as large as else everything is: bodies, ways, walls, speeds, noise and how far the radio reaches.
+    /// Scale factor of bodies, routes, walls, speeds, noise and radio range.
     pub size: f64,
-    /// What else holds.
+    /// Conditions of all runs.
     pub conditions: Conditions,
 }
 
@@ -161,32 +161,34 @@ impl Default for Plan {
     }
 }
 
-/// One run.
+/// Result of one run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Crossing {
-    /// Which case.
+    /// The case.
     pub case: Case,
     /// Seed of noise and losses.
     pub seed: u64,
-    /// Robots that have a goal.
+    /// Robots with a goal.
     pub robots: usize,
-    /// Robots at their goals at the end; of a flock those that are past the balls.
+    /// Robots at their goals at the end; in a flock, robots past the balls.
     pub arrived: usize,
-    /// Seconds until the last one had arrived; `None`: not all did, or it is a flock, which goes on.
+    /// Seconds until the last robot arrived; `None` if not all did, or for a flock, which does not
+    /// stop.
     pub last_s: Option<f64>,
-    /// The largest of the times of robots that have a way to go over their own free times (way / speed).
+    /// Largest ratio of a robot's travel time to its free time (distance / speed), over robots with
+    /// a distance to travel.
     pub time_ratio: Option<f64>,
-    /// Overlaps of bodies, and of bodies with walls, summed over ticks.
+    /// Overlaps between bodies and with walls, summed over ticks.
     pub overlaps: u64,
-    /// The deepest of them, metres; 0: none.
+    /// Depth of the deepest overlap, metres; 0 without overlaps.
     pub deepest_m: f64,
     /// Overlaps with the intruder, summed over ticks.
     pub intruder_overlaps: u64,
-    /// Least gap between two bodies, metres.
+    /// Smallest gap between two bodies, metres.
     pub least_gap_m: Option<f64>,
-    /// Connected parts of a flock at the end.
+    /// Connected components of a flock at the end.
     pub parts: Option<usize>,
-    /// Fingerprint of the whole trace.
+    /// Trace hash.
     #[serde(skip)]
     pub hash: u64,
 }
@@ -209,16 +211,16 @@ impl Record for Crossing {
     }
 }
 
-/// What came of it.
+/// Results of the experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What held.
+    /// Conditions of all runs.
     pub conditions: Conditions,
     /// Noise of the starts, metres.
     pub noise_m: f64,
-    /// How many times as large as else everything was, that and the speed above too.
+    /// Scale factor, which applies to the speed and the noise above too.
     pub size: f64,
-    /// Each run, by case and seed.
+    /// All runs, by case and seed.
     pub runs: Vec<Crossing>,
 }
 
@@ -245,7 +247,7 @@ impl Plan {
             Case::Flock => {
                 let range_m = 1.2 * scene::SPACING_M;
                 let measure = FlockMeter::<3>::new(scene::SPACING_M, range_m, Space::OPEN).look(&places, &velocities);
-                // Behind the middles of the balls by their radius.
+                // A robot is past the balls if it is one ball radius behind their centres.
                 (places.iter().filter(|[x, ..]| *x > 7.0).count(), measure.map(|measure| measure.components))
             }
             _ => (times.iter().flatten().count(), None),
@@ -267,13 +269,12 @@ impl Plan {
     }
 }
 
-/// Whether each robot has somewhere to go.
 fn has_goal(scenario: &Scenario) -> impl Iterator<Item = bool> {
     scenario.plane.iter().flat_map(|plane| plane.starts.iter().map(|start| !start.places.is_empty()))
 }
 
-/// How long each robot that has a goal needs for its way if nobody and nothing is in it, seconds; 0 for one that is
-/// where it wants to be.
+/// Time that each robot with a goal would need without obstacles and other robots, seconds; 0 for a
+/// robot that starts at its goal.
 fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
     let plane = scenario.plane.iter();
     plane.flat_map(|plane| {
@@ -284,7 +285,7 @@ fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
                 way_m += crate::arena::distance_m(from, target.position_m);
                 from = target.position_m;
             }
-            // Who starts off by the noise alone has no way either.
+            // A robot displaced by the noise alone has no distance to travel.
             if way_m > 0.1 { way_m / plane.group(index).cruise_mps } else { 0.0 }
         })
     })
@@ -304,7 +305,7 @@ impl Experiment for Plan {
         ensure!(safety != SafetyKind::PushOut, "--safety push-out keeps no distance from walls; give another one");
         let robots = self.robots.unwrap_or(1);
         ensure!((1..=1000).contains(&robots), "--robots {robots} is out of range: give 1 to 1000");
-        // The bag of the dead end and the row of the parked ones are full then.
+        // More robots do not fit the bag of the dead end and the row of parked robots.
         let is_full = |case: &Case| matches!(case, Case::DeadEnd | Case::Parked) && robots > 30;
         ensure!(!self.cases.iter().any(is_full), "--robots {robots} find no room in dead_end or parked: give 1 to 30");
         ensure!((0.1..=10.0).contains(&self.size), "--size {} is out of range: give 0.1 to 10", self.size);

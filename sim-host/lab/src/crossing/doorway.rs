@@ -1,4 +1,4 @@
-//! Two crowds that want through one gap in a wall, in opposite directions.
+//! Two crowds that pass one gap in a wall in opposite directions.
 
 use super::{Conditions, gap, picture, run};
 use crate::experiment::rows::{Each, Jobs, Record};
@@ -15,35 +15,33 @@ use std::path::{Path, PathBuf};
 
 /// Radius of a robot, metres.
 pub const RADIUS_M: f64 = 0.3;
-/// Distance of the robots of a crowd from each other at the start and at their goals, along and across, metres: between those
-/// who are there another one finds through.
+/// Distance between the robots of a crowd at the start and at their goals, along and across,
+/// metres: another robot can pass between robots that have arrived.
 const SPACING_M: [f64; 2] = [1.2, 1.6];
-/// Distance of the first column from the wall, metres: who is at its goal does not stand in the way of the door.
+/// Distance of the first column from the wall, metres: robots at their goals do not block the door.
 const FRONT_M: f64 = 2.5;
-/// Robots in a row.
 const ROW: u32 = 4;
-/// Half the wall's length, metres: nobody goes round it.
+/// Half the wall's length, metres: too long to go around.
 const WALL_M: f64 = 50.0;
 
-/// Keeps the draws of this module apart from all others.
 const NOISE: u32 = 0x0045_0001;
 
-/// Which doorways to run.
+/// Parameters of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Widths of the gap, metres.
     pub widths_m: Vec<f64>,
     /// Robots on each side.
     pub robots: u32,
-    /// Each start is off by up to this along both axes, metres.
+    /// Largest random displacement of a start along both axes, metres.
     pub noise_m: f64,
     /// Runs of each width.
     pub seeds: u32,
     /// The first seed.
     pub seed: u64,
-    /// A run ends after so many seconds.
+    /// Time limit of a run, seconds.
     pub longest_s: f64,
-    /// What else holds.
+    /// Conditions of all runs.
     pub conditions: Conditions,
 }
 
@@ -61,7 +59,7 @@ impl Default for Plan {
     }
 }
 
-/// One run.
+/// Result of one run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Passage {
     /// Width of the gap, metres.
@@ -72,21 +70,21 @@ pub struct Passage {
     pub robots: usize,
     /// Robots at their goals at the end.
     pub arrived: usize,
-    /// Robots on the other side of the wall at the end or at their goals, from the west and from the east.
+    /// Robots past the wall at the end or at their goals, from the west and from the east.
     pub through: [usize; 2],
-    /// Seconds until the last one had arrived; `None`: not all did.
+    /// Seconds until the last robot arrived; `None` if not all did.
     pub last_s: Option<f64>,
-    /// Time of the last arrival over the longest free time (distance / speed).
+    /// Time of the last arrival divided by the longest free time (distance / speed).
     pub time_ratio: Option<f64>,
-    /// How often the direction in the gap changed: 1 for one crowd after the other.
+    /// Changes of direction in the gap: 1 if one crowd passes after the other.
     pub turns: u32,
-    /// Least gap between two bodies, metres.
+    /// Smallest gap between two bodies, metres.
     pub least_gap_m: Option<f64>,
-    /// Least gap between a body and the wall, metres.
+    /// Smallest gap between a body and the wall, metres.
     pub least_wall_gap_m: Option<f64>,
-    /// Overlaps of bodies, and of bodies with the wall, summed over ticks.
+    /// Overlaps between bodies and with the wall, summed over ticks.
     pub overlaps: u64,
-    /// Fingerprint of the whole trace.
+    /// Trace hash.
     #[serde(skip)]
     pub hash: u64,
 }
@@ -111,19 +109,19 @@ impl Record for Passage {
     }
 }
 
-/// What came of it.
+/// Results of the experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What held.
+    /// Conditions of all runs.
     pub conditions: Conditions,
     /// Noise of the starts, metres.
     pub noise_m: f64,
-    /// Each run, by width and seed.
+    /// All runs, by width and seed.
     pub runs: Vec<Passage>,
 }
 
 impl Plan {
-    /// The scenario of one run: odd numbers start in the west, even ones in the east.
+    /// Builds the scenario of one run. Odd robot ids start in the west, even ones in the east.
     #[must_use]
     pub fn scenario(&self, width_m: f64, seed: u64) -> Scenario {
         let starts = (0..2 * self.robots)
@@ -136,7 +134,7 @@ impl Plan {
                     [x, row * SPACING_M[1]]
                 };
                 let [x, y] = place(number);
-                // Who starts in front goes to the back, so that nobody stands in the way of those behind.
+                // The front robot gets the rearmost goal, so that it does not block those behind.
                 let [goal_x, goal_y] = place(self.robots - 1 - number);
                 let mut rng = Rng::keyed(seed, NOISE, index, 0);
                 let mut noise = || (f64::from(rng.below(20_001)) / 1e4 - 1.0) * self.noise_m;
@@ -186,7 +184,7 @@ impl Plan {
         })
     }
 
-    /// Four moments of the first run through a gap.
+    /// Four moments of the first run with this width.
     #[must_use]
     pub fn picture(&self, width_m: f64) -> Sheet {
         let title = format!("{0} and {0} robots, a door of {width_m} m, seed {1}", self.robots, self.seed);
@@ -248,7 +246,7 @@ impl Experiment for Plan {
     }
 
     fn draw(&self, _: &[Vec<Passage>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-        // Who stopped the runs does not wait for others.
+        // After a stop, no further runs are made for pictures.
         let widths_m = if report.runs.len() == self.total() { &self.widths_m[..] } else { &[] };
         let mut pictures = Vec::new();
         for &width_m in widths_m {
@@ -258,13 +256,12 @@ impl Experiment for Plan {
     }
 }
 
-/// Who goes through the gap, and in which order.
+/// Order of the robots that pass the gap.
 struct Flow {
-    /// The side on which each robot started.
     sides: Vec<f64>,
-    /// Who has crossed the wall's line.
+    /// Whether each robot has crossed the wall's line.
     crossed: Vec<bool>,
-    /// The side from which the last one came.
+    /// Starting side of the last robot that crossed.
     last: f64,
     turns: u32,
 }
@@ -279,7 +276,7 @@ impl Flow {
         for (robot, row) in robots.enumerate() {
             let x = row.motion.position_m[0];
             let side = self.sides[robot];
-            // By a whole radius, so that who is pushed back and forth in the gap counts once.
+            // By a whole radius, so that a robot pushed back and forth in the gap counts once.
             let is_over = x * side < -RADIUS_M;
             if is_over && !self.crossed[robot] {
                 self.crossed[robot] = true;

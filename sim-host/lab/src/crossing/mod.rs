@@ -1,8 +1,9 @@
-//! Robots that get in each other's way as badly as can be: [`swap`] over a circle, [`doorway`] through a gap, and
-//! fourteen other [`cases`].
+//! Scenes in which robots obstruct each other: [`swap`] over a circle, [`doorway`] through a gap,
+//! and fourteen other [`cases`].
 //!
-//! Every robot is a whole controller behind ORCA and knows of the others what the radio delivers: places rounded to a
-//! millimetre, one tick old. Plain ORCA jams in all of these.
+//! Every robot is a complete controller with ORCA. It knows other robots only from received
+//! beacons: positions rounded to a millimetre, one tick old. Plain ORCA deadlocks in all of these
+//! scenes.
 
 pub mod cases;
 pub mod doorway;
@@ -26,30 +27,29 @@ use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::world::plane::Abilities;
 use std::ops::ControlFlow;
 
-/// What the runs have in common.
+/// Conditions of all runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Conditions {
-    /// Time from one decision to the next, seconds: overlaps depend on it.
+    /// Time between two decisions, seconds; overlaps depend on it.
     pub step_s: f64,
     /// Highest speed, m/s.
     pub speed_mps: f64,
-    /// How far the radio reaches, metres. Robots that head for each other must hear of each other a horizon before they meet.
+    /// Range of the radio, metres. Robots on collision course must receive each other at least one
+    /// horizon before they meet.
     pub range_m: f64,
-    /// Share of packets that get lost.
+    /// Share of packets lost.
     pub loss: f64,
-    /// What keeps robots apart.
+    /// Safety layer.
     pub safety: SafetyKind,
 }
 
 impl Default for Conditions {
-    /// 0.05 s, 0.5 m/s, 3 m, no losses, ORCA.
     fn default() -> Self {
         Self { step_s: 0.05, speed_mps: 0.5, range_m: 3.0, loss: 0.0, safety: SafetyKind::Orca }
     }
 }
 
 impl Conditions {
-    /// Whether robots can be run so, and start so far off.
     fn check(&self, noise_m: f64) -> Result<()> {
         for (name, value, low, high) in [
             ("--noise", noise_m, 0.0, 100.0),
@@ -63,7 +63,6 @@ impl Conditions {
         Ok(())
     }
 
-    /// The same as parameters of rows.
     fn given(&self, noise_m: f64) -> Vec<(&'static str, Value)> {
         let Self { step_s, speed_mps, range_m, loss, safety } = *self;
         vec![
@@ -76,26 +75,26 @@ impl Conditions {
         ]
     }
 
-    /// Robots of a size that go to places, and count as being there at a distance; metres.
+    /// Robots of this radius that go to places and count as arrived within the tolerance; metres.
     fn group(&self, radius_m: f64, tolerance_m: f64) -> RobotGroup {
         self.group_at(self.speed_mps, radius_m, tolerance_m)
     }
 
-    /// The same of another highest speed, m/s.
+    /// Like `group`, with another highest speed, m/s.
     fn group_at(&self, max_speed_mps: f64, radius_m: f64, tolerance_m: f64) -> RobotGroup {
         let abilities = Abilities { max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
         let group = RobotGroup::new(abilities, radius_m).to_places(tolerance_m);
         group.behind(self.safety, AvoidParams::default(), PushOutParams::new(1.0))
     }
 
-    /// The scenario of one run that is given `longest_s` seconds.
+    /// Scenario of one run with a time limit.
     fn scenario(&self, name: &str, seed: u64, longest_s: f64, setup: PlaneSetup) -> Scenario {
         let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = libm::ceil(longest_s / self.step_s) as u32;
         Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
     }
 
-    /// Seconds after which each robot had arrived, and stayed.
+    /// Time at which each robot had arrived for good, seconds.
     fn arrivals_s(&self, outcome: &Outcome) -> Vec<Option<f64>> {
         let seconds = |units: u64| units as f64 / f64::from(UNIT) * self.step_s;
         let times = outcome.arrival_times.iter();
@@ -103,8 +102,8 @@ impl Conditions {
     }
 }
 
-/// Runs a scenario until all that have a goal have arrived; `see` sees the robots before the first tick and after each.
-/// `None` when `goes_on` says so before its end.
+/// Runs a scenario until all robots with a goal have arrived. `see` is called with the robots
+/// before the first tick and after each. `None` if `goes_on` stops the run.
 fn run(
     scenario: &Scenario,
     goes_on: &dyn Fn() -> bool,
@@ -128,7 +127,6 @@ fn run(
     (!stopped).then_some(outcome)
 }
 
-/// Four moments of a run, with this title.
 fn picture(title: &str, scenario: &Scenario) -> Sheet {
     let in_memory = "a recorder without files cannot fail";
     let mut recorder = Recorder::in_memory(Options::default());
@@ -142,7 +140,7 @@ fn picture(title: &str, scenario: &Scenario) -> Sheet {
     motion_sheet(title, setup, None, &history)
 }
 
-/// Least gap of a run, metres; `None` when nobody came near.
+/// Smallest gap of a run, metres; `None` if no two bodies were near.
 fn gap(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

@@ -1,10 +1,9 @@
-//! The tables of both experiments.
+//! Tables of the swap and doorway experiments.
 
 use super::{Conditions, doorway, swap};
 use crate::experiment::Maybe;
 use std::fmt::{Display, Formatter, Result};
 
-/// Metres as millimetres.
 fn milli(gap_m: Option<f64>) -> Maybe {
     Maybe(gap_m.map(|gap| gap * 1000.0), 1)
 }

@@ -1,4 +1,5 @@
-//! Robots evenly on a circle, each bound for the opposite side: all ways cross in one point at one time.
+//! Robots evenly on a circle, each with the opposite point as its goal: all routes cross in one
+//! point at one time.
 
 use super::{Conditions, gap, picture, run};
 use crate::experiment::rows::{Each, Jobs, Record};
@@ -13,25 +14,26 @@ use std::path::{Path, PathBuf};
 
 /// Radius of a robot, metres.
 pub const RADIUS_M: f64 = 0.15;
-/// How near to its goal a robot has arrived, metres.
+/// Distance from its goal at which a robot has arrived, metres.
 pub const TOLERANCE_M: f64 = 0.05;
 
-/// Which swaps to run.
+/// Parameters of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Numbers of robots; each 1 or more.
+    /// Numbers of robots, each at least 1.
     pub robots: Vec<u32>,
     /// Radius of the circle, metres; `None`: [`circle_m`].
     pub circle_m: Option<f64>,
-    /// Each start is off by up to this along both axes, metres; 0: the exact circle.
+    /// Largest random displacement of a start along both axes, metres; 0 for the exact circle.
     pub noise_m: f64,
-    /// Runs of each number of robots, with seeds `seed`, `seed` + 1, ... They differ only with noise or losses.
+    /// Runs of each number of robots, with seeds `seed`, `seed` + 1, ... They differ only with
+    /// noise or packet loss.
     pub seeds: u32,
     /// The first seed.
     pub seed: u64,
-    /// A run ends after so many times the free time.
+    /// Time limit of a run in multiples of the free time.
     pub patience: f64,
-    /// What else holds.
+    /// Conditions of all runs.
     pub conditions: Conditions,
 }
 
@@ -49,16 +51,16 @@ impl Default for Plan {
     }
 }
 
-/// Radius of a circle that leaves `robots` robots room: max(2 m, 0.1 m for each).
+/// Radius of a circle with enough space for `robots` robots: max(2 m, 0.1 m per robot).
 #[must_use]
 pub fn circle_m(robots: u32) -> f64 {
     (0.1 * f64::from(robots)).max(2.0)
 }
 
-/// One run.
+/// Result of one run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Swap {
-    /// How many robots.
+    /// Number of robots.
     pub robots: u32,
     /// Radius of the circle, metres.
     pub circle_m: f64,
@@ -66,15 +68,16 @@ pub struct Swap {
     pub seed: u64,
     /// Robots at their goals at the end.
     pub arrived: usize,
-    /// Time of the last arrival over the free time (diameter / speed); `None`: not all arrived.
+    /// Time of the last arrival divided by the free time (diameter / speed); `None` if not all
+    /// arrived.
     pub time_ratio: Option<f64>,
-    /// The same, mean over the robots that arrived.
+    /// Mean ratio of arrival time to free time, over the robots that arrived.
     pub mean_time_ratio: Option<f64>,
-    /// Least gap between two bodies, metres; `None`: nobody came near.
+    /// Smallest gap between two bodies, metres; `None` if no two bodies were near.
     pub least_gap_m: Option<f64>,
     /// Overlaps, summed over ticks.
     pub overlaps: u64,
-    /// Fingerprint of the whole trace.
+    /// Trace hash.
     #[serde(skip)]
     pub hash: u64,
 }
@@ -93,42 +96,42 @@ impl Record for Swap {
     }
 }
 
-/// All runs of a number of robots.
+/// Summary of all runs with one number of robots.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// How many robots.
+    /// Number of robots.
     pub robots: u32,
     /// Radius of the circle, metres.
     pub circle_m: f64,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
-    /// Runs in which all arrived and nobody overlapped.
+    /// Runs in which all robots arrived without overlaps.
     pub clean: usize,
-    /// Robots that arrived, of all runs.
+    /// Arrived robots of all runs.
     pub arrived: usize,
-    /// The largest [`Swap::time_ratio`]; `None`: in some run not all arrived.
+    /// The largest [`Swap::time_ratio`]; `None` if not all robots arrived in some run.
     pub worst_time_ratio: Option<f64>,
-    /// Least gap of all runs, metres.
+    /// Smallest gap of all runs, metres.
     pub least_gap_m: Option<f64>,
     /// Overlaps of all runs.
     pub overlaps: u64,
 }
 
-/// What came of it.
+/// Results of the experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// What held.
+    /// Conditions of all runs.
     pub conditions: Conditions,
     /// Noise of the starts, metres.
     pub noise_m: f64,
-    /// By number of robots.
+    /// Summaries, by number of robots.
     pub rows: Vec<Row>,
-    /// Each run.
+    /// All runs.
     pub runs: Vec<Swap>,
 }
 
 impl Plan {
-    /// The scenario of one run.
+    /// Builds the scenario of one run.
     #[must_use]
     pub fn scenario(&self, robots: u32, seed: u64) -> Scenario {
         let circle = self.circle_m(robots);
@@ -163,7 +166,7 @@ impl Plan {
         })
     }
 
-    /// Four moments of the first run with so many robots.
+    /// Four moments of the first run with this number of robots.
     #[must_use]
     pub fn picture(&self, robots: u32) -> Sheet {
         let title = format!("{robots} robots change places, seed {}", self.seed);
@@ -235,7 +238,8 @@ impl Experiment for Plan {
         if report.rows.len() > 1 {
             pictures.extend(report.chart().write(&dir.join("times"))?);
         }
-        // Of all that can be told apart in a picture, the largest. Who stopped the runs does not wait for another one.
+        // The largest number of robots that is recognisable in a picture. After a stop, no further
+        // run is made.
         let is_complete = report.runs.len() == self.total();
         let drawn = report.rows.iter().rev().find(|row| is_complete && row.robots <= 100);
         if let Some(row) = drawn {
@@ -264,7 +268,7 @@ fn row(robots: u32, mine: &[Swap]) -> Option<Row> {
 }
 
 impl Report {
-    /// Time over free time by the number of robots.
+    /// Chart of the time ratio by number of robots.
     #[must_use]
     pub fn chart(&self) -> Chart {
         let points = self.rows.iter().filter_map(|row| Some([f64::from(row.robots), row.worst_time_ratio?]));

@@ -3,7 +3,7 @@ use crate::experiment::Experiment as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[test]
-fn a_few_robots_swap_without_a_touch_and_are_measured() {
+fn few_robots_swap_without_contact_and_are_measured() {
     let plan = swap::Plan { robots: vec![2, 5, 12], ..swap::Plan::default() };
     let report = plan.measure().expect("a sound plan");
     assert_eq!(report.rows.len(), 3);
@@ -12,14 +12,14 @@ fn a_few_robots_swap_without_a_touch_and_are_measured() {
         assert_eq!(row.arrived, row.robots as usize);
         let ratio = row.worst_time_ratio.expect("all arrived");
         assert!((1.0..=1.5).contains(&ratio), "{row:?}");
-        // They keep apart, and they do not pay for it with a wide detour.
+        // They keep their distance without a wide detour.
         let gap = row.least_gap_m.expect("all pass near the middle");
         assert!((0.0..0.3).contains(&gap), "{row:?}");
     }
 }
 
 #[test]
-fn without_a_safety_layer_they_go_through_each_other() {
+fn without_a_safety_layer_robots_overlap() {
     let plan = swap::Plan {
         robots: vec![4],
         conditions: Conditions { safety: SafetyKind::None, ..Conditions::default() },
@@ -31,7 +31,7 @@ fn without_a_safety_layer_they_go_through_each_other() {
 }
 
 #[test]
-fn a_run_that_is_stopped_is_left_out() {
+fn stopped_run_is_left_out() {
     let plan = swap::Plan { robots: vec![4], ..swap::Plan::default() };
     let looks = AtomicUsize::new(0);
     let runs = plan.carry_out(|_| looks.fetch_add(1, Ordering::Relaxed) < 20);
@@ -43,7 +43,7 @@ fn a_run_that_is_stopped_is_left_out() {
 }
 
 #[test]
-fn each_case_has_its_robots_and_what_is_out_of_range_is_refused() {
+fn each_case_has_its_robots_and_invalid_plans_are_refused() {
     for case in cases::Case::ALL {
         let scenario = cases::Plan::default().scenario(case, 1);
         let groups = match case {
@@ -52,7 +52,6 @@ fn each_case_has_its_robots_and_what_is_out_of_range_is_refused() {
             cases::Case::Door | cases::Case::Doors | cases::Case::Corridor => 2,
             _ => 1,
         };
-        // Those that are parked behind a door besides.
         let parked = if case == cases::Case::ParkedDoor { 15 } else { 0 };
         assert_eq!(scenario.robots.len(), (groups * case.robots() + parked) as usize, "{case:?}");
         let plane = scenario.plane.expect("bodies");
@@ -79,7 +78,7 @@ fn each_case_has_its_robots_and_what_is_out_of_range_is_refused() {
 }
 
 #[test]
-fn robots_without_a_radio_run_into_each_other_and_the_depth_is_told() {
+fn robots_without_a_radio_collide_and_the_depth_is_reported() {
     let conditions = Conditions { range_m: 0.0, ..Conditions::default() };
     let plan = cases::Plan {
         cases: vec![cases::Case::Mixed],
@@ -91,12 +90,12 @@ fn robots_without_a_radio_run_into_each_other_and_the_depth_is_told() {
     let run = &plan.measure().expect("a sound plan").runs[0];
     assert!(run.overlaps > 0 && run.deepest_m > 0.1, "{run:?}");
     let ratio = run.time_ratio.expect("nothing stops them");
-    // Less the tolerance of the goal.
+    // Slightly less than 1 because of the goal's tolerance.
     assert!((0.98..1.1).contains(&ratio), "{run:?}");
 }
 
 #[test]
-fn patience_ends() {
+fn run_ends_at_its_time_limit() {
     let plan = swap::Plan { robots: vec![2], patience: 0.5, ..swap::Plan::default() };
     let report = plan.measure().expect("a sound plan");
     assert_eq!((report.runs[0].arrived, report.runs[0].time_ratio), (0, None));
@@ -104,7 +103,7 @@ fn patience_ends() {
 }
 
 #[test]
-fn two_crowds_pass_a_door_that_two_robots_do_not_fit_through() {
+fn two_crowds_pass_a_door_that_is_one_robot_wide() {
     let plan = doorway::Plan { widths_m: vec![0.8], robots: 4, ..doorway::Plan::default() };
     let run = &plan.measure().expect("a sound plan").runs[0];
     assert_eq!((run.arrived, run.robots, run.overlaps), (8, 8, 0), "{run:?}");

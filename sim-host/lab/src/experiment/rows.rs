@@ -1,4 +1,4 @@
-//! The rows of experiments: what a sweep writes of its runs ([`crate::sweep::row`]), by the same machine.
+//! Rows of experiments, written by the same code as those of sweeps ([`crate::sweep::row`]).
 
 use super::{Experiment, GoesOn};
 use crate::sweep::design::Design;
@@ -17,36 +17,35 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The merged rows, in the folder of results; there when all runs are done.
+/// File name of the merged rows, written when all runs are done.
 const ROWS: &str = "rows.csv";
-/// Their means, medians and intervals.
 const AGGREGATES: &str = "aggregates.csv";
-/// Changes when the same plan would mean other rows.
+/// To be increased when equal plans give other rows.
 const FORMAT: u64 = 1;
 
-/// What is shown of each figure: its name, what it says, where it stands.
+/// Visitor of figures: name, meaning and value.
 pub type Each<'a> = dyn FnMut(&'static str, &'static str, &mut dyn Cell) + 'a;
 
-/// What a job gives, as figures of a row.
+/// Result of a run that can be written as a row.
 pub trait Record: Send {
-    /// Shows all figures, always the same ones in the same order. What is written there is what a row says.
+    /// Visits all figures in a fixed order. Values that the visitor sets are stored.
     fn figures(&mut self, each: &mut Each<'_>);
 
-    /// The fingerprint of the run's trace; `None`: no run of the engine.
+    /// Trace hash of the run; `None` if the run did not use the engine.
     fn trace_hash(&mut self) -> Option<&mut u64> {
         None
     }
 }
 
-/// A figure of a record.
+/// Value of a figure.
 pub trait Cell {
-    /// What it is; `None`: there is none.
+    /// The value as a number; `None` if it is missing.
     fn get(&self) -> Option<f64>;
-    /// Makes it so. `false`: it cannot be that.
+    /// Sets the value; `false` if this type cannot represent it.
     fn set(&mut self, value: Option<f64>) -> bool;
 }
 
-/// Beyond this, not every whole number is a double.
+/// Doubles represent every whole number up to this one exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 macro_rules! whole_cells {
@@ -116,8 +115,8 @@ pub struct Keeping {
 }
 
 impl Keeping {
-    /// What becomes of rows that are there. Those of a sweep that came to its end are replaced, as any results are; those of one
-    /// that was cut short are somebody's hours.
+    /// Treatment of existing rows. Rows of a completed sweep are replaced, like any results. Rows
+    /// of an interrupted sweep may be hours of work, so they are kept.
     fn existing(&self, out: &Path) -> Existing {
         let is_whole = || self.shard.is_whole() && out.join(ROWS).is_file();
         match (self.resume, self.anew) {
@@ -129,17 +128,16 @@ impl Keeping {
     }
 }
 
-/// A plan as a design of runs.
+/// Adapts an experiment to [`Design`].
 pub(crate) struct Sheet<'a, E> {
     plan: &'a E,
     fingerprint: u64,
     parameters: Vec<&'static str>,
-    /// Names, and what they say.
     figures: Vec<(&'static str, &'static str)>,
 }
 
 impl<'a, E: Experiment> Sheet<'a, E> {
-    /// Of a plan that was checked.
+    /// Requires a checked plan.
     pub fn new(plan: &'a E) -> Self {
         let (mut figures, mut parameters) = (Vec::new(), Vec::new());
         if plan.points() > 0 {
@@ -157,7 +155,7 @@ impl<'a, E: Experiment> Sheet<'a, E> {
         Self { plan, fingerprint, parameters, figures }
     }
 
-    /// Point, and number of the run there.
+    /// Point of a run, and its number within the point.
     fn place(&self, run: u64) -> (usize, u32) {
         let runs = self.runs_per_point();
         ((run / runs) as usize, (run % runs) as u32)
@@ -170,7 +168,7 @@ impl<'a, E: Experiment> Sheet<'a, E> {
         Row { run: number, outcome: Outcome::Done, figures, trace_hash }
     }
 
-    /// Writes what a row says into a run; `false`: no run gives such a row.
+    /// Copies a row into a run; `false` if no run gives such a row.
     fn read(&self, row: &Row, run: &mut E::Run) -> bool {
         let (mut cells, mut fits) = (row.figures.iter(), true);
         run.figures(&mut |_, _, cell| fits &= cells.next().is_some_and(|figure| cell.set(figure.0)));
@@ -227,47 +225,50 @@ impl<E: Experiment> Design for Sheet<'_, E> {
         if E::ALONE { 1 } else { usize::MAX }
     }
 
-    /// All points in step, so that an early end leaves about equally many runs of each.
+    /// Alternates between the points, so that an early end leaves about equally many runs of each.
     fn turn(&self, run: u64) -> u64 {
         let (point, run) = self.place(run);
         u64::from(run) * self.plan.points() as u64 + point as u64
     }
 }
 
-/// The runs of an experiment that are to be made, and where their rows go.
+/// The runs of an experiment, and the folder of their rows.
 pub struct Jobs<'a, E> {
     sheet: Sheet<'a, E>,
     goes_on: &'a GoesOn<'a>,
-    /// Folder and options; `None`: rows are not kept.
+    /// Folder and options; `None` if rows are not stored.
     place: Option<(&'a Path, &'a Keeping)>,
     course: Mutex<Option<Course>>,
 }
 
 impl<'a, E: Experiment> Jobs<'a, E> {
-    /// Of a plan that was checked. `goes_on` is told how many are done, and asked again and again, from any thread.
+    /// Requires a checked plan. `goes_on` is called from any thread with the number of finished
+    /// runs.
     pub(crate) fn new(plan: &'a E, goes_on: &'a GoesOn<'a>, place: Option<(&'a Path, &'a Keeping)>) -> Self {
         Self { sheet: Sheet::new(plan), goes_on, place, course: Mutex::new(None) }
     }
 
-    /// The folder of results, where more than rows can be kept of a run; `None`: nothing is kept.
+    /// Folder of the results, for further files; `None` if nothing is stored.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         self.place.map(|(out, _)| out)
     }
 
-    /// Whether to go on with a run that is under way.
+    /// Whether a run in progress may continue.
     #[must_use]
     pub fn goes_on(&self) -> bool {
         (self.goes_on)(0)
     }
 
-    /// Makes the runs that are not there yet: `job` is told its point and the number of its run; `None` ends everything.
-    /// Returned is what is there now: of each point its runs from the first one to the first that is missing.
+    /// Makes the missing runs. `job` receives the point and the number of the run within it; `None`
+    /// ends the experiment. Returns the available runs of each point in order, up to the first
+    /// missing one.
     ///
-    /// A job must not depend on what its scratch memory holds.
+    /// The result of a job must not depend on the contents of its scratch memory.
     ///
     /// # Errors
-    /// That of the first job that fails; rows that do not go with the plan, or cannot be written.
+    /// The error of the first job that fails; rows of another plan; or a row that cannot be
+    /// written.
     pub fn each<S: Default>(
         &self,
         job: impl Fn(&mut S, usize, u32) -> Result<Option<E::Run>> + Sync,
@@ -289,7 +290,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
                 }
                 Err(error) => {
                     let mut wrong = wrong.lock().unwrap_or_else(PoisonError::into_inner);
-                    // Of several the first, whoever was quicker.
+                    // Reports the error of the first job, whichever thread was first.
                     if wrong.as_ref().is_none_or(|(before, _)| sheet.turn(number) < *before) {
                         *wrong = Some((sheet.turn(number), error));
                     }
@@ -314,7 +315,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         for row in rows {
             let (point, number) = sheet.place(row.run);
             let mut run = made.remove(&row.run).unwrap_or_else(|| sheet.plan.blank(point, number));
-            // Figures are computed of what the rows say, whoever made them.
+            // Figures come from the rows, no matter which process made them.
             ensure!(sheet.read(&row, &mut run), "run {} has a row that no run gives; begin --anew", row.run);
             if by_point[point].len() == number as usize {
                 by_point[point].push(run);
@@ -323,12 +324,11 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         Ok(by_point)
     }
 
-    /// How the runs went, if rows are kept.
     pub(crate) fn course(&self) -> Option<Course> {
         self.course.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Removes the files that say that all is done, when it will no longer be so.
+    /// Removes the files that mark the results as complete, before they become incomplete.
     ///
     /// # Errors
     /// A file cannot be removed.
@@ -339,7 +339,8 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         if keeping.existing(out) != Existing::Forget || !keeping.shard.is_whole() {
             return Ok(());
         }
-        // Rows before the file that says that they are whole: whoever is killed here finds results to replace.
+        // The marker of completeness is removed last: if the process is killed here, the rest still
+        // counts as complete results, which may be replaced.
         for file in files(out)?.into_iter().chain([AGGREGATES, ROWS].map(|name| out.join(name))) {
             if file.exists() {
                 std::fs::remove_file(&file).map_err(Error::new("remove", &file))?;
@@ -348,7 +349,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         Ok(())
     }
 
-    /// Writes all rows in order, what their columns are, and their means; names the files.
+    /// Writes all rows in order, their schema and their means, and returns the files.
     ///
     /// # Errors
     /// A file cannot be read or written.
@@ -358,7 +359,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         };
         let merged = Merged::read(&self.sheet, &files(out)?)?;
         let mut texts = vec![("rows.schema.json", schema(&self.sheet)), (ROWS, merged.text(&self.sheet))];
-        // Means of one are the rows again.
+        // With one run per point, means would repeat the rows.
         if self.sheet.runs_per_point() > 1 {
             let points = aggregate::points(&self.sheet, &merged);
             texts.insert(0, (AGGREGATES, aggregate::text(&self.sheet, &points)));
@@ -372,7 +373,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
     }
 }
 
-/// The same without files: the rows in order.
+/// Makes all runs without files and returns the rows in order.
 fn in_memory<S: Default>(
     sheet: &dyn Design,
     goes_on: &GoesOn<'_>,

@@ -1,4 +1,4 @@
-//! The five simulations of the paper as scenarios.
+//! The five simulations of the paper, and two others, as scenarios.
 
 use super::{Plan, Point, Reference};
 use crate::arena::{Arena, FASTEST_MPS, distance_m, normal, starts, uniform};
@@ -13,11 +13,9 @@ use staya_controller::rand::Rng;
 use staya_sim::scenario::{Scenario, Target};
 use staya_sim::world::plane::Solid;
 
-/// Purpose of the random numbers that give each run its starts.
 const STARTS: u32 = 0x0046_0101;
-/// Purpose of those that give each run its forest.
 const TREES: u32 = 0x0046_0102;
-/// The paper's d: positions and speeds below are in its units, of which d has 7.
+/// The paper's d in its units, which positions and speeds below use.
 const UNITS: f64 = 7.0;
 
 /// Which of the paper's simulations (OLF section VIII), or of two of our own.
@@ -35,17 +33,18 @@ pub enum Case {
     Split,
     /// E: 150 robots through a gap, algorithm 3 (figure 11).
     Squeeze,
-    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of 30/7 d unless a plan says otherwise.
+    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of
+    /// 30/7 d unless a plan says otherwise.
     Gap,
     /// Not in the paper: as E, through 30 balls at random places, 8/7 d apart at least.
     Forest,
 }
 
 impl Case {
-    /// The paper's, in its order.
+    /// The paper's cases, in its order.
     pub const ALL: [Self; 5] = [Self::Free, Self::Fragment, Self::Rendezvous3d, Self::Split, Self::Squeeze];
 
-    /// As the command line and files call it.
+    /// Name in options and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -59,7 +58,6 @@ impl Case {
         }
     }
 
-    /// What it shows.
     pub(super) const fn title(self) -> &'static str {
         match self {
             Self::Free => "Flocking in free space by algorithm 2",
@@ -93,12 +91,11 @@ impl Case {
         }
     }
 
-    /// Whether there is anything in the way.
     pub(super) const fn has_balls(self) -> bool {
         !matches!(self, Self::Free | Self::Fragment | Self::Rendezvous3d)
     }
 
-    /// What the paper's robots do, or where it does not say what works best.
+    /// The paper's setting; where the paper gives none, the one that worked best.
     pub(super) fn setting(self) -> Setting {
         let flat = |x: f64, y: f64, vx: f64, vy: f64| ([x, y, 0.0], [vx, vy, 0.0]);
         match self {
@@ -161,12 +158,12 @@ impl Case {
         }
     }
 
-    /// Place and velocity of a robot.
     fn draw(self, rng: &mut Rng) -> ([f64; 3], [f64; 3]) {
         let at_rest = [0.0; 3];
         match self {
             Self::Free | Self::Fragment => {
-                // The paper does not tell how wide B is: so that about as many parts form as in figure 8.
+                // The paper does not give the width of B. With this one, about as many parts form
+                // as in figure 8.
                 let wide = if self == Self::Free { 50.0 } else { 20.0 };
                 let at = [normal(rng, wide), normal(rng, wide), 0.0];
                 let mut speed = || uniform(rng, -2.0, -1.0);
@@ -187,7 +184,6 @@ impl Case {
         }
     }
 
-    /// Obstacles of one of a plan's runs.
     pub(super) fn solids(self, (spacing_m, gap): (f64, f64), seed: u64, run: u32) -> Vec<Solid> {
         let unit_m = spacing_m / UNITS;
         let ball = |[x, y, radius]: [f64; 3]| Solid::Ball {
@@ -198,7 +194,8 @@ impl Case {
     }
 }
 
-/// Thirty balls between the robots and their goal, drawn again until each is 8 from the others.
+/// Thirty balls between the robots and their goal, each drawn again until it is 8 units from the
+/// others.
 fn forest(rng: &mut Rng) -> Vec<[f64; 3]> {
     let mut trees: Vec<[f64; 3]> = Vec::new();
     while trees.len() < 30 {
@@ -211,7 +208,7 @@ fn forest(rng: &mut Rng) -> Vec<[f64; 3]> {
     trees
 }
 
-/// What a case has of its own, in the paper's units.
+/// Properties of a case, in the paper's units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting {
     pub robots: u32,
@@ -219,24 +216,23 @@ pub(super) struct Setting {
     pub algorithm: Algorithm,
     /// c1 of alpha-, beta- and gamma-agents.
     pub gains: [f64; 3],
-    /// Place at the start and velocity of a moving reference.
+    /// Initial place and velocity of a moving reference.
     pub moving: Option<([f64; 3], [f64; 3])>,
-    /// The paper's static one.
+    /// Place and velocity of the paper's static reference.
     pub fixed: Option<([f64; 3], [f64; 3])>,
     /// d' / d.
     pub obstacle_ratio: f64,
-    /// When to draw the flock, shares of the time.
+    /// Moments of pictures, as shares of the run time.
     pub moments: [f64; 6],
 }
 
 impl Plan {
-    /// Radius of a body: a fourteenth of the spacing, half of the paper's unit.
+    /// Radius of a body: a fourteenth of the spacing, or half of the paper's unit.
     #[must_use]
     pub fn radius_m(&self) -> f64 {
         self.spacing_m / 14.0
     }
 
-    /// One run of a case.
     pub(super) fn scenario(&self, point: Point, run: u32) -> Result<Scenario> {
         let Point { case, reference } = point;
         let setting = case.setting();
@@ -272,7 +268,7 @@ impl Plan {
             Some(c2) => Gain { position: c1 as f32, velocity: c2 as f32 },
             None => gain(c1),
         };
-        // Algorithm 1 stands in the paper without gains.
+        // The paper gives no gains for algorithm 1.
         let c2_alpha = self.c2_alpha.or((setting.algorithm == Algorithm::One).then_some(alpha));
         let params = LatticeParams {
             algorithm: match setting.algorithm {
@@ -293,17 +289,18 @@ impl Plan {
             seconds: self.seconds.unwrap_or(setting.seconds),
             radius_m,
             max_speed_mps: match case {
-                // The avoider for space leans aside from whoever the body could reach at its highest speed.
+                // The safety layer for space avoids every robot that the body could reach at its
+                // highest speed.
                 Case::Rendezvous3d => FASTEST_MPS.min(12.0 * unit_m),
                 _ => FASTEST_MPS,
             },
-            // What is beyond 1.2 d counts for nothing, but ORCA looks farther ahead.
+            // The law ignores robots beyond 1.2 d, but ORCA looks farther ahead.
             range_m: 3.0 * self.spacing_m,
             loss: self.loss,
             sight_m: 3.0 * self.spacing_m,
             guidance: GuidanceSetup::Lattice { params, motion },
             safety: match (self.safety, case) {
-                // In space only the avoider for space knows of heights.
+                // Only the safety layer for space considers heights.
                 (SafetyKind::Orca, Case::Rendezvous3d) => SafetyKind::Fly,
                 (safety, _) => safety,
             },
@@ -315,17 +312,14 @@ impl Plan {
         Ok(arena.scenario(setup))
     }
 
-    /// The seed of a run's scenario.
     pub(super) fn run_seed(&self, case: Case, run: u32) -> u64 {
         Rng::keyed(self.seed, STARTS, run, case as u32).next_u64()
     }
 
-    /// d' / d of a case.
     pub(super) fn obstacle_ratio(&self, case: Case) -> f64 {
         self.obstacle_ratio.unwrap_or(case.setting().obstacle_ratio)
     }
 
-    /// c1 of alpha-, beta- and gamma-agents of a case.
     pub(super) fn gains(&self, case: Case) -> [f64; 3] {
         let own = case.setting().gains;
         let [alpha, beta, gamma] = own;

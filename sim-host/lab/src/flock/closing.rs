@@ -1,8 +1,9 @@
-//! Flocks driven at each other, bare and with ORCA behind them.
+//! Flocks driven at each other, without a safety layer and with ORCA.
 //!
-//! A flock's own repulsion is bounded: above some speed of closing robots go through each other. Two robots (a pair, a
-//! little off their common line) or two groups (three by three each) meet head on at a speed of so many spacings d per second,
-//! each side at half of it; their flocks want them where the other side comes from. Told are overlaps of bodies and the least distance.
+//! A flock's repulsion is bounded, so that robots pass through each other above some closing speed.
+//! Here, two robots (slightly off their common line) or two groups of three by three meet head on.
+//! The closing speed is in spacings d per second; each side has half of it. The goal of each side
+//! is where the other one starts. The results are overlaps of bodies and the smallest distance.
 
 use super::check_spacing_and_step;
 use crate::arena::{Arena, FASTEST_MPS, uniform};
@@ -25,12 +26,11 @@ use staya_sim::scenario::{Scenario, Start, Target};
 use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
-/// Purpose of the random numbers that put each side a little off.
 const OFFSETS: u32 = 0x0046_0201;
 /// Distance of the two sides at the start, in d.
 const GAP: f64 = 4.0;
 
-/// Which flock.
+/// The flocking law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Flock {
@@ -42,22 +42,22 @@ pub enum Flock {
     Boids,
 }
 
-/// Two robots or two groups.
+/// Size of the two sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sides {
-    /// One against one.
+    /// One robot against one.
     Pair,
-    /// Nine against nine.
+    /// Nine robots against nine.
     Groups,
 }
 
-/// What to do.
+/// Parameters of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closing {
-    /// Speeds of closing, spacings per second, more than 0.
+    /// Closing speeds, spacings per second, more than 0.
     pub speeds: Vec<f64>,
-    /// Runs of each, 1 or more.
+    /// Runs of each combination, at least 1.
     pub runs: u32,
     /// Distance of neighbours (d), metres, 0.1 to 50.
     pub spacing_m: f64,
@@ -68,33 +68,33 @@ pub struct Closing {
 }
 
 impl Default for Closing {
-    /// 1, 2, 4, 8 d/s at d = 7 m; 8 d/s is nearly what beacons can tell.
+    /// 1, 2, 4, 8 d/s at d = 7 m; beacons cannot represent much more than 8 d/s.
     fn default() -> Self {
         Self { speeds: vec![1.0, 2.0, 4.0, 8.0], runs: 10, spacing_m: 7.0, step_s: 0.03, seed: 1 }
     }
 }
 
-/// What came of it, over all runs.
+/// Results over all runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Meeting {
     /// Runs in which bodies overlapped.
     pub runs_with_overlap: usize,
     /// Overlapping pairs, summed over ticks and runs.
     pub overlaps: usize,
-    /// Least distance of two centres, in d. Bodies touch at 1 / 7.
+    /// Smallest distance of two centres, in d. Bodies touch at 1 / 7.
     pub least_pair_over_d: f64,
 }
 
-/// One line of the table.
+/// One row of the table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
-    /// Which flock.
+    /// The flocking law.
     pub flock: Flock,
-    /// Who meets.
+    /// Size of the two sides.
     pub sides: Sides,
-    /// Speed of closing, spacings per second.
+    /// Closing speed, spacings per second.
     pub speed_over_d: f64,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Without a safety layer.
     pub bare: Meeting,
@@ -102,10 +102,10 @@ pub struct Line {
     pub orca: Meeting,
 }
 
-/// Everything.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct ClosingReport {
-    /// Seed of everything.
+    /// Seed of the experiment.
     pub seed: u64,
     /// Distance of neighbours (d), metres.
     pub spacing_m: f64,
@@ -113,18 +113,18 @@ pub struct ClosingReport {
     pub radius_m: f64,
     /// Length of a tick, seconds.
     pub step_s: f64,
-    /// By flock, sides, speed. Those without a run are left out.
+    /// Rows by flock, sides and speed, without those that have no runs.
     pub lines: Vec<Line>,
 }
 
-/// What one run gave.
+/// Result of one run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Met {
     /// Overlapping pairs, summed over ticks.
     pub overlaps: usize,
-    /// Least distance of two centres, metres; very large when none came within d.
+    /// Smallest distance of two centres, metres; very large if no two robots came within d.
     pub least_m: f64,
-    /// Fingerprint of the whole trace.
+    /// Trace hash.
     pub hash: u64,
 }
 
@@ -139,7 +139,7 @@ impl Record for Met {
     }
 }
 
-/// Bare, and with ORCA.
+/// Without a safety layer, and with ORCA.
 const WAYS: [SafetyKind; 2] = [SafetyKind::None, SafetyKind::Orca];
 
 impl Closing {
@@ -149,7 +149,6 @@ impl Closing {
         self.spacing_m / 14.0
     }
 
-    /// Flock, sides, speed of each line.
     fn lines(&self) -> Vec<(Flock, Sides, f64)> {
         let mut lines = Vec::new();
         for flock in [Flock::Alpha, Flock::Goal, Flock::Boids] {
@@ -160,7 +159,8 @@ impl Closing {
         lines
     }
 
-    /// Both sides a gap apart, at speed; they have passed and gone twice as far when the run ends.
+    /// Builds a run with both sides a gap apart and in motion. At the end, they have passed each
+    /// other and moved twice as far.
     fn scenario(&self, flock: Flock, sides: Sides, speed: f64, safety: SafetyKind, run: u32) -> Scenario {
         let d = self.spacing_m;
         let side_mps = speed * d / 2.0;
@@ -175,7 +175,7 @@ impl Closing {
                 arrival_m: d as f32,
                 seed,
             },
-            // Crowded below d, seen up to 4 d.
+            // Crowded below d, visible up to 4 d.
             Flock::Boids => GuidanceSetup::Boids {
                 params: BoidsSetup { crowded_m: d as f32, closest_m: (4.0 * d) as f32, ..BoidsSetup::PAPER },
                 speed_mps: side_mps as f32,
@@ -193,7 +193,7 @@ impl Closing {
             sight_m: d,
             guidance,
             safety,
-            // Beacons are a step old; at these speeds a step is a body's radius.
+            // Beacons are one step old; at these speeds, a robot moves by its radius in a step.
             orca: AvoidParams { margin_m: (d / 100.0) as f32, ..AvoidParams::default() },
             push_out: PushOutParams::new(1.0),
             solids: Vec::new(),
@@ -209,12 +209,12 @@ impl Closing {
             Sides::Groups => 3_u32,
         };
         let mut rng = Rng::keyed(self.seed, OFFSETS, run, 0);
-        // How far the eastern side is off to the north: bodies would meet.
+        // Random offset of the eastern side to the north, small enough for bodies to meet.
         let off_m = uniform(&mut rng, -1.0, 1.0) * self.radius_m();
         let mut starts = Vec::new();
         for (way, off_m) in [(1.0, 0.0), (-1.0, off_m)] {
             let target = match flock {
-                // The reference goes along, straight through the other side.
+                // The reference moves straight through the other side.
                 Flock::Alpha => {
                     Target { position_m: [-way * GAP * d / 2.0, off_m, 0.0], velocity_mps: [way * side_mps, 0.0, 0.0] }
                 }
@@ -240,12 +240,10 @@ impl Closing {
         starts
     }
 
-    /// Line and safety layer of a point.
     fn point(&self, point: usize) -> ((Flock, Sides, f64), SafetyKind) {
         (self.lines()[point / WAYS.len()], WAYS[point % WAYS.len()])
     }
 
-    /// That of a run's flocks and radio.
     fn run_seed(&self, run: u32) -> u64 {
         Rng::keyed(self.seed, OFFSETS, run, 1).next_u64()
     }

@@ -1,5 +1,6 @@
-//! The law alone: the paper's particles. Each knows where all are at this very moment, in doubles, and nothing limits its speed but
-//! what a plan says. What this does and a swarm of agents does not is the radio's doing, or the bodies'.
+//! The law alone, as in the paper: particles with perfect knowledge of all others, in doubles,
+//! without a speed limit unless the plan sets one. Differences from a swarm of agents are effects
+//! of the radio or of the bodies.
 
 use super::Plan;
 use anyhow::{Context as _, Result};
@@ -14,8 +15,9 @@ use staya_sim::nearby::{Cells, Query, Search as _, Space};
 use staya_sim::scenario::{Scenario, Target};
 use staya_sim::world::plane::Solid;
 
-/// Makes a scenario's ticks with particles and shows each moment, from the start on; a fingerprint of all of them.
-/// First velocities change, then places, as in the engine. O(n + edges) a tick.
+/// Simulates a scenario with particles and passes each moment to the caller, including the start.
+/// Returns a hash of all moments. As in the engine, velocities change before places. O(n + edges)
+/// per tick.
 pub(super) fn simulate(
     plan: &Plan,
     scenario: &Scenario,
@@ -79,7 +81,6 @@ impl Swarm<'_> {
         if speed > self.fastest_mps { velocity.map(|v| v * self.fastest_mps / speed) } else { velocity }
     }
 
-    /// Everybody's acceleration, m/s^2.
     fn changes(&self, places: &[[f64; 3]], velocities: &[[f64; 3]], target: Option<Target>) -> Vec<[f64; 3]> {
         let vec = |[x, y, z]: [f64; 3]| Vec3::new(x, y, z);
         let mut cells = Cells::new(Space::OPEN, self.range_m);

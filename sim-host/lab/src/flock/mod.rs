@@ -1,18 +1,26 @@
-//! The five simulations of R. Olfati-Saber 2006 ("Flocking for multi-agent dynamic systems", IEEE TAC 51(3), section
-//! VIII), two of our own beside them, and how close a flock may be driven together ([`closing`]).
+//! The five simulations of R. Olfati-Saber 2006 ("Flocking for multi-agent dynamic systems", IEEE
+//! TAC 51(3), section VIII), two additional ones, and flocks driven at each other ([`closing`]).
 //!
-//! Every robot is an agent of its own that knows what it hears: beacons over the simulated radio, from the tick before.
-//! The paper's particles know everything at once. Spacing is d metres and a unit of the paper d / 7: any other size
-//! gives the same with all lengths and speeds in proportion, but for millimetres in beacons and their limit of 32 m/s,
-//! which the paper's own size meets in case A: robots that start 150 units out come in faster than that.
+//! Every robot is an agent that knows others only from beacons of the previous tick, received over
+//! the simulated radio. The paper's particles have perfect knowledge. The spacing is d metres, so a
+//! unit of the paper is d / 7. Other spacings give proportional results, except for two limits of
+//! beacons: positions are rounded to millimetres, and speeds end at 32 m/s. At the paper's own
+//! size, case A reaches this limit: robots that start 150 units away would come in faster.
 //!
-//! **Parameters.** The paper tells no gains. Those here are what worked best of what was tried ([`Plan`] takes others):
-//! (c_alpha, c_gamma) = (50, 1) in A, (10, 0.2) in C; (10, 200, 2) with obstacles, in D and E, behind a reference that moves at 3 units/s
-//! and, beside it, one that stands and has a velocity of 5 or 6 (the paper's): behind it the parts of a split flock stay apart.
-//! `--reference resting` is the same with a velocity that fades behind it. c2 = 2 sqrt(c1). `--takes-turns`: nobody presses on who is
-//! nearer to the reference; its two constants, d and 0.8 d, were found on other starts.
-//! Starts are the paper's distributions (of B it tells
-//! none: 20 units of deviation), drawn anew where two bodies would overlap. In space the attitude of a robot is that of
+//! **Parameters.** The paper gives no gains. The defaults are the best of those tried ([`Plan`]
+//! accepts others):
+//!
+//! - (c_alpha, c_gamma) = (50, 1) in A and (10, 0.2) in C.
+//! - (10, 200, 2) with obstacles, in D and E. The reference moves at 3 units/s. As an alternative,
+//!   the paper's static reference has a fixed place and a velocity of 5 or 6; with it, the parts of
+//!   a split flock stay apart. `--reference resting` is a static reference whose velocity fades
+//!   behind it.
+//! - c2 = 2 sqrt(c1).
+//! - `--takes-turns`: a robot does not push towards robots nearer to the reference. Its two
+//!   constants, d and 0.8 d, were tuned on other starts.
+//!
+//! Starts follow the paper's distributions (for B, where the paper gives none, a deviation of 20
+//! units). They are drawn again if two bodies overlap. In space, the attitude of a robot is that of
 //! its velocity, as in the paper (`metrics::flock::attitude`).
 
 mod case;
@@ -39,13 +47,14 @@ use staya_sim::engine::simulate;
 use std::path::{Path, PathBuf};
 use watch::Watch;
 
-/// How far ahead ORCA looks behind a flock, seconds: bodies without inertia need no more than some steps.
+/// ORCA's horizon behind a flock, seconds: bodies without inertia need only some steps.
 const HORIZON_S: f64 = 0.3;
 
-/// A gap for one robot, spacings.
+/// Width of a gap for one robot, spacings.
 const GAP: f64 = 8.0 / 7.0;
 
-/// What to do: the five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an agent that hears packets only.
+/// What to do: the five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an
+/// agent that hears packets only.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Which simulations [default: the paper's five].
@@ -66,8 +75,8 @@ pub struct Plan {
     /// Safety layer behind the flock; in space "orca" means "fly".
     #[arg(long, default_value = "none", value_parser = options::safety())]
     pub safety: SafetyKind,
-    // Long ones keep a flock from closing up: its robots come in faster than they may towards somebody who is d away, and
-    // swerve.
+    // A long horizon keeps a flock from closing up: its robots approach others at distance d faster
+    // than ORCA permits, and swerve.
     /// How far ahead ORCA looks.
     #[arg(long = "horizon", value_name = "SECONDS", default_value_t = HORIZON_S)]
     pub horizon_s: f64,
@@ -104,14 +113,15 @@ pub struct Plan {
     /// Over which way behind a resting reference its velocity fades, spacings.
     #[arg(long, value_name = "SPACINGS", default_value_t = 10.0)]
     pub rest: f64,
-    /// Robots press on nobody who is nearer to the reference (algorithm 3 only; not in the paper): so they pass gaps one after the
-    /// other.
+    /// Robots press on nobody who is nearer to the reference (algorithm 3 only; not in the paper):
+    /// so they pass gaps one after the other.
     #[arg(long)]
     pub takes_turns: bool,
     /// How wide the gap of case "gap" is.
     #[arg(long = "gap", value_name = "SPACINGS", default_value_t = GAP)]
     pub gap: f64,
-    /// The paper's particles instead of agents: all know everything at once, in doubles, with no limit of speed.
+    /// The paper's particles instead of agents: all know everything at once, in doubles, with no
+    /// limit of speed.
     #[arg(long, conflicts_with_all = ["safety", "horizon_s", "loss"])]
     pub ideal: bool,
     /// Of the ideal ones, how many nearest ones each knows.
@@ -132,7 +142,6 @@ pub struct Plan {
 }
 
 impl Default for Plan {
-    /// All five, as the paper has them.
     fn default() -> Self {
         options::defaults()
     }
@@ -151,7 +160,7 @@ pub enum Reference {
 }
 
 impl Reference {
-    /// As the command line and files call it.
+    /// Name in options and files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -162,7 +171,7 @@ impl Reference {
     }
 }
 
-/// One line of the table: a case, and one with obstacles by its reference.
+/// One row of the table: a case and, if it has obstacles, its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Point {
     case: Case,
@@ -170,7 +179,6 @@ struct Point {
 }
 
 impl Point {
-    /// What files are called.
     fn name(self) -> String {
         match self.reference {
             Some(reference @ (Reference::Static | Reference::Resting)) => {
@@ -182,7 +190,6 @@ impl Point {
 }
 
 impl Plan {
-    /// The lines of the table.
     fn lines(&self) -> Vec<Point> {
         let of = |&case: &Case| {
             let references: Vec<Option<Reference>> =
@@ -210,14 +217,15 @@ impl Plan {
     }
 }
 
-/// A spacing at which beacons tell places well enough, and speeds at all; a step at which the flock does not fly apart.
+/// Checks that beacons can represent positions and speeds at this spacing, and that the flock is
+/// stable with this step.
 fn check_spacing_and_step(spacing_m: f64, step_s: f64) -> Result<()> {
     ensure!((0.1..=50.0).contains(&spacing_m), "a spacing of {spacing_m} m; it must be 0.1 to 50");
     ensure!((0.001..=0.1).contains(&step_s), "a step of {step_s} s; it must be 0.001 to 0.1");
     Ok(())
 }
 
-/// The folder of the runs' courses, beside the rows.
+/// Folder of the runs' time series, next to the rows.
 const COURSES: &str = "courses";
 
 impl Experiment for Plan {
@@ -266,7 +274,7 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // By name, so that a new field is not forgotten.
+        // Destructured, so that a new field cannot be forgotten.
         let Self {
             cases: _,
             runs: _,
@@ -323,7 +331,8 @@ impl Experiment for Plan {
         ]
     }
 
-    /// That of the robots and the radio; starts are a function of the first seed and the run's number.
+    /// Seed of the robots and the radio. Starts are a function of the first seed and the run's
+    /// number.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.run_seed(self.lines()[point].case, run)
     }
@@ -332,8 +341,8 @@ impl Experiment for Plan {
         Run::default()
     }
 
-    /// Rows have no course of the measures, which pictures show: that of each run is kept beside the rows. Runs that were read of
-    /// rows are made again for it only where it is missing.
+    /// Rows do not contain the time series for pictures, so each run stores its own next to the
+    /// rows. A run known from its row is repeated only if its time series is missing.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
         let lines = self.lines();
         let file = |point: usize, run: usize| {

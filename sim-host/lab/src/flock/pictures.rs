@@ -1,4 +1,4 @@
-//! The pictures of the flocks: OLF figures 7 to 12, and the same as a file of numbers.
+//! Pictures of the flocks: OLF figures 7 to 12, and their data as a file.
 
 use super::watch::Frame;
 use super::{Case, CaseReport, Point, Reference, Report};
@@ -11,12 +11,11 @@ use staya_sim::world::plane::Solid;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Points of a curve, at most.
 const POINTS: usize = 400;
 
 impl Report {
-    /// Draws the first run of each case and the course of its measures over all runs into `dir` (SVG and PNG), with the measures
-    /// as CSV, and names the files.
+    /// Draws the first run of each case and the time series of its measures over all runs into
+    /// `dir` (SVG and PNG), writes the measures as CSV, and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -34,7 +33,7 @@ impl Report {
         Ok(files)
     }
 
-    /// Moments of the first run; in space three from above and three from the south.
+    /// Moments of the first run; in space, three from above and three from the south.
     fn sheet(&self, case: &CaseReport) -> Sheet {
         let title = format!("{}: {} robots, d = {} m, {}", title(case), case.robots, self.spacing_m, self.who());
         let moments = case.case.setting().moments;
@@ -64,7 +63,7 @@ impl Report {
             view_m: around(&positions_m, self.spacing_m),
             positions_m,
             velocities_mps: seen(&frame.velocities_mps),
-            // In space, darts throughout.
+            // In space, robots are drawn as darts.
             radius_m: if is_flat { self.radius_m } else { 0.0 },
             edges_within_m: is_flat.then_some(range_m),
             trails_m: if is_flat { Vec::new() } else { edges(&frame.places_m, range_m, view) },
@@ -80,7 +79,7 @@ impl Report {
         let unit_m = self.spacing_m / 7.0;
         let still = libm::log10(0.001 * unit_m * unit_m);
         let ends = |level: f64| [[0.0, level], [case.ticks as f64, level]];
-        // Of 0 there is none, and the chart leaves it out.
+        // The logarithm of 0 is infinite, which the chart omits.
         let log = |value: f64| libm::log10(value);
         let chart = |title: &str, label: &str, value: &dyn Fn(&FlockMeasure) -> f64| {
             let mut chart = Chart::new(title, format!("iteration ({} s)", self.step_s), label).size(560.0, 300.0);
@@ -109,7 +108,7 @@ impl Report {
             .with(hamiltonian)
     }
 
-    /// H a robot over iterations.
+    /// H per robot over iterations.
     fn hamiltonian(&self, case: &CaseReport) -> Chart {
         let label = format!("iteration ({} s)", self.step_s);
         let mut chart = Chart::new("Structural Hamiltonian", label, "log10 H / n").size(560.0, 300.0);
@@ -130,7 +129,7 @@ impl Report {
         for (run, trace) in case.traces.iter().enumerate() {
             for (iteration, moment) in thinned(trace) {
                 let Some(m) = moment else { continue };
-                // Memory takes every line.
+                // Writing to a string cannot fail.
                 let _ = writeln!(
                     text,
                     "{run},{iteration},{:.3},{:.6},{},{:.4},{:.8},{:.8},{:.6},{:.6}",
@@ -149,7 +148,6 @@ impl Report {
     }
 }
 
-/// What a case shows, with its reference.
 fn title(case: &CaseReport) -> String {
     match case.reference {
         Some(reference) if reference != Reference::Moving => {
@@ -159,7 +157,7 @@ fn title(case: &CaseReport) -> String {
     }
 }
 
-/// Some of the moments, evenly, with the first and the last one.
+/// Evenly selected moments, including the first and the last.
 fn thinned<T>(trace: &[T]) -> impl Iterator<Item = (usize, &T)> {
     let every = trace.len().div_ceil(POINTS).max(1);
     let last = trace.len().saturating_sub(1);
@@ -167,7 +165,7 @@ fn thinned<T>(trace: &[T]) -> impl Iterator<Item = (usize, &T)> {
     all.filter(move |(at, _)| at % every == 0 || *at == last)
 }
 
-/// A measure of the first run, and the least and the greatest of all runs if there are more.
+/// A measure in the first run and, with several runs, its smallest and largest value over all runs.
 fn curves(case: &CaseReport, value: &dyn Fn(&FlockMeasure) -> f64) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let first: Vec<[f64; 2]> =
         thinned(&case.traces[0]).filter_map(|(at, moment)| Some([at as f64, value(moment.as_ref()?)])).collect();
@@ -185,7 +183,7 @@ fn curves(case: &CaseReport, value: &dyn Fn(&FlockMeasure) -> f64) -> Vec<(&'sta
     vec![("first run", first), ("least and greatest of all runs", over(f64::min)), ("", over(f64::max))]
 }
 
-/// Lines between robots in space that are within range: how far apart they are is not to be seen in the picture.
+/// Lines between robots in range in space, because a picture does not show their distances.
 fn edges(places_m: &[[f64; 3]], range_m: f64, view: View) -> Vec<Vec<[f64; 2]>> {
     let mut lines = Vec::new();
     for (number, &a) in places_m.iter().enumerate() {
@@ -196,7 +194,7 @@ fn edges(places_m: &[[f64; 3]], range_m: f64, view: View) -> Vec<Vec<[f64; 2]>> 
     lines
 }
 
-/// What is seen of a crowd: all of it, and two spacings around it.
+/// Section of the picture: all robots with a margin of two spacings.
 fn around(places_m: &[[f64; 2]], spacing_m: f64) -> Option<[[f64; 2]; 2]> {
     let along = |axis: usize| {
         let values = || places_m.iter().map(|place| place[axis]);

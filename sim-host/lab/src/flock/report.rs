@@ -1,4 +1,4 @@
-//! The numbers of the flocks.
+//! Results of the flock experiment.
 
 use super::watch::{Frame, Run, Verdict};
 use super::{Case, Plan, Point, Reference};
@@ -9,37 +9,39 @@ use staya_sim::metrics::flock::{AlphaLimits, AlphaVerdict, FlockMeasure, alpha_f
 use staya_stats::quantile;
 use std::fmt::{self, Display, Formatter};
 
-/// One run.
+/// Result of one run.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunReport {
     /// Number of the run, from 0.
     pub run: usize,
-    /// From which iteration on the conditions of alpha-flocking hold until the end.
+    /// First iteration from which the conditions of alpha-flocking hold until the end.
     pub alpha: AlphaVerdict,
     /// The flock at the end.
     pub end: Option<FlockMeasure>,
-    /// Largest number of its parts at any time.
+    /// Largest number of components at any time.
     pub most_parts: usize,
-    /// Least distance of two centres from the third second on, in d; `null` if none were within d.
+    /// Smallest distance of two centres from the third second on, in d; `null` if none were within
+    /// d.
     pub least_pair_over_d: Option<f64>,
-    /// Pairs of bodies (radius d / 14) that overlap, summed over ticks.
+    /// Pairs of overlapping bodies (radius d / 14), summed over ticks.
     pub overlaps: usize,
-    /// Least distance of a centre from an obstacle's border, in d, negative inside; `null` without obstacles.
+    /// Smallest distance of a centre from an obstacle's border, in d, negative inside; `null`
+    /// without obstacles.
     pub least_clearance_over_d: Option<f64>,
-    /// Robots whose centre was ever in an obstacle.
+    /// Robots whose centre was inside an obstacle at any time.
     pub inside: usize,
     /// Robots past all obstacles at the end; `null` without obstacles.
     pub past: Option<usize>,
-    /// Fingerprint of the whole trace.
+    /// Trace hash.
     pub trace_hash: String,
 }
 
-/// One case over its runs.
+/// Summary of one case over its runs.
 #[derive(Clone, Debug, Serialize)]
 pub struct CaseReport {
-    /// Which.
+    /// The case.
     pub case: Case,
-    /// Where its reference is, if it has obstacles.
+    /// The reference, if the case has obstacles.
     pub reference: Option<Reference>,
     /// Robots of each run.
     pub robots: usize,
@@ -47,15 +49,16 @@ pub struct CaseReport {
     pub ticks: usize,
     /// c1 of alpha-, beta- and gamma-agents.
     pub gains: [f64; 3],
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
     /// Runs with alpha-flocking at their end.
     pub alpha_flocking: usize,
-    /// Iteration from which on it holds: median over those runs.
+    /// Median over those runs of the iteration from which it holds.
     pub alpha_from_median: Option<f64>,
-    /// And the latest.
+    /// Latest such iteration.
     pub alpha_from_latest: Option<usize>,
-    /// The largest iteration of any run from which on all robots are connected; `null` when a run does not end so.
+    /// Latest iteration of any run from which all robots are connected; `null` if they are not at
+    /// the end of a run.
     pub connected_from_latest: Option<usize>,
     /// Mean C at the end.
     pub connectivity: f64,
@@ -67,21 +70,21 @@ pub struct CaseReport {
     pub velocity_mismatch: f64,
     /// Runs that end with one flock.
     pub one_flock: usize,
-    /// Least of all runs.
+    /// Smallest `least_pair_over_d` of all runs.
     pub least_pair_over_d: Option<f64>,
-    /// Of all runs.
+    /// Overlaps of all runs.
     pub overlaps: usize,
-    /// Least of all runs.
+    /// Smallest `least_clearance_over_d` of all runs.
     pub least_clearance_over_d: Option<f64>,
-    /// Of all runs.
+    /// Robots inside an obstacle, of all runs.
     pub inside: usize,
-    /// Of all runs.
+    /// Robots past all obstacles, of all runs.
     pub past: Option<usize>,
-    /// H per robot at the end, mean over runs, in the paper's units.
+    /// Mean H per robot at the end, in the paper's units.
     pub hamiltonian: f64,
-    /// Largest rise of H in a tick of any run over what it lost in all.
+    /// Largest rise of H in a tick of any run divided by its total loss.
     pub hamiltonian_rise: f64,
-    /// Each run.
+    /// Results of each run.
     pub each: Vec<RunReport>,
     #[serde(skip)]
     pub(super) energies: Vec<Vec<f64>>,
@@ -91,12 +94,12 @@ pub struct CaseReport {
     pub(super) frames: Vec<Frame>,
 }
 
-/// Everything.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Seed of everything.
+    /// Seed of the experiment.
     pub seed: u64,
-    /// Runs of each case that were wanted.
+    /// Requested runs of each case.
     pub runs: u32,
     /// Distance of neighbours in the lattice (d), metres.
     pub spacing_m: f64,
@@ -104,23 +107,23 @@ pub struct Report {
     pub radius_m: f64,
     /// Length of a tick, seconds.
     pub step_s: f64,
-    /// What is behind the flock.
+    /// Safety layer behind the flock.
     pub safety: String,
-    /// How far ahead ORCA looks, seconds.
+    /// ORCA's horizon, seconds.
     pub horizon_s: f64,
     /// Loss of packets.
     pub loss: f64,
-    /// Whether robots press on nobody who is nearer to the reference.
+    /// Whether robots do not push towards robots nearer to the reference.
     pub takes_turns: bool,
-    /// How wide the gap of case "gap" is, spacings.
+    /// Width of the gap of case "gap", spacings.
     pub gap: f64,
-    /// Whether these are the paper's particles, who know everything at once.
+    /// Whether the robots are the paper's particles with perfect knowledge.
     pub ideal: bool,
-    /// How many nearest ones each of those knows, if not all.
+    /// Number of nearest particles that each one knows, if not all.
     pub nearest: Option<usize>,
-    /// How fast those go at most, in the paper's units.
+    /// Speed limit of the particles, in the paper's units.
     pub fastest: Option<f64>,
-    /// By case. Those without a run are left out.
+    /// Summaries by case, without those that have no runs.
     pub cases: Vec<CaseReport>,
 }
 
@@ -193,14 +196,14 @@ impl CaseReport {
     }
 }
 
-/// The iteration from which on all are connected until the end.
+/// The iteration from which all robots are connected until the end.
 fn connected_from(trace: &[Option<FlockMeasure>]) -> Option<usize> {
     let is_apart = |moment: &Option<FlockMeasure>| moment.is_none_or(|m| m.components > 1);
     let from = trace.iter().rposition(is_apart).map_or(0, |last| last + 1);
     (from < trace.len()).then_some(from)
 }
 
-/// What rows say of a run's course.
+/// Results for a row, from a run's time series.
 pub(super) fn verdict(plan: &Plan, case: Case, run: &Run) -> Verdict {
     let robots = run.trace.iter().flatten().next().map_or(0, |moment| moment.robots);
     let report = RunReport::of(plan, case, 0, robots, run);
@@ -220,7 +223,7 @@ pub(super) fn verdict(plan: &Plan, case: Case, run: &Run) -> Verdict {
     }
 }
 
-/// Largest rise in a tick over what was lost in all; 0 when it never rises.
+/// Largest rise in a tick divided by the total loss; 0 if it never rises.
 fn rise(energies: &[f64]) -> f64 {
     let rise = energies.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     let lost = energies.first().zip(energies.last()).map_or(0.0, |(first, last)| first - last);
@@ -232,7 +235,7 @@ impl RunReport {
         let over_d = |metres: f64| metres.is_finite().then(|| metres / plan.spacing_m);
         let unit_m = plan.spacing_m / 7.0;
         let mut limits = AlphaLimits::paper(2.0 * lattice_radius_m(plan, case, robots));
-        // K is in (m/s)^2, of the paper's units.
+        // K is in (m/s)^2, computed from the paper's units.
         limits.velocity_mismatch *= unit_m * unit_m;
         Self {
             run: number,
@@ -249,20 +252,20 @@ impl RunReport {
     }
 }
 
-/// Radius of the disc (in space: the ball) that a perfect lattice fills: a cohesive flock is within twice that.
+/// Radius of the disc (in space: the ball) that a perfect lattice fills; a cohesive flock is within
+/// twice this radius.
 fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
     let (n, d) = (robots as f64, plan.spacing_m);
     if case == Case::Rendezvous3d {
-        // d^3 / sqrt 2 a robot.
+        // Volume per robot: d^3 / sqrt 2.
         d * libm::cbrt(3.0 * n / (4.0 * std::f64::consts::PI * std::f64::consts::SQRT_2))
     } else {
-        // d^2 sqrt 3 / 2 a robot.
+        // Area per robot: d^2 sqrt 3 / 2.
         d * libm::sqrt(n * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI))
     }
 }
 
 impl Report {
-    /// Who flies.
     pub(super) fn who(&self) -> String {
         let turns = if self.takes_turns { ", in turn" } else { "" };
         if !self.ideal {
@@ -341,7 +344,6 @@ impl Display for Report {
     }
 }
 
-/// A whole number, or `-`.
 fn count(value: Option<usize>) -> String {
     value.map_or_else(|| String::from("-"), |value| value.to_string())
 }

@@ -2,7 +2,6 @@ use super::closing::{Closing, Flock, Sides};
 use super::*;
 use crate::experiment::rows::Keeping;
 
-/// Small enough for a test, large enough to show something.
 fn small(case: Case, robots: u32, seconds: f64) -> Plan {
     Plan {
         cases: vec![case],
@@ -20,7 +19,7 @@ fn report(plan: &Plan) -> CaseReport {
 }
 
 #[test]
-fn free_flock_comes_together_and_its_verdict_says_when() {
+fn free_flock_forms_and_the_iteration_is_reported() {
     let case = report(&small(Case::Free, 30, 15.0));
     assert_eq!((case.robots, case.runs, case.ticks), (30, 2, 500));
     assert_eq!((case.one_flock, case.alpha_flocking), (2, 2), "{:?}", case.each);
@@ -42,7 +41,7 @@ fn without_a_reference_the_group_breaks_up() {
 }
 
 #[test]
-fn robots_meet_in_space_also_behind_orca() {
+fn robots_meet_in_space_even_with_orca() {
     for safety in [SafetyKind::None, SafetyKind::Orca] {
         let plan = Plan { safety, ..small(Case::Rendezvous3d, 20, 30.0) };
         let case = report(&plan);
@@ -55,7 +54,7 @@ fn robots_meet_in_space_also_behind_orca() {
 }
 
 #[test]
-fn obstacles_are_passed_unharmed() {
+fn obstacles_are_passed_without_contact() {
     for case in [Case::Split, Case::Squeeze] {
         let case = report(&small(case, 25, 100.0));
         assert_eq!((case.past, case.inside), (Some(50), 0), "{:?}", case.each);
@@ -65,7 +64,7 @@ fn obstacles_are_passed_unharmed() {
 }
 
 #[test]
-fn any_spacing_gives_the_same_in_proportion() {
+fn results_are_proportional_to_the_spacing() {
     let large = report(&small(Case::Split, 25, 30.0));
     let plan = Plan { spacing_m: 0.7, ..small(Case::Split, 25, 30.0) };
     let little = report(&plan);
@@ -90,7 +89,7 @@ fn threads_and_early_ends_change_nothing() {
 }
 
 #[test]
-fn plans_that_cannot_be_carried_out_say_why() {
+fn invalid_plans_are_refused_with_the_reason() {
     let refused = |change: fn(&mut Plan)| {
         let mut plan = Plan::default();
         change(&mut plan);
@@ -133,7 +132,7 @@ fn pictures_and_series_are_written() {
 }
 
 #[test]
-fn closing_speeds_that_break_the_bare_flock_do_not_with_orca_behind_it() {
+fn closing_flocks_overlap_without_orca_and_not_with_it() {
     let plan = Closing { speeds: vec![1.0, 4.0, 8.0], runs: 4, ..Closing::default() };
     let report = plan.measure().unwrap();
     assert_eq!((plan.total(), report.lines.len()), (18 * 4 * 2, 18));
@@ -152,7 +151,7 @@ fn closing_speeds_that_break_the_bare_flock_do_not_with_orca_behind_it() {
 }
 
 #[test]
-fn the_law_alone_is_soon_a_flock_with_the_gains_for_it_and_only_loses_energy() {
+fn law_alone_forms_a_flock_soon_and_only_loses_energy() {
     let quick = Plan {
         ideal: true,
         c_alpha: Some(70.0),
@@ -174,11 +173,11 @@ fn the_law_alone_is_soon_a_flock_with_the_gains_for_it_and_only_loses_energy() {
 }
 
 #[test]
-fn agents_do_what_the_law_alone_does_unless_it_is_limited() {
+fn agents_match_the_law_alone_unless_it_is_limited() {
     let agents = report(&small(Case::Free, 30, 15.0));
     let ideal = Plan { ideal: true, ..small(Case::Free, 30, 15.0) };
     let law = report(&ideal);
-    // Lattices of the same energy may have other outlines.
+    // Lattices of equal energy may have different outlines.
     assert!((agents.hamiltonian / law.hamiltonian - 1.0).abs() < 0.01, "{} {}", agents.hamiltonian, law.hamiltonian);
     let soon = law.connected_from_latest.unwrap();
     let slow = report(&Plan { fastest: Some(5.0), ..ideal.clone() });
@@ -188,7 +187,7 @@ fn agents_do_what_the_law_alone_does_unless_it_is_limited() {
 }
 
 #[test]
-fn a_resting_reference_gathers_what_a_static_one_lets_go_apart() {
+fn resting_reference_gathers_a_flock_that_a_static_one_splits() {
     for case in [Case::Split, Case::Squeeze, Case::Forest] {
         let references = vec![Reference::Static, Reference::Resting];
         let plan = Plan { references, ideal: true, ..small(case, 60, 150.0) };
@@ -202,12 +201,12 @@ fn a_resting_reference_gathers_what_a_static_one_lets_go_apart() {
 }
 
 #[test]
-fn runs_that_are_there_are_not_made_again_for_their_pictures() {
+fn finished_runs_are_not_repeated_for_their_pictures() {
     let plan = small(Case::Free, 5, 0.2);
     let dir = tempfile::tempdir().unwrap();
     let perform = |keeping: &Keeping| plan.perform(&Jobs::new(&plan, &|_| true, Some((dir.path(), keeping)))).unwrap();
     let made = perform(&Keeping::default());
-    // A course that no run has: it comes from the file.
+    // A time series that differs from that of any run must come from the file.
     let file = dir.path().join("courses/0-1.postcard");
     let mut other = Run::kept(&file, made[0][1].hash).unwrap();
     assert_eq!(other, made[0][1]);
@@ -215,7 +214,7 @@ fn runs_that_are_there_are_not_made_again_for_their_pictures() {
     other.keep(&file).unwrap();
     let resume = Keeping { resume: true, ..Keeping::default() };
     assert_eq!(perform(&resume)[0][1], other);
-    // One that is missing, or another run's, is made again.
+    // A missing time series, or that of another run, is computed again.
     std::fs::copy(dir.path().join("courses/0-0.postcard"), &file).unwrap();
     assert_eq!(perform(&resume), made);
     std::fs::remove_dir_all(dir.path().join("courses")).unwrap();

@@ -1,4 +1,4 @@
-//! What is measured during a run.
+//! Measurements during a run.
 
 use super::{Case, Plan};
 use crate::experiment::rows::{Each, Record};
@@ -13,44 +13,45 @@ use staya_sim::world::plane::Solid;
 use std::fs::create_dir_all;
 use std::path::Path;
 
-/// Pairs count from here on, seconds: the random starts have robots almost in one place.
+/// Time from which distances of pairs count, seconds: random starts may nearly coincide.
 const SETTLED_S: f64 = 2.0;
 
-/// What one run gave.
+/// Measurements of one run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The flock before the first tick and after each.
     pub trace: Vec<Option<FlockMeasure>>,
     /// The structural Hamiltonian at the same moments, per robot, in the paper's units.
     pub energies: Vec<f64>,
-    /// Least distance of two centres after `SETTLED_S`, metres; infinite when none were within d.
+    /// Smallest distance of two centres after `SETTLED_S`, metres; infinite if none were within d.
     pub least_pair_m: f64,
-    /// Pairs of bodies that overlap, summed over ticks.
+    /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Least distance of a centre from an obstacle's border, metres, negative inside; infinite without obstacles.
+    /// Smallest distance of a centre from an obstacle's border, metres, negative inside; infinite
+    /// without obstacles.
     pub least_clearance_m: f64,
-    /// Robots whose centre was ever in an obstacle.
+    /// Robots whose centre was inside an obstacle at any time.
     pub inside: usize,
-    /// Robots that are past all obstacles at the end.
+    /// Robots past all obstacles at the end.
     pub past: usize,
     /// Moments to draw.
     pub frames: Vec<Frame>,
-    /// What rows say of the trace.
+    /// Results for the row, computed from the trace.
     pub verdict: Verdict,
-    /// Of the whole trace.
+    /// Trace hash.
     pub hash: u64,
 }
 
-/// When it was a flock, and what it was at the end.
+/// Time of flocking, and state of the flock at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Iteration from which on the conditions of alpha-flocking hold until the end.
+    /// Iteration from which the conditions of alpha-flocking hold until the end.
     pub alpha_from: Option<usize>,
-    /// The same of all being connected.
+    /// Iteration from which all robots are connected until the end.
     pub connected_from: Option<usize>,
-    /// Largest number of parts at any time.
+    /// Largest number of components at any time.
     pub most_parts: usize,
-    /// Parts at the end.
+    /// Components at the end.
     pub parts: usize,
     /// C at the end.
     pub connectivity: f64,
@@ -62,7 +63,7 @@ pub struct Verdict {
     pub velocity_mismatch: f64,
     /// H per robot at the start and at the end, in the paper's units.
     pub hamiltonian: [f64; 2],
-    /// Largest rise of H in a tick over what it lost in all.
+    /// Largest rise of H in a tick divided by its total loss.
     pub hamiltonian_rise: f64,
 }
 
@@ -98,7 +99,7 @@ impl Record for Run {
 }
 
 impl Run {
-    /// Writes all of it into a file, whose folder is made.
+    /// Writes the run to a file and creates its folder.
     pub fn keep(&self, file: &Path) -> Result<()> {
         let bytes = postcard::to_stdvec(self).context("a run as bytes")?;
         let folder = file.parent().unwrap_or(Path::new(""));
@@ -106,14 +107,15 @@ impl Run {
         Ok(write_atomically(file, &bytes)?)
     }
 
-    /// The run with this trace hash that [`Run::keep`] wrote; `None`: the file is of another one, or not there.
+    /// Reads a run written by [`Run::keep`]; `None` if the file is missing or has another trace
+    /// hash.
     pub fn kept(file: &Path, hash: u64) -> Option<Self> {
         let run: Self = postcard::from_bytes(&std::fs::read(file).ok()?).ok()?;
         (run.hash == hash && !run.trace.is_empty()).then_some(run)
     }
 }
 
-/// All robots at a moment.
+/// All robots at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     pub tick: u32,
@@ -121,7 +123,7 @@ pub struct Frame {
     pub velocities_mps: Vec<[f64; 3]>,
 }
 
-/// The x behind which all obstacles lie behind a robot, metres.
+/// The x beyond which a robot is past all obstacles, metres.
 fn behind_m(solids: &[Solid]) -> Option<f64> {
     let end = |solid: &Solid| match *solid {
         Solid::Ball { center_m, radius_m } => Some(center_m[0] + radius_m),
@@ -130,7 +132,7 @@ fn behind_m(solids: &[Solid]) -> Option<f64> {
     solids.iter().filter_map(end).reduce(f64::max)
 }
 
-/// Measures a run as it goes.
+/// Measures a run tick by tick.
 pub struct Watch {
     spacing_m: f64,
     radius_m: f64,
@@ -139,7 +141,6 @@ pub struct Watch {
     solids: Vec<Solid>,
     meter: FlockMeter<3>,
     energy: Option<EnergyMeter<3>>,
-    /// Ticks to keep.
     wanted: Vec<u32>,
     places_m: Vec<[f64; 3]>,
     velocities_mps: Vec<[f64; 3]>,
@@ -148,7 +149,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// `draws`: whether to keep moments for pictures.
+    /// Creates the measurement; `draws` stores moments for pictures.
     pub fn new(plan: &Plan, case: Case, scenario: &Scenario, draws: bool) -> Self {
         let spacing_m = plan.spacing_m;
         let moments = case.setting().moments;
@@ -174,7 +175,7 @@ impl Watch {
         }
     }
 
-    /// Looks at all robots after a tick.
+    /// Measures all robots after a tick.
     pub fn look(&mut self, tick: u32, robots: &mut dyn Iterator<Item = RobotRow>) {
         self.places_m.clear();
         self.velocities_mps.clear();
@@ -185,7 +186,7 @@ impl Watch {
         self.measure(tick);
     }
 
-    /// The same, of places and velocities.
+    /// Measures places and velocities after a tick.
     pub fn see(&mut self, tick: u32, places_m: &[[f64; 3]], velocities_mps: &[[f64; 3]]) {
         self.places_m.clear();
         self.velocities_mps.clear();
@@ -228,7 +229,7 @@ impl Watch {
         }
     }
 
-    /// The results, at the end.
+    /// Returns the results at the end.
     pub fn finish(mut self, hash: u64) -> Run {
         let is_past = |place: &&[f64; 3]| self.behind_m.is_some_and(|x| place[0] > x);
         self.run.past = self.places_m.iter().filter(is_past).count();

@@ -1,4 +1,5 @@
-//! Other laws on the same landscapes: ours with followers who look ahead, with shared maps, without its waiting, and the paper's own.
+//! Other laws on the same landscapes: Staya's law with lookahead, with shared maps, or without
+//! waiting, and the paper's law.
 
 use super::Plan;
 use anyhow::Result;
@@ -43,18 +44,18 @@ impl Law {
     }
 }
 
-/// How strictly the paper's shuffle follows the weights: half as likely for each half tick that a move costs more.
+/// Sharpness of the paper's shuffle: half as likely for each half tick of additional cost.
 const SHUFFLE: Sharpness = Sharpness::HalvedPer(Gain::from_sixteenths(8));
 
-/// The lag from which a leader waits whose formation may be as loose as the paper's, [`UNIT`]s; chosen on seed 1.
+/// Lag at which a leader waits in the "loose" law, which permits a formation as loose as the
+/// paper's, [`UNIT`]s; tuned on seed 1.
 const LOOSE: u16 = 12 * UNIT as u16;
 
 impl Law {
-    /// All, ours as planned first.
     pub(super) const ALL: [Self; 6] =
         [Self::Staya, Self::Lookahead, Self::Loose, Self::Shared, Self::Unwaiting, Self::Paper];
 
-    /// How far from its place a neighbour counts as found, cells.
+    /// Distance from its place within which a neighbour counts as found, cells.
     pub(super) const fn eps(self, plan: &Plan) -> u8 {
         match self {
             Self::Paper => plan.published.params.eps,
@@ -62,7 +63,6 @@ impl Law {
         }
     }
 
-    /// How robots keep the formation, but for the paper's law.
     pub(super) fn params(self, plan: &Plan) -> FormationParams {
         let ahead = FormationParams { eps: plan.formation.eps, ..FormationParams::looking_ahead() };
         match self {
@@ -73,10 +73,10 @@ impl Law {
         }
     }
 
-    /// `together`, as planned, under this law.
+    /// Changes the planned scenario `together` to this law.
     ///
     /// # Errors
-    /// A radius rho without a template.
+    /// There is no template with radius rho.
     pub(super) fn on(self, plan: &Plan, together: &Scenario, loss: f64) -> Result<Scenario> {
         let mut scenario = together.clone();
         scenario.formation_params = self.params(plan);
@@ -96,12 +96,12 @@ impl Law {
     }
 }
 
-/// The paper's law as it is tried.
+/// The paper's law, as tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Published {
-    /// Its parameters.
+    /// Parameters of the law.
     pub params: PublishedParams,
-    /// Geodesic radius of its templates, 1 to 3: 1 gives the leaders of figure 5.
+    /// Geodesic radius of its templates, 1 to 3; 1 gives the leaders of figure 5.
     pub rho: u8,
 }
 

@@ -1,8 +1,9 @@
-//! How well do six robots keep formation, and what does it cost? (A. V. Kuznetsov 2017, KUZ, section 8, figure 6.)
+//! Quality and cost of a formation of six robots (A. V. Kuznetsov 2017, KUZ, section 8, figure 6).
 //!
-//! Each run makes one natural landscape and sends the six robots of figure 5 across it several times: each for
-//! itself, then in formation with the plan's parameters, then with other values of eps and with a lossy radio. Robots
-//! run the whole simulator: the controller's agents, packets over the radio, bodies that get in each other's way.
+//! Each run creates one natural landscape, which the six robots of figure 5 cross several times:
+//! without formation, in formation with the plan's parameters, and with other values of eps and
+//! packet loss. The complete simulator runs: the controller's agents, packets over the radio, and
+//! bodies that block each other.
 
 mod laws;
 mod pictures;
@@ -37,42 +38,41 @@ use staya_sim::world::{Misplaced, MoveRules};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Purpose of the random numbers that give each run its landscape.
 const LANDSCAPES: u32 = 0x0045_0101;
-/// Purpose of the random numbers that give each run its seed for robots and radio.
+/// Random number stream for the seeds for robots and radio.
 const RUNS: u32 = 0x0045_0102;
 
 /// Robots in the formation of figure 5.
 pub const ROBOTS: usize = 6;
-/// Its graph: rows 1 2 3 and 4 5 6.
+/// Edges of its graph: rows 1 2 3 and 4 5 6.
 const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
-/// Seconds per tick; only beacons and requests know of it.
+/// Microseconds per tick; only beacons and requests depend on it.
 const TICK_US: u32 = 1_000_000;
 
-/// What to do.
+/// Parameters of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Numbers of obstacles, one point of the figure each.
     pub obstacles: Vec<u32>,
-    /// Landscapes per point, 1 or more.
+    /// Landscapes per point, at least 1.
     pub runs: u32,
-    /// Cells along each side, [`Plan::least_size`] or more, at most 2000.
+    /// Cells along each side, from [`Plan::least_size`] to 2000.
     pub size: u16,
-    /// Classes of impassability l, 1 or more.
+    /// Classes of impassability l, at least 1.
     pub classes: u8,
-    /// What natural land is taken to mean.
+    /// Interpretation of natural terrain.
     pub hills: Hills,
     /// Norm of the distance to an obstacle.
     pub hill_norm: Norm,
-    /// Cells from one robot of the formation to the next, 1 to 10.
+    /// Distance of adjacent robots in the formation, cells, 1 to 10.
     pub spacing: u8,
     /// Geodesic radius of the templates in the formation's graph (rho), 1 to 3.
     pub rho: u8,
-    /// How robots find their ways.
+    /// Parameters of routing.
     pub route: RouteParams,
-    /// How they keep the formation.
+    /// Parameters of the formation.
     pub formation: FormationParams,
-    /// How strictly the order of moves follows their costs.
+    /// Strictness with which the order of moves follows their costs.
     pub sharpness: Sharpness,
     /// Loss of packets, 0 to 1.
     pub loss: f64,
@@ -80,13 +80,14 @@ pub struct Plan {
     pub other_eps: Vec<u8>,
     /// Other losses to try, 0 to 1.
     pub other_losses: Vec<f64>,
-    /// Other laws to try, at all these losses.
+    /// Other laws to try, with all these losses.
     pub other_laws: Vec<Law>,
     /// The paper's law among them.
     pub published: Published,
-    /// Ticks after which a run is given up.
+    /// Time limit of a run, ticks.
     pub ticks: u32,
-    /// Equal seeds give equal results. Parameters were chosen on seed 1, so it is another one by default.
+    /// Equal seeds give equal results. The default differs from seed 1, on which parameters were
+    /// tuned.
     pub seed: u64,
 }
 
@@ -116,10 +117,10 @@ impl Default for Plan {
     }
 }
 
-/// How the six cross a landscape.
+/// Mode in which the six robots cross a landscape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
-    /// Each for itself over a perfect radio.
+    /// Without formation, over a perfect radio.
     Alone,
     /// In formation.
     Together { eps: u8, loss: f64 },
@@ -127,26 +128,27 @@ enum Way {
     Under { law: Law, loss: f64 },
 }
 
-/// What one crossing gave.
+/// Result of one crossing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Crossing {
     /// Configuration entropy S of the landscape.
     pub entropy: f64,
     /// Robots that reached their targets.
     pub arrived: usize,
-    /// When the last one arrived, ticks; `None` when one did not.
+    /// Arrival of the last robot, ticks; `None` if not all arrived.
     pub time_ticks: Option<f64>,
-    /// Formation error per robot, cells: mean over robots and ticks, graph placed on the top leader.
+    /// Formation error per robot, cells: mean over robots and ticks, with the graph placed on the
+    /// top leader.
     pub error: f64,
-    /// The same with the graph placed by the best-fitting translation.
+    /// Formation error with the graph placed by the best-fitting translation, cells.
     pub best_fit_error: f64,
     /// Mean graph distance.
     pub graph_distance: f64,
-    /// The largest formation error per robot of any tick: tells a runaway.
+    /// Largest formation error per robot in any tick, which reveals a robot that strays.
     pub worst_error: f64,
-    /// Robots in walls or in each other, summed over ticks.
+    /// Robots inside walls or each other, summed over ticks.
     pub collisions: u64,
-    /// Fingerprint of the whole trace.
+    /// Trace hash.
     pub hash: u64,
 }
 
@@ -171,22 +173,23 @@ impl Record for Crossing {
     }
 }
 
-/// What one landscape gave: the crossings in the order of `Plan::ways`.
+/// Results of one landscape: the crossings in the order of `Plan::ways`.
 pub type Run = Vec<Crossing>;
 
 impl Plan {
-    /// The formation of figure 5 with the plan's spacing, robot 1 in front: rows run west, columns south.
+    /// The formation of figure 5 with the plan's spacing and robot 1 in front: rows run west,
+    /// columns south.
     ///
     /// # Errors
-    /// A radius rho without a template.
+    /// There is no template with radius rho.
     fn graph(&self) -> Result<Formation> {
         self.graph_within(self.rho)
     }
 
-    /// The same with templates of another radius rho.
+    /// Like `graph`, with templates of radius `rho`.
     ///
     /// # Errors
-    /// A radius rho without a template.
+    /// There is no template with radius rho.
     fn graph_within(&self, rho: u8) -> Result<Formation> {
         let spacing = i16::from(self.spacing);
         let places: Vec<Cell> =
@@ -204,13 +207,14 @@ impl Plan {
         })
     }
 
-    /// The smallest landscape in which the formation can start and arrive.
+    /// Smallest landscape with enough space for the formation at start and goal, cells.
     #[must_use]
     pub fn least_size(&self) -> u16 {
         2 * u16::from(self.spacing) + 4
     }
 
-    /// How the six cross each landscape: alone, as planned, with other eps, with other losses, under other laws.
+    /// The crossings of each landscape: without formation, as planned, with other eps, with other
+    /// losses, with other laws.
     fn ways(&self) -> impl Iterator<Item = Way> + '_ {
         let (own_eps, own_loss) = (self.formation.eps, self.loss);
         let own = Way::Together { eps: own_eps, loss: own_loss };
@@ -221,26 +225,24 @@ impl Plan {
         [Way::Alone, own].into_iter().chain(eps).chain(losses).chain(laws)
     }
 
-    /// Obstacles and way of a point.
     fn point(&self, point: usize) -> (u32, Way) {
         let ways: Vec<Way> = self.ways().collect();
         (self.obstacles[point / ways.len()], ways[point % ways.len()])
     }
 
-    /// The seed of a landscape: a function of seed, obstacles and number of the run.
+    /// Seed of a landscape, a function of seed, obstacles and number of the run.
     fn landscape_seed(&self, obstacles: u32, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, obstacles, run).next_u64()
     }
 
-    /// The landscape of a run.
     fn landscape(&self, obstacles: u32, run: u32) -> Result<Terrain, TerrainError> {
         let seed = self.landscape_seed(obstacles, run);
         let plan = generate::LandPlan { width: self.size, height: self.size, classes: self.classes, seed };
         natural_by(&plan, obstacles, self.hill_norm, self.hills)
     }
 
-    /// The six on a landscape. The rearmost start one cell from the south-west corner; robot 1 goes to the cell that lies
-    /// one from the north-east corner.
+    /// The six robots on a landscape. The rearmost one starts one cell from the south-west corner;
+    /// the goal of robot 1 is one cell from the north-east corner.
     fn scenario(&self, terrain: Terrain, graph: Option<Formation>, places: &[Cell], seed: u64) -> Scenario {
         let spacing = i16::from(self.spacing);
         let start = Cell::new(2 * spacing + 1, spacing + 1);
@@ -299,7 +301,7 @@ impl Plan {
         Ok(Crossing { entropy, ..cross(&scenario)? })
     }
 
-    /// The runs by number of obstacles: of each landscape all ways, as far as there are all.
+    /// Groups runs by number of obstacles and landscape, without incomplete landscapes.
     fn by_landscape(&self, runs: &[Vec<Crossing>]) -> Vec<Vec<Run>> {
         let all_ways = |ways: &[Vec<Crossing>]| {
             let least = ways.iter().map(Vec::len).min().unwrap_or(0);
@@ -349,7 +351,7 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // By name, so that a new field is not forgotten.
+        // Destructured, so that a new field cannot be forgotten.
         let Self {
             obstacles: _,
             runs: _,
@@ -428,7 +430,8 @@ impl Experiment for Plan {
         ]
     }
 
-    /// That of the landscape, as `staya terrain` takes it; of robots and radio it is a function of the first seed.
+    /// Seed of the landscape, as accepted by `staya terrain`. The seed of robots and radio is a
+    /// function of the first seed.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.landscape_seed(self.point(point).0, run)
     }
@@ -451,11 +454,10 @@ impl Experiment for Plan {
     }
 }
 
-/// Runs a scenario to its end and measures it.
 fn cross(scenario: &Scenario) -> Result<Crossing, Misplaced> {
     let mut worst_error = 0.0_f64;
     let outcome = simulate(scenario, |moment, _| {
-        // NaN without a formation; `max` passes over it.
+        // NaN without a formation, which `max` ignores.
         worst_error = worst_error.max(moment.row.formation_error_per_agent);
         ControlFlow::Continue(())
     })?;

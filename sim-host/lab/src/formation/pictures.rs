@@ -1,15 +1,14 @@
-//! The pictures of the formation experiment: KUZ figure 6, and what eps and the radio do.
+//! Pictures of the formation experiment: KUZ figure 6, and the effects of eps and the radio.
 
 use super::{Journey, Point, Report, Variants};
 use staya_plot::{Chart, Panels, Series};
 use staya_sim::record::Error;
 use std::path::{Path, PathBuf};
 
-/// Parts of a curve.
 const STEPS: u32 = 100;
 
 impl Report {
-    /// Draws everything into `dir`, each picture as SVG and PNG, and names the files.
+    /// Draws all pictures into `dir`, each as SVG and PNG, and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -26,7 +25,6 @@ impl Report {
         Ok(files)
     }
 
-    /// The note under the titles.
     pub(super) fn note(&self) -> String {
         format!(
             "six robots {} cells apart, {2} x {2} cells, window radius {1}, {3} runs each",
@@ -34,7 +32,6 @@ impl Report {
         )
     }
 
-    /// Numbers of obstacles from 0 to the largest.
     pub(super) fn axis(&self) -> impl Iterator<Item = f64> {
         let most = self.points.last().map_or(0, |point| point.obstacles);
         (0..=STEPS).map(move |step| f64::from(most) * f64::from(step) / f64::from(STEPS))
@@ -69,7 +66,7 @@ impl Report {
         Panels::new("Six robots in formation on natural land").with(error).with(time)
     }
 
-    /// One line per value: error and travel time over N.
+    /// Error and travel time over N, with one curve per value.
     fn variants(&self, kind: Variants) -> Panels {
         let (title, name): (_, fn(&Journey) -> String) = match kind {
             Variants::Eps => ("What eps does", |j| format!("eps = {} cells", j.eps)),

@@ -1,4 +1,4 @@
-//! The numbers of the formation experiment, ready to be printed or plotted.
+//! Results of the formation experiment, for tables and plots.
 
 mod laws;
 
@@ -13,11 +13,11 @@ use staya_sim::terrain::metrics::obstacles_of_entropy;
 use staya_stats::{LogFit, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
-/// Fewest obstacles at which the paper's curve is taken at its word: a fit says nothing outside of its range, and towards 0 this
-/// one is negative.
+/// Smallest number of obstacles for which the paper's curve is used: a fit is not valid outside its
+/// range, and this one becomes negative towards 0.
 const LEAST_OF_PAPER: f64 = 10.0;
 
-/// The six on all landscapes of a point, one way to cross them.
+/// Results of one crossing mode over all landscapes of a point.
 #[derive(Clone, Debug, Serialize)]
 pub struct Journey {
     /// eps, cells.
@@ -26,21 +26,22 @@ pub struct Journey {
     pub loss: f64,
     /// Landscapes that all robots crossed.
     pub arrived: usize,
-    /// dPhi per robot, cells: graph on the top leader; over all landscapes.
+    /// dPhi per robot over all landscapes, cells, with the graph placed on the top leader.
     pub error_per_agent: Summary,
     /// The 95 % interval of its mean.
     pub error_interval95: [f64; 2],
-    /// Mean dPhi per robot with the graph placed by the best-fitting translation, cells.
+    /// Mean dPhi per robot, cells, with the graph placed by the best-fitting translation.
     pub best_fit_error_per_agent: f64,
     /// Mean graph distance.
     pub graph_distance: f64,
-    /// The largest error per robot of any tick of any landscape, cells.
+    /// Largest error per robot in any tick of any landscape, cells.
     pub worst_error: f64,
-    /// Mean time until the last robot arrived, ticks, over landscapes that all crossed in both ways.
+    /// Mean time until the last robot arrived, ticks, over landscapes that all robots crossed with
+    /// and without formation.
     pub time_ticks: Option<f64>,
-    /// That time over the same of the robots without formation.
+    /// Ratio of this time to that without formation.
     pub time_ratio: Option<f64>,
-    /// Robots in walls or in each other, summed.
+    /// Robots inside walls or each other, summed.
     pub collisions: u64,
 }
 
@@ -49,7 +50,7 @@ pub struct Journey {
 pub struct Point {
     /// Number of obstacles N.
     pub obstacles: u32,
-    /// Landscapes.
+    /// Number of landscapes.
     pub runs: usize,
     /// Landscapes that all robots crossed without formation.
     pub alone_arrived: usize,
@@ -59,25 +60,28 @@ pub struct Point {
     pub formation: Journey,
     /// Mean configuration entropy S of the landscapes.
     pub entropy: f64,
-    /// dPhi / 6 by the paper's curve at the same number of obstacles; `null` below 10, where the curve says nothing.
+    /// dPhi / 6 of the paper's curve at this number of obstacles; `null` below 10, where the curve
+    /// is not valid.
     pub paper_error_per_agent: Option<f64>,
-    /// Ours over the paper's at equal N.
+    /// Ratio of our error to the paper's at equal N.
     pub error_over_paper: Option<f64>,
-    /// The number of obstacles at which the paper's land has this entropy, N(S) with its constant corrected.
+    /// Number of obstacles at which the paper's terrain has this entropy: N(S) with its constant
+    /// corrected.
     pub obstacles_of_entropy: f64,
-    /// dPhi / 6 by the paper's curve there: land of the same entropy, which is smoother here below N = 70.
+    /// dPhi / 6 of the paper's curve at that number. Below N = 70, terrain of equal entropy is
+    /// smoother here than in the paper.
     pub paper_error_at_entropy: Option<f64>,
-    /// Ours over the paper's at equal S.
+    /// Ratio of our error to the paper's at equal S.
     pub error_over_paper_at_entropy: Option<f64>,
     /// With other values of eps.
     pub other_eps: Vec<Journey>,
     /// With other losses.
     pub other_losses: Vec<Journey>,
-    /// Under other laws, each at the planned loss and the others.
+    /// With other laws, each at the planned loss and the others.
     pub other_laws: Vec<LawJourney>,
 }
 
-/// Which variants a table or a plot is about.
+/// Parameter that a table or a plot varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variants {
     /// Other values of eps.
@@ -87,7 +91,7 @@ pub enum Variants {
 }
 
 impl Point {
-    /// The journeys of a kind of variants, the planned one among them, by rising value.
+    /// Results for all values of a parameter, the planned one included, in ascending order.
     #[must_use]
     pub fn variants(&self, kind: Variants) -> Vec<&Journey> {
         let others = match kind {
@@ -105,22 +109,22 @@ impl Point {
     }
 }
 
-/// Everything.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Seed of everything.
+    /// Seed of the experiment.
     pub seed: u64,
-    /// Landscapes per point that were wanted.
+    /// Requested landscapes per point.
     pub runs: u32,
     /// Cells along each side.
     pub size: u16,
     /// Classes of impassability.
     pub classes: u8,
-    /// What natural land is taken to mean.
+    /// Interpretation of natural terrain.
     pub hills: String,
-    /// Ticks that halve the priority of a move; 0: the cheapest always comes first.
+    /// Additional ticks that halve the priority of a move; 0: the cheapest move always comes first.
     pub shuffle_ticks: f64,
-    /// Cells from one robot to the next.
+    /// Distance of adjacent robots, cells.
     pub spacing: u8,
     /// Geodesic radius of the templates.
     pub rho: u8,
@@ -128,11 +132,11 @@ pub struct Report {
     pub radius: u8,
     /// Lag at which the top leader waits, cells.
     pub halt_cells: f64,
-    /// dPhi / 6 = a ln(N + 1) + b over the points, least squares.
+    /// Least-squares fit of dPhi / 6 = a ln(N + 1) + b over the points.
     pub fit: Option<LogFit>,
-    /// The paper's.
+    /// The paper's fit.
     pub paper: LogFit,
-    /// The points by rising number of obstacles.
+    /// The points in ascending order of obstacles.
     pub points: Vec<Point>,
 }
 
@@ -305,7 +309,6 @@ impl Display for Report {
     }
 }
 
-/// A line per value, a column per point.
 fn variants(f: &mut Formatter<'_>, report: &Report, kind: Variants) -> fmt::Result {
     let Some(first) = report.points.first() else {
         return Ok(());

@@ -1,7 +1,6 @@
 use super::*;
 use staya_controller::cost::Gain;
 
-/// Small enough for a test, large enough to show something.
 fn small() -> Plan {
     Plan {
         obstacles: vec![0, 10],
@@ -20,7 +19,7 @@ fn report(plan: &Plan) -> Report {
 }
 
 #[test]
-fn formation_is_kept_and_everybody_arrives() {
+fn formation_is_kept_and_all_robots_arrive() {
     let report = report(&small());
     assert_eq!(report.points.len(), 2);
     for point in &report.points {
@@ -31,7 +30,7 @@ fn formation_is_kept_and_everybody_arrives() {
         assert!(journey.worst_error < 8.0, "{journey:?}");
         let ratio = journey.time_ratio.unwrap();
         assert!((0.9..2.0).contains(&ratio), "{ratio}");
-        // The best fit cannot be worse in squares; in distances it is near.
+        // The best fit minimises squares; its mean distance is similar.
         assert!(journey.best_fit_error_per_agent < journey.error_per_agent.mean * 1.5);
         assert_eq!((point.other_eps.len(), point.other_losses.len()), (1, 1));
         assert_eq!(point.other_losses[0].arrived, 4, "also at 60 % loss");
@@ -41,7 +40,7 @@ fn formation_is_kept_and_everybody_arrives() {
 }
 
 #[test]
-fn keeping_a_formation_is_what_makes_the_difference() {
+fn formation_parameters_reduce_the_error() {
     // Without gain, waiting and common pricing the robots still follow; with them they are nearer.
     let loose = Plan {
         formation: FormationParams { halt_lag: u16::MAX, gain: Gain::ZERO, ..FormationParams::default() },
@@ -52,7 +51,7 @@ fn keeping_a_formation_is_what_makes_the_difference() {
 }
 
 #[test]
-fn who_looks_ahead_is_nearer_its_place_and_sooner_there() {
+fn followers_with_lookahead_are_nearer_and_faster() {
     let plan = Plan {
         obstacles: vec![20],
         runs: 20,
@@ -70,7 +69,7 @@ fn who_looks_ahead_is_nearer_its_place_and_sooner_there() {
 }
 
 #[test]
-fn the_papers_law_and_ours_without_waiting_are_beside_ours() {
+fn report_compares_ours_with_the_papers_law_and_without_waiting() {
     let plan = Plan { obstacles: vec![10], other_laws: vec![Law::Unwaiting, Law::Paper], ..small() };
     let report = report(&plan);
     let laws: Vec<(Law, f64)> = report.points[0].other_laws.iter().map(|o| (o.law, o.journey.loss)).collect();
@@ -98,14 +97,14 @@ fn threads_and_early_ends_change_nothing() {
     };
     let all = on(1);
     assert_eq!(all, on(4));
-    // Eight landscapes: each alone, in formation, with another eps, with another loss.
+    // Eight landscapes: without formation, in formation, with another eps, with another loss.
     assert_eq!(all.concat().len(), 8 * 4);
     let none = plan.carry_out(|_| false).unwrap();
     assert!(plan.report(&none).points.is_empty());
 }
 
 #[test]
-fn plans_that_cannot_be_carried_out_say_why() {
+fn invalid_plans_are_refused_with_the_reason() {
     let refused = |change: fn(&mut Plan)| {
         let mut plan = small();
         change(&mut plan);

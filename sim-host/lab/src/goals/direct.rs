@@ -1,6 +1,8 @@
-//! The law by itself: no agents, no radio, no packets. Every robot knows where those within R_nbh are, and all go at
-//! once, as the paper's program has it (sections 2 and 3): the flock's wish, push-out of the step that it makes, the
-//! step.
+//! The law alone, without agents, radio and packets.
+//!
+//! Every robot has perfect knowledge of the robots within R_nbh, and all move at once, as in the
+//! paper's program (sections 2 and 3). A tick consists of the flock's wish, push-out of the
+//! resulting step, and the step.
 
 use super::Plan;
 use super::scene::Scene;
@@ -19,12 +21,10 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_sim::nearby::{Cells, Found, Query, Search as _, Space};
 use staya_sim::world::plane::Solid;
 
-/// A crowd, its law and its scene.
 struct Crowd<'a> {
     scene: &'a Scene,
     params: GoalParams<f32>,
     push_out: Option<PushOutParams<f32>>,
-    /// How many neighbours a robot knows at most.
     most: usize,
     arrival_m: f32,
     seed: u64,
@@ -35,9 +35,9 @@ struct Crowd<'a> {
     cells: Cells<f64, 2>,
 }
 
-/// Makes a run; the fingerprint of all places at all times.
+/// Makes a run and returns a hash of all places in all ticks.
 ///
-/// O(ticks n k), k the robots within R_nbh.
+/// O(ticks n k), where k is the number of robots within R_nbh.
 pub(super) fn run(plan: &Plan, setting: &Setting, scene: &Scene, seed: u64, watch: &mut Watch<'_>) -> Result<u64> {
     let mut crowd = Crowd::new(plan, setting, scene, seed)?;
     let mut hash = 0;
@@ -84,7 +84,7 @@ impl<'a> Crowd<'a> {
         })
     }
 
-    /// All decide by where all are, then all move.
+    /// Lets all robots decide from their current places, then moves all.
     fn step(&mut self, tick: u32) -> Result<()> {
         let places_m: Vec<[f64; 2]> = self.places.iter().map(|&place| metres(place)).collect();
         self.cells.rebuild(&places_m);
@@ -108,7 +108,7 @@ impl<'a> Crowd<'a> {
         Ok(())
     }
 
-    /// Whom a robot knows, nearest first.
+    /// Finds the neighbours that a robot knows, nearest first.
     fn look_around(
         &self,
         robot: usize,
@@ -133,7 +133,7 @@ impl<'a> Crowd<'a> {
 
     fn decide(&mut self, robot: usize, nearby: &[Nearby<f32>]) -> Vec3<f32> {
         let (own, id) = (self.places[robot], number(robot));
-        // The paper's robots are points; what keeps them apart is R_MinDist.
+        // The paper's robots are points, which R_MinDist keeps apart.
         let body = Body {
             id,
             velocity_mps: self.velocities[robot],
@@ -148,7 +148,7 @@ impl<'a> Crowd<'a> {
         let Some(params) = &self.push_out else {
             return wished;
         };
-        // Who is farther away than two steps from the least distance plays no part.
+        // Robots farther away than the smallest distance plus two steps have no effect.
         let reach_m = params.min_distance_m + 2.0 * body.max_speed_mps * body.step_s;
         let near = nearby.iter().take_while(|other| other.offset_m.norm() <= reach_m).count();
         let seen = self.scene.solids.iter().filter_map(|solid| match solid {
@@ -163,7 +163,6 @@ impl<'a> Crowd<'a> {
     }
 }
 
-/// Robots have numbers from 1 on.
 fn number(index: usize) -> RobotId {
     RobotId(index as u32 + 1)
 }

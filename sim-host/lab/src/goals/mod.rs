@@ -1,26 +1,34 @@
-//! The goal flock of V. E. Pavlovsky and V. V. Pavlovsky ("Mathematical model of a two-dimensional homogeneous flock of
-//! robots", PAV): 225 robots, three goals, and how much of a group they are over K1 / K2 and R_nbh.
+//! The goal flock of V. E. Pavlovsky and V. V. Pavlovsky ("Mathematical model of a two-dimensional
+//! homogeneous flock of robots", PAV): 225 robots, three goals, and group order over K1 / K2 and
+//! R_nbh.
 //!
-//! Robots start at random in a square, go to the middle of the goals together, and there each draws one of them. As
-//! the paper has it, each knows all within R_nbh ([`Knowledge::All`]) and push-out keeps them apart; `--knows
-//! packets` makes them agents with sixteen neighbours each, behind any safety layer. The paper sweeps K1 from 0 to
-//! 150 at R_MinDist = 10 and R_nbh = 40 and tells neither K2 nor K3, nor distances: here K2 = 50 and K3 = 100, goals
-//! are 614 to 950 m away, robots go at 10 m/s.
+//! Robots start at random in a square and move to the middle of the goals together. There, each
+//! draws one of the goals. As in the paper, each robot knows all robots within R_nbh
+//! ([`Knowledge::All`]), and push-out keeps them apart. With `--knows packets` they are agents with
+//! sixteen neighbours each, behind any safety layer. The paper varies K1 from 0 to 150 at R_MinDist
+//! = 10 and R_nbh = 40. It gives neither K2 and K3 nor distances: here K2 = 50 and K3 = 100, goals
+//! are 614 to 950 m away, and robots move at 10 m/s.
 //!
-//! **Group order as numbers**, all over the way to the middle (until a tenth of the robots were there; from then on
-//! they part): company (how many others are within four R_MinDist of a robot), the share of robots in the largest
-//! group (linked within two R_MinDist), polarisation (length of the mean direction), and the crowd's radius (root
-//! mean square) over that of its start. A robot has gathered once it was as near to the middle as half as much again
-//! as the lattice of those who go to one goal.
+//! **Measures of group order.** All are averaged over the way to the middle, until a tenth of the
+//! robots were there, because robots part from then on:
 //!
-//! **What a group is compared with.** K2 = 0 makes robots that are independent of each other, but for not touching:
-//! the company that they have comes from the start and from the common goal, and not from K2. Points are compared
-//! with those of K2 = 0 and all else equal, K1 / K3 too. So compared, company rises with K2 and with R_nbh and comes
-//! to nothing where K1 is far above K2, as the paper says, whatever robots know and whatever is behind the flock.
+//! - company: number of other robots within four R_MinDist of a robot
+//! - share of the robots in the largest group (linked within two R_MinDist)
+//! - polarisation: length of the mean direction
+//! - spread: radius of the crowd (root mean square) divided by that at its start
 //!
-//! **What does not show it** is the share of the largest group from a dense start (`--start-side 2`), which was
-//! measured here first: such robots are one group already, 0.99 of them, without any K2, and what K2 does is to draw
-//! them together locally, into clumps, so that more of it makes several groups of one.
+//! A robot has gathered once its distance to the middle was at most 1.5 times the radius of the
+//! lattice of the robots that go to one goal.
+//!
+//! **Reference.** With K2 = 0, robots are independent, except that they do not touch. Their company
+//! is an effect of the start and of the common goal, not of K2. Each point is therefore compared
+//! with the one with K2 = 0 and all else equal, K1 / K3 included. In this comparison, company rises
+//! with K2 and with R_nbh and vanishes if K1 far exceeds K2, as the paper states. This holds for
+//! any knowledge of the robots and for any safety layer.
+//!
+//! **Unsuitable measure.** The share of the largest group from a dense start (`--start-side 2`)
+//! does not show the effect. Without any K2, such robots are already one group, with a share of
+//! 0.99. There, K2 draws them together locally into clumps, so that a larger K2 splits the group.
 
 mod direct;
 mod pictures;
@@ -54,12 +62,12 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use watch::Watch;
 
-/// Purpose of the random numbers that give each run its starts; those after it: draws of goals, obstacles, places of
-/// goals.
+/// First random number stream, for the starts. The following ones are for draws of goals,
+/// obstacles, and places of goals.
 const STARTS: u32 = 0x0047_0101;
 
-/// What to do: the goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order over K1 / K2 and
-/// R_nbh.
+/// What to do: the goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order
+/// over K1 / K2 and R_nbh.
 ///
 /// All lists are crossed with each other.
 #[derive(Args, Clone, Debug, PartialEq)]
@@ -95,8 +103,8 @@ pub struct Plan {
     /// The operator moves the first goal after a quarter of the time.
     #[arg(long = "move-goal")]
     pub moves_goal: bool,
-    /// Sides of the square in which robots start at random, in R_MinDist and per root of their number. At 2 they are
-    /// one group from the start.
+    /// Sides of the square in which robots start at random, in R_MinDist and per root of their
+    /// number. At 2 they are one group from the start.
     #[arg(long = "start-side", value_name = "SIDE,...", value_delimiter = ',', default_value = "4")]
     pub start_sides: Vec<f64>,
     /// Numbers of round obstacles at random between the start and the goals.
@@ -147,7 +155,8 @@ pub struct Plan {
     /// Length of a tick.
     #[arg(long = "step", value_name = "SECONDS", default_value_t = 0.1)]
     pub step_s: f64,
-    /// Equal seeds give equal results. What is chosen here (start, gains, measures) was chosen on seed 1.
+    /// Equal seeds give equal results. What is chosen here (start, gains, measures) was chosen on
+    /// seed 1.
     #[arg(long, default_value_t = 11)]
     pub seed: u64,
     /// Folder for rows and pictures.
@@ -168,17 +177,15 @@ impl Plan {
         0.3 * self.min_distance_m
     }
 
-    /// Speed of the robots, m/s: R_MinDist in a second.
+    /// Speed of the robots, m/s: one R_MinDist per second.
     fn speed_mps(&self) -> f64 {
         self.min_distance_m
     }
 
-    /// The seed of a run's scenario.
     fn run_seed(&self, run: u32) -> u64 {
         Rng::keyed(self.seed, STARTS + 1, run, 0).next_u64()
     }
 
-    /// The run of agents.
     fn scenario(&self, setting: &Setting, scene: &Scene, run: u32) -> Scenario {
         let (unit, speed_mps, seed) = (self.min_distance_m, self.speed_mps(), self.run_seed(run));
         let params = setting.params(unit, speed_mps);
@@ -194,12 +201,12 @@ impl Plan {
             sight_m: 2.0 * unit,
             guidance: GuidanceSetup::GoalFlock { params, arrival_m: (setting.arrival() * unit) as f32, seed },
             safety: setting.safety,
-            // Beacons are a step old.
+            // Beacons are one step old.
             orca: AvoidParams { margin_m: (unit / 50.0) as f32, ..AvoidParams::default() },
             push_out: PushOutParams {
                 model: setting.model,
                 evasion: setting.evasion,
-                // A step more than bodies need.
+                // One step more than the bodies need.
                 min_distance_m: (2.0 * self.radius_m() + speed_mps * self.step_s) as f32,
             },
             solids: scene.solids.clone(),
@@ -209,7 +216,7 @@ impl Plan {
         arena.scenario(setup)
     }
 
-    /// Run `number` of a setting; `draws`: with moments to draw.
+    /// Makes run `number` of a setting; `draws` stores moments for pictures.
     fn run(&self, setting: &Setting, number: u32, draws: bool) -> Result<Run> {
         let scene = Scene::new(self, setting, number)?;
         let mut watch = Watch::new(self, setting, &scene, draws);
@@ -264,7 +271,7 @@ impl Experiment for Plan {
         given
     }
 
-    /// That of the robots' draws; starts are a function of the first seed and the run's number.
+    /// Seed of the robots' draws. Starts are a function of the first seed and the run's number.
     fn seed(&self, _: usize, run: u32) -> u64 {
         self.run_seed(run)
     }
@@ -273,7 +280,7 @@ impl Experiment for Plan {
         Run::default()
     }
 
-    /// Rows have no moments to draw: those runs that are drawn are made again for them.
+    /// Rows do not contain moments for pictures, so the drawn runs are repeated.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
         let settings = self.settings();
         let mut runs = jobs.each(|(): &mut (), point, run| self.run(&settings[point], run, false).map(Some))?;
@@ -297,7 +304,6 @@ impl Experiment for Plan {
 }
 
 impl Plan {
-    /// What all points have in common, as rows have it.
     fn common(&self) -> Vec<(&'static str, Value)> {
         vec![
             ("min_distance_m", self.min_distance_m.into()),
@@ -311,10 +317,10 @@ impl Plan {
 }
 
 impl Setting {
-    /// As rows and reports have it.
+    /// Parameters as in rows and reports.
     #[must_use]
     pub fn given(&self) -> Vec<(&'static str, Value)> {
-        // By name, so that a new field is not forgotten.
+        // Destructured, so that a new field cannot be forgotten.
         let Self {
             k1,
             k2,

@@ -1,4 +1,4 @@
-//! The numbers of the goal flock.
+//! Results of the goal flock.
 
 use super::setting::{Setting, short, varying};
 use super::threshold::{self, Gain, Threshold};
@@ -10,42 +10,43 @@ use serde::{Serialize, Serializer};
 use staya_stats::mean;
 use std::fmt::{self, Display, Formatter};
 
-/// One setting: means over the runs.
+/// Means over the runs of one setting.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
-    /// What was given.
+    /// The setting.
     #[serde(flatten, serialize_with = "as_rows")]
     pub setting: Setting,
     /// K1 / K2; `null` when K2 is 0.
     pub k1_over_k2: Option<f64>,
-    /// Runs.
+    /// Number of runs.
     pub runs: usize,
-    /// Length of the mean direction on the way, 0 to 1.
+    /// Mean length of the mean direction on the way, 0 to 1.
     pub polarisation: Option<f64>,
     /// Share of the robots in the largest group on the way.
     pub together: Option<f64>,
     /// Robots within four R_MinDist of a robot on the way.
     pub company: Option<f64>,
-    /// How much more of them that is than of independent robots: those of the same setting with K2 = 0; `null` where
-    /// there are none.
+    /// Difference of `together` to independent robots, in the same setting with K2 = 0; `null`
+    /// without such a point.
     pub together_gain: Option<f64>,
-    /// How many more that are than around independent robots.
+    /// Difference of `company` to independent robots.
     pub company_gain: Option<f64>,
-    /// Radius of the crowd on the way over that at the start.
+    /// Radius of the crowd on the way divided by that at the start.
     pub spread: Option<f64>,
-    /// Share of the robots that came to the middle.
+    /// Share of the robots that reached the middle.
     pub gathered: f64,
-    /// Time until half of them had, seconds: mean over the runs in which they did.
+    /// Time until half of the robots had gathered, seconds: mean over the runs in which they did.
     pub half_gathered_s: Option<f64>,
     /// Share of the robots at a goal at the end.
     pub arrived: f64,
-    /// Shares of the goals in these.
+    /// Shares of the goals among these robots.
     pub goal_shares: Vec<f64>,
-    /// Least distance of two centres of any run, over R_MinDist; `null` when all were farther apart.
+    /// Smallest distance of two centres in any run, divided by R_MinDist; `null` if all were
+    /// farther apart.
     pub least_pair_over_min_distance: Option<f64>,
-    /// Pairs of bodies (radius 0.3 R_MinDist) that overlap, summed over ticks and runs.
+    /// Pairs of overlapping bodies (radius 0.3 R_MinDist), summed over ticks and runs.
     pub overlaps: usize,
-    /// Fingerprints of the traces, xored.
+    /// Exclusive or of the trace hashes.
     pub trace_hash: String,
     #[serde(skip)]
     pub(super) frames: Vec<Frame>,
@@ -64,10 +65,10 @@ fn json(value: &Value) -> serde_json::Value {
     }
 }
 
-/// Everything.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Seed of everything.
+    /// Seed of the experiment.
     pub seed: u64,
     /// R_MinDist, metres.
     pub min_distance_m: f64,
@@ -77,13 +78,13 @@ pub struct Report {
     pub step_s: f64,
     /// Length of a run, seconds.
     pub seconds: f64,
-    /// Whether places of the goals are drawn.
+    /// Whether places of the goals are random.
     pub random_goals: bool,
     /// Whether the first goal was moved.
     pub moves_goal: bool,
-    /// In the order of the lists, K1 the innermost. Those without a run are left out.
+    /// Points in the order of the lists, K1 innermost, without those that have no runs.
     pub points: Vec<Point>,
-    /// Where the group is lost, for each curve over K1 / K2.
+    /// Threshold of K1 / K2 for each curve.
     pub thresholds: Vec<Threshold>,
     #[serde(skip)]
     pub(super) plan: Plan,
@@ -108,13 +109,11 @@ impl Report {
         }
     }
 
-    /// The goals of the first run of a setting at a tick, metres.
     pub(super) fn scene(&self, setting: &Setting) -> Option<Scene> {
         Scene::new(&self.plan, setting, 0).ok()
     }
 }
 
-/// Sets each point beside that of independent robots.
 fn compare(points: &mut [Point]) {
     let alone = points.iter().filter(|point| point.setting.k2 == 0.0);
     let alone: Vec<_> = alone.map(|point| (point.setting, point.together, point.company)).collect();

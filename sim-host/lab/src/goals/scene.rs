@@ -1,4 +1,4 @@
-//! Where a run begins: places of robots, goals and obstacles, drawn by its number.
+//! Initial scene of a run: random places of robots, goals and obstacles, a function of its number.
 
 use super::setting::Setting;
 use super::{Plan, STARTS};
@@ -8,43 +8,42 @@ use staya_controller::rand::Rng;
 use staya_sim::scenario::{Start, Target};
 use staya_sim::world::plane::Solid;
 
-/// The middle of the goals, in R_MinDist.
+/// Middle of the goals, in R_MinDist.
 const MIDDLE: [f64; 2] = [70.0, 0.0];
-/// How far goals are from it.
+/// Distance of the goals from the middle, in R_MinDist.
 const AROUND: f64 = 25.0;
-/// Goals drawn at random are within so much of the middle, and so much apart.
+/// Largest distance of random goals from the middle, and their smallest distance from each other.
 const GOAL_FIELD: [f64; 2] = [40.0, 25.0];
-/// Where the first goal goes when it moves.
+/// New place of the first goal when it moves.
 const MOVED: [f64; 2] = [90.0, 20.0];
-/// Where obstacles end, well before the goals.
+/// Largest x of obstacles, well before the goals.
 const LAST: f64 = 50.0;
-/// Room between the start and obstacles, and between these.
+/// Smallest gap between the start and obstacles, and between obstacles.
 const ROOM: f64 = 3.0;
-/// Radii of obstacles.
+/// Smallest and largest radius of obstacles.
 const RADII: [f64; 2] = [1.0, 3.0];
-/// Draws of a place before nothing fits any more.
+/// Draws of a place before the area counts as full.
 const TRIES: u32 = 1000;
 
-/// Where a run begins.
+/// Initial scene of a run.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The robots, which are told the goals.
+    /// Robots with their goals.
     pub starts: Vec<Start>,
-    /// Discs.
+    /// Obstacles.
     pub solids: Vec<Solid>,
-    /// The goals at the start, metres.
     goals_m: Vec<[f64; 3]>,
     velocity_mps: [f64; 3],
-    /// The tick in which the first one moves, if it does, and where to.
+    /// Tick in which the first goal moves, if it does, and its new place.
     moves: Option<(u32, [f64; 3])>,
     step_s: f64,
 }
 
 impl Scene {
-    /// That of a run.
+    /// Creates the scene of a run.
     ///
     /// # Errors
-    /// There is no room for so many robots, goals or obstacles.
+    /// Robots, goals or obstacles do not fit.
     pub fn new(plan: &Plan, setting: &Setting, run: u32) -> Result<Self> {
         let unit = plan.min_distance_m;
         let goals_m = goals(plan, setting, run)?;
@@ -74,7 +73,7 @@ impl Scene {
         })
     }
 
-    /// Where the goals are after a tick, metres.
+    /// Places of the goals after a tick, metres.
     #[must_use]
     pub fn goals_at(&self, tick: u32) -> Vec<[f64; 3]> {
         let after = |place_m: [f64; 3], since: u32| {
@@ -88,26 +87,26 @@ impl Scene {
         goals_m
     }
 
-    /// The order that moves the first goal: its tick, and the goal as it is from then on.
+    /// The operator's order that moves the first goal: its tick, and the new goal.
     #[must_use]
     pub fn order(&self) -> Option<(u32, Target)> {
         self.moves.map(|(tick, position_m)| (tick, Target { position_m, velocity_mps: self.velocity_mps }))
     }
 }
 
-/// How far robots go straight until they have gathered, in R_MinDist: from the middle of the start to where the
-/// middle of the goals begins. Goals drawn at random are about as far away.
+/// Distance that robots travel straight until they have gathered, in R_MinDist: from the middle of
+/// the start to the edge of the goals' middle. Random goals are about as far away.
 pub fn way(setting: &Setting) -> f64 {
     MIDDLE[0] - setting.arrival()
 }
 
-/// The middle of some goals, metres.
+/// Middle of some goals, metres.
 pub fn middle_m(goals_m: &[[f64; 3]]) -> [f64; 3] {
     let mean = |axis: usize| goals_m.iter().map(|goal| goal[axis]).sum::<f64>() / goals_m.len() as f64;
     [mean(0), mean(1), 0.0]
 }
 
-/// The goals: evenly around their middle (one: there), or at random with the run's number.
+/// The goals: evenly around their middle (a single one there), or random.
 fn goals(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<[f64; 3]>> {
     let unit = plan.min_distance_m;
     let place_m = |x: f64, y: f64| [(MIDDLE[0] + x) * unit, (MIDDLE[1] + y) * unit, 0.0];
@@ -134,8 +133,8 @@ fn goals(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<[f64; 3]>> {
     Ok(goals_m)
 }
 
-/// Discs between the start and the goals that the crowd has to go around, with ways between them: the paper's scenes
-/// have some, and do not say which.
+/// Discs between the start and the goals, with gaps between them, which the crowd has to go around.
+/// The paper's scenes have some, but it does not describe them.
 fn solids(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<Solid>> {
     let unit = plan.min_distance_m;
     let half = setting.start_half();

@@ -1,4 +1,4 @@
-//! What a run is made of beside its seed: one value of each list of a plan.
+//! Settings: one value of each list of a plan.
 
 use super::Plan;
 use anyhow::{Result, bail, ensure};
@@ -9,14 +9,15 @@ use staya_controller::flock::goal::GoalParams;
 use staya_controller::names::Named;
 use staya_controller::push_out::{Evasion, Model};
 
-/// What a robot knows of the others, and so what makes a run.
+/// Knowledge of the robots about each other, which also determines how a run is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Knowledge {
-    /// The paper's: all within R_nbh, where they are. No radio, no agents: the law and push-out, step by step.
+    /// Perfect knowledge of all robots within R_nbh, as in the paper. No radio and no agents: the
+    /// law and push-out, step by step.
     All,
-    /// The same, but the sixteen nearest only.
+    /// Like [`Knowledge::All`], for the sixteen nearest robots only.
     Nearest,
-    /// Agents that hear packets of their sixteen nearest.
+    /// Agents that receive packets from their sixteen nearest neighbours.
     Packets,
 }
 
@@ -33,7 +34,6 @@ impl Named for Knowledge {
     }
 }
 
-/// What robots know of each other, as a word of the command line.
 pub(super) fn knowledge() -> impl TypedValueParser<Value = Knowledge> {
     one_of(&[
         (Knowledge::All, "All within R_nbh, where they are: the law by itself, without agents"),
@@ -45,11 +45,11 @@ pub(super) fn knowledge() -> impl TypedValueParser<Value = Knowledge> {
 /// One value of each list of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
-    /// Gain of the pull to the goal.
+    /// Gain of the attraction to the goal.
     pub k1: f64,
-    /// Gain of the pull to the middle of the neighbours.
+    /// Gain of the attraction to the middle of the neighbours.
     pub k2: f64,
-    /// Gain of the push away from robots that are too near.
+    /// Gain of the repulsion from robots that are too near.
     pub k3: f64,
     /// R_nbh, metres.
     pub neighborhood_m: f64,
@@ -61,38 +61,37 @@ pub struct Setting {
     pub goal_speed_mps: f64,
     /// Number of obstacles.
     pub obstacles: u32,
-    /// Side of the square of the start, in R_MinDist and per root of the robots' number.
+    /// Side of the square of the starts, in R_MinDist and per root of the robots' number.
     pub start_side: f64,
-    /// What robots know of each other.
+    /// Knowledge of the robots about each other.
     pub knows: Knowledge,
-    /// What is behind the flock.
+    /// Safety layer behind the flock.
     pub safety: SafetyKind,
-    /// What push-out makes of a step.
+    /// Treatment of a step by push-out.
     pub model: Model,
-    /// How many robots push-out evades at once.
+    /// Number of robots that push-out evades at once.
     pub evasion: Evasion,
 }
 
 impl Setting {
-    /// K1 / K2; `None` where K2 is 0: robots are independent.
+    /// K1 / K2; `None` if K2 is 0, for independent robots.
     #[must_use]
     pub fn ratio(&self) -> Option<f64> {
         (self.k2 != 0.0).then(|| self.k1 / self.k2)
     }
 
-    /// The same apart from K1 and K2: what a curve over their ratio has in common.
+    /// The setting without K1 and K2, common to a curve over their ratio.
     #[must_use]
     pub fn without_gains(&self) -> Self {
         Self { k1: 0.0, k2: 0.0, ..*self }
     }
 
-    /// The same apart from all that is tuned.
+    /// The setting without all tuned parameters.
     #[must_use]
     pub fn scene(&self) -> Self {
         Self { k3: 0.0, neighborhood_m: 0.0, ..self.without_gains() }
     }
 
-    /// The law's parameters.
     pub(super) fn params(&self, min_distance_m: f64, speed_mps: f64) -> GoalParams<f32> {
         GoalParams {
             goal_gain: self.k1 as f32,
@@ -103,15 +102,15 @@ impl Setting {
         }
     }
 
-    /// How near to the middle, or to a goal, counts as being there, in R_MinDist: half as wide again as the lattice
-    /// of the robots that go to one goal.
+    /// Distance at which a robot has arrived at the middle or at a goal, in R_MinDist: 1.5 times
+    /// the radius of the lattice of the robots that go to one goal.
     pub(super) fn arrival(&self) -> f64 {
         let each = f64::from(self.robots) / f64::from(self.goals);
         let lattice = libm::sqrt(each * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI));
         1.5 * lattice.max(2.0)
     }
 
-    /// Half of the side of the square in which robots start, in R_MinDist.
+    /// Half the side of the square of the starts, in R_MinDist.
     pub(super) fn start_half(&self) -> f64 {
         self.start_side * libm::sqrt(f64::from(self.robots)) / 2.0
     }
@@ -143,7 +142,6 @@ impl Setting {
     }
 }
 
-/// What a figure is called beside others: only what differs between settings is in the table.
 pub(super) fn short(name: &'static str) -> &'static str {
     match name {
         "neighborhood_m" => "R_nbh",
@@ -156,7 +154,7 @@ pub(super) fn short(name: &'static str) -> &'static str {
     }
 }
 
-/// The parameters in which some settings differ from the first one, and K1, by their place among all of them.
+/// Indices of the parameters that differ between settings, and of K1.
 pub(super) fn varying(settings: &[Setting]) -> Vec<usize> {
     let given: Vec<_> = settings.iter().map(Setting::given).collect();
     let Some(first) = given.first() else {
@@ -166,7 +164,7 @@ pub(super) fn varying(settings: &[Setting]) -> Vec<usize> {
     (0..first.len()).filter(differs).collect()
 }
 
-/// Each value with each of those before.
+/// Cross product of settings and values; the values change first.
 fn cross<T: Copy>(settings: &[Setting], values: &[T], set: impl Fn(&mut Setting, T)) -> Vec<Setting> {
     let with = |setting: &Setting, value: T| {
         let mut setting = *setting;
@@ -177,8 +175,8 @@ fn cross<T: Copy>(settings: &[Setting], values: &[T], set: impl Fn(&mut Setting,
 }
 
 impl Plan {
-    /// All settings, K1 the innermost. Model and evasion are push-out's: behind another layer the first of each
-    /// stands for all.
+    /// All settings, with K1 innermost. Model and evasion belong to push-out; with another safety
+    /// layer, only the first value of each is used.
     #[must_use]
     pub fn settings(&self) -> Vec<Setting> {
         let blank = Setting {
@@ -213,7 +211,6 @@ impl Plan {
         cross(&all, &self.k1, |s, value| s.k1 = value)
     }
 
-    /// Whether all settings can be run.
     pub(super) fn check_settings(&self) -> Result<()> {
         let settings = self.settings();
         ensure!(!settings.is_empty(), "no points; give one value or more of each list, such as --k1 50");

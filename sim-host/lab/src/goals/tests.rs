@@ -1,6 +1,5 @@
 use super::*;
 
-/// Small enough for a test, large enough to show something.
 fn small() -> Plan {
     Plan {
         k1: vec![50.0],
@@ -22,23 +21,23 @@ fn report(plan: &Plan) -> Report {
     plan.measure().unwrap()
 }
 
-/// What the paper says of K2. Measured from a start that is one group already, independent robots were the most of a
-/// group: the largest group is nearly everybody whatever K2 is, and K2 far above K1 can only break it up.
+/// The paper's statement about K2. It does not show from a dense start, which is one group already:
+/// the largest group has nearly all robots for any K2, and K2 far above K1 can only split it.
 #[test]
-fn the_pull_of_the_neighbours_makes_the_group_and_shows_where_none_is_given() {
+fn attraction_to_neighbours_forms_the_group_and_shows_from_a_scattered_start() {
     let scattered = report(&small());
     let gains: Vec<f64> = scattered.points[1..].iter().map(|point| point.company_gain.unwrap()).collect();
     assert!(gains[0] > 0.0 && gains[1] > gains[0] && gains[2] > gains[1], "{gains:?}");
     assert_eq!(scattered.points[0].company_gain, None, "independent robots are what others are compared with");
     let [alone, .., last] = &scattered.points[..] else { panic!() };
     assert!(alone.together.unwrap() < 0.5 && last.together.unwrap() > alone.together.unwrap());
-    // A start that is a group says nothing of K2.
+    // A start that is one group shows nothing about K2.
     let dense = report(&Plan { start_sides: vec![2.0], k2: vec![0.0, 50.0], ..small() });
     assert!(dense.points[0].together.unwrap() > 0.8, "{:?}", dense.points[0].together);
 }
 
 #[test]
-fn the_neighbourhood_makes_the_group_too() {
+fn larger_neighbourhood_forms_the_group_too() {
     let plan = Plan { k2: vec![0.0, 50.0], neighborhoods_m: vec![20.0, 40.0, 80.0], ..small() };
     let report = report(&plan);
     let gains: Vec<f64> = report.points.iter().filter_map(|point| point.company_gain).collect();
@@ -46,7 +45,7 @@ fn the_neighbourhood_makes_the_group_too() {
 }
 
 #[test]
-fn without_k1_nobody_goes_and_with_it_robots_gather_draw_and_arrive() {
+fn robots_stay_without_k1_and_with_it_gather_draw_a_goal_and_arrive() {
     for plan in [small(), agents()] {
         let plan = Plan { k1: vec![0.0, 50.0], k2: vec![50.0], runs: 1, seconds: 200.0, ..plan };
         let report = report(&plan);
@@ -61,19 +60,19 @@ fn without_k1_nobody_goes_and_with_it_robots_gather_draw_and_arrive() {
 }
 
 #[test]
-fn goals_that_move_are_reached_where_they_are() {
+fn moving_goals_are_reached_at_their_current_place() {
     for plan in [small(), agents()] {
         let plan = Plan { k1: vec![150.0], k2: vec![50.0], k3: vec![300.0], runs: 1, seconds: 200.0, ..plan };
         let moved = &report(&Plan { moves_goal: true, ..plan.clone() }).points[0];
         assert!(moved.arrived >= 0.9 && moved.goal_shares[0] > 0.1, "{} {:?}", moved.arrived, moved.goal_shares);
         let drifting = &report(&Plan { goal_speeds_mps: vec![2.0], ..plan }).points[0];
-        // They are 400 m to the north by then; some of the crowd are behind them.
+        // The goals are 400 m to the north by then, with some of the crowd behind them.
         assert!(drifting.arrived >= 0.5, "{}", drifting.arrived);
     }
 }
 
 #[test]
-fn safety_layers_keep_bodies_apart_that_overlap_without() {
+fn safety_layers_prevent_overlaps() {
     let plan = Plan { k1: vec![150.0], k2: vec![50.0], runs: 1, ..small() };
     let bare = &report(&Plan { safeties: vec![SafetyKind::None], ..plan.clone() }).points[0];
     assert!(bare.overlaps > 0);
@@ -81,14 +80,15 @@ fn safety_layers_keep_bodies_apart_that_overlap_without() {
         models: vec![Model::Radial, Model::Tangential],
         evasions: vec![Evasion::Single, Evasion::Multiple],
         obstacles: vec![4],
-        // Who both go may come two steps nearer than they should: bodies have room for that at this step.
+        // Two moving robots may come two steps nearer than permitted: at this step, the bodies
+        // still fit.
         step_s: 0.1,
         ..plan
     };
     let pushed = report(&both(plan.clone()));
     assert_eq!(pushed.points.len(), 4);
     for point in &pushed.points {
-        // Who evades one robot only may be led into another one.
+        // A robot that evades one robot only may be led into another one.
         let most = if point.setting.evasion == Evasion::Multiple { 0 } else { bare.overlaps / 10 };
         assert!(point.overlaps <= most, "{:?}", point.setting);
     }
@@ -98,7 +98,7 @@ fn safety_layers_keep_bodies_apart_that_overlap_without() {
 }
 
 #[test]
-fn robots_that_know_sixteen_are_those_that_know_all_where_there_are_no_more() {
+fn knowledge_of_sixteen_equals_perfect_knowledge_in_small_swarms() {
     let knows = |knows, robots| {
         let plan = Plan {
             knows: vec![knows],
@@ -116,7 +116,7 @@ fn robots_that_know_sixteen_are_those_that_know_all_where_there_are_no_more() {
 }
 
 #[test]
-fn places_of_goals_are_drawn_for_each_run() {
+fn random_goals_differ_between_runs() {
     let plan = Plan { random_goals: true, ..small() };
     let setting = plan.settings()[0];
     let goals = |run| Scene::new(&plan, &setting, run).unwrap().goals_at(0);
@@ -137,7 +137,7 @@ fn threads_and_early_ends_change_nothing() {
 }
 
 #[test]
-fn plans_that_cannot_be_carried_out_say_why() {
+fn invalid_plans_are_refused_with_the_reason() {
     let refused = |change: fn(&mut Plan)| {
         let mut plan = small();
         change(&mut plan);

@@ -1,18 +1,18 @@
-//! Threshold evaluation (PAV, conclusion): from which K1 / K2 on a crowd is no longer one group but a set of separate
-//! robots.
+//! Threshold evaluation (PAV, conclusion): the K1 / K2 above which a crowd is a set of separate
+//! robots instead of a group.
 //!
-//! The paper's program "evaluates and chooses thresholds" of its constants between the two, and tells neither how nor
-//! any value. Here the order of a group is what it has more than independent robots: the share of its largest group,
-//! and its company, less those of the same runs with K2 = 0 and all else equal. A curve of that over K1 / K2 has a
-//! peak; the threshold is where, behind the peak, half of it is left for the first time, between two points in equal
-//! ratios.
+//! The paper's program "evaluates and chooses thresholds" of its constants between the two cases,
+//! but gives neither the method nor values. Here, the order of a group is its excess over
+//! independent robots: share of the largest group and company, minus those of the same runs with K2
+//! = 0 and all else equal. Over K1 / K2, this curve has a peak. The threshold is the first crossing
+//! of half the peak behind it, interpolated geometrically between two points.
 
 use super::setting::{Setting, short, varying};
 use crate::experiment::Maybe;
 use serde::Serialize;
 use std::fmt::{self, Formatter};
 
-/// What a point has more than independent robots.
+/// Excess of a point over independent robots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gain {
     pub setting: Setting,
@@ -20,36 +20,37 @@ pub(super) struct Gain {
     pub company: Option<f64>,
 }
 
-/// Where one curve over K1 / K2 loses the group.
+/// Threshold of one curve over K1 / K2.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Threshold {
-    /// What the curve's points have in common; its gains K1 and K2 are 0.
+    /// Common setting of the curve's points; its K1 and K2 are 0.
     #[serde(skip)]
     pub setting: Setting,
-    /// The parameters in which curves differ, in words.
+    /// The parameters in which curves differ, as text.
     pub curve: String,
-    /// Of the share of the largest group.
+    /// Threshold of the share of the largest group.
     pub together: Crossing,
-    /// Of the number of robots around a robot.
+    /// Threshold of the number of robots around a robot.
     pub company: Crossing,
 }
 
-/// A curve's peak, and where half of it is left.
+/// Peak of a curve, and its crossing of half the peak.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Crossing {
-    /// Its greatest value: so much more than independent robots have.
+    /// Largest excess over independent robots.
     pub peak: Option<f64>,
-    /// The K1 / K2 of that.
+    /// K1 / K2 of the peak.
     pub peak_k1_over_k2: Option<f64>,
-    /// The K1 / K2 from which on less than half of the peak is left; `null`: in no point swept, or no peak above 0.
+    /// K1 / K2 above which less than half of the peak remains; `null` if no point is that low or no
+    /// peak is above 0.
     pub k1_over_k2: Option<f64>,
 }
 
 impl Crossing {
-    /// Of points (K1 / K2, value) in ascending order.
+    /// Evaluates points (K1 / K2, value) in ascending order.
     #[must_use]
     pub fn of(curve: &[[f64; 2]]) -> Self {
-        // The first of equals.
+        // The first of equal values.
         let mut best: Option<usize> = None;
         for (index, [_, value]) in curve.iter().enumerate() {
             if best.is_none_or(|best| *value > curve[best][1]) {
@@ -66,14 +67,14 @@ impl Crossing {
         let crossed = step.map(|step| {
             let [[x, y], [next_x, next_y]] = [step[0], step[1]];
             let part = (y - half) / (y - next_y);
-            // From 0 there are no equal ratios.
+            // Geometric interpolation is impossible from 0.
             if x > 0.0 { x * libm::pow(next_x / x, part) } else { next_x * part }
         });
         Self { peak: Some(peak), peak_k1_over_k2: Some(ratio), k1_over_k2: crossed }
     }
 }
 
-/// The thresholds of all curves that have three points or more.
+/// Thresholds of all curves with at least three points.
 pub(super) fn of(points: &[Gain]) -> Vec<Threshold> {
     let mut curves: Vec<Setting> = Vec::new();
     for point in points {
@@ -103,7 +104,6 @@ pub(super) fn of(points: &[Gain]) -> Vec<Threshold> {
     thresholds.filter(|(count, _)| *count >= 3).map(|(_, threshold)| threshold).collect()
 }
 
-/// The thresholds as a table; nothing when there are none.
 pub(super) fn table(f: &mut Formatter<'_>, thresholds: &[Threshold]) -> fmt::Result {
     if thresholds.is_empty() {
         return Ok(());
@@ -136,17 +136,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn half_of_a_peak_is_left_behind_it_in_equal_ratios() {
+    fn half_peak_is_interpolated_geometrically_behind_the_peak() {
         let curve = [[0.0, 0.2], [0.25, 0.8], [1.0, 0.6], [4.0, 0.2], [16.0, 0.1]];
         let crossing = Crossing::of(&curve);
         assert_eq!((crossing.peak, crossing.peak_k1_over_k2), (Some(0.8), Some(0.25)));
-        // 0.4 is half of the way from 0.6 at 1 to 0.2 at 4.
+        // 0.4 is halfway from 0.6 at 1 to 0.2 at 4.
         let at = crossing.k1_over_k2.unwrap();
         assert!((at - 2.0).abs() < 1e-9, "{at}");
     }
 
     #[test]
-    fn what_does_not_fall_or_is_no_more_than_independent_robots_has_no_threshold() {
+    fn curves_that_never_fall_or_never_rise_above_0_have_no_threshold() {
         assert_eq!(Crossing::of(&[[0.1, 0.9], [1.0, 0.9], [10.0, 0.9]]).k1_over_k2, None);
         assert_eq!(Crossing::of(&[[0.1, -0.1], [1.0, -0.3], [10.0, -0.9]]).k1_over_k2, None);
         assert_eq!(Crossing::of(&[]).peak, None);

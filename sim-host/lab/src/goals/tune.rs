@@ -1,12 +1,13 @@
-//! Auto-tuning of the goal flock (PAV, conclusion: begun there, and not described): K2 / K1, K3 / K1 and R_nbh for a
-//! scene.
+//! Auto-tuning of the goal flock: K2 / K1, K3 / K1 and R_nbh for a scene (PAV mentions this in its
+//! conclusion without describing it).
 //!
-//! Particle swarm optimisation (`argmin`) searches the gains whose runs cost least. The cost of a run is
+//! Particle swarm optimisation (`argmin`) searches for the gains with the lowest cost. The cost of
+//! a run is
 //!
-//! (1 - together) + (1 - arrived) + (time until half were at the middle / time straight there - 1):
+//! (1 - together) + (1 - arrived) + (time until half were at the middle / time straight there - 1).
 //!
-//! one for a group that is none, one for robots that do not arrive, one for twice the time. What is found is judged
-//! on runs that the search has not seen, beside the gains that experiments have by default.
+//! A cost of one means no group at all, or no arrivals, or twice the time. The result is validated
+//! on runs that the search has not used, next to the default gains of the experiment.
 
 use super::setting::{Setting, short, varying};
 use super::{Plan, Run};
@@ -22,29 +23,31 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 
-/// K1 of all runs: only the ratios of gains matter, as long as their sum is longer than 1.
+/// K1 of all runs: only the ratios of gains matter, as long as the sum of the terms is longer than
+/// 1.
 const K1: f64 = 50.0;
-/// The gains to compare with: K2 / K1, K3 / K1, and R_nbh in R_MinDist, the defaults of the experiment.
+/// Gains for comparison, the experiment's defaults: K2 / K1, K3 / K1, and R_nbh in R_MinDist.
 const UNTUNED: [f64; 3] = [1.0, 2.0, 4.0];
 /// Bounds of the search: log2 of K2 / K1, log2 of K3 / K1, R_nbh in R_MinDist.
 const BOUNDS: [[f64; 3]; 2] = [[-5.0, -3.0, 2.0], [3.0, 4.0, 12.0]];
-/// The numbers of the runs that judge begin here; those of the search at 0.
+/// First run number for validation; those of the search start at 0.
 const JUDGED_FROM: u32 = 1_000_000_000;
-/// Inertia, and the pulls of a particle's own best and of all particles' (Standard PSO 2011): 1 / (2 ln 2), 1/2 + ln
-/// 2. As numbers, so that every machine has the same bits.
+/// Inertia, and attraction to the best place of the particle and of all particles (Standard PSO
+/// 2011): 1 / (2 ln 2) and 1/2 + ln 2. Literals, so that every machine has the same bits.
 const INERTIA: f64 = 0.721_347_520_444_481_7;
 const PULL: f64 = 1.193_147_180_559_945_3;
 
 /// A search for gains, one for each scene of the plan's lists.
 #[derive(Clone, Debug)]
 pub struct Tuning {
-    /// Scenes and runs; its gains and neighbourhoods play no part. Its runs are those that each cost is the mean of.
+    /// Scenes and runs; its gains and neighbourhoods are ignored. Each cost is the mean of `runs`
+    /// runs.
     pub plan: Plan,
-    /// Particles of the swarm.
+    /// Number of particles.
     pub particles: u32,
-    /// Moves of the swarm.
+    /// Number of moves of the particles.
     pub moves: u32,
-    /// Runs that judge.
+    /// Number of runs for validation.
     pub judged: u32,
 }
 
@@ -57,23 +60,22 @@ pub struct Verdict {
     pub together: f64,
     /// Mean share of robots at a goal at the end.
     pub arrived: f64,
-    /// Mean time until half were at the middle over the time straight there; a run in which they never were counts
-    /// with its length.
+    /// Mean of the time until half were at the middle, divided by the time straight there; a run in
+    /// which they never were counts with its length.
     pub time_ratio: f64,
 }
 
-/// What one search gave.
+/// Result of one search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuned {
     /// K2 / K1, K3 / K1, R_nbh in R_MinDist.
     gains: [f64; 3],
-    /// Costs that were asked for.
     evaluations: u64,
-    /// On the runs of the search.
+    /// Figures of the best gains on the runs of the search.
     found: Verdict,
-    /// On the runs that judge.
+    /// Figures of the best gains on the validation runs.
     judged: Verdict,
-    /// The gains to compare with, on the same.
+    /// Figures of the default gains on the validation runs.
     untuned: Verdict,
     hash: u64,
 }
@@ -105,7 +107,6 @@ impl Record for Tuned {
 }
 
 impl Tuning {
-    /// The scenes, each once.
     fn scenes(&self) -> Vec<Setting> {
         let mut scenes: Vec<Setting> = Vec::new();
         for setting in self.plan.settings() {
@@ -116,13 +117,12 @@ impl Tuning {
         scenes
     }
 
-    /// A scene with these gains.
     fn with(&self, scene: &Setting, [k2, k3, neighborhood]: [f64; 3]) -> Setting {
         Setting { k1: K1, k2: K1 * k2, k3: K1 * k3, neighborhood_m: neighborhood * self.plan.min_distance_m, ..*scene }
     }
 
-    /// What `count` runs from number `first` on say of a setting, and their fingerprints, xored. Runs are made in
-    /// parallel and summed in order.
+    /// Mean figures of `count` runs of a setting from number `first` on, and the exclusive or of
+    /// their trace hashes. Runs are parallel and summed in order.
     fn judge(&self, setting: &Setting, first: u32, count: u32) -> Result<(Verdict, u64)> {
         let runs = (first..first + count).into_par_iter().map(|number| self.plan.run(setting, number, false));
         let runs: Vec<Run> = runs.collect::<Result<_>>()?;
@@ -146,7 +146,7 @@ impl Tuning {
     }
 
     fn verdict(&self, setting: &Setting, run: &Run) -> Verdict {
-        // From the middle of the start to where the middle of the goals begins.
+        // From the middle of the start to the edge of the goals' middle.
         let straight_s = super::scene::way(setting) * self.plan.min_distance_m / self.plan.speed_mps();
         let together = run.way.map_or(0.0, |way| way.together);
         let arrived = run.at_goals.iter().sum::<usize>() as f64 / f64::from(setting.robots);
@@ -154,7 +154,7 @@ impl Tuning {
         Verdict { cost: (1.0 - together) + (1.0 - arrived) + (time_ratio - 1.0), together, arrived, time_ratio }
     }
 
-    /// The search in one scene; `None` when it was ended.
+    /// Searches one scene; `None` if it was stopped.
     fn tune(&self, scene: &Setting, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Option<Tuned>> {
         let bounds = BOUNDS.map(|bound| bound.to_vec());
         let [low, high] = bounds;
@@ -188,13 +188,12 @@ impl Tuning {
     }
 }
 
-/// The gains at a place of the search.
+/// Gains at a place of the search.
 fn gains(place: &[f64]) -> [f64; 3] {
     let at = |axis: usize| place.get(axis).copied().unwrap_or_default();
     [libm::exp2(at(0)), libm::exp2(at(1)), at(2)]
 }
 
-/// What the search asks for.
 struct Cost<'a> {
     tuning: &'a Tuning,
     scene: &'a Setting,
@@ -290,37 +289,37 @@ impl Experiment for Tuning {
     }
 }
 
-/// One search.
+/// Result of one search.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
-    /// In what it differs from the others.
+    /// The parameters in which the scene differs from others.
     pub scene: String,
-    /// Found.
+    /// Best K2 / K1.
     pub k2_over_k1: f64,
-    /// Found.
+    /// Best K3 / K1.
     pub k3_over_k1: f64,
-    /// Found: R_nbh / R_MinDist.
+    /// Best R_nbh / R_MinDist.
     pub neighborhood_over_min_distance: f64,
-    /// On the runs of the search.
+    /// Figures on the runs of the search.
     pub found: Verdict,
-    /// On runs that the search has not seen.
+    /// Figures on the validation runs.
     pub judged: Verdict,
-    /// The default gains on the same.
+    /// Figures of the default gains on the validation runs.
     pub untuned: Verdict,
 }
 
-/// Everything.
+/// Results of the tuning.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Seed of everything.
+    /// Seed of the tuning.
     pub seed: u64,
-    /// Runs of which each cost of the search is the mean.
+    /// Runs averaged by each cost evaluation.
     pub tuning_runs: u32,
-    /// Runs that judge.
+    /// Validation runs.
     pub judged_runs: u32,
-    /// Costs that each search asked for.
+    /// Cost evaluations of each search.
     pub evaluations: u32,
-    /// One a scene.
+    /// One result per scene.
     pub scenes: Vec<Line>,
 }
 
@@ -366,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_is_a_function_of_its_seed_and_beats_gains_that_are_bad() {
+    fn search_depends_only_on_its_seed_and_improves_bad_gains() {
         let tuning = small();
         let report = tuning.measure().unwrap();
         let [line] = &report.scenes[..] else { panic!("{report:?}") };
@@ -380,7 +379,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_judged_is_not_what_was_tuned_on() {
+    fn validation_runs_differ_from_those_of_the_search() {
         let tuning = small();
         let setting = tuning.with(&tuning.scenes()[0], UNTUNED);
         let [seen, unseen] = [0, JUDGED_FROM].map(|first| tuning.judge(&setting, first, 2).unwrap().1);
@@ -388,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn searches_that_cannot_be_made_say_why() {
+    fn invalid_searches_are_refused_with_the_reason() {
         let refused = |change: fn(&mut Tuning)| {
             let mut tuning = small();
             change(&mut tuning);

@@ -1,4 +1,4 @@
-//! What is measured on the way to the goals.
+//! Measurements on the way to the goals.
 
 use super::Plan;
 use super::scene::{Scene, middle_m};
@@ -7,44 +7,44 @@ use crate::experiment::rows::{Each, Record};
 use staya_sim::metrics::flock::{FlockMeter, gaps, polarisation};
 use staya_sim::nearby::Space;
 
-/// The first seconds do not count: robots start at rest.
+/// Time before which nothing is measured, because robots start at rest, seconds.
 const WARM_UP_S: f64 = 5.0;
-/// The way is over when this share of the robots has gathered: from then on robots draw goals and part, and crowd
-/// around the middle, and neither says anything about the group.
+/// Share of gathered robots at which the way ends. From then on robots draw goals, part, and crowd
+/// around the middle, so that measures show nothing about the group.
 const WAY_ENDS: f64 = 0.1;
-/// Robots within so much of each other, in R_MinDist, are one group: beyond it r3 ends.
+/// Distance within which two robots belong to one group, in R_MinDist: the repulsion's range.
 const LINK: f64 = 2.0;
-/// Robots within so much, in R_MinDist, are company: the paper's R_nbh, whatever R_nbh is, so that runs can be
-/// compared.
+/// Distance within which robots count as company, in R_MinDist: the paper's R_nbh. It is
+/// independent of the run's R_nbh, so that runs are comparable.
 const COMPANY: f64 = 4.0;
 
-/// Shares of the time at which the first run is drawn.
+/// Moments of pictures of the first run, as shares of the run time.
 pub(super) const MOMENTS: [f64; 6] = [0.0, 0.125, 0.25, 0.375, 0.5, 1.0];
 
-/// What one run gave.
+/// Measurements of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
-    /// Means over the way; `None` when it was over before it was looked at.
+    /// Means over the way; `None` if it ended before the first measurement.
     pub way: Option<Way>,
-    /// Robots that were at the middle.
+    /// Robots that reached the middle.
     pub gathered: usize,
-    /// Time until half of them were, seconds.
+    /// Time until half of the robots did, seconds.
     pub half_gathered_s: Option<f64>,
     /// Robots at each goal at the end.
     pub at_goals: [usize; 4],
-    /// Least distance of two centres, metres; infinite when none were within R_MinDist.
+    /// Smallest distance of two centres, metres; infinite if none were within R_MinDist.
     pub least_pair_m: f64,
-    /// Pairs of bodies that overlap, summed over ticks.
+    /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Moments to draw.
+    /// Moments for pictures.
     pub frames: Vec<Frame>,
-    /// Of the whole trace.
+    /// Trace hash.
     pub hash: u64,
 }
 
 impl Record for Run {
     fn figures(&mut self, each: &mut Each<'_>) {
-        // All or none.
+        // Either all of them or none.
         let way = self.way;
         let part = |value: fn(&Way) -> f64| way.as_ref().map(value);
         let [mut polarisation, mut together, mut company, mut spread] =
@@ -75,20 +75,20 @@ impl Record for Run {
     }
 }
 
-/// The crowd on its way, means over ticks.
+/// Measures of the crowd on its way, means over ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Way {
-    /// Of the robots that have not gathered yet.
+    /// Length of the mean direction of the robots that have not gathered yet.
     pub polarisation: f64,
     /// Share of all robots in the largest group.
     pub together: f64,
-    /// Robots within four R_MinDist of a robot, mean over all.
+    /// Mean number of robots within four R_MinDist of a robot.
     pub company: f64,
-    /// Root mean square distance from the centroid over that at the start.
+    /// Root mean square distance from the centroid, divided by that at the start.
     pub spread: f64,
 }
 
-/// All robots at a moment.
+/// All robots at one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     pub tick: u32,
@@ -96,14 +96,13 @@ pub struct Frame {
     pub velocities_mps: Vec<[f64; 2]>,
 }
 
-/// Measures a run as it goes.
+/// Measures a run tick by tick.
 pub struct Watch<'a> {
     scene: &'a Scene,
     arrival_m: f64,
     radius_m: f64,
     min_distance_m: f64,
     step_s: f64,
-    /// Ticks to keep.
     wanted: Vec<u32>,
     warm_up: u32,
     groups: FlockMeter<2>,
@@ -118,7 +117,7 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// `draws`: whether to keep moments for pictures.
+    /// Creates the measurement; `draws` stores moments for pictures.
     pub fn new(plan: &Plan, setting: &Setting, scene: &'a Scene, draws: bool) -> Self {
         let ticks = crate::arena::ticks(plan.seconds, plan.step_s);
         let at = |share: f64| libm::round(share * f64::from(ticks)) as u32;
@@ -143,7 +142,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Looks at all robots after a tick.
+    /// Measures all robots after a tick.
     pub fn look(&mut self, tick: u32, places_m: Vec<[f64; 2]>, velocities_mps: Vec<[f64; 2]>) {
         let goals_m = self.scene.goals_at(tick);
         let middle_m = middle_m(&goals_m);
@@ -153,7 +152,7 @@ impl<'a> Watch<'a> {
             let off_m = |place_m: [f64; 3]| libm::hypot(x - place_m[0], y - place_m[1]);
             *has_gathered |= off_m(middle_m) <= self.arrival_m;
             let nearest = (0..).zip(&goals_m).map(|(goal, &at)| (off_m(at), goal)).min_by(|a, b| a.0.total_cmp(&b.0));
-            // As the robot itself rounds.
+            // Tolerates the rounding of the robot itself.
             if let Some((_, goal)) = nearest.filter(|(off, _): &(f64, usize)| *off <= self.arrival_m + 0.01) {
                 self.run.at_goals[goal] += usize::from(*has_gathered);
             }
@@ -206,7 +205,7 @@ impl<'a> Watch<'a> {
         self.looks += 1;
     }
 
-    /// The results, at the end.
+    /// Returns the results at the end.
     pub fn finish(mut self, hash: u64) -> Run {
         let looks = f64::from(self.looks);
         self.run.way = (self.looks > 0).then(|| Way {
@@ -220,7 +219,6 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Root mean square distance from the centroid.
 fn spread(places_m: &[[f64; 2]]) -> f64 {
     let count = places_m.len() as f64;
     let variance = |axis: usize| {

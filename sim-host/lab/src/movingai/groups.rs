@@ -1,9 +1,10 @@
-//! Do maps shared over the radio help robots among walls, too?
+//! Effect of maps shared over the radio among walls.
 //!
-//! Each run draws some of a benchmark's queries, one per robot, and sends all of them off at once: by what each sees itself, and again
-//! with maps shared over the radio ([`staya_controller::land`]), at each loss of packets. Robots run the whole simulator, so that they
-//! also get in each other's way: who stands at its goal in a narrow door stays there. What a robot loses is its travel time over the
-//! optimal length that the benchmark states, as if it were alone.
+//! Each run draws queries of a benchmark, one per robot, and starts all robots at once: without
+//! sharing, and with maps shared over the radio ([`staya_controller::land`]) at each packet loss.
+//! The complete simulator runs, so robots also block each other: a robot whose goal is in a narrow
+//! door stays there. The loss of a robot is its travel time compared with the benchmark's optimal
+//! length, as if it were alone.
 
 use super::{Benchmark, Plan};
 use crate::experiment::rows::Jobs;
@@ -25,47 +26,47 @@ use staya_sim::terrain::movingai::Query;
 use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
-/// Purpose of the random numbers that choose queries.
 const QUERIES: u32 = 0x0045_0204;
-/// Purpose of the random numbers that give each run its seed for robots and radio.
+/// Random number stream for the seeds for robots and radio.
 const RUNS: u32 = 0x0045_0205;
 
-/// What to do.
+/// Parameters of the experiment.
 #[derive(Clone, Debug)]
 pub struct GroupPlan {
-    /// Map and queries, and who answers them; they remember and learn as much as the controller does by itself.
+    /// Queries, and properties of the robots, whose memories have the controller's default sizes.
     pub robots: Plan,
-    /// Robots of a group, 1 to 100.
+    /// Robots per group, 1 to 100.
     pub groups: Vec<u32>,
-    /// Losses of packets at which maps are shared, 0 to 1.
+    /// Packet losses at which maps are shared, 0 to 1.
     pub losses: Vec<f64>,
-    /// Groups of each size, 1 or more.
+    /// Groups of each size, at least 1.
     pub runs: u32,
-    /// Equal seeds give equal results. Maps were made with an eye on seed 1, so it is another one by default.
+    /// Equal seeds give equal results. The default differs from seed 1, which was used to develop
+    /// shared maps.
     pub seed: u64,
 }
 
-/// Groups of one size.
+/// Results of groups of one size.
 #[derive(Clone, Debug, Serialize)]
 pub struct GroupPoint {
-    /// Robots of a group.
+    /// Robots per group.
     pub robots: u32,
-    /// Groups.
+    /// Number of groups.
     pub runs: usize,
-    /// Each for itself, then with shared maps at each loss.
+    /// Without sharing, then with shared maps at each loss.
     pub outlooks: Vec<Outlook>,
 }
 
-/// What the groups gave.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct GroupReport {
-    /// The map's file.
+    /// File of the map.
     pub map: String,
     /// Radius of the windows.
     pub radius: u8,
-    /// The seed.
+    /// Seed of the experiment.
     pub seed: u64,
-    /// The points.
+    /// Results by group size.
     pub points: Vec<GroupPoint>,
 }
 
@@ -78,13 +79,13 @@ impl GroupPlan {
         self.robots.params()
     }
 
-    /// Group and loss of each point: those of one group next to each other, alone first.
+    /// Group size and loss of each point, ordered by group, without sharing first.
     fn cases(&self) -> Vec<(u32, Option<f64>)> {
         let shared = || [None].into_iter().chain(self.losses.iter().copied().map(Some));
         self.groups.iter().flat_map(|&group| shared().map(move |shared| (group, shared))).collect()
     }
 
-    /// The queries of a run, of different starts and goals; as many as there are, if they are too few.
+    /// The queries of a run, with different starts and goals; all queries if there are fewer.
     fn queries(&self, group: u32, run: u32) -> Vec<&Query> {
         let mut rng = Rng::keyed(self.seed, QUERIES, group, run);
         let mut left: Vec<&Query> = self.benchmark().queries.iter().filter(|query| query.start != query.goal).collect();
@@ -105,7 +106,7 @@ impl GroupPlan {
         let seed = Rng::keyed(self.seed, RUNS, group, run).next_u64();
         let scenario = scenario(self.benchmark().land.clone(), robots.collect(), self.route(), shared, seed);
         let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(()))?;
-        // All land that is open takes a tick per cell.
+        // All open terrain takes one tick per cell.
         let fastest: Vec<(u32, f64)> = queries.iter().map(|q| (0, q.optimal_length * f64::from(UNIT))).collect();
         Ok(Trip::of(&outcome, &fastest))
     }
@@ -232,7 +233,7 @@ mod tests {
     use staya_controller::grid::{BLOCKED, Cell};
     use staya_sim::terrain::Terrain;
 
-    /// A pocket that is open to the west lies between starts in the west and goals in the east.
+    /// A pocket open to the west between starts in the west and goals in the east.
     fn pocket(robots: i16) -> Benchmark {
         let mut land = Terrain::flat(60, 40);
         (10..=30).for_each(|y| land.set(Cell::new(40, y), BLOCKED));
@@ -254,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn all_get_out_of_a_dead_end_whether_they_share_or_not() {
+    fn all_robots_leave_a_dead_end_with_and_without_sharing() {
         let report = plan().measure().unwrap();
         let [own, shared] = &report.points[0].outlooks[..] else { panic!("{report}") };
         assert_eq!((own.arrived, shared.arrived), (18, 18), "{report}");
@@ -264,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn each_robot_has_a_query_of_its_own() {
+    fn each_robot_has_its_own_query() {
         let plan = plan();
         for run in 0..3 {
             let queries = plan.queries(6, run);
@@ -277,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_out_of_range_is_refused_with_a_remedy() {
+    fn invalid_plans_are_refused_with_a_remedy() {
         let refused = |plan: GroupPlan| plan.check().unwrap_err().to_string();
         assert!(refused(GroupPlan { groups: vec![10], ..plan() }).contains("give a smaller --group"));
         assert!(refused(GroupPlan { groups: vec![], ..plan() }).contains("--group"));

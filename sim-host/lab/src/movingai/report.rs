@@ -1,4 +1,4 @@
-//! What the queries of a benchmark gave.
+//! Results of a benchmark's queries.
 
 use super::{Benchmark, Robots, Sight};
 use crate::experiment::rows::{Each, Record};
@@ -7,17 +7,17 @@ use staya_stats::Summary;
 use std::fmt::{self, Display, Formatter};
 use std::path::PathBuf;
 
-/// What one query gave.
+/// Result of one query.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Answer {
-    /// The optimal length that the benchmark states, cells.
+    /// Optimal length given by the benchmark, cells.
     pub optimal_cells: f64,
     /// Whether the robot reached the goal.
     pub arrived: bool,
-    /// Length of its way, cells; where it did not arrive, until it gave up.
+    /// Length of the robot's path, cells; if it did not arrive, until it gave up.
     pub length_cells: f64,
-    /// What the router with the whole map in its window took the shortest way to be at the start, cells; `None`
-    /// if it found none, or sees only a part.
+    /// Length of the shortest route at the start as computed by the router with the whole map in
+    /// its window, cells; `None` if it found none or sees only a part.
     pub priced_cells: Option<f64>,
 }
 
@@ -30,13 +30,14 @@ impl Record for Answer {
 }
 
 impl Answer {
-    /// By how much the way is longer than the optimal one, percent of it.
+    /// Excess of the path over the optimal length, in percent.
     #[must_use]
     pub fn loss_percent(&self) -> f64 {
         percent(self.length_cells, self.optimal_cells)
     }
 
-    /// By how much the router's price is off the optimal length, percent of it; `None` without a price.
+    /// Deviation of the router's computed length from the optimal one, in percent; `None` if there
+    /// is none.
     #[must_use]
     pub fn price_error_percent(&self) -> Option<f64> {
         Some(percent(self.priced_cells?, self.optimal_cells))
@@ -50,12 +51,12 @@ fn percent(ours: f64, optimal: f64) -> f64 {
     100.0 * (ours - optimal) / optimal
 }
 
-/// The numbers of a benchmark, ready to be printed.
+/// Results of a benchmark.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Always `movingai`.
     pub experiment: &'static str,
-    /// The map's file.
+    /// File of the map.
     pub map: PathBuf,
     /// Columns of the map.
     pub width: u16,
@@ -69,21 +70,21 @@ pub struct Report {
     pub learned: usize,
     /// Queries in the scenario.
     pub queries: usize,
-    /// Queries answered, fewer after an early end.
+    /// Queries answered; fewer after an early end.
     pub answered: usize,
     /// Robots that reached their goal.
     pub arrived: usize,
-    /// Length above the optimal one in percent of it, over the robots that arrived.
+    /// Excess over the optimal length in percent, over the robots that arrived.
     pub loss_percent: Option<Summary>,
-    /// With the whole map in the window: the largest deviation, either way, of the router's price from the optimal
-    /// length, percent of it.
+    /// With the whole map in the window: largest absolute deviation of the router's computed length
+    /// from the optimal one, in percent.
     pub worst_price_error_percent: Option<f64>,
-    /// With the whole map in the window: queries for which the router knows no way.
+    /// With the whole map in the window: queries for which the router finds no route.
     pub without_price: Option<usize>,
 }
 
 impl Report {
-    /// The statistics of the answers.
+    /// Computes the statistics of the answers.
     #[must_use]
     pub fn of(benchmark: &Benchmark, robots: &Robots, answers: &[Answer]) -> Self {
         let losses: Vec<f64> = answers.iter().filter(|answer| answer.arrived).map(Answer::loss_percent).collect();

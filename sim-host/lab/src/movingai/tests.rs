@@ -3,7 +3,7 @@ use staya_controller::grid::{BLOCKED, Cell};
 
 const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n...S\n";
 
-/// Writes map and scenario; `rows` are the queries without bucket and map.
+/// Writes map and scenario; `rows` are queries without bucket and map.
 fn files(rows: &[&str]) -> (tempfile::TempDir, PathBuf) {
     let dir = tempfile::tempdir().unwrap();
     let scen = dir.path().join("a.map.scen");
@@ -21,8 +21,9 @@ fn report(rows: &[&str], sight: Sight) -> Report {
 }
 
 #[test]
-fn right_lengths_are_met_and_wrong_ones_show() {
-    // Around the wall without cutting its corners; over swamp at the price of ground; not at all.
+fn right_lengths_are_found_and_wrong_ones_are_reported() {
+    // Around the wall without cutting its corners; over swamp at the cost of ground; an empty
+    // route.
     let right = ["4 3 0 0 3 2 5", "4 3 0 2 3 2 3", "4 3 2 2 2 2 0"];
     let good = report(&right, Sight::Map);
     assert_eq!((good.answered, good.arrived, good.without_price), (3, 3, Some(0)));
@@ -38,7 +39,7 @@ fn right_lengths_are_met_and_wrong_ones_show() {
 }
 
 #[test]
-fn files_that_do_not_belong_together_are_named() {
+fn mismatched_files_are_named() {
     let message = |scen: &Path, map: Option<&Path>| Benchmark::load(scen, map).unwrap_err().to_string();
     let (dir, scen) = files(&["4 3 0 0 3 2 5", "4 4 0 0 3 2 5"]);
     let size = message(&scen, None);
@@ -56,12 +57,12 @@ fn files_that_do_not_belong_together_are_named() {
 }
 
 #[test]
-fn a_map_too_large_for_the_search_is_planned_at_the_optimal_length() {
-    // A wall with a gap at its eastern end, far from the straight way.
+fn map_too_large_for_the_search_is_planned_optimally() {
+    // A wall with a gap at its eastern end, far from the straight line.
     let mut land = Terrain::flat(300, 260);
     (0..299).for_each(|x| land.set(Cell::new(x, 100), BLOCKED));
     let [start, goal] = [Cell::new(298, 0), Cell::new(298, 200)];
-    // Diagonally before the gap and behind it, cutting no corner.
+    // Diagonally before and behind the gap, without cutting a corner.
     let optimal_length = 198.0 + 2.0 * std::f64::consts::SQRT_2;
     let query = Query { bucket: 0, map: "a.map".into(), width: 300, height: 260, start, goal, optimal_length };
     let benchmark = Benchmark { map: "a.map".into(), land, queries: vec![query] };
@@ -71,7 +72,7 @@ fn a_map_too_large_for_the_search_is_planned_at_the_optimal_length() {
 }
 
 #[test]
-fn land_too_large_to_be_seen_at_once_is_refused() {
+fn window_beyond_the_size_of_a_search_is_refused() {
     let benchmark =
         |width, height| Benchmark { map: "a.map".into(), land: Terrain::flat(width, height), queries: vec![] };
     let answer = |width, height, sight| {

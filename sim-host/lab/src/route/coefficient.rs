@@ -1,25 +1,25 @@
-//! The coefficients that a sweep changes.
+//! The coefficients of the route cost that a sweep varies.
 
 use serde::Serialize;
 use staya_controller::cost::Gain;
 use staya_controller::route::RouteParams;
 
-/// One of the coefficients of the route cost (eqs. 7, 9 and 10).
+/// A coefficient of the route cost (eqs. 7, 9 and 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Coefficient {
     /// Weight of travel time.
     A0,
-    /// Price of a cell with another robot in it.
+    /// Cost of a cell with another robot.
     A1,
-    /// Price of an earlier visit.
+    /// Cost of an earlier visit.
     A2,
-    /// Price of the distance from the exit to the target.
+    /// Cost of the distance from the exit to the target.
     A3,
 }
 
 impl Coefficient {
-    /// The parameters with another value of this coefficient.
+    /// Returns the parameters with this coefficient changed.
     #[must_use]
     pub const fn set(self, mut params: RouteParams, value: Gain) -> RouteParams {
         match self {
@@ -31,7 +31,7 @@ impl Coefficient {
         params
     }
 
-    /// Its name in the paper's formulas.
+    /// Name in the paper's formulas.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl Coefficient {
         }
     }
 
-    /// Its value in the parameters.
+    /// Value in the parameters.
     #[must_use]
     pub const fn get(self, params: &RouteParams) -> Gain {
         match self {

@@ -1,18 +1,23 @@
-//! How good is a route that sees no farther than a window? (A. V. Kuznetsov 2017, KUZ, section 5, figures 2 to 4.)
+//! Quality of routes that use a limited window (A. V. Kuznetsov 2017, KUZ, section 5, figures 2 to
+//! 4).
 //!
-//! Each run makes one landscape and sends one robot from (1, 1) to the opposite corner, (size - 2, size - 2), with
-//! the controller's [`Router`](staya_controller::route::Router). Its travel time (eqs. 6 and 7) and the length of
-//! its way are compared with those of the route that is the fastest of all, as if no other robot were there.
+//! Each run creates one landscape and sends one robot from (1, 1) to the opposite corner, (size -
+//! 2, size - 2), with the controller's [`Router`](staya_controller::route::Router). Its travel time
+//! (eqs. 6 and 7) and the length of its path are compared with those of the globally fastest route,
+//! without other robots.
 //!
-//! What the coefficients do to time loss dT and length loss dL on natural land of 40 to 160 obstacles with r = 5
-//! (`--sweep a0,a1,a2,a3`):
-//! - a0 and a3 count by their ratio, since a2 hardly matters. Best is a3 = 3 a0, near the time that a cell takes on a
-//!   good way: dT 16..26 %, dL 3..6 %. At 2 a0 dT is 0..6 and dL 1..5 points more; at a0 robots wander (dT 70 % and more, up
-//!   to 8 % never arrive), and without a3 hardly any arrives. Upwards it is gentle: at 6 a0 dT is 2..9 points more, and
-//!   only at 12 a0 the robot goes nearly straight (dT 37..58 %, dL 5..13 %).
-//! - a1 does nothing to a robot alone. Among 500 parked robots (`--parked`), dT is about 0.5 points less with a1 = 2 than
-//!   with 0, and larger values gain nothing; dL does not change.
-//! - a2 does nothing to dT and dL, but without it 6 to 20 % of the robots circle for ever; 1/2 is enough.
+//! Effect of the coefficients on time loss dT and length loss dL, on natural terrain of 40 to 160
+//! obstacles with r = 5 (`--sweep a0,a1,a2,a3`):
+//!
+//! - a0 and a3 act by their ratio, because a2 hardly matters. The best a3 is 3 a0, near the time
+//!   that a cell takes on a good route: dT 16..26 %, dL 3..6 %. At 2 a0, dT is 0..6 and dL 1..5
+//!   points higher. At a0, robots wander (dT 70 % and more; up to 8 % never arrive), and without a3
+//!   hardly any arrives. Larger values do less harm: at 6 a0, dT is 2..9 points higher, and only at
+//!   12 a0 does the robot move nearly straight (dT 37..58 %, dL 5..13 %).
+//! - a1 has no effect on a single robot. Among 500 parked robots (`--parked`), a1 = 2 lowers dT by
+//!   about 0.5 points compared with 0, and larger values gain nothing; dL does not change.
+//! - a2 has no effect on dT and dL, but without it 6 to 20 % of the robots circle forever; 1/2
+//!   suffices.
 
 mod coefficient;
 mod pictures;
@@ -38,16 +43,12 @@ use staya_sim::terrain::metrics::Metrics;
 use staya_sim::terrain::{Terrain, TerrainError};
 use std::path::{Path, PathBuf};
 
-/// Purpose of the random numbers that give each run its landscape.
 const LANDSCAPES: u32 = 0x0045_0001;
-/// Purpose of the random numbers that put cells into another order.
 const ORDER: u32 = 0x0045_0002;
-/// Purpose of the random numbers that shuffle moves.
 const MOVES: u32 = 0x0045_0004;
-/// Purpose of the random numbers that place parked robots.
 const PARKED: u32 = 0x0045_0003;
 
-/// The number of obstacles whose arrival times KUZ shows in figure 4.
+/// Number of obstacles whose arrival times KUZ shows in figure 4.
 const SHOWN: u32 = 130;
 
 /// Largest window radius of the experiment.
@@ -57,27 +58,29 @@ pub(crate) const CELLS: usize = {
     let side = 2 * MAX_RADIUS as usize + 3;
     side * side
 };
-/// Sides that a landscape may have: start and target are different cells inside it.
+/// Permitted sides of a landscape: start and target must be different cells inside it.
 pub const SIZES: std::ops::RangeInclusive<u16> = 4..=2000;
 
 /// A family of random landscapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Land {
-    /// Hills of mud around so many cells of the worst class (KUZ figures 7a and 7b; results in figure 3).
+    /// Hills of mud around this number of cells of the worst class (KUZ figures 7a and 7b; results
+    /// in figure 3).
     Natural(u32),
-    /// The cells of a natural landscape of so many obstacles in a random order: the same classes in the same
-    /// shares, hence the same entropy S, but no hills.
+    /// The cells of a natural landscape with this number of obstacles in random order. The classes
+    /// have equal shares and hence equal entropy S, but there are no hills.
     ///
-    /// KUZ figure 2 plots its "uniformly random" landscapes over N(S), the number of obstacles by entropy, so they do
-    /// not have equal shares of all classes (figure 7c: S = 1.85, where equal shares have ln 9 = 2.20). How the
-    /// shares are chosen is not said; these are comparable with natural land point by point.
+    /// KUZ figure 2 plots its "uniformly random" landscapes over N(S), the number of obstacles by
+    /// entropy. Their classes therefore do not have equal shares (figure 7c: S = 1.85; equal shares
+    /// have ln 9 = 2.20). The paper does not say how the shares are chosen. These landscapes are
+    /// comparable with natural terrain point by point.
     Shuffled(u32),
-    /// Each cell is of any class with equal probability: the greatest entropy.
+    /// Each cell has any class with equal probability, which has the highest entropy.
     Uniform,
 }
 
 impl Land {
-    /// Obstacles; `None` where there is no such number.
+    /// Number of obstacles; `None` for uniform land.
     #[must_use]
     pub const fn obstacles(self) -> Option<u32> {
         match self {
@@ -86,7 +89,7 @@ impl Land {
         }
     }
 
-    /// The family as one word.
+    /// Name of the family.
     #[must_use]
     pub const fn family(self) -> &'static str {
         match self {
@@ -97,32 +100,35 @@ impl Land {
     }
 }
 
-/// What to do.
+/// Parameters of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Families of landscapes, one point of the figures each.
     pub lands: Vec<Land>,
-    /// Landscapes per point, 1 or more.
+    /// Landscapes per point, at least 1.
     pub runs: u32,
     /// Cells along each side, within [`SIZES`].
     pub size: u16,
-    /// Classes of impassability l, 1 or more.
+    /// Classes of impassability l, at least 1.
     pub classes: u8,
-    /// What natural land is taken to mean.
+    /// Interpretation of natural terrain.
     pub hills: Hills,
-    /// Norm of the distance to an obstacle in natural land.
+    /// Norm of the distance to an obstacle in natural terrain.
     pub hill_norm: Norm,
-    /// Other robots on each landscape, standing in random cells. The paper has none; without any, a1 is without effect.
+    /// Stationary robots in random cells of each landscape. The paper has none; without them, a1
+    /// has no effect.
     pub parked: u32,
-    /// Equal seeds give equal results. Parameters were chosen on seed 1, so it is another one by default.
+    /// Equal seeds give equal results. The default differs from seed 1, on which parameters were
+    /// tuned.
     pub seed: u64,
-    /// How the robot finds its way.
+    /// Parameters of routing.
     pub params: RouteParams,
-    /// When it searches anew.
+    /// When the robot repeats its search.
     pub replan: Replan,
-    /// How strictly the order of its moves follows their costs. The paper draws it.
+    /// Strictness with which the order of moves follows their costs. The paper draws the order at
+    /// random.
     pub sharpness: Sharpness,
-    /// Coefficients to try in other values, on the same landscapes, one at a time.
+    /// Other values of coefficients to try on the same landscapes, one at a time.
     pub sweep: Vec<(Coefficient, Gain)>,
 }
 
@@ -146,7 +152,7 @@ impl Default for Plan {
     }
 }
 
-/// What one landscape gave.
+/// Result of one landscape.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
     /// Configuration entropy S of the landscape.
@@ -157,7 +163,7 @@ pub struct Run {
     pub optimal_cost: u64,
     /// Length of the fastest route, [`UNIT`]ths of a cell.
     pub optimal_length: u64,
-    /// The robot's way with the plan's parameters, then with each of the sweep's.
+    /// Paths with the plan's parameters, then with each of the sweep's.
     pub walks: Vec<Walk>,
 }
 
@@ -176,26 +182,25 @@ impl Record for Run {
     }
 }
 
-/// One landscape with both ways across it, to look at.
+/// One landscape with both paths across it, for a picture.
 #[derive(Clone, Debug)]
 pub struct Example {
-    /// The family that the land belongs to.
+    /// Family of the landscape.
     pub family: Land,
     /// Radius of the robot's window, cells.
     pub radius: u8,
-    /// The land.
+    /// The terrain.
     pub land: Terrain,
-    /// The robot's way.
+    /// Path of the robot.
     pub way: Vec<Cell>,
     /// The fastest route.
     pub optimal: Vec<Cell>,
-    /// Where other robots stand.
+    /// Places of parked robots.
     pub parked: Vec<Cell>,
-    /// The numbers.
+    /// Results of the run.
     pub run: Run,
 }
 
-/// What one thread needs.
 #[derive(Debug, Default)]
 struct Scratch {
     walker: Walker<CELLS>,
@@ -203,32 +208,30 @@ struct Scratch {
 }
 
 impl Plan {
-    /// Where robots start.
+    /// Start of the robot.
     #[must_use]
     pub const fn start(&self) -> Cell {
         Cell::new(1, 1)
     }
 
-    /// Where robots go.
+    /// Target of the robot.
     #[must_use]
     pub const fn target(&self) -> Cell {
         let last = self.size.saturating_sub(2).cast_signed();
         Cell::new(last, last)
     }
 
-    /// The plan's own parameters, then those of the sweep.
     fn variants(&self) -> impl Iterator<Item = RouteParams> + '_ {
         let sweep = self.sweep.iter().map(|(coefficient, value)| coefficient.set(self.params, *value));
         std::iter::once(self.params).chain(sweep)
     }
 
-    /// Land and parameters of a point: each land with each variant.
     fn point(&self, point: usize) -> (Land, RouteParams) {
         let variants: Vec<RouteParams> = self.variants().collect();
         (self.lands[point / variants.len()], variants[point % variants.len()])
     }
 
-    /// The runs by land: of each landscape the walks of all variants, as far as there are all.
+    /// Groups runs by land and landscape, without incomplete landscapes.
     fn by_land(&self, runs: &[Vec<Run>]) -> Vec<Vec<Run>> {
         let all_walks = |variants: &[Vec<Run>]| {
             let least = variants.iter().map(Vec::len).min().unwrap_or(0);
@@ -241,15 +244,15 @@ impl Plan {
         runs.chunks(self.variants().count()).map(all_walks).collect()
     }
 
-    /// The seed of a landscape: a function of seed, obstacles and number of the run.
+    /// Seed of a landscape, a function of seed, obstacles and number of the run.
     fn landscape_seed(&self, land: Land, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, land.obstacles().unwrap_or(u32::MAX), run).next_u64()
     }
 
-    /// The landscape of a run.
+    /// Creates the landscape of a run.
     ///
     /// # Errors
-    /// More obstacles than cells, or no classes.
+    /// There are more obstacles than cells, or no classes.
     pub fn landscape(&self, land: Land, run: u32) -> Result<Terrain, TerrainError> {
         let key = land.obstacles().unwrap_or(u32::MAX);
         let plan = generate::LandPlan {
@@ -264,7 +267,7 @@ impl Plan {
             Land::Shuffled(obstacles) => {
                 let mut cells = natural_by(&plan, obstacles, self.hill_norm, self.hills)?.cells().to_vec();
                 let mut rng = Rng::keyed(self.seed, ORDER, key, run);
-                // Fisher and Yates: each order is equally likely.
+                // Fisher-Yates shuffle: each order is equally likely.
                 for last in (1..cells.len()).rev() {
                     cells.swap(last, rng.below(last as u32 + 1) as usize);
                 }
@@ -273,7 +276,7 @@ impl Plan {
         }
     }
 
-    /// Where the other robots of a run stand, in ascending order; never on start or target.
+    /// Places of the parked robots of a run, in ascending order, without start and target.
     fn parked(&self, land: Land, run: u32) -> Vec<Cell> {
         let key = land.obstacles().unwrap_or(u32::MAX);
         let mut rng = Rng::keyed(self.seed, PARKED, key, run);
@@ -309,7 +312,7 @@ impl Plan {
         let (from, to) = (self.start(), self.target());
         let RouteParams { norm, corner_cutting, .. } = *params;
         let metrics = Metrics::of(land);
-        // Random land has no walls: there always is a route.
+        // Random land has no walls, so there is always a route.
         let optimal = planner.route(land, from, to, norm, corner_cutting);
         let (optimal_cost, optimal_length, cells) =
             optimal.map_or((0, 0, Vec::new()), |route| (route.cost, route.length(norm), route.cells));
@@ -330,11 +333,11 @@ impl Plan {
         (run, cells)
     }
 
-    /// The run with the median time loss, made again, on the land with about as many obstacles as the paper shows (130); `None` without
-    /// runs.
+    /// Repeats the run with the median time loss on the land whose number of obstacles is nearest
+    /// to that in the paper's figure (130); `None` without runs.
     ///
     /// # Errors
-    /// A landscape cannot be made.
+    /// A landscape cannot be created.
     pub fn example(&self, runs: &[Vec<Run>]) -> Result<Option<Example>, TerrainError> {
         let plan = Self { sweep: Vec::new(), ..self.clone() };
         let runs = &self.by_land(runs);
@@ -383,7 +386,7 @@ impl Experiment for Plan {
         ensure!((1..=MAX_RADIUS).contains(&radius), "a window of radius {radius}; it must be 1..={MAX_RADIUS}");
         let (parked, cells) = (self.parked, u32::from(size) * u32::from(size));
         ensure!(parked <= cells / 2, "{parked} parked robots on {cells} cells; at most half of the cells can be taken");
-        // The first landscape of each family says whether the family exists.
+        // The first landscape of each family shows whether the family can be created.
         for land in &self.lands {
             self.landscape(*land, 0)?;
         }
@@ -399,7 +402,7 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // By name, so that a new field is not forgotten.
+        // Destructured, so that a new field cannot be forgotten.
         let Self {
             lands: _,
             runs: _,
@@ -437,7 +440,8 @@ impl Experiment for Plan {
         ]
     }
 
-    /// That of the landscape, as `staya terrain` takes it; of what else is drawn it is a function of the first seed.
+    /// Seed of the landscape, as accepted by `staya terrain`. Other random numbers are functions of
+    /// the first seed.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.landscape_seed(self.point(point).0, run)
     }
@@ -450,7 +454,7 @@ impl Experiment for Plan {
         jobs.each(|scratch, point, run| Ok(Some(self.run_one(scratch, self.point(point), run)?)))
     }
 
-    /// The fits take up to a second per point and go in parallel.
+    /// Fits take up to a second per point and run in parallel.
     fn report(&self, runs: &[Vec<Run>]) -> Report {
         Report::of(self, &self.by_land(runs))
     }
@@ -463,7 +467,7 @@ impl Experiment for Plan {
     }
 }
 
-/// Ticks of a travel time in [`UNIT`]ths.
+/// Converts a travel time in [`UNIT`]ths to ticks.
 #[must_use]
 pub fn ticks(cost: u64) -> f64 {
     cost as f64 / f64::from(UNIT)

@@ -1,5 +1,5 @@
-//! The pictures of the route experiment: KUZ figures 2 (land without order), 3 (natural land) and 4 (arrival times),
-//! an example, and the answers to other coefficients.
+//! Pictures of the route experiment: KUZ figures 2 (shuffled land), 3 (natural land) and 4 (arrival
+//! times), an example, and the effects of other coefficients.
 
 use super::{Arrivals, Coefficient, Example, Land, Loss, Means, Point, Report, SHOWN, ticks};
 use libm::log;
@@ -12,7 +12,7 @@ use staya_sim::record::Error;
 use std::path::{Path, PathBuf};
 
 impl Report {
-    /// Draws everything into `dir`, each picture as SVG and PNG, and names the files.
+    /// Draws all pictures into `dir`, each as SVG and PNG, and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -40,7 +40,8 @@ impl Report {
         self.points.iter().all(|point| point.land == "natural")
     }
 
-    /// dT and dL, and what the landscapes are like, over the number of obstacles (KUZ figures 2 and 3).
+    /// dT and dL, and properties of the landscapes, over the number of obstacles (KUZ figures 2 and
+    /// 3).
     fn losses(&self) -> Panels {
         let (title, label) = if self.is_natural() {
             ("Routes by window on natural land", "obstacles N")
@@ -94,7 +95,8 @@ impl Report {
         Panels::new(title).with(loss).with(entropy).with(edges)
     }
 
-    /// The points from left to right: those with a number of obstacles, or the one of equal classes.
+    /// The points in the order of the axis: those with a number of obstacles, or the one with equal
+    /// classes.
     fn ordered(&self, equal: bool) -> Vec<&Point> {
         let wanted = |point: &&Point| point.obstacles.is_none() == equal;
         let mut points: Vec<&Point> = self.points.iter().filter(wanted).collect();
@@ -111,7 +113,8 @@ impl Report {
         (0..=60).map(|i| low + (high - low) * f64::from(i) / 60.0).map(|n| [n, log(n / zero) / 4.227_69]).collect()
     }
 
-    /// Arrival times by the fastest route and by window, at the number of obstacles nearest to the paper's.
+    /// Arrival times of the fastest route and of the robot, at the number of obstacles nearest to
+    /// the paper's.
     fn arrivals(&self) -> Option<Panels> {
         let off = |point: &&Point| point.obstacles.map_or(u32::MAX, |n| n.abs_diff(SHOWN));
         let point = self.points.iter().min_by_key(off)?;
@@ -127,13 +130,13 @@ impl Report {
         Some(panels)
     }
 
-    /// dT and dL over the values of one coefficient; `None` unless it was swept.
+    /// dT and dL over the values of one coefficient; `None` unless it was varied.
     fn answers(&self, coefficient: Coefficient) -> Option<Panels> {
         let answers: Vec<_> = self.sweep.iter().filter(|answer| answer.coefficient == coefficient).collect();
         if answers.is_empty() {
             return None;
         }
-        // The value in use; all values are on the axis even where the losses go through the roof.
+        // The plan's value. The axis includes all values, even if losses exceed the chart.
         let own = match coefficient {
             Coefficient::A0 => self.a0,
             Coefficient::A1 => self.a1,
@@ -174,7 +177,7 @@ impl Report {
     }
 }
 
-/// Where a point lies on the axis of obstacles: uniform land by the number that its entropy stands for.
+/// Place of a point on the axis of obstacles; uniform land is placed by its entropy.
 fn place(point: &Point) -> f64 {
     point.obstacles.map_or(point.obstacles_of_entropy, f64::from)
 }
@@ -202,7 +205,6 @@ fn histogram(title: &str, arrivals: &Arrivals) -> Chart {
     chart
 }
 
-/// One landscape with both ways across it.
 fn map(example: &Example) -> Canvas {
     const SIDE: f64 = 700.0;
     const LEFT: f64 = 20.0;
@@ -231,7 +233,7 @@ fn map(example: &Example) -> Canvas {
         [LEFT + x * cell, TOP + SIDE - y * cell]
     };
 
-    // The robot's way is the thinner one: where both run together both are seen.
+    // The robot's path is thinner, so that both are visible where they coincide.
     let (thick, thin) = (Stroke::new(PALETTE[0], 6.0), Stroke::new(PALETTE[1], 2.0));
     for (way, stroke) in [(&example.optimal, thick), (&example.way, thin)] {
         let points: Vec<[f64; 2]> = way.iter().map(centre).collect();

@@ -1,4 +1,4 @@
-//! The numbers of the route experiment, ready to be printed or plotted.
+//! Results of the route experiment, for tables and plots.
 
 use super::{Coefficient, Land, Plan, Run, ticks};
 use crate::experiment::Maybe;
@@ -12,10 +12,9 @@ use staya_sim::terrain::metrics::obstacles_of_entropy;
 use staya_stats::{Goodness, Histogram, NortonRice, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
-/// Bins of the histograms of arrival times.
 const BINS: usize = 30;
 
-/// A loss against the fastest route, in percent, over the robots that arrived.
+/// Loss compared with the fastest route, in percent, over the robots that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Loss {
     /// Mean, median and spread.
@@ -32,7 +31,8 @@ impl Loss {
     }
 }
 
-/// When robots arrive: histogram, Norton-Rice law and how well it fits (KUZ figure 4).
+/// Arrival times of robots: histogram, Norton-Rice distribution and its goodness of fit (KUZ figure
+/// 4).
 #[derive(Clone, Debug, Serialize)]
 pub struct Arrivals {
     /// Mean travel time, ticks.
@@ -43,9 +43,9 @@ pub struct Arrivals {
     pub bin_ticks: f64,
     /// Arrivals in each bin.
     pub counts: Vec<u64>,
-    /// The likeliest law; `None` for fewer than 10 arrivals or equal ones.
+    /// Maximum-likelihood distribution; `None` for fewer than 10 arrivals or if all are equal.
     pub norton_rice: Option<NortonRice>,
-    /// The chi-square test of the law; `None` for fewer than about 40 arrivals.
+    /// Chi-square test of the distribution; `None` for fewer than about 40 arrivals.
     pub goodness: Option<Goodness>,
 }
 
@@ -71,16 +71,17 @@ pub struct Point {
     pub land: &'static str,
     /// Number of obstacles N; `null` for uniform land.
     pub obstacles: Option<u32>,
-    /// Landscapes.
+    /// Number of landscapes.
     pub runs: usize,
     /// Robots that reached their target.
     pub arrived: usize,
-    /// dT: travel time above that of the fastest route, percent of it.
+    /// dT: excess of the travel time over that of the fastest route, in percent.
     pub time_loss_percent: Option<Loss>,
-    /// dL as KUZ defines it: by how much the way is longer or shorter than the fastest route, percent of it.
+    /// dL as KUZ defines it: absolute difference of the path's length to that of the fastest route,
+    /// in percent.
     pub length_loss_percent: Option<Loss>,
-    /// Mean of the same with its sign. Negative where robots walk straight over bad ground: the fastest route
-    /// is not the shortest.
+    /// Mean signed difference of the lengths, in percent. Negative if robots move straight over bad
+    /// ground, because the fastest route is not the shortest.
     pub length_excess_percent: Option<f64>,
     /// Mean configuration entropy S.
     pub entropy: f64,
@@ -88,18 +89,18 @@ pub struct Point {
     pub total_edge: f64,
     /// Mean total edge density TED.
     pub total_edge_density: f64,
-    /// N(S) of the mean entropy by KUZ's formula with its constant corrected.
+    /// N(S) of the mean entropy by KUZ's formula, with its constant corrected.
     pub obstacles_of_entropy: f64,
     /// Arrival times of the robots.
     pub arrivals: Option<Arrivals>,
-    /// Arrival times by the fastest routes, of all landscapes.
+    /// Arrival times of the fastest routes, over all landscapes.
     pub optimal_arrivals: Option<Arrivals>,
 }
 
-/// What another value of one coefficient does, on the same landscapes.
+/// Effect of another value of one coefficient, on the same landscapes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Response {
-    /// Which coefficient.
+    /// The coefficient.
     pub coefficient: Coefficient,
     /// Its value.
     pub value: f64,
@@ -107,7 +108,7 @@ pub struct Response {
     pub points: Vec<Means>,
 }
 
-/// Losses in short.
+/// Mean losses.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Means {
     /// Robots that reached their target.
@@ -118,34 +119,34 @@ pub struct Means {
     pub length_loss_percent: Option<f64>,
 }
 
-/// Everything that the experiment reports.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Always `route`.
     pub experiment: &'static str,
-    /// Landscapes asked for per point.
+    /// Requested landscapes per point.
     pub runs: u32,
     /// Cells along each side.
     pub size: u16,
     /// Classes of impassability.
     pub classes: u8,
-    /// What natural land is taken to mean.
+    /// Interpretation of natural terrain.
     pub hills: String,
-    /// Ticks that halve the priority of a move; 0: the cheapest always comes first.
+    /// Additional ticks that halve the priority of a move; 0: the cheapest move always comes first.
     pub shuffle_ticks: f64,
-    /// Norm of hills.
+    /// Norm of the distance to an obstacle.
     pub hill_norm: Norm,
-    /// Other robots that stand on each landscape.
+    /// Parked robots on each landscape.
     pub parked: u32,
-    /// Seed.
+    /// Seed of the experiment.
     pub seed: u64,
     /// Window radius, cells.
     pub radius: u8,
     /// Exit rule: `best` or `ray`.
     pub exit: String,
-    /// When robots search anew: `each-cell` or `until-changed`.
+    /// When robots repeat their search: `each-cell` or `until-changed`.
     pub replan: String,
-    /// Norm of moves.
+    /// Norm of the length of moves.
     pub norm: Norm,
     /// Whether moves may cut corners.
     pub corner_cutting: bool,
@@ -157,16 +158,15 @@ pub struct Report {
     pub a2: f64,
     /// Ticks per cell of distance between exit and target.
     pub a3: f64,
-    /// The points of the figures, in the order of the plan; those without a single run are missing.
+    /// The points of the figures in the order of the plan, without those that have no runs.
     pub points: Vec<Point>,
-    /// How the losses respond to other coefficients.
+    /// Effects of other coefficients.
     pub sweep: Vec<Response>,
-    /// What the coefficients were when they were not swept over.
     #[serde(skip)]
     pub(super) params: RouteParams,
 }
 
-/// A coefficient as a number.
+/// Converts a coefficient to a number.
 #[must_use]
 pub fn decimal(gain: Gain) -> f64 {
     f64::from(gain.sixteenths()) / f64::from(Gain::ONE.sixteenths())
@@ -189,7 +189,7 @@ impl Report {
             points: filled
                 .iter()
                 .map(|(_, runs)| {
-                    // Walk 0 is that of the plan's own parameters.
+                    // Path 0 is that of the plan's own parameters.
                     let [time, length] = losses(runs, index + 1);
                     let size = |percent: f64| libm::fabs(percent);
                     let length: Vec<f64> = length.into_iter().map(size).collect();
@@ -223,7 +223,8 @@ impl Report {
     }
 }
 
-/// Time and (signed) length of walk `variant` above the fastest route, percent, of the robots that arrived.
+/// Excess of time and (signed) length of path `variant` over the fastest route, in percent, over
+/// the robots that arrived.
 fn losses(runs: &[Run], variant: usize) -> [Vec<f64>; 2] {
     let percent = |ours: u64, best: u64| 100.0 * (ours as f64 - best as f64) / best as f64;
     let arrived = runs.iter().map(|run| (run, &run.walks[variant])).filter(|(_, walk)| walk.arrived);
@@ -233,7 +234,6 @@ fn losses(runs: &[Run], variant: usize) -> [Vec<f64>; 2] {
     [time, length]
 }
 
-/// `None` without runs.
 fn point(land: Land, runs: &[Run], size: u16) -> Option<Point> {
     let over_runs = |value: fn(&Run) -> f64| {
         let values: Vec<f64> = runs.iter().map(value).collect();
@@ -341,7 +341,7 @@ impl Display for Report {
     }
 }
 
-/// About three digits, whatever the size; `-` for a missing value.
+/// Formats about three digits; `-` for a missing value.
 fn digits(value: Option<f64>) -> String {
     match value {
         Some(x) if x < 0.01 => format!("{x:.0e}"),
@@ -355,7 +355,6 @@ fn row_name(point: &Point) -> String {
     format!("{:<9}{obstacles:>5}", point.land)
 }
 
-/// One table per coefficient: a line per value, a pair of columns per point.
 fn sweep_tables(f: &mut Formatter<'_>, report: &Report) -> fmt::Result {
     for responses in report.sweep.chunk_by(|a, b| a.coefficient == b.coefficient) {
         let coefficient = responses[0].coefficient;

@@ -5,7 +5,7 @@ use staya_controller::robot::RobotId;
 use staya_controller::route::{CostField, ExitRule, Router};
 use staya_sim::world::{MoveRules, World};
 
-/// Small, fast, and independent of the controller's defaults.
+/// A small, fast plan that is independent of the controller's defaults.
 fn plan() -> Plan {
     Plan {
         lands: vec![Land::Natural(6), Land::Natural(20)],
@@ -51,7 +51,7 @@ fn results_are_equal_on_one_thread_and_on_four() {
 }
 
 #[test]
-fn small_experiment_is_the_pinned_one() {
+fn small_experiment_matches_its_recorded_results() {
     let results = all(&Plan { runs: 3, ..plan() });
     let numbers: Vec<_> = results
         .iter()
@@ -73,11 +73,10 @@ fn small_experiment_is_the_pinned_one() {
 }
 
 #[test]
-fn nobody_is_faster_than_the_optimum_though_some_ways_are_shorter() {
+fn no_robot_is_faster_than_the_optimum_though_some_paths_are_shorter() {
     let plan = Plan { runs: 100, ..plan() };
     let results = all(&plan);
     let runs = || results.iter().flatten();
-    // From (1, 1) to (38, 38) by diagonals.
     let shortest = 37 * u64::from(Dir::NorthEast.length(Norm::Euclidean));
     for run in runs() {
         let walk = run.walks[0];
@@ -86,12 +85,12 @@ fn nobody_is_faster_than_the_optimum_though_some_ways_are_shorter() {
         assert!(walk.length >= shortest && run.optimal_length >= shortest);
     }
     assert!(runs().any(|run| run.walks[0].cost > run.optimal_cost));
-    // The optimum goes round what the robot crosses: dL is no loss in the strict sense.
+    // The optimum goes around terrain that the robot crosses, so dL may be negative.
     assert!(runs().any(|run| run.walks[0].length < run.optimal_length));
 }
 
 #[test]
-fn window_over_all_the_land_gives_the_optimum() {
+fn window_over_the_whole_land_gives_the_optimum() {
     for replan in [Replan::EachCell, Replan::UntilChanged] {
         let mut plan = Plan { size: 30, replan, ..plan() };
         plan.params.radius = 29;
@@ -102,7 +101,7 @@ fn window_over_all_the_land_gives_the_optimum() {
 }
 
 #[test]
-fn farther_sight_and_the_better_exit_rule_lose_less() {
+fn larger_windows_and_the_better_exit_rule_lose_less() {
     let plan = Plan { runs: 100, ..plan() };
     let with = |radius, exit| {
         let params = RouteParams { radius, exit, ..plan.params };
@@ -116,14 +115,14 @@ fn farther_sight_and_the_better_exit_rule_lose_less() {
 }
 
 #[test]
-fn early_end_keeps_a_beginning_of_every_point() {
+fn early_end_keeps_the_first_runs_of_every_point() {
     let plan = Plan { runs: 150, ..plan() };
     let some = plan.carry_out(|done| done < 100).unwrap();
     let full = all(&plan);
     for (some, full) in some.iter().zip(&full) {
         assert_eq!(some[..], full[..some.len()]);
     }
-    // What was under way when it was told to stop is finished.
+    // Runs in progress at the stop are completed.
     let made: usize = some.iter().map(Vec::len).sum();
     assert!((100..plan.total()).contains(&made), "{made}");
     let none = plan.carry_out(|_| false).unwrap();
@@ -132,7 +131,7 @@ fn early_end_keeps_a_beginning_of_every_point() {
 }
 
 #[test]
-fn sweep_walks_the_same_landscapes() {
+fn sweep_uses_the_same_landscapes() {
     let plan = Plan {
         sweep: vec![
             (Coefficient::A3, Gain::from_int(1)),
@@ -167,7 +166,7 @@ fn shuffled_land_has_the_classes_of_natural_land_and_more_edges() {
 }
 
 #[test]
-fn parked_robots_are_walked_round() {
+fn robots_go_around_parked_ones() {
     let plan = Plan { parked: 300, ..plan() };
     let results = all(&plan);
     let example = plan.example(&results).unwrap().unwrap();
@@ -181,7 +180,7 @@ fn parked_robots_are_walked_round() {
 }
 
 #[test]
-fn robot_with_nowhere_to_go_stands() {
+fn robot_without_a_free_move_stays() {
     let land = Terrain::from_cells(3, 3, vec![1, BLOCKED, 1, BLOCKED, BLOCKED, 1, 1, 1, 1]).unwrap();
     let mut walker = Walker::<25>::default();
     let (from, to) = (Cell::new(0, 0), Cell::new(2, 2));
@@ -202,7 +201,7 @@ fn robot_with_nowhere_to_go_stands() {
 
 #[test]
 fn robot_that_cannot_arrive_gives_up() {
-    // The target is walled in; the robot roams what it can reach.
+    // The target is enclosed by walls; the robot explores the cells that it can reach.
     let mut cells = vec![1; 64];
     for at in [54, 55, 62] {
         cells[at] = BLOCKED;
@@ -215,7 +214,7 @@ fn robot_that_cannot_arrive_gives_up() {
 }
 
 #[test]
-fn way_is_that_of_a_robot_that_gets_only_its_window() {
+fn path_matches_that_of_a_robot_that_gets_only_its_window() {
     let plan = plan();
     for run in 0..10 {
         let land = plan.landscape(Land::Natural(20), run).unwrap();
@@ -241,7 +240,7 @@ fn way_is_that_of_a_robot_that_gets_only_its_window() {
 }
 
 #[test]
-fn report_says_what_the_runs_say() {
+fn report_agrees_with_the_runs() {
     let run = |arrived, cost, length| Run {
         entropy: 1.0,
         total_edge: 800,
@@ -264,7 +263,7 @@ fn report_says_what_the_runs_say() {
 }
 
 #[test]
-fn plans_that_cannot_be_carried_out_name_the_remedy() {
+fn invalid_plans_are_refused_with_a_remedy() {
     let message = |plan: Plan| plan.carry_out(|_| true).unwrap_err().to_string();
     let radius = |radius| Plan { params: RouteParams { radius, ..plan().params }, ..plan() };
     assert!(message(Plan { runs: 0, ..plan() }).contains("1 or more"));
@@ -281,7 +280,7 @@ fn plans_that_cannot_be_carried_out_name_the_remedy() {
 }
 
 #[test]
-fn least_land_and_most_obstacles_work() {
+fn smallest_land_and_most_obstacles_work() {
     let plan = Plan {
         lands: vec![Land::Natural(0), Land::Natural(16), Land::Shuffled(16), Land::Uniform],
         runs: 2,

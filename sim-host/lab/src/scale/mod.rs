@@ -1,8 +1,10 @@
-//! What a robot costs, by how many there are: time and memory for swarms of equal density, from a thousand to a million.
+//! Cost per robot by swarm size: time and memory of swarms with equal density, from a thousand to a
+//! million robots.
 //!
-//! On the grid these are the swarms of `scenarios/scale.toml` and `million.toml`: land of nine classes, goals up to ten
-//! cells away, and about nine robots hear each beacon. In the plane, boids behind ORCA in as much room. Every beacon is
-//! encoded, carried and decoded by each that hears it. The runs are the same on any machine; what they took is not.
+//! On the grid these are the swarms of `scenarios/scale.toml` and `million.toml`: terrain of nine
+//! classes, goals up to ten cells away, and about nine receivers of each beacon. In the plane,
+//! boids with ORCA have the same area per robot. Every beacon is encoded, transmitted, and decoded
+//! by each receiver. The runs are identical on any machine; only their cost differs.
 
 mod process;
 mod report;
@@ -24,9 +26,9 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Room for each robot, square metres: that of `scale.toml`.
+/// Area per robot, square metres, as in `scale.toml`.
 const AREA_M2: f64 = 22.5;
-/// Robot-ticks that are worth timing: swarms that are smaller run several times.
+/// Robot-ticks needed for a reliable time; smaller swarms run several times.
 const WORTH: u64 = 1_000_000;
 
 /// Where robots are.
@@ -59,7 +61,7 @@ pub struct Plan {
     pub out: PathBuf,
 }
 
-/// Ticks before anything is timed: tables fill, and memory is asked for.
+/// Untimed ticks at the start, in which tables fill and memory is allocated.
 const WARM_UP: u32 = 2;
 
 impl Default for Plan {
@@ -69,7 +71,7 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// The scenario of so many robots, as a file says it.
+    /// Text of the scenario with this number of robots.
     #[must_use]
     pub fn text(&self, ground: Ground, robots: u32) -> String {
         let (seed, ticks) = (self.seed, self.ticks + WARM_UP);
@@ -99,12 +101,11 @@ impl Plan {
         )
     }
 
-    /// Ground and size of a point; sizes rise.
     fn point(&self, point: usize) -> (Ground, u32) {
         (self.ground[point % self.ground.len()], self.robots[point / self.ground.len()])
     }
 
-    /// Runs the swarm as often as is worth timing; `None` when it was stopped.
+    /// Runs the swarm until its time is reliable; `None` if it was stopped.
     fn row(&self, ground: Ground, robots: u32, goes_on: &dyn Fn() -> bool) -> Result<Option<Row>> {
         let scenario = Scenario::parse(&self.text(ground, robots), Path::new("scale.toml"), &Overrides::default())?;
         let runs = WORTH.div_ceil(u64::from(robots) * u64::from(self.ticks)).max(1);
@@ -117,7 +118,7 @@ impl Plan {
         Ok(Some(row))
     }
 
-    /// One run; `false` when it was stopped.
+    /// Makes one run; `false` if it was stopped.
     fn run(&self, scenario: &Scenario, row: &mut Row, goes_on: &dyn Fn() -> bool) -> Result<bool> {
         let mut begun = None;
         let mut is_whole = true;
@@ -176,7 +177,8 @@ impl Experiment for Plan {
             ("ground", Value::Word(report::word(ground).into())),
             ("robots", Value::Number(f64::from(robots))),
             ("ticks", Value::Number(f64::from(self.ticks))),
-            // Times and memory are those of so many threads: rows of others are of another plan.
+            // Time and memory depend on the number of threads, so rows with another number belong
+            // to another plan.
             ("threads", Value::from(rayon::current_num_threads() as u32)),
         ]
     }
@@ -190,7 +192,7 @@ impl Experiment for Plan {
         Row::new(ground, robots)
     }
 
-    /// One after the other: what is timed has the machine for itself.
+    /// Makes one run at a time, because a timed run needs the machine for itself.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Row>>> {
         let before = process::memory_bytes();
         jobs.each(|(): &mut (), point, _| {
@@ -218,7 +220,7 @@ mod tests {
     use crate::experiment::rows::Keeping;
 
     #[test]
-    fn swarms_of_one_density_run_on_both_grounds() {
+    fn swarms_run_on_the_grid_and_in_the_plane() {
         let plan = Plan { robots: vec![20, 80], ticks: 3, ..Plan::default() };
         for ground in [Ground::Grid, Ground::Plane] {
             let scenario = |robots| {
@@ -236,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_other_numbers_of_threads_are_not_gone_on_with() {
+    fn rows_with_another_number_of_threads_are_not_continued() {
         let plan = Plan { robots: vec![20, 80], ticks: 3, ground: vec![Ground::Grid], ..Plan::default() };
         let dir = tempfile::tempdir().unwrap();
         let go = |threads: usize, keeping: &Keeping| {
@@ -252,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_must_rise() {
+    fn sizes_must_increase() {
         assert!(Plan { robots: vec![20, 10], ..Plan::default() }.check().is_err());
         assert!(Plan { robots: vec![0], ..Plan::default() }.check().is_err());
         assert!(Plan::default().check().is_ok());

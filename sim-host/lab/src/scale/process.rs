@@ -1,11 +1,11 @@
-//! What this process has used, where the system says so (Linux: `/proc`, see proc(5)).
+//! Resource usage of this process, if the system reports it (Linux: `/proc`, see proc(5)).
 
 use std::fs;
 
-/// Ticks of the clock by which Linux tells processor time to programs, a second.
+/// Rate of the clock in which Linux reports processor time, hertz.
 const CLOCK_HZ: f64 = 100.0;
 
-/// Processor time of all threads so far; `None`: the system does not tell.
+/// Processor time of all threads so far; `None` if the system does not report it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Usage(Option<f64>);
 
@@ -15,13 +15,13 @@ impl Usage {
         Self(processor_s(&text))
     }
 
-    /// Seconds since `before`.
     pub(super) fn since(self, before: Self) -> Option<f64> {
         Some(self.0? - before.0?)
     }
 }
 
-/// User and system time, fields 14 and 15; the name in field 2 may hold anything, and ends with the last bracket.
+/// User and system time, fields 14 and 15. The name in field 2 may contain anything and ends with
+/// the last bracket.
 fn processor_s(stat: &str) -> Option<f64> {
     let (_, fields) = stat.rsplit_once(')')?;
     let mut times = fields.split_whitespace().skip(11).map_while(|field| field.parse::<u64>().ok());
@@ -29,7 +29,6 @@ fn processor_s(stat: &str) -> Option<f64> {
     Some((user + system) as f64 / CLOCK_HZ)
 }
 
-/// Memory that is resident now; `None`: the system does not tell.
 pub(super) fn memory_bytes() -> Option<u64> {
     resident_bytes(&fs::read_to_string("/proc/self/status").ok()?)
 }
@@ -45,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_files_of_linux_are_read() {
+    fn proc_files_of_linux_are_parsed() {
         let stat = "7 (a ) b) R 1 7 7 0 -1 4194304 10 0 0 0 250 50 0 0 20 0 3 0 99 1 2\n";
         assert_eq!(processor_s(stat), Some(3.0));
         assert_eq!(resident_bytes("Name:\tx\nVmRSS:\t    2048 kB\n"), Some(2048 * 1024));

@@ -1,4 +1,4 @@
-//! The curve: cost by number of robots.
+//! Results: cost by number of robots.
 
 use super::{Ground, Plan};
 use crate::experiment::Maybe;
@@ -8,27 +8,27 @@ use staya_sim::record::{Error, write_atomically};
 use std::fmt::{self, Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
-/// Real time is ten ticks a second.
+/// Tick of real-time operation: 10 Hz, seconds.
 const TICK_S: f64 = 0.1;
 
-/// What a swarm took.
+/// Measurements of one swarm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Where.
+    /// Grid or plane.
     pub ground: Ground,
-    /// Robots.
+    /// Number of robots.
     pub robots: u32,
-    /// Ticks that were timed, over all runs.
+    /// Timed ticks of all runs.
     pub ticks: u64,
-    /// Wall time of them.
+    /// Their wall time, seconds.
     pub wall_s: f64,
-    /// Processor time of all threads; `None`: not known.
+    /// Processor time of all threads, seconds; `None` if unknown.
     pub processor_s: Option<f64>,
-    /// Resident memory beyond that of the program before the first swarm; `None`: not known.
+    /// Resident memory beyond that of the program before the first swarm; `None` if unknown.
     pub memory_bytes: Option<u64>,
-    /// Packets that were decoded in a run, and its fingerprint.
+    /// Packets decoded in a run.
     pub packets_heard: u64,
-    /// Equal for equal runs.
+    /// Trace hash.
     pub hash: u64,
 }
 
@@ -53,41 +53,42 @@ impl Row {
     }
 }
 
-/// One line of the table.
+/// One row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
-    /// Where.
+    /// Grid or plane.
     pub ground: Ground,
-    /// Robots.
+    /// Number of robots.
     pub robots: u32,
-    /// Ticks that were timed, over all runs.
+    /// Timed ticks of all runs.
     pub ticks: u64,
     /// Wall time per robot and tick, microseconds.
     pub wall_us: f64,
-    /// Processor time per robot and tick, all threads together, microseconds; null: not known.
+    /// Processor time of all threads per robot and tick, microseconds; null if unknown.
     pub processor_us: Option<f64>,
-    /// Processor time (wall time where that is not known) over that of the smallest swarm.
+    /// Ratio of the processor time (wall time if unknown) to that of the smallest swarm.
     pub ratio: f64,
     /// Wall time of a tick, seconds.
     pub tick_s: f64,
-    /// Whether that is real time at 10 Hz.
+    /// Whether this is real time at 10 Hz.
     pub is_real_time: bool,
-    /// Resident memory per robot; null: not known. Of small swarms it is mostly the program's.
+    /// Resident memory per robot, bytes; null if unknown. In small swarms it is mostly that of the
+    /// program.
     pub bytes: Option<f64>,
-    /// Packets that were decoded, per robot and tick.
+    /// Packets decoded per robot and tick.
     pub heard: f64,
     /// Trace hash, 16 hex digits.
     pub trace_hash: String,
 }
 
-/// What came out.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Seed of the runs.
     pub seed: u64,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// On each ground by rising number of robots.
+    /// Rows by ground, in ascending order of robots.
     pub lines: Vec<Line>,
 }
 
@@ -121,17 +122,17 @@ impl Report {
         Self { seed: plan.seed, threads: rayon::current_num_threads(), lines: rows.iter().map(line).collect() }
     }
 
-    /// Writes `scale.csv` into `dir` and names it.
+    /// Writes `scale.csv` into `dir` and returns its path.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn write_csv(&self, dir: &Path) -> Result<PathBuf, Error> {
         let mut text = String::from(
             "ground,robots,threads,ticks,wall_us,processor_us,ratio,tick_s,bytes_per_robot,packets_heard,trace_hash\n",
         );
         let known = |value: Option<f64>, decimals: usize| value.map_or(String::new(), |v| format!("{v:.decimals$}"));
         for line in &self.lines {
-            // Writing to a string does not fail.
+            // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
                 "{},{},{},{},{:.4},{},{:.3},{:.5},{},{:.3},{}",
@@ -194,7 +195,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn costs_are_per_robot_and_tick_and_beside_the_smallest_swarm() {
+    fn costs_are_per_robot_and_tick_and_relative_to_the_smallest_swarm() {
         let row = |robots, wall_s, processor_s| Row {
             ticks: 10,
             wall_s,

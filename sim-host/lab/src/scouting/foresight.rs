@@ -1,8 +1,10 @@
-//! The least travel time on land that changes, of somebody who knows all of it at all times.
+//! The smallest possible travel time on changing land, with perfect knowledge of all changes.
 //!
-//! Dijkstra's algorithm over times of arrival. A cell is crossed at the pace that it has when it is entered, so it can be worth
-//! waiting before it; then who comes earlier is never later, and the search is exact (S. E. Dreyfus, "An appraisal of some shortest-path
-//! algorithms", Operations Research 17, 1969). Whoever waits may go on at any time here, robots only at ticks: a bound below all of them.
+//! Dijkstra's algorithm over arrival times. A cell is crossed at the pace that it has when it is
+//! entered, so waiting before it may pay off. With waiting, an earlier arrival is never worse, and
+//! the search is exact (S. E. Dreyfus, "An appraisal of some shortest-path algorithms", Operations
+//! Research 17, 1969). Here, a wait may end at any time, whereas robots decide at ticks: the result
+//! is a lower bound for robots.
 
 use super::walk::Changing;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
@@ -11,18 +13,18 @@ use staya_sim::terrain::change::change;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Scratch memory of searches.
 #[derive(Default)]
 pub(super) struct Foresight {
-    /// By cell: from which ticks on it has which class.
+    /// Classes of each cell, with the ticks from which they hold.
     classes: Vec<Vec<(u32, u8)>>,
     arrival: Vec<u64>,
     queue: BinaryHeap<Reverse<(u64, u32)>>,
 }
 
 impl Foresight {
-    /// The least time, [`UNIT`]ths of a tick; `None` when there is no way that takes at most `most`. Cells closed at some time are
-    /// waited for, corners of closed cells may be cut. O((cells + changes) log cells).
+    /// Smallest travel time, [`UNIT`]ths of a tick; `None` if no route takes at most `most`. Routes
+    /// may wait for temporarily closed cells and cut corners of closed cells. O((cells + changes)
+    /// log cells).
     pub fn least_cost(
         &mut self,
         (land, changes, seed): Changing<'_>,
@@ -58,14 +60,14 @@ impl Foresight {
         None
     }
 
-    /// When a cell is crossed at the earliest by who is before it at `now`.
+    /// Earliest time at which a cell is crossed from a neighbour at `now`.
     fn crossed(&self, cell: usize, now: u64, length: u64) -> u64 {
         let classes = &self.classes[cell];
         let tick = now.div_ceil(u64::from(UNIT));
         let first = classes.partition_point(|&(since, _)| u64::from(since) <= tick).saturating_sub(1);
         let mut best = u64::MAX;
         for &(since, class) in &classes[first..] {
-            // From just after the tick before on, decisions are those of this tick.
+            // Decisions right after the previous tick count for this tick.
             let start = now.max((u64::from(since) * u64::from(UNIT)).saturating_sub(u64::from(UNIT) - 1));
             if start + length >= best {
                 break;
@@ -77,7 +79,7 @@ impl Foresight {
         best
     }
 
-    /// Notes what all cells will be up to a tick.
+    /// Records the classes of all cells up to a tick.
     fn foresee(&mut self, (land, changes, seed): Changing<'_>, last: u32) {
         let mut land = land.clone();
         self.classes.resize_with(land.cells().len(), Vec::new);
@@ -90,7 +92,7 @@ impl Foresight {
             let classes = &mut self.classes;
             change(&mut land, changes, seed, tick, |cell, class| {
                 let classes = &mut classes[cell.y as usize * width + cell.x as usize];
-                // What changes more than once in a tick is what it is then.
+                // Of several changes in one tick, the last one holds.
                 classes.pop_if(|(since, _)| *since == tick);
                 classes.push((tick, class));
             });

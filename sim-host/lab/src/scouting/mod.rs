@@ -1,12 +1,15 @@
-//! What a map is worth on land that changes: KUZ section 3 has u(t, .) and land that is "not fully scouted", and no figures for either.
+//! Value of a map on changing land. KUZ section 3 defines u(t, .) and land that is "not fully
+//! scouted", but gives no results for either.
 //!
-//! Each run makes one natural landscape (KUZ section 5) that drifts: in each tick some of its cells become a tick slower or faster to
-//! cross. One robot goes from (1, 1) to the opposite corner by the controller's [`Router`](staya_controller::route::Router). It sees
-//! so far as in `staya experiment route`, and plans on what it knows: on what it sees alone, or on a wider window of a map that was made
-//! before the run began, some of it blank or wrong, with what it has seen since
-//! ([`LandMemory`](staya_controller::route::LandMemory)).
+//! Each run creates one natural landscape (KUZ section 5) that drifts: in each tick, some of its
+//! cells become slower or faster to cross by one tick. One robot moves from (1, 1) to the opposite
+//! corner with the controller's [`Router`](staya_controller::route::Router). Its range of sight is
+//! that of `staya experiment route`. It plans either on its sight alone or on a wider window of a
+//! map. The map was made before the run, is partly blank or wrong, and is updated with everything
+//! that the robot has seen ([`LandMemory`](staya_controller::route::LandMemory)).
 //!
-//! Its travel time is compared with that of somebody who knew all the land at all times to come (`foresight`), which nobody can beat.
+//! Its travel time is compared with the lower bound for perfect knowledge of all future changes
+//! (`foresight`).
 
 mod foresight;
 mod report;
@@ -33,9 +36,7 @@ use std::num::NonZeroU32;
 use std::path::PathBuf;
 use walk::{Knowledge, Scout};
 
-/// Purpose of the random numbers that give each run its landscape, and what becomes of it.
 const LANDSCAPES: u32 = 0x0045_0011;
-/// Classes of impassability.
 const CLASSES: u8 = 9;
 
 /// What to do: what a map is worth on land that changes, with some of it blank or wrong.
@@ -71,7 +72,8 @@ pub struct Plan {
     /// When the robot searches its way anew.
     #[arg(long, default_value = "each-cell", value_parser = options::replan())]
     pub replan: Replan,
-    /// Equal seeds give equal results. The route's parameters were chosen on seed 1; nothing was on this one.
+    /// Equal seeds give equal results. The route's parameters were chosen on seed 1; nothing was on
+    /// this one.
     #[arg(long, default_value_t = 2)]
     pub seed: u64,
     /// Folder for rows.
@@ -85,24 +87,24 @@ impl Default for Plan {
     }
 }
 
-/// What the robot knows of the land.
+/// Knowledge of the robot about the land.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Known {
-    /// What it sees, and nothing else.
+    /// Only the cells in sight.
     Sight,
-    /// A map with such shares of it blank and wrong, and what it has seen since.
+    /// A partly blank or wrong map, updated by everything seen since.
     Map {
-        /// Blank.
+        /// Blank share.
         unknown: f64,
-        /// Wrong.
+        /// Wrong share.
         wrong: f64,
     },
-    /// It sees as far as others plan on their maps.
+    /// Sight as wide as the planning window on a map.
     Far,
 }
 
 impl Known {
-    /// In a word.
+    /// Name in rows.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -112,7 +114,7 @@ impl Known {
         }
     }
 
-    /// Shares that are blank and wrong.
+    /// Blank and wrong shares.
     #[must_use]
     pub const fn shares(self) -> Option<[f64; 2]> {
         match self {
@@ -122,18 +124,19 @@ impl Known {
     }
 }
 
-/// What one landscape gave.
+/// Result of one landscape.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
-    /// Least travel time of who knows all that will be, [`UNIT`](staya_controller::grid::UNIT)ths of a tick.
+    /// Smallest travel time with perfect knowledge, [`UNIT`](staya_controller::grid::UNIT)ths of a
+    /// tick.
     pub least_cost: u64,
     /// Whether the robot reached its target.
     pub arrived: bool,
-    /// Its travel time, the same.
+    /// Its travel time, in the same unit.
     pub cost: u64,
-    /// Its moves.
+    /// Number of its moves.
     pub moves: u32,
-    /// Cells that it remembered at the end otherwise than its map has them.
+    /// Cells that at the end it remembered differently from its map.
     pub remembered: u32,
 }
 
@@ -151,7 +154,6 @@ impl Record for Run {
     }
 }
 
-/// What one thread needs.
 #[derive(Default)]
 struct Scratch {
     scout: Scout,
@@ -159,7 +161,7 @@ struct Scratch {
 }
 
 impl Plan {
-    /// What robots know, a row each.
+    /// Kinds of knowledge, one per row.
     #[must_use]
     pub fn known(&self) -> Vec<Known> {
         let blank = self.unknown.iter().map(|&unknown| Known::Map { unknown, wrong: 0.0 });
@@ -167,12 +169,11 @@ impl Plan {
         [Known::Sight].into_iter().chain(blank).chain(wrong).chain([Known::Far]).collect()
     }
 
-    /// What the robot of a point knows, and how much of the land changes in a tick.
     fn point(&self, point: usize) -> (Known, f64) {
         (self.known()[point / self.drifts.len()], self.drifts[point % self.drifts.len()])
     }
 
-    /// The same landscapes, and the same drift of them, for all that robots know.
+    /// All kinds of knowledge have the same landscapes with the same drift.
     fn landscape_seed(&self, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, self.obstacles, run).next_u64()
     }
@@ -194,13 +195,13 @@ impl Plan {
         let sight = if known == Known::Far { self.map_radius } else { self.sight };
         let knowledge = Knowledge { map: map.as_ref(), sight };
         let walk = scout.walk((&land, &changes, seed), ends, &knowledge, &params, self.replan);
-        // Whoever knows all is not later than the robot.
+        // With perfect knowledge, the travel time is at most that of the robot.
         let least = foresight.least_cost((&land, &changes, seed), ends, params.norm, walk.cost);
         Ok(Run { least_cost: least.unwrap_or(walk.cost), ..walk })
     }
 }
 
-/// Land of which so large a share becomes slower or faster in each tick.
+/// Changes by which this share of cells becomes slower or faster in each tick.
 fn drifting(land: &Terrain, share: f64) -> Vec<LandChange> {
     let draws = libm::round(share * land.cells().len() as f64) as u32;
     let kind = ChangeKind::Drift { cells: None, draws, step: 1, classes: CLASSES };
@@ -241,7 +242,7 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // By name, so that a new field is not forgotten.
+        // Destructured, so that a new field cannot be forgotten.
         let Self {
             obstacles,
             runs: _,
@@ -273,7 +274,8 @@ impl Experiment for Plan {
         ]
     }
 
-    /// That of the landscape, as `staya terrain` takes it, of what becomes of it and of what its map does not show.
+    /// Seed of the landscape (as accepted by `staya terrain`), of its changes and of the map's
+    /// errors.
     fn seed(&self, _: usize, run: u32) -> u64 {
         self.landscape_seed(run)
     }

@@ -1,4 +1,4 @@
-//! The numbers of the experiment, as a table.
+//! Results of the experiment, as a table.
 
 use super::{Known, Plan, Run};
 use crate::experiment::Maybe;
@@ -6,22 +6,22 @@ use serde::Serialize;
 use staya_stats::{Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
-/// One point: what a robot knows, on land that changes so fast.
+/// Results for one kind of knowledge and one rate of change.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
     /// `sight`, `map` or `far sight`.
     pub known: &'static str,
     /// Share of the map that is blank.
     pub unknown: Option<f64>,
-    /// Share of the map that shows what is elsewhere.
+    /// Share of the map that shows other places.
     pub wrong: Option<f64>,
-    /// Share of the cells that change by a tick in each tick.
+    /// Share of the cells that change by one tick of crossing time in each tick.
     pub drift_per_tick: f64,
-    /// Landscapes.
+    /// Number of landscapes.
     pub runs: usize,
     /// Robots that reached their target.
     pub arrived: usize,
-    /// dT: mean travel time above the least of who knows all, percent of it.
+    /// dT: mean excess of the travel time over the minimum with perfect knowledge, in percent.
     pub time_loss_percent: Option<f64>,
     /// Half the 95 % interval of that mean.
     pub error95_percent: Option<f64>,
@@ -29,26 +29,26 @@ pub struct Point {
     pub remembered: Option<f64>,
 }
 
-/// Everything that the experiment reports.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Always `scouting`.
     pub experiment: &'static str,
-    /// Landscapes asked for per point.
+    /// Requested landscapes per point.
     pub runs: u32,
-    /// Obstacles of each.
+    /// Obstacles per landscape.
     pub obstacles: u32,
     /// Cells along each side.
     pub size: u16,
-    /// How far robots see, cells.
+    /// Range of sight, cells.
     pub sight: u8,
-    /// How far they plan on a map, cells.
+    /// Planning radius on a map, cells.
     pub map_radius: u8,
-    /// Cells along each side of what is blank or wrong.
+    /// Cells along each side of blank or wrong areas.
     pub patch_cells: u16,
-    /// Seed.
+    /// Seed of the experiment.
     pub seed: u64,
-    /// The points, those of one knowledge after each other; those without a run are missing.
+    /// The points by knowledge, without those that have no runs.
     pub points: Vec<Point>,
 }
 

@@ -17,7 +17,7 @@ fn land(seed: u64, size: u16) -> Terrain {
 const ENDS: [Cell; 2] = [Cell::new(1, 1), Cell::new(28, 28)];
 
 #[test]
-fn on_land_that_stays_foresight_is_the_fastest_route_and_sight_the_walk_of_the_route_experiment() {
+fn static_land_gives_the_fastest_route_and_the_path_of_the_route_experiment() {
     for seed in 0..8 {
         let land = land(seed, 30);
         let [from, to] = ENDS;
@@ -34,7 +34,7 @@ fn on_land_that_stays_foresight_is_the_fastest_route_and_sight_the_walk_of_the_r
 }
 
 #[test]
-fn who_knows_the_whole_map_goes_as_who_sees_as_far() {
+fn correct_map_equals_sight_of_the_same_radius() {
     for seed in 0..4 {
         let land = land(seed, 30);
         let params = RouteParams { radius: 12, ..RouteParams::default() };
@@ -46,8 +46,8 @@ fn who_knows_the_whole_map_goes_as_who_sees_as_far() {
 }
 
 #[test]
-fn waiting_for_a_gate_is_foreseen() {
-    // A road of five cells of which the third is closed until tick 20, and slow before that until tick 3.
+fn foresight_waits_for_a_gate() {
+    // A road of five cells: the third is slow until tick 3, then closed until tick 20.
     let road = Terrain::from_cells(5, 1, vec![1, 1, 9, 1, 1]).expect("fits");
     let kind =
         |class, lasts| ChangeKind::Become { cells: vec![(Cell::new(2, 0), 1)], class, lasts: NonZeroU32::new(lasts) };
@@ -56,7 +56,8 @@ fn waiting_for_a_gate_is_foreseen() {
     let mut foresight = Foresight::default();
     // It enters the slow cell at once: 1 + 9 + 1 + 1 ticks.
     assert_eq!(foresight.least_cost((&road, &changes, 0), ends, Norm::Euclidean, 1 << 20), Some(12 * 70));
-    // If that took 200 ticks, it would wait for the gate, and go just after the tick before it opens.
+    // If the cell took 200 ticks, waiting for its opening is faster; it starts right after the tick
+    // before.
     let road = Terrain::from_cells(5, 1, vec![1, 1, 200, 1, 1]).expect("fits");
     let least = foresight.least_cost((&road, &changes, 0), ends, Norm::Euclidean, 1 << 20);
     assert_eq!(least, Some(19 * 70 + 1 + 3 * 70));
@@ -67,7 +68,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(16))]
 
     #[test]
-    fn nobody_is_faster_than_who_knows_all(seed: u64, draws in 0_u32..60, sight in 1_u8..8, unknown in 0.0..1.0_f64) {
+    fn no_robot_is_faster_than_perfect_knowledge(seed: u64, draws in 0_u32..60, sight in 1_u8..8, unknown in 0.0..1.0_f64) {
         let land = land(seed, 30);
         let changes = drifting(&land, f64::from(draws) / 900.0);
         let map = Scouted { unknown, wrong: 1.0 - unknown, patch_cells: 2, assumed: 3, seed }.map(&land);
@@ -83,7 +84,7 @@ proptest! {
     }
 
     #[test]
-    fn foresight_undercuts_the_route_that_is_fastest_at_first(seed: u64, draws in 1_u32..60) {
+    fn foresight_is_faster_than_the_initially_fastest_route(seed: u64, draws in 1_u32..60) {
         let mut now = land(seed, 30);
         let changes = drifting(&now, f64::from(draws) / 900.0);
         let [from, to] = ENDS;
@@ -104,7 +105,7 @@ proptest! {
 }
 
 #[test]
-fn rows_and_tables_have_a_line_per_knowledge_and_drift() {
+fn rows_and_tables_have_a_row_per_knowledge_and_drift() {
     let plan = Plan { drifts: vec![0.0, 0.02], ..small() };
     let runs = plan.carry_out(|_| true).expect("good");
     assert_eq!(runs.len(), 8 * 2);
@@ -114,7 +115,7 @@ fn rows_and_tables_have_a_line_per_knowledge_and_drift() {
         assert!(text.matches(known).count() >= 2, "{text}");
     }
     assert!(report.points.iter().all(|point| point.arrived == 4 && point.time_loss_percent >= Some(0.0)));
-    // Everybody has the same landscapes.
+    // All kinds of knowledge have the same landscapes.
     for runs in runs.chunks(2).map(|pair| &pair[0]) {
         assert!(runs.iter().map(|run| run.least_cost).eq(self_least(&plan)));
     }
@@ -124,7 +125,7 @@ fn rows_and_tables_have_a_line_per_knowledge_and_drift() {
 }
 
 #[test]
-fn wrong_plans_are_refused_with_what_is_in_range() {
+fn invalid_plans_are_refused_with_the_permitted_range() {
     let refused = |plan: Plan| plan.check().unwrap_err().to_string();
     assert!(refused(Plan { runs: 0, ..small() }).contains("make 1 or more"));
     assert!(refused(Plan { drifts: vec![], ..small() }).contains("give one share"));

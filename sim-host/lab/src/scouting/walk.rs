@@ -1,4 +1,4 @@
-//! One robot on land that changes, by what it knows of it.
+//! Movement of one robot on changing land, with limited knowledge.
 
 use super::Run;
 use crate::route::CELLS;
@@ -10,22 +10,19 @@ use staya_sim::terrain::change::{LandChange, change};
 use staya_sim::world::scouts::Memory;
 use staya_sim::world::{known_window, window};
 
-/// Moves after which a robot is lost, per cell of the map's half circumference.
+/// Moves after which a robot counts as lost, per cell of the map's half perimeter.
 const PATIENCE: usize = 200;
 
-/// What a robot knows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knowledge<'a> {
-    /// Its map; without one it plans on what it sees.
+    /// Its map; without one it plans on its sight.
     pub map: Option<&'a Terrain>,
-    /// How far it sees, cells.
+    /// Range of sight, cells.
     pub sight: u8,
 }
 
-/// Land as it is at the start, how it changes, and the seed of that.
 pub(super) type Changing<'a> = (&'a Terrain, &'a [LandChange], u64);
 
-/// Scratch memory for walks.
 #[derive(Default)]
 pub(super) struct Scout {
     field: Box<CostField<CELLS>>,
@@ -34,8 +31,9 @@ pub(super) struct Scout {
 }
 
 impl Scout {
-    /// Lets a robot walk: it crosses a cell at the pace that the cell has when it enters, as robots of the simulator do. A walk ends at
-    /// the target, where no move is left, or after 200 moves per cell of width + height.
+    /// Moves a robot, which crosses a cell at the pace that the cell has when it is entered, as in
+    /// the simulator. The walk ends at the target, if there is no possible move, or after 200 moves
+    /// per cell of width + height.
     pub fn walk(
         &mut self,
         (land, changes, seed): Changing<'_>,
@@ -50,7 +48,7 @@ impl Scout {
         let limit = PATIENCE * (usize::from(land.width()) + usize::from(land.height()));
         let mut next = ticks.next();
         while (run.moves as usize) < limit {
-            // It decides at the first tick after it has come.
+            // It decides at the first tick after its arrival in the cell.
             let now = run.cost.div_ceil(u64::from(UNIT));
             while let Some(tick) = next.filter(|&tick| u64::from(tick) <= now) {
                 change(&mut land, changes, seed, tick, |_, _| ());

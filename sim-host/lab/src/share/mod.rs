@@ -1,11 +1,12 @@
-//! What does it help a robot that others tell it what they have seen of the land?
+//! Benefit of maps shared between robots.
 //!
-//! Each run makes one natural landscape (A. V. Kuznetsov 2017, KUZ, section 5) and sends a group of robots across it, each to its own
-//! goal: once by what each sees itself, and again with maps shared over the radio ([`staya_controller::land`]), at each loss of
-//! packets. Robots run the whole simulator: agents, bytes over the radio, bodies in each other's way. What a robot loses is its travel
-//! time against the fastest route of all on the whole map, as in [`crate::route`].
+//! Each run creates one natural landscape (A. V. Kuznetsov 2017, KUZ, section 5) and sends a group
+//! of robots across it, each to its own goal: without sharing, and with maps shared over the radio
+//! ([`staya_controller::land`]) at each packet loss. The complete simulator runs: agents, packets
+//! over the radio, and bodies that block each other. The loss of a robot is its travel time
+//! compared with the fastest route on the whole map, as in [`crate::route`].
 //!
-//! What a group can tell its members depends on where they go: see [`Starts`].
+//! The benefit depends on the routes within the group: see [`Starts`].
 
 mod report;
 
@@ -37,18 +38,16 @@ use staya_sim::terrain::{Terrain, TerrainError};
 use staya_sim::world::MoveRules;
 use std::ops::ControlFlow;
 
-/// Purpose of the random numbers that give each run its landscape.
 const LANDSCAPES: u32 = 0x0045_0201;
-/// Purpose of the random numbers that give each run its seed for robots and radio.
+/// Random number stream for the seeds for robots and radio.
 const RUNS: u32 = 0x0045_0202;
-/// Purpose of the random numbers that place robots and goals.
 const PLACES: u32 = 0x0045_0203;
 
-/// Microseconds per tick; only beacons know of it.
+/// Microseconds per tick; only beacons depend on it.
 const TICK_US: u32 = 1_000_000;
-/// Ticks after which a run ends.
+/// Time limit of a run, ticks.
 const TICKS: u32 = 20_000;
-/// Cells between neighbours of a group that starts together.
+/// Distance of neighbours in a group that starts together, cells.
 const SPACING: i16 = 3;
 
 /// Where the robots of a group start and go.
@@ -57,15 +56,15 @@ pub enum Starts {
     /// Anywhere, to anywhere half the land away or farther.
     #[default]
     Anywhere,
-    /// In a block in one corner, to the same block in the opposite corner, all at once: they see the same land at the same
-    /// time.
+    /// In a block in one corner, to the same block in the opposite corner, all at once: they see
+    /// the same land at the same time.
     Together,
     /// The same, but each sets out some time after the one before it.
     InTurn,
 }
 
 impl Starts {
-    /// Its word.
+    /// Name in options and rows.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -76,32 +75,33 @@ impl Starts {
     }
 }
 
-/// What to do.
+/// Parameters of the experiment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Numbers of obstacles.
     pub obstacles: Vec<u32>,
-    /// Robots of a group, 1 to 100.
+    /// Robots per group, 1 to 100.
     pub groups: Vec<u32>,
-    /// Where they start.
+    /// Arrangements of starts and goals.
     pub starts: Vec<Starts>,
-    /// Losses of packets at which maps are shared, 0 to 1.
+    /// Packet losses at which maps are shared, 0 to 1.
     pub losses: Vec<f64>,
-    /// Landscapes per point, 1 or more.
+    /// Landscapes per point, at least 1.
     pub runs: u32,
     /// Cells along each side, 40 to 500.
     pub size: u16,
     /// Classes of impassability.
     pub classes: u8,
-    /// What natural land is taken to mean.
+    /// Interpretation of natural terrain.
     pub hills: Hills,
     /// Norm of the distance to an obstacle.
     pub hill_norm: Norm,
-    /// Ticks between two that set out in turn.
+    /// Ticks between the departures of two robots with [`Starts::InTurn`].
     pub interval: u32,
-    /// How robots find their ways.
+    /// Parameters of routing.
     pub route: RouteParams,
-    /// Equal seeds give equal results. Maps were made with an eye on seed 1, so it is another one by default.
+    /// Equal seeds give equal results. The default differs from seed 1, which was used to develop
+    /// shared maps.
     pub seed: u64,
 }
 
@@ -124,32 +124,31 @@ impl Default for Plan {
     }
 }
 
-/// What of a plan makes a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Case {
     pub obstacles: u32,
     pub group: u32,
     pub starts: Starts,
-    /// Loss of packets; `None`: nobody shares.
+    /// Packet loss; `None` without sharing.
     pub shared: Option<f64>,
 }
 
-/// One group on one landscape.
+/// Result of one group on one landscape.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Trip {
     /// Robots that arrived.
     pub arrived: u32,
-    /// Mean over them of what their travel time is above the fastest route, percent.
+    /// Mean excess of their travel time over that of the fastest route, in percent.
     pub loss_percent: f64,
-    /// The same of the first robot; `None`: it has not arrived.
+    /// Excess of the first robot, in percent; `None` if it has not arrived.
     pub first_percent: Option<f64>,
-    /// The same of the last robot.
+    /// Excess of the last robot, in percent; `None` if it has not arrived.
     pub last_percent: Option<f64>,
-    /// Packets sent, beacons and what they share.
+    /// Packets sent: beacons and shared maps.
     pub packets: u64,
-    /// Robots in each other, summed.
+    /// Overlapping robots, summed over ticks.
     pub collisions: u64,
-    /// Fingerprint of the trace.
+    /// Trace hash.
     pub hash: u64,
 }
 
@@ -169,7 +168,8 @@ impl Record for Trip {
 }
 
 impl Plan {
-    /// All cases in the order of points: those of one group and land next to each other, alone first.
+    /// All cases in the order of points. Those of one group and land are adjacent, without sharing
+    /// first.
     pub(crate) fn cases(&self) -> Vec<Case> {
         let shared: Vec<Option<f64>> = [None].into_iter().chain(self.losses.iter().copied().map(Some)).collect();
         let mut cases = Vec::new();
@@ -183,7 +183,7 @@ impl Plan {
         cases
     }
 
-    /// The seed of a landscape: a function of seed, obstacles and number of the run.
+    /// Seed of a landscape, a function of seed, obstacles and number of the run.
     fn landscape_seed(&self, obstacles: u32, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, obstacles, run).next_u64()
     }
@@ -194,7 +194,7 @@ impl Plan {
         natural_by(&plan, obstacles, self.hill_norm, self.hills)
     }
 
-    /// Start and goal of each robot; no two starts are the same, nor goals.
+    /// Start and goal of each robot; all starts differ, and so do all goals.
     fn places(&self, case: Case, run: u32) -> Vec<(Cell, Cell)> {
         let last = self.size.cast_signed() - 2;
         if case.starts != Starts::Anywhere {
@@ -235,7 +235,6 @@ impl Plan {
         Ok(Scenario { faults, ..scenario })
     }
 
-    /// The tick in which a robot sets out.
     fn departure(&self, case: Case, robot: RobotId) -> u32 {
         if case.starts == Starts::InTurn { (robot.0 - 1) * self.interval } else { 0 }
     }
@@ -254,7 +253,8 @@ impl Plan {
 }
 
 impl Trip {
-    /// Of a run whose robots set out in these ticks and have these fastest routes, [`UNIT`]s of a tick.
+    /// Evaluates a run, given the departure tick and the fastest route of each robot, [`UNIT`]s of
+    /// a tick.
     pub(crate) fn of(outcome: &Outcome, fastest: &[(u32, f64)]) -> Self {
         let over = |(&at, &(departure, fastest)): (&Option<u64>, &(u32, f64))| {
             let since = u64::from(departure) * u64::from(UNIT);
@@ -274,7 +274,7 @@ impl Trip {
     }
 }
 
-/// Robots on a landscape, each for itself; `shared`: they share maps at that loss of packets.
+/// Robots on a landscape without formation; `shared` is the packet loss at which they share maps.
 pub(crate) fn scenario(
     terrain: Terrain,
     robots: Vec<Robot>,
@@ -330,7 +330,7 @@ impl Experiment for Plan {
             "no groups; give --group and --starts one value or more"
         );
         for group in &self.groups {
-            // A block of the larger ones has five columns.
+            // A block of the larger groups has five columns.
             let most = 5 * (u32::from(size) / 6);
             ensure!((1..=100.min(most)).contains(group), "a group of {group} robots; it must be 1..={}", 100.min(most));
         }
@@ -355,7 +355,7 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // By name, so that a new field is not forgotten.
+        // Destructured, so that a new field cannot be forgotten.
         let Self {
             obstacles: _,
             groups: _,
@@ -394,7 +394,8 @@ impl Experiment for Plan {
         ]
     }
 
-    /// That of the landscape, as `staya terrain` takes it; the rest is a function of the first seed.
+    /// Seed of the landscape, as accepted by `staya terrain`. Other random numbers are functions of
+    /// the first seed.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.landscape_seed(self.cases()[point].obstacles, run)
     }

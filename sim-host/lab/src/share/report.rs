@@ -1,4 +1,4 @@
-//! The numbers of shared maps, ready to be printed.
+//! Results of the experiments with shared maps.
 
 use super::{Plan, Trip};
 use crate::experiment::Maybe;
@@ -6,16 +6,16 @@ use serde::Serialize;
 use staya_stats::{Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
-/// All groups of a point that go by one kind of knowledge.
+/// Results of all groups of a point, with or without sharing.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outlook {
-    /// Whether they share maps.
+    /// Whether maps are shared.
     pub shared: bool,
     /// Loss of packets, 0 to 1.
     pub loss: f64,
     /// Robots that arrived.
     pub arrived: u32,
-    /// dT over the groups' means, percent.
+    /// dT over the means of the groups, percent.
     pub loss_percent: Summary,
     /// dT of the groups' first robots, percent.
     pub first_percent: Option<f64>,
@@ -23,40 +23,41 @@ pub struct Outlook {
     pub last_percent: Option<f64>,
     /// Packets per group.
     pub packets: f64,
-    /// Robots in each other, summed.
+    /// Overlapping robots, summed over ticks.
     pub collisions: u64,
 }
 
-/// Groups of one size on land with so many obstacles.
+/// Results of groups of one size, for one number of obstacles.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
-    /// Where they start.
+    /// Arrangement of starts and goals.
     pub starts: &'static str,
-    /// Robots of a group.
+    /// Robots per group.
     pub robots: u32,
     /// Number of obstacles N.
     pub obstacles: u32,
-    /// Groups.
+    /// Number of groups.
     pub runs: usize,
-    /// Each for itself, then with shared maps at each loss.
+    /// Without sharing, then with shared maps at each loss.
     pub outlooks: Vec<Outlook>,
 }
 
-/// What the experiment found.
+/// Results of the experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Cells along each side.
     pub size: u16,
     /// Radius of the windows.
     pub radius: u8,
-    /// The seed.
+    /// Seed of the experiment.
     pub seed: u64,
-    /// The points.
+    /// Results by start, group size and obstacles.
     pub points: Vec<Point>,
 }
 
 impl Outlook {
-    /// Of a point's groups; `shared`: the loss of packets at which they share maps. `None`: nobody arrived.
+    /// Summarises a point's groups; `shared` is the packet loss at which they share maps. `None` if
+    /// no robot arrived.
     pub(crate) fn of(shared: Option<f64>, trips: &[Trip]) -> Option<Self> {
         let over = |value: fn(&Trip) -> Option<f64>| mean(&trips.iter().filter_map(value).collect::<Vec<_>>());
         let arrived = trips.iter().filter(|trip| trip.arrived > 0);
@@ -73,14 +74,12 @@ impl Outlook {
         })
     }
 
-    /// Its maps as a word.
     pub(crate) fn maps(&self) -> String {
         if self.shared { format!("shared, {:.0} %", 100.0 * self.loss) } else { String::from("own") }
     }
 }
 
 impl Report {
-    /// Of the runs of each case, in the plan's order.
     pub(super) fn of(plan: &Plan, runs: &[Vec<Trip>]) -> Self {
         let cases = plan.cases();
         let of_point = 1 + plan.losses.len();

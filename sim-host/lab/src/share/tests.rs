@@ -13,22 +13,22 @@ fn small() -> Plan {
 }
 
 #[test]
-fn those_who_follow_go_faster_by_what_those_ahead_have_seen() {
+fn followers_are_faster_with_the_maps_of_robots_ahead() {
     let report = small().measure().unwrap();
     let [alone, perfect, lossy] = &report.points[0].outlooks[..] else { panic!("{report}") };
     for outlook in [alone, perfect, lossy] {
         assert_eq!((outlook.arrived, outlook.collisions), (24, 0));
     }
-    // Nobody has told the first one anything that it did not know.
+    // The first robot has no predecessor to learn from, so the last one is compared.
     let last = |outlook: &Outlook| outlook.last_percent.unwrap();
     assert!(last(perfect) < 0.6 * last(alone), "{report}");
     assert!(last(lossy) < 0.8 * last(alone), "{report}");
-    // A packet more behind each beacon, for less long.
+    // A second packet after each beacon, but for a shorter time.
     assert!(perfect.packets > alone.packets, "{report}");
 }
 
 #[test]
-fn each_group_has_its_places_and_starts_where_it_is_told() {
+fn each_group_has_distinct_places_and_the_requested_start() {
     let plan = small();
     for starts in [Starts::Anywhere, Starts::Together, Starts::InTurn] {
         for group in [1, 6, 20] {
@@ -50,7 +50,7 @@ fn each_group_has_its_places_and_starts_where_it_is_told() {
 }
 
 #[test]
-fn what_is_out_of_range_is_refused_with_a_remedy() {
+fn invalid_plans_are_refused_with_a_remedy() {
     let refused = |plan: Plan| plan.check().unwrap_err().to_string();
     assert!(refused(Plan { groups: vec![0], ..small() }).contains("it must be 1..=50"));
     assert!(refused(Plan { losses: vec![1.5], ..small() }).contains("between 0 and 1"));

@@ -1,4 +1,4 @@
-//! Means, medians and intervals of the runs of each point.
+//! Means, medians and intervals over the runs of each point.
 
 use crate::sweep::design::Design;
 use crate::sweep::merge::Merged;
@@ -8,17 +8,17 @@ use staya_stats::Summary;
 /// The figures of one point.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Its number.
+    /// Number of the point.
     pub number: u64,
-    /// The value of each parameter.
+    /// Value of each parameter.
     pub values: Vec<String>,
-    /// Runs of it that there are.
+    /// Available runs of the point.
     pub runs: usize,
-    /// Of each measure; `None`: no run has a value, or one is infinite.
+    /// Summary of each measure; `None` if no run has a value or one is infinite.
     pub figures: Vec<Option<Summary>>,
 }
 
-/// All points of which there are runs, in order. O(rows).
+/// Aggregates all points with at least one run, in order. O(rows).
 #[must_use]
 pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
     let seeds = plan.runs_per_point();
@@ -35,7 +35,8 @@ pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
     by_point.map(point).collect()
 }
 
-/// As CSV: a line for each point and figure. `low95` and `high95` are the ends of the 95 % interval of the mean (Student).
+/// Formats points as CSV with one line per point and figure. `low95` and `high95` are the ends of
+/// the mean's 95 % interval (Student).
 #[must_use]
 pub fn text(plan: &dyn Design, points: &[Point]) -> String {
     let statistics = "figure,runs,values,mean,low95,high95,median,deviation,min,max";
@@ -50,7 +51,7 @@ pub fn text(plan: &dyn Design, points: &[Point]) -> String {
             cells.extend(point.values.iter().cloned());
             cells.extend([name.clone(), point.runs.to_string()]);
             cells.push(summary.map_or(0, |summary| summary.count).to_string());
-            // One value has no interval.
+            // A single value has no interval.
             let ends = summary.filter(|s| s.mean_error95.is_some()).map(|s| s.mean_interval95());
             let of = |figure: fn(&Summary) -> f64| summary.as_ref().map(figure);
             let figures = [

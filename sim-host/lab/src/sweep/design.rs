@@ -1,46 +1,47 @@
-//! Runs that have numbers: what plans of sweeps and experiments have in common.
+//! Numbered runs, the common interface of sweep plans and experiments.
 
-/// Which runs there are, and what is known of each before it is made. A run is a function of its number.
+/// A set of numbered runs, with everything known before they are made. A run is a function of its
+/// number.
 ///
-/// Runs `0..runs_per_point` are the first point, those that follow the second one, and so on: runs of a point differ in
-/// their seeds only.
+/// Runs `0..runs_per_point` belong to the first point, the next ones to the second, and so on. Runs
+/// of a point differ in their seeds only.
 pub trait Design: Sync {
-    /// What results are called.
+    /// Name of the results.
     fn name(&self) -> &str;
 
-    /// What tells designs apart that mean other runs or rows, as 16 hex digits.
+    /// Fingerprint, 16 hex digits. Designs with different runs or rows have different fingerprints.
     fn fingerprint(&self) -> String;
 
-    /// How many runs there are.
+    /// Number of runs.
     fn runs(&self) -> u64;
 
-    /// How many runs there are of each point, 1 or more.
+    /// Runs per point, at least 1.
     fn runs_per_point(&self) -> u64;
 
-    /// The names of the parameters that rows have.
+    /// Names of the parameters in rows.
     fn parameters(&self) -> Vec<String>;
 
-    /// The parameters of a run below [`Design::runs`], as cells of a table.
+    /// Parameters of a run below [`Design::runs`], as table cells.
     fn values(&self, run: u64) -> Vec<String>;
 
-    /// The seed of a run below [`Design::runs`].
+    /// Seed of a run below [`Design::runs`].
     fn seed(&self, run: u64) -> u64;
 
-    /// The names of the figures that rows have.
+    /// Names of the figures in rows.
     fn figures(&self) -> Vec<String>;
 
-    /// What a figure says, in words.
+    /// Meaning of a figure.
     fn meaning(&self, figure: &str) -> String {
         let _ = figure;
         String::from("a figure of summary.json")
     }
 
-    /// How many runs may go on at once, whatever the machine has: 1 for what is timed.
+    /// Most parallel runs on any machine: 1 for timed runs.
     fn at_once(&self) -> usize {
         usize::MAX
     }
 
-    /// The order in which runs are begun, if it is another one than that of their numbers.
+    /// Sort key that defines the order in which runs are started; by default their number.
     fn turn(&self, run: u64) -> u64 {
         run
     }

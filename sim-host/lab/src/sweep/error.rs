@@ -1,32 +1,32 @@
-//! Why a sweep cannot go on.
+//! Errors of sweeps.
 
 use staya_sim::record;
 use staya_sim::scenario::ScenarioError;
 use std::fmt::Display;
 
-/// What is wrong, where, and what to do about it.
+/// An error with its place, cause and remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
-    /// The plan or its scenario.
+    /// The plan or its scenario is wrong.
     #[error(transparent)]
     Plan(#[from] ScenarioError),
-    /// A file that cannot be written.
+    /// A file cannot be written.
     #[error(transparent)]
     File(#[from] record::Error),
-    /// Anything else.
+    /// Any other error.
     #[error("{place}: {what}; {remedy}")]
     Other {
         /// A file, often with a line, or an option.
         place: String,
-        /// What is wrong.
+        /// The cause.
         what: String,
-        /// What to do about it.
+        /// The remedy.
         remedy: String,
     },
 }
 
 impl SweepError {
-    /// That `what` is wrong at `place`.
+    /// Creates an error.
     pub fn new(place: impl Display, what: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::Other { place: place.to_string(), what: what.into(), remedy: remedy.into() }
     }

@@ -1,15 +1,16 @@
-//! Jobs done in parallel, each on a core of its own, and handed over as they come to an end.
+//! Parallel jobs, one per core, whose results are delivered as they finish.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Does the jobs `0..count`, as many at once as rayon has threads here, and not more than `at_once`.
+/// Executes the jobs `0..count` on as many threads as rayon has here, at most `at_once`.
 ///
-/// Jobs are begun in order, by threads that each have a scratch memory; a job must not depend on what that holds. What is
-/// parallel inside of a job shares the threads that there are too many for jobs, usually none. `take` gets each result
-/// as soon as it is there, one at a time. When it breaks, no further job is begun; those under way are finished and
-/// handed over, so that what is done is always a beginning of the whole.
+/// Jobs start in order. Each thread has a scratch memory, whose contents must not affect results.
+/// If there are more threads than jobs, the surplus is available for parallel work inside jobs.
+/// `take` receives one result at a time, as soon as it is available. After it returns `Break`, no
+/// further job starts; jobs in progress are finished and delivered, so that finished jobs always
+/// form a prefix.
 pub fn each<S: Default, T: Send>(
     count: usize,
     at_once: usize,
@@ -21,7 +22,8 @@ pub fn each<S: Default, T: Send>(
     let (next, is_over) = (AtomicUsize::new(0), AtomicBool::new(false));
     let take = Mutex::new(take);
     let work = || {
-        // Without a pool of its own (there is no memory for it) a job uses the one of all: slower, and right.
+        // If its own pool cannot be created (out of memory), a job uses the global one: slower, but
+        // correct.
         let inner = rayon::ThreadPoolBuilder::new().num_threads(threads / workers).use_current_thread();
         let _inner = inner.build();
         let mut scratch = S::default();
@@ -53,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn each_job_is_done_once_and_handed_over() {
+    fn each_job_is_executed_and_delivered_once() {
         for (threads, count) in [(1, 0), (1, 5), (2, 1), (4, 1000), (8, 3)] {
             let mut seen = vec![0; count];
             within(threads, || {
@@ -73,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_at_an_early_end_is_a_beginning() {
+    fn finished_jobs_form_a_prefix_after_an_early_end() {
         for threads in [1, 2, 4] {
             let mut done = Vec::new();
             let take = |index, ()| {
@@ -88,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn a_job_has_one_thread_unless_there_are_too_many_for_jobs() {
+    fn job_has_one_thread_unless_threads_outnumber_jobs() {
         for (threads, jobs, at_once, each_has) in
             [(4, 8, 8, 1), (4, 4, 4, 1), (4, 3, 8, 1), (4, 2, 8, 2), (4, 1, 8, 4), (4, 8, 1, 4), (4, 3, 2, 2)]
         {

@@ -1,4 +1,4 @@
-//! The rows of all shards, in order.
+//! Merges the rows of all shards.
 
 use crate::sweep::SweepError;
 use crate::sweep::design::Design;
@@ -8,22 +8,23 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
-/// The rows of a plan, each run once, by rising number.
+/// The rows of a plan, ordered by run number, each run once.
 #[derive(Clone, Debug, Default)]
 pub struct Merged {
-    /// In order.
+    /// Rows in order.
     pub rows: Vec<Row>,
-    /// Rows that stood in two places, alike.
+    /// Rows found in two places, identically.
     pub doubles: u64,
-    /// Runs without a row, as ranges from first to last.
+    /// Runs without a row, as inclusive ranges.
     pub missing: Vec<(u64, u64)>,
 }
 
 impl Merged {
-    /// Of the files of shards, in any order.
+    /// Merges the files of shards, in any order.
     ///
     /// # Errors
-    /// A file that cannot be read, a row of another plan or version, two rows of one run that differ.
+    /// A file cannot be read, a row belongs to another plan or version, or two rows of one run
+    /// differ.
     pub fn read(plan: &dyn Design, files: &[PathBuf]) -> Result<Self, SweepError> {
         let mut rows: BTreeMap<u64, (Row, &Path, usize)> = BTreeMap::new();
         let mut doubles = 0;
@@ -31,14 +32,14 @@ impl Merged {
             for (line, row) in read_rows(plan, file)?.rows {
                 match rows.entry(row.run) {
                     Entry::Vacant(place) => drop(place.insert((row, file, line))),
-                    // What could not be done was tried again.
+                    // Impossible runs are tried again, so there may be a later row.
                     Entry::Occupied(_) if row.outcome == Outcome::Impossible => {}
                     Entry::Occupied(mut place) if place.get().0.outcome == Outcome::Impossible => {
                         drop(place.insert((row, file, line)));
                     }
                     Entry::Occupied(place) => {
                         let (other, path, at) = place.get();
-                        // By their texts: a figure may be NaN.
+                        // Compares texts, because a figure may be NaN.
                         if other.line(plan) != row.line(plan) {
                             let what = format!("run {} has another row in {}:{at}", row.run, path.display());
                             let remedy =
@@ -60,10 +61,10 @@ impl Merged {
         Ok(Self { rows: rows.into_values().map(|(row, ..)| row).collect(), doubles, missing })
     }
 
-    /// Of a merged file, which has each run once and in order.
+    /// Reads a merged file, which has each run once and in order.
     ///
     /// # Errors
-    /// As for [`Merged::read`], and when a run is missing, out of order or there twice.
+    /// As for [`Merged::read`], and if a run is missing, out of order or duplicated.
     pub fn reread(plan: &dyn Design, file: &Path) -> Result<Self, SweepError> {
         let Rows { rows, .. } = read_rows(plan, file)?;
         let again = "merge the shards again: `staya sweep merge`";
@@ -84,7 +85,7 @@ impl Merged {
         Ok(Self { rows: rows.into_iter().map(|(_, row)| row).collect(), ..Self::default() })
     }
 
-    /// Refuses gaps. `remedy` says what fills them.
+    /// Refuses missing runs. `remedy` states how to make them.
     ///
     /// # Errors
     /// A run is missing.
@@ -105,7 +106,7 @@ impl Merged {
         Err(SweepError::new(place.display(), what, remedy))
     }
 
-    /// As a file.
+    /// Formats the rows as a file.
     #[must_use]
     pub fn text(&self, plan: &dyn Design) -> String {
         let lines = self.rows.iter().map(|row| row.line(plan));

@@ -1,17 +1,17 @@
-//! Sweeps: a scenario with some of its fields changed, thousands of times, on one machine or many.
+//! Sweeps: thousands of runs of a scenario with varied fields, on one machine or many.
 //!
-//! | module | |
+//! | module | contents |
 //! | --- | --- |
-//! | [`design`] | runs that have numbers: plans of sweeps, and experiments |
-//! | [`plan`] | which fields, which values, which seeds; what is measured |
-//! | [`run`] | one run of a plan: a function of plan and number, and of nothing else |
-//! | [`row`] | what is written down of it |
-//! | [`shard`] | the part of a plan that one process does, and the file that its rows are appended to |
-//! | [`merge`] | the rows of all shards in order, or what is wrong with them |
+//! | [`design`] | numbered runs: sweep plans and experiments |
+//! | [`plan`] | varied fields, values, seeds and measures |
+//! | [`run`] | one run, a function of plan and number only |
+//! | [`row`] | the record of a run |
+//! | [`shard`] | the part of a plan that one process does, and its file of rows |
+//! | [`merge`] | the rows of all shards in order, and their consistency |
 //! | [`aggregate`] | means, medians and intervals over the seeds |
-//! | [`pictures`] | a figure over one axis or two |
-//! | [`script`] | the same on clusters: Slurm, GNU parallel |
-//! | [`jobs`] | jobs in parallel, for sweeps and for experiments |
+//! | [`pictures`] | charts of a figure over one or two axes |
+//! | [`script`] | scripts for clusters: Slurm, GNU parallel |
+//! | [`jobs`] | parallel jobs, for sweeps and experiments |
 
 pub mod aggregate;
 pub mod design;

@@ -1,4 +1,4 @@
-//! A figure over one axis, or over two.
+//! Charts of a figure over one or two axes.
 
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Plan, PlotTable};
@@ -8,18 +8,15 @@ use staya_sim::record::Error;
 use staya_stats::Summary;
 use std::path::{Path, PathBuf};
 
-/// Most values of an axis that are shown one by one; more are gathered in parts.
 const MOST: usize = 24;
 /// Least and most equal parts of an axis with more values.
 const PARTS: [usize; 2] = [4, 12];
-/// Runs that a part, or a square of two, has on average if there are enough.
+/// Average number of runs per part, or per cell of two axes, if there are enough.
 const RUNS: usize = 4;
-/// Most curves in one picture.
 const CURVES: usize = 6;
-/// Most pictures that nobody asked for.
 const UNASKED: usize = 8;
 
-/// The pictures of a plan: those that it asks for, else its first figures over its first two axes.
+/// The pictures that a plan requests; by default its first figures over its first two axes.
 #[must_use]
 pub fn plots(plan: &Plan) -> Vec<PlotTable> {
     if !plan.plots.is_empty() {
@@ -44,7 +41,7 @@ pub fn plots(plan: &Plan) -> Vec<PlotTable> {
 /// A file cannot be written.
 ///
 /// # Panics
-/// When the plan has no such figure or axis: see [`Plan::check_plot`].
+/// If the plan has no such figure or axis: see [`Plan::check_plot`].
 pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let figure = plan.measures().iter().position(|name| *name == plot.figure).expect("a figure that was checked");
     let find = |axis: &String| plan.find(axis).expect("an axis that was checked");
@@ -72,16 +69,13 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
     }
 }
 
-/// The values of an axis as a picture has them.
 struct Levels {
-    /// What each is called.
     names: Vec<String>,
-    /// Where each is; `None`: they are words.
+    /// Numeric values; `None` if they are words.
     numbers: Option<Vec<f64>>,
-    /// Each stands for a part of the axis.
+    /// Whether each level is a part of the axis.
     is_parts: bool,
     is_log: bool,
-    /// The first and the last value.
     ends: [f64; 2],
 }
 
@@ -116,7 +110,7 @@ impl Levels {
         Self { names: numbers.iter().map(name).collect(), numbers: Some(numbers), is_parts, is_log, ends }
     }
 
-    /// Which of them a value belongs to.
+    /// Index of the level that a value belongs to.
     fn of(&self, value: &Value) -> usize {
         let Some((number, numbers)) = value.number().zip(self.numbers.as_ref()) else {
             let name = value.to_string();
@@ -132,7 +126,7 @@ impl Levels {
     }
 }
 
-/// Four digits at most.
+/// Formats a number with at most four digits.
 fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.2e}").parse().unwrap_or(number);
     Figure(Some(rounded)).to_string()
@@ -141,7 +135,7 @@ fn short(number: f64) -> String {
 struct Picture<'a> {
     plan: &'a Plan,
     plot: &'a PlotTable,
-    /// Value on the first axis, on the second, figure.
+    /// Value on the first axis, value on the second, figure.
     rows: Vec<(Value, Option<Value>, f64)>,
     x: Levels,
     y: Option<Levels>,
@@ -168,7 +162,7 @@ impl Picture<'_> {
         format!("{what} of {} runs{over}", self.rows.len())
     }
 
-    /// The figures of the runs at level `x`, and at level `y` if there is a second axis.
+    /// Summary of the runs at level `x` and, with a second axis, at level `y`.
     fn summary(&self, x: usize, y: Option<usize>) -> Option<Summary> {
         let is_here = |(over, and, _): &&(Value, Option<Value>, f64)| {
             let at_y = self.y.as_ref().zip(and.as_ref()).map(|(levels, value)| levels.of(value));
@@ -178,7 +172,6 @@ impl Picture<'_> {
         Summary::of(&figures)
     }
 
-    /// Means with intervals; with a second axis a curve for each of its values.
     fn chart(&self) -> Chart {
         let PlotTable { figure, over, and } = self.plot;
         let mut chart = Chart::new(self.title(), over, figure).note(self.note("means with 95 % intervals"));

@@ -1,4 +1,4 @@
-//! Plans: which fields of a scenario have which values in which run.
+//! Sweep plans: the fields of a scenario that vary between runs, and their values.
 
 mod axes;
 mod check;
@@ -16,57 +16,57 @@ use std::path::{Path, PathBuf};
 pub use table::PlotTable;
 use table::{PlanFile, SeedRange, Seeds};
 
-/// Where the fields of plans are listed.
 const LIST: &str = "docs/sweeps.md";
 /// Most runs of a plan: some hundred megabytes of rows.
 const MOST: u64 = 1_000_000;
-/// Changes when the same plan would mean other runs.
+/// To be increased when equal plans give other runs.
 const FORMAT: u64 = 1;
 
-/// A checked plan. Its runs are numbered; what a run is is a function of plan and number.
+/// A checked plan. A run is a function of the plan and its number.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Its name; its results go to `out/NAME`.
+    /// Name; results go to `out/NAME`.
     pub name: String,
     path: PathBuf,
     scenario: PathBuf,
-    /// The scenario with what the plan sets for all runs.
+    /// The scenario, with the plan's settings for all runs.
     base: toml::Table,
     axes: Vec<Axis>,
-    /// Axes that advance together, as ranges of `axes`; one such group is crossed with the next.
+    /// Groups of axes that advance together, as ranges of `axes`. Groups are crossed with each
+    /// other.
     groups: Vec<Range<usize>>,
-    /// One or more.
+    /// At least one seed.
     seeds: Vec<u64>,
     measures: Vec<String>,
-    /// What to draw; empty: what suggests itself.
+    /// Requested pictures; empty for the default.
     pub plots: Vec<PlotTable>,
     fingerprint: u64,
 }
 
-/// A run as the plan has it.
+/// One run of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run<'a> {
-    /// Its number.
+    /// Number of the run.
     pub number: u64,
-    /// The number of its point: runs of one point differ in their seeds only.
+    /// Number of its point: runs of one point differ in their seeds only.
     pub point: u64,
-    /// The value of each axis.
+    /// Value of each axis.
     pub values: Vec<&'a Value>,
-    /// The seed.
+    /// Seed of the run.
     pub seed: u64,
 }
 
 impl Plan {
-    /// Reads a plan, and checks it with its scenario (`plan/check.rs`).
+    /// Reads a plan and checks it together with its scenario (`plan/check.rs`).
     ///
     /// # Errors
-    /// The file, line and field that are wrong, and what to do.
+    /// Names file, line and field, with cause and remedy.
     pub fn load(path: &Path) -> Result<Self, SweepError> {
         let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 
-    /// As [`Plan::load`], of a text that stands (or might stand) in the file `path`.
+    /// Like [`Plan::load`], for the text of a file `path`, which need not exist.
     ///
     /// # Errors
     /// See [`Plan::load`].
@@ -88,7 +88,7 @@ impl Plan {
         })?;
         let mut base: toml::Table = match scenario_text.parse() {
             Ok(base) => base,
-            // With the words for it.
+            // Repeats the parse for its error message.
             Err(_) => {
                 return Err(Scenario::parse(&scenario_text, &scenario, &Overrides::default())
                     .map(drop)
@@ -133,19 +133,19 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Its file.
+    /// Path of its file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// How many runs there are.
+    /// Number of runs.
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.count().unwrap_or(MOST)
     }
 
-    /// How many runs there are of each point.
+    /// Runs per point.
     #[must_use]
     pub fn seeds(&self) -> u64 {
         self.seeds.len() as u64
@@ -156,39 +156,40 @@ impl Plan {
         values.chain([self.seeds()]).try_fold(1u64, u64::checked_mul)
     }
 
-    /// The names of the axes, in the order of the file.
+    /// Names of the axes, in the order of the file.
     pub fn axes(&self) -> impl Iterator<Item = &str> {
         self.axes.iter().map(|axis| axis.field.name())
     }
 
-    /// The values of an axis, in order; `None`: there is no such axis.
+    /// Values of an axis, in order; `None` if there is no such axis.
     #[must_use]
     pub fn values(&self, axis: &str) -> Option<&[Value]> {
         self.find(axis).map(|index| &self.axes[index].values[..])
     }
 
-    /// The number of an axis.
+    /// Index of an axis.
     #[must_use]
     pub fn find(&self, axis: &str) -> Option<usize> {
         self.axes().position(|name| name == axis)
     }
 
-    /// Whether the values of axis number `index` stand in equal ratios rather than in equal distances.
+    /// Whether the values of axis `index` form a geometric sequence instead of an arithmetic one.
     #[must_use]
     pub fn is_log(&self, index: usize) -> bool {
         self.axes.get(index).is_some_and(|axis| axis.is_log)
     }
 
-    /// The figures that rows have.
+    /// Names of the figures in rows.
     #[must_use]
     pub fn measures(&self) -> &[String] {
         &self.measures
     }
 
-    /// Whether a picture can be drawn; else which field of it is wrong, what, and what to do.
+    /// Checks whether a picture can be drawn.
     ///
     /// # Errors
-    /// It names no figure or no axis of the plan.
+    /// The picture names a figure or an axis that the plan does not have. Returns the wrong field,
+    /// the cause and the remedy.
     pub fn check_plot(&self, plot: &PlotTable) -> Result<(), (&'static str, String, String)> {
         let list = |names: &mut dyn Iterator<Item = &str>| match names.collect::<Vec<_>>() {
             names if names.is_empty() => "there is none".to_owned(),
@@ -211,16 +212,16 @@ impl Plan {
         Ok(())
     }
 
-    /// What tells plans apart that mean other runs or rows, as 16 hex digits.
+    /// Fingerprint, 16 hex digits. Plans with different runs or rows have different fingerprints.
     #[must_use]
     pub fn fingerprint(&self) -> String {
         format!("{:016x}", self.fingerprint)
     }
 
-    /// Run number `number`, the first one being 0. Seeds change first, then the last axis.
+    /// Run `number`, counted from 0. Seeds change first, then the last axis.
     ///
     /// # Panics
-    /// When there is no such run.
+    /// If there is no such run.
     #[must_use]
     pub fn run(&self, number: u64) -> Run<'_> {
         assert!(number < self.runs(), "a run of the plan");
@@ -238,7 +239,7 @@ impl Plan {
         Run { number, point, values, seed: self.seeds[(number % self.seeds()) as usize] }
     }
 
-    /// The scenario of a run. The error says what of the plan or of the scenario cannot be.
+    /// Scenario of a run. An error names the fault of the plan or of the scenario.
     pub(crate) fn scenario(&self, run: &Run<'_>) -> Result<Scenario, ScenarioError> {
         let mut table = self.base.clone();
         for (axis, value) in self.axes.iter().zip(&run.values) {
@@ -255,7 +256,7 @@ impl Plan {
             .map_err(|error| self.said_of_plan(run, error))
     }
 
-    /// An error of a scenario that was made of the plan, with the places that a person knows.
+    /// Converts an error of a generated scenario to one with places in the user's files.
     fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
         let ScenarioError::Field { field, what, remedy, .. } = error else {
             return error;
@@ -268,7 +269,7 @@ impl Plan {
         };
         if let Some(axis) = self.axes.iter().find(is_meant) {
             let field = axis.field.name().to_owned();
-            // What serde says where a word belongs.
+            // Serde's message for a field that expects text.
             let is_word = axis.is_range && what.contains("string");
             let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
             return ScenarioError::Field { path: self.path.clone(), line: axis.line, field, what, remedy };
@@ -276,7 +277,7 @@ impl Plan {
         let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
         let values = values.join(", ");
         let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
-        // Where it stands, or would stand, in the scenario's file.
+        // The field's place in the scenario's file, present or not.
         let text = read_text(&self.scenario, TEXT).unwrap_or_default();
         match Source::new(&self.scenario, &text) {
             Ok(source) => source.error(&field, what, remedy),
@@ -284,7 +285,8 @@ impl Plan {
         }
     }
 
-    /// Everything that a row depends on: fields, values, seeds, figures, and the files that the scenario names.
+    /// Hashes everything that rows depend on: fields, values, seeds, figures, and the files that
+    /// the scenario names.
     fn digest(&self) -> u64 {
         let scenario = toml::to_string(&self.base).unwrap_or_default();
         let mut all = chained(FORMAT, digest(scenario.as_bytes()));
@@ -301,7 +303,6 @@ impl Plan {
         all
     }
 
-    /// The files that the scenario of some run names, as far as they are there.
     fn files(&self) -> Vec<PathBuf> {
         let mut words = Vec::new();
         collect_words(&toml::Value::Table(self.base.clone()), &mut words);
@@ -313,7 +314,7 @@ impl Plan {
         let folder = self.scenario.parent().unwrap_or(Path::new(""));
         let mut files: Vec<PathBuf> =
             words.iter().map(|word| folder.join(word)).filter(|path| path.is_file()).collect();
-        // A map of ROS is two files.
+        // A ROS map consists of two files.
         let images = files.iter().filter(|path| path.extension().is_some_and(|ext| ext == "yaml")).filter_map(|path| {
             let text = read_text(path, TEXT).ok()?;
             let name = text.lines().find_map(|line| line.trim().strip_prefix("image:"))?;
@@ -389,7 +390,7 @@ fn check_seeds(source: &Source<'_>, seeds: &Seeds) -> Result<Vec<u64>, ScenarioE
     Err(source.error("seeds", what, "give a number of them, a list, or { from, count }"))
 }
 
-/// The figures that are asked for; without a choice those that every run has a place for.
+/// Checks the requested figures; by default those that every run has.
 fn check_measures(
     source: &Source<'_>,
     measures: Option<Vec<String>>,

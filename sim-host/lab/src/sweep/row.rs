@@ -1,28 +1,29 @@
-//! What is written down of a run: one line of CSV, the same on every machine.
+//! Record of a run: one line of CSV, identical on every machine.
 
 use crate::sweep::design::Design;
 use crate::sweep::value::Figure;
 use staya_console::VERSION;
 
-/// A run that is over.
+/// A completed run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Its number in the plan.
+    /// Number of the run in the plan.
     pub run: u64,
-    /// Whether it could be done; if not, it has no figures.
+    /// Whether the run was possible; if not, it has no figures.
     pub outcome: Outcome,
     /// The figures, in the order of the design.
     pub figures: Vec<Figure>,
-    /// 16 hex digits; empty: there was no run.
+    /// 16 hex digits; empty if there was no simulation.
     pub trace_hash: String,
 }
 
-/// What became of a run.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// It was done.
+    /// The run was made.
     Done,
-    /// Its values do not go together, or a file was not there: nothing could be simulated. It is tried again at resume.
+    /// The run cannot be simulated, because its values are inconsistent or a file is missing. It is
+    /// tried again on resume.
     Impossible,
 }
 
@@ -35,7 +36,7 @@ impl Outcome {
     }
 }
 
-/// The first line of a file, without its end.
+/// Header line of a file, without line end.
 #[must_use]
 pub fn header(plan: &dyn Design) -> String {
     let own = |name: &str| name.to_owned();
@@ -48,7 +49,7 @@ pub fn header(plan: &dyn Design) -> String {
 }
 
 impl Row {
-    /// As a line, without its end.
+    /// Formats the row as a line, without line end.
     #[must_use]
     pub fn line(&self, plan: &dyn Design) -> String {
         let mut cells = beginning(plan, self.run);
@@ -58,10 +59,10 @@ impl Row {
         cells.join(",")
     }
 
-    /// Reads a line. The error says what is wrong with it, and what to do.
+    /// Parses a line.
     ///
     /// # Errors
-    /// It is no row, or one of another plan or version.
+    /// The line is not a row, or belongs to another plan or version. Returns cause and remedy.
     pub fn read(plan: &dyn Design, line: &str) -> Result<Self, (String, String)> {
         let cells: Vec<&str> = line.split(',').collect();
         let [start @ .., hash, fingerprint, version] = &cells[..] else {
@@ -98,7 +99,6 @@ impl Row {
     }
 }
 
-/// Number, values and seed.
 fn beginning(plan: &dyn Design, run: u64) -> Vec<String> {
     let (number, seed) = (run.to_string(), plan.seed(run).to_string());
     [number].into_iter().chain(plan.values(run)).chain([seed]).collect()

@@ -9,18 +9,18 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-/// A run that is over.
+/// A completed run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
-    /// What is written down.
+    /// Its record.
     pub row: Row,
-    /// How long it took, seconds by the clock.
+    /// Wall time, seconds.
     pub seconds: f64,
-    /// Why it could not be done.
+    /// Reason if the run is impossible.
     pub refusal: Option<String>,
 }
 
-/// Does a run, unless `goes_on` ends it between two ticks: then there is none.
+/// Makes a run; `None` if `goes_on` stops it between two ticks.
 pub fn perform(plan: &Plan, number: u64, goes_on: impl Fn() -> bool) -> Option<Finished> {
     let since = Instant::now();
     let simulated = simulated(plan, number, &mut |_| goes_on());
@@ -33,7 +33,7 @@ pub fn perform(plan: &Plan, number: u64, goes_on: impl Fn() -> bool) -> Option<F
     Some(Finished { row, seconds: since.elapsed().as_secs_f64(), refusal })
 }
 
-/// The summary of a run, and whether it was ended early. `watch` hears of each tick.
+/// Summary of a run, and whether it was stopped early. `watch` is called after each tick.
 fn simulated(plan: &Plan, number: u64, watch: &mut dyn FnMut(u32) -> bool) -> Result<(Summary, bool), String> {
     let scenario = plan.scenario(&plan.run(number)).map_err(|error| error.to_string())?;
     let mut is_cut = false;
@@ -45,31 +45,29 @@ fn simulated(plan: &Plan, number: u64, watch: &mut dyn FnMut(u32) -> bool) -> Re
     Ok((Summary::new(&scenario, &outcome, Vec::new()), is_cut))
 }
 
-/// The figures that the plan measures.
 fn chosen(plan: &Plan, summary: &Summary) -> Vec<Figure> {
     let figures: BTreeMap<_, _> = summary.figures().into_iter().collect();
     plan.measures().iter().map(|name| Figure(figures.get(name).copied().flatten())).collect()
 }
 
-/// What a sweep will cost.
+/// Estimated cost of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Estimate {
-    /// Runs in all.
+    /// Number of runs.
     pub runs: u64,
-    /// Runs that were tried.
+    /// Runs made for the estimate.
     pub tried: usize,
-    /// Time of a processor, seconds.
+    /// Processor time, seconds.
     pub seconds: f64,
-    /// Whether each tried run was tried to its end; those that were not may end sooner than by their last tick.
+    /// Whether each tried run was completed. A run that was not may end before its last tick.
     pub is_whole: bool,
-    /// Bytes of all rows.
+    /// Size of all rows, bytes.
     pub bytes: u64,
 }
 
-/// The longest time for one run that is tried.
 const TRY: Duration = Duration::from_secs(2);
 
-/// Tries the first, the middle and the last run, each for two seconds at most.
+/// Tries the first, the middle and the last run, for at most two seconds each.
 #[must_use]
 pub fn estimate(plan: &Plan) -> Estimate {
     let runs = plan.runs();

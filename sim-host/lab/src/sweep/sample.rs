@@ -1,26 +1,27 @@
-//! Samples: where in 0..1 each value of each axis lies, a function of seed, axis and number alone.
+//! Random samples: the value of each axis in 0..1, a function of seed, axis and number only.
 
 use serde::Deserialize;
 use staya_controller::rand::Rng;
 
-/// Keeps these random numbers apart from those of runs.
+/// Random number streams, separate from those of runs.
 const PLACE: u32 = u32::from_be_bytes(*b"swpl");
 const ORDER: u32 = u32::from_be_bytes(*b"swor");
 
-/// How samples are drawn.
+/// Sampling method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// Each on its own.
+    /// Independent values.
     Random,
-    /// One in each of as many equal parts of every axis as there are samples (McKay, Beckman and Conover 1979).
+    /// Each axis is divided into as many equal parts as there are samples, with one sample in each
+    /// part (McKay, Beckman and Conover 1979).
     LatinHypercube,
 }
 
-/// Where the samples of axis number `axis` lie, each in 0..1. O(count).
+/// Samples of axis `axis`, each in 0..1. O(count).
 pub fn shares(kind: Kind, seed: u64, axis: u32, count: u32) -> Vec<f64> {
     let within = |number: u32| {
-        // 53 bits: each double below 1 that is a multiple of 2^-53, alike.
+        // 53 bits: all multiples of 2^-53 below 1 are equally likely.
         let bits = Rng::keyed(seed, PLACE, axis, number).next_u64() >> 11;
         bits as f64 / (1u64 << 53) as f64
     };
@@ -43,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_latin_hypercube_has_one_sample_in_each_part_of_each_axis() {
+    fn latin_hypercube_has_one_sample_in_each_part_of_each_axis() {
         for count in [1, 2, 7, 100] {
             for axis in 0..4 {
                 let mut parts: Vec<u32> = shares(Kind::LatinHypercube, 5, axis, count)
@@ -57,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_spread_and_axes_are_not_alike() {
+    fn samples_are_spread_and_differ_between_axes() {
         for kind in [Kind::Random, Kind::LatinHypercube] {
             let [a, b] = [0, 1].map(|axis| shares(kind, 9, axis, 2000));
             let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;

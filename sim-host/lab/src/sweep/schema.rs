@@ -1,8 +1,9 @@
-//! What the columns of rows are, for programs that read them.
+//! Machine-readable description of the columns of rows.
 
 use crate::sweep::design::Design;
 
-/// The file `rows.schema.json`: name, unit and meaning of each column of `rows.csv`, in the form of `trace.schema.json`.
+/// Contents of `rows.schema.json`: name, unit and meaning of each column of `rows.csv`, in the
+/// format of `trace.schema.json`.
 #[must_use]
 pub fn schema(design: &dyn Design) -> String {
     let column = |name: &str, kind: &str, unit: &str, meaning: &str| serde_json::json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning });
@@ -27,7 +28,7 @@ pub fn schema(design: &dyn Design) -> String {
     format!("{schema:#}\n")
 }
 
-/// The unit that a name carries, as in `radius_m`; empty: it carries none.
+/// Unit in the suffix of a name, as in `radius_m`; empty if there is none.
 fn unit(name: &str) -> &'static str {
     match name.rsplit('_').next().unwrap_or_default() {
         "m" => "m",
@@ -47,7 +48,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_carry_units() {
+    fn units_follow_from_name_suffixes() {
         let units = ["circle_m", "last_s", "arrival_last_seconds", "speed_mps", "time_ticks", "arrived", "m"].map(unit);
         assert_eq!(units, ["m", "s", "s", "m/s", "ticks", "", "m"]);
     }

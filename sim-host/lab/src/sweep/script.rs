@@ -1,28 +1,28 @@
-//! Scripts that do a sweep on engines that clusters have: Slurm, GNU parallel.
+//! Scripts that run a sweep with Slurm or GNU parallel.
 //!
-//! Each of their tasks is a shard, and does what is missing of it: whoever starts it again, for whatever reason, loses
-//! at most the run that was in progress.
+//! Each task is a shard and makes the shard's missing runs. A task that is restarted for any reason
+//! loses at most the run in progress.
 
 use crate::sweep::SweepError;
 use crate::sweep::plan::Plan;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Most tasks of an array in Slurm as it is installed (`MaxArraySize = 1001`).
+/// Most tasks of an array in a default installation of Slurm (`MaxArraySize = 1001`).
 const MOST: u32 = 1000;
 
-/// What scripts of both kinds need.
+/// Common inputs of both kinds of scripts.
 #[derive(Clone, Debug)]
 pub struct Job<'a> {
-    /// The program, as hosts find it.
+    /// Path of the program on the hosts.
     pub program: &'a str,
-    /// The plan's file, as hosts find it.
+    /// Path of the plan on the hosts.
     pub plan: &'a Path,
-    /// The folder of results, on a disk that all hosts share.
+    /// Folder of the results, on a disk shared by all hosts.
     pub out: &'a Path,
-    /// How many shards.
+    /// Number of shards.
     pub tasks: u32,
-    /// At most so many at once; `None`: as many as there are cores.
+    /// Most parallel tasks; `None`: the number of cores.
     pub at_once: Option<u32>,
 }
 
@@ -39,7 +39,6 @@ impl Job<'_> {
         Err(SweepError::new("--tasks", format!("{} tasks", self.tasks), remedy))
     }
 
-    /// The command that does a shard, quoted for a shell.
     fn command(&self, shard: &str) -> String {
         let Self { program, plan, out, .. } = self;
         let [program, plan, out] =
@@ -47,7 +46,7 @@ impl Job<'_> {
         format!("{program} sweep {plan} --out {out} --shard {shard} --threads 1 --resume --quiet")
     }
 
-    /// What merges the shards, as a remark in a script.
+    /// Command line that merges the shards, as a comment in a script.
     fn merging(&self) -> String {
         let Self { program, plan, out, .. } = self;
         let [plan, out] = [plan, out].map(|path| quoted(&path.display().to_string()));
@@ -55,7 +54,6 @@ impl Job<'_> {
     }
 }
 
-/// As one word of a shell.
 fn quoted(text: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@%".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {
@@ -65,10 +63,10 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// A job for `sbatch`: an array with one core a task, which may be put back into the queue at any time.
+/// Creates a job for `sbatch`: an array with one core per task. Tasks may be requeued at any time.
 ///
 /// # Errors
-/// More tasks than runs, or than Slurm takes.
+/// More tasks than runs, or than Slurm accepts.
 pub fn slurm(plan: &Plan, job: &Job<'_>, minutes: Option<u32>) -> Result<String, SweepError> {
     job.check(plan, MOST)?;
     let Job { tasks, at_once, .. } = job;
@@ -99,7 +97,7 @@ pub fn slurm(plan: &Plan, job: &Job<'_>, minutes: Option<u32>) -> Result<String,
     Ok(text)
 }
 
-/// A script that has GNU parallel do the shards here, or on hosts that it reaches by ssh.
+/// Creates a script in which GNU parallel runs the shards here, or on hosts reachable by ssh.
 ///
 /// # Errors
 /// More tasks than runs.
@@ -133,7 +131,7 @@ mod tests {
     use super::quoted;
 
     #[test]
-    fn a_word_of_a_shell_stays_one() {
+    fn quoted_text_is_one_shell_word() {
         assert_eq!(quoted("/a/b-c.toml"), "/a/b-c.toml");
         assert_eq!(quoted("my plan.toml"), "'my plan.toml'");
         assert_eq!(quoted("it's $HOME"), "'it'\\''s $HOME'");

@@ -1,7 +1,7 @@
-//! The part of a plan that one process does, and the file that it appends its rows to.
+//! The part of a plan that one process does, and its file of rows.
 //!
-//! A file only ever grows, by whole lines; what is cut off by a crash or a full disk is the last line. So the rows that
-//! are there are true, and the next process does what is missing.
+//! Whole lines are appended to the file, so a crash or a full disk can damage only the last line.
+//! The other rows stay valid, and the next process makes the missing runs.
 
 use crate::sweep::SweepError;
 use crate::sweep::design::Design;
@@ -19,37 +19,36 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
-/// Where rows are, in a folder of results.
+/// Folder of the shards' rows within the results.
 pub const FOLDER: &str = "shards";
-/// Where it is written how long runs took: that differs from machine to machine, and is no part of a row.
+/// Folder of the run times, which are not part of rows because they differ between machines.
 const TIMES: &str = "times";
-/// Least time from one wait for the disk to the next.
+/// Shortest time between two synchronisations with the disk.
 const SYNC: Duration = Duration::from_secs(2);
 
 /// One of several equal parts of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Which one, 1 to `of`.
     index: u64,
-    /// Of how many.
     of: u64,
 }
 
 impl Default for Shard {
-    /// All of it.
+    /// The whole plan.
     fn default() -> Self {
         Self { index: 1, of: 1 }
     }
 }
 
 impl Shard {
-    /// Whether it is all of the plan.
+    /// Whether it is the whole plan.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.of == 1
     }
 
-    /// Whether a run is in it. Neighbours are in different shards, so that all take about equally long.
+    /// Whether it contains a run. Consecutive runs are in different shards, so that all take about
+    /// equally long.
     #[must_use]
     pub fn has(&self, run: u64) -> bool {
         run % self.of == self.index - 1
@@ -79,32 +78,33 @@ impl FromStr for Shard {
     }
 }
 
-/// What to do with rows that are there.
+/// Treatment of existing rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// Refuse to begin.
+    /// Refuse to start.
     Refuse,
-    /// Do what is missing.
+    /// Make the missing runs.
     Resume,
-    /// Forget them.
+    /// Replace them.
     Forget,
 }
 
 /// The rows of one file.
 #[derive(Debug, Default)]
 pub struct Rows {
-    /// Each with the number of its line.
+    /// Rows with their line numbers.
     pub rows: Vec<(usize, Row)>,
-    /// Bytes of whole lines.
+    /// Bytes of complete lines.
     whole: u64,
-    /// Bytes of a line that was cut off.
+    /// Bytes of an incomplete last line.
     pub torn: usize,
 }
 
-/// Reads a file of rows; what is cut off at its end is left out.
+/// Reads a file of rows without an incomplete last line.
 ///
 /// # Errors
-/// It cannot be read, or a line is none of this plan and version: file and line.
+/// The file cannot be read, or a line does not belong to this plan and version. Names file and
+/// line.
 pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
     let unreadable = |error: std::io::Error| {
         let remedy = staya_sim::file::read_remedy(&error);
@@ -132,10 +132,10 @@ pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
     Ok(rows)
 }
 
-/// The files of rows in a folder of results, sorted; none if there is no such folder.
+/// Lists the files of rows in a folder of results, sorted; none if there is no such folder.
 ///
 /// # Errors
-/// It cannot be read.
+/// The folder cannot be read.
 pub fn files(out: &Path) -> Result<Vec<PathBuf>, Error> {
     let folder = out.join(FOLDER);
     let entries = match fs::read_dir(&folder) {
@@ -154,7 +154,6 @@ pub fn files(out: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(files)
 }
 
-/// A shard's file, open and locked.
 #[derive(Debug)]
 struct Appended {
     file: File,
@@ -164,14 +163,14 @@ struct Appended {
 }
 
 impl Appended {
-    /// Appends lines to the shard's file; `whole` bytes of it stay.
+    /// Opens the shard's file to append lines after its first `whole` bytes.
     fn open(plan: &dyn Design, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
         let path = out.join(FOLDER).join(shard.file_name());
         make_dir(&out.join(FOLDER))?;
         make_dir(&out.join(TIMES))?;
         let open = File::options().create(true).read(true).append(true).open(&path);
         let mut file = open.map_err(Error::new("open", &path))?;
-        // Where files cannot be locked there is nobody to ask.
+        // If the file system does not support locks, continues without one.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let what = "another process is at work on it";
             return Err(SweepError::new(path.display(), what, "wait for it, or end it"));
@@ -179,7 +178,7 @@ impl Appended {
         if existing == Existing::Forget {
             file.set_len(0).map_err(Error::new("write", &path))?;
         }
-        // By somebody else since it was looked at, or by nobody.
+        // Another process may have appended rows since the file was read.
         let Rows { whole, torn, .. } = read_rows(plan, &path)?;
         file.set_len(whole).and_then(|()| file.seek(SeekFrom::End(0))).map_err(Error::new("write", &path))?;
         let times = File::options().create(true).append(true).open(out.join(TIMES).join(shard.file_name())).ok();
@@ -191,7 +190,7 @@ impl Appended {
     }
 
     fn append(&mut self, line: &str) -> Result<(), Error> {
-        // In one piece: a process that is killed leaves all of the line or nothing.
+        // In one write: a process that is killed leaves all of the line or nothing.
         let written = self.file.write_all(format!("{line}\n").as_bytes());
         written.map_err(Error::new("write", &self.path))?;
         if self.synced.elapsed() > SYNC {
@@ -206,18 +205,18 @@ impl Appended {
     }
 }
 
-/// How far a shard has come.
+/// Progress of a shard.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
     /// Runs of the shard.
     pub runs: u64,
-    /// Those that were there before.
+    /// Rows that existed before.
     pub found: u64,
-    /// Those that were done now.
+    /// Runs made now.
     pub done: u64,
-    /// Those of them that cannot be, with the first reason.
+    /// Number of impossible runs among them, with the first reason.
     pub impossible: Option<(u64, String)>,
-    /// Lines that had been cut off.
+    /// Incomplete lines found.
     pub torn: usize,
 }
 
@@ -229,12 +228,14 @@ impl Course {
     }
 }
 
-/// Does the runs of a shard that are not there yet, and appends their rows, each when it is done.
+/// Makes the missing runs of a shard and appends each row as soon as its run is done.
 ///
-/// `job` makes a run on any thread, or `None` to end everything; `progress` is told how many are done of how many to do.
+/// `job` makes a run on any thread; `None` ends the shard. `progress` receives the number of runs
+/// done and the number to do.
 ///
 /// # Errors
-/// Rows of another plan or version, rows that are not to be touched, a file that cannot be written. What was done is kept.
+/// Existing rows belong to another plan or version or must not be replaced, or a file cannot be
+/// written. Finished rows are kept.
 pub fn perform_shard<S: Default>(
     plan: &dyn Design,
     shard: Shard,
@@ -278,7 +279,7 @@ pub fn perform_shard<S: Default>(
             return ControlFlow::Break(());
         }
         if let Some(times) = &mut file.times {
-            // Nobody needs them.
+            // Errors are ignored, because the times are optional.
             let _ = writeln!(times, "{},{seconds:.6}", row.run);
         }
         if let Some(why) = refusal {

@@ -1,25 +1,25 @@
-//! A value that a plan gives to a field.
+//! Values that a plan assigns to fields.
 
 use std::fmt::{self, Display, Formatter};
 
-/// A number, a truth or a word: what stands in a field of a scenario and in a cell of a table.
+/// Value of a scenario field or a table cell: a number, a truth value or a word.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// A whole number: for fields of either kind of number.
+    /// A whole number, for integer and floating-point fields.
     Whole(i64),
     /// Any other number.
     Number(f64),
     /// `true` or `false`.
     Truth(bool),
-    /// One of the words that a field chooses among, or a file's name.
+    /// A word that the field permits, or a file name.
     Word(String),
 }
 
-/// Beyond this, not every whole number is a double.
+/// Doubles represent every whole number up to this one exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 impl Value {
-    /// What a plan's text says; the error says what is wrong with it.
+    /// Reads a value of a plan; the error states the cause.
     pub(crate) fn read(value: &toml::Value) -> Result<Self, String> {
         match value {
             toml::Value::Integer(number) => Ok(Self::Whole(*number)),
@@ -34,13 +34,13 @@ impl Value {
         }
     }
 
-    /// A number that was computed: a whole one if it is one.
+    /// Converts a computed number, to a whole one if possible.
     pub(crate) fn of(number: f64) -> Self {
         let is_whole = libm::trunc(number) == number && number.abs() < EXACT;
         if is_whole { Self::Whole(number as i64) } else { Self::Number(number) }
     }
 
-    /// As a number, if it is one.
+    /// The value as a number, if it is one.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -50,7 +50,6 @@ impl Value {
         }
     }
 
-    /// As TOML has it.
     pub(crate) fn toml(&self) -> toml::Value {
         match self {
             Self::Whole(number) => toml::Value::Integer(*number),
@@ -92,7 +91,7 @@ impl From<String> for Value {
 }
 
 impl Display for Value {
-    /// As tables have it; numbers read back to the bit.
+    /// Formats as in tables; numbers are read back bit for bit.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::Whole(number) => write!(f, "{number}"),
@@ -103,12 +102,13 @@ impl Display for Value {
     }
 }
 
-/// A figure in a table: the shortest text that reads back to the same bits; nothing if there is none.
+/// A figure in a table: the shortest text that reads back to the same bits, or empty if it is
+/// missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure(pub Option<f64>);
 
 impl Figure {
-    /// What a cell says; `None` if it is no figure.
+    /// Parses a cell; `None` if it is not a figure.
     #[must_use]
     pub fn read(cell: &str) -> Option<Self> {
         if cell.is_empty() { Some(Self(None)) } else { cell.parse().ok().map(|number| Self(Some(number))) }
@@ -133,7 +133,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn numbers_are_short_and_words_plain() {
+    fn numbers_are_short_and_words_unquoted() {
         for (value, text) in [
             (Value::of(3.0), "3"),
             (Value::Number(3.0), "3"),
@@ -154,7 +154,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn figures_read_back_to_the_bit(number in any::<f64>().prop_filter("has a value", |x| !x.is_nan())) {
+        fn figures_are_read_back_bit_for_bit(number in any::<f64>().prop_filter("has a value", |x| !x.is_nan())) {
             let read = Figure::read(&Figure(Some(number)).to_string()).and_then(|figure| figure.0);
             prop_assert_eq!(read.map(f64::to_bits), Some(number.to_bits()));
         }

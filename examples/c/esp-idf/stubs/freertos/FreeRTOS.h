@@ -1,4 +1,5 @@
-/* Declarations of what the program calls, to compile it where ESP-IDF is not: names and types as in ESP-IDF 5. */
+/* Declarations that the program needs, with the names and types of ESP-IDF 5, so that it compiles
+   without ESP-IDF. */
 #ifndef STUB_FREERTOS_H
 #define STUB_FREERTOS_H
 #include <stdbool.h>

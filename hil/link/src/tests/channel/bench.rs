@@ -1,4 +1,4 @@
-//! A host, a device and a line with faults between them, in simulated time.
+//! A host and a device with a faulty line between them, in simulated time.
 
 use crate::message::{StepInputs, StepResult};
 use crate::port::{Event, Limits, Next, Port, PortError};
@@ -11,18 +11,18 @@ use std::vec::Vec;
 
 pub const LIMITS: Limits = Limits { resend_after_us: 20_000, give_up_after_us: 1_200_000 };
 
-/// What one direction does to frames, probabilities in percent.
+/// Faults of one direction, probabilities in percent.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Faults {
     pub lost: u32,
     pub repeated: u32,
     pub flipped: u32,
     pub cut: u32,
-    /// Longest delay: frames overtake each other.
+    /// Longest delay; frames may overtake each other.
     pub delay_us: u32,
 }
 
-/// One direction.
+/// One direction of the line.
 pub struct Line {
     pub faults: Faults,
     rng: Rng,
@@ -69,7 +69,7 @@ impl Line {
     }
 }
 
-/// A host, a device and what is between them.
+/// A host, a device and the line between them.
 pub struct Bench<B> {
     pub port: Port<16384>,
     pub session: Session<B, LARGE>,
@@ -102,7 +102,7 @@ impl<B: Controller + Default> Bench<B> {
         self.back.send(&hello, self.now);
     }
 
-    /// Until something comes of what was asked.
+    /// Runs until the outstanding request ends.
     pub fn wait(&mut self) -> Result<Event, PortError> {
         loop {
             let until = match self.port.poll(self.now)? {
@@ -140,7 +140,7 @@ impl<B: Controller + Default> Bench<B> {
         }
     }
 
-    /// Greets and configures until the device has it.
+    /// Greets and configures until the device has confirmed.
     pub fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> u64 {
         loop {
             self.port.greet(self.now);

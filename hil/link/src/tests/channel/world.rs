@@ -1,4 +1,4 @@
-//! What a robot senses on its way, and how it moves.
+//! Sensor readings of a moving robot.
 
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -9,7 +9,7 @@ use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, encode};
 use std::vec::Vec;
 
-/// A beacon of robot 2 on its way round the first one.
+/// A beacon of robot 2, which circles around the first one.
 pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
     let at = (tick % 400) as i32;
     let beacon = Beacon {
@@ -23,21 +23,21 @@ pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
     let header = Header { boot: 0, sender: RobotId(2), sequence: tick as u16 };
     let mut out = heapless::Vec::<u8, 128>::new();
     encode(header, &Message::Beacon(beacon), &mut out).expect("fits");
-    // Every ninth one is damaged on the air.
+    // Every ninth beacon is damaged.
     if tick.is_multiple_of(9) {
         out[10] ^= 1;
     }
     out.to_vec()
 }
 
-/// A robot without faults that lives beside the one behind the line, and the world for both.
+/// The world of a reference robot without faults, which runs next to the one behind the line.
 pub struct World {
     pub position: Position,
     pub velocity: Vec3<f32>,
     pub cell: Cell,
 }
 
-/// What the world shows to the robot.
+/// Inputs of the robot in one step.
 pub struct Scene {
     pub now: Instant,
     pub inbox: Vec<u8>,

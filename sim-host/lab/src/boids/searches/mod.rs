@@ -1,5 +1,5 @@
-//! Neighbour searches that STA describes, and a k-d tree by a library, measured beside the lattice cells of
-//! [`staya_sim::nearby`]. All answer alike, bit for bit.
+//! Neighbour searches described by STA, and the k-d tree of a library, to compare with the lattice
+//! cells of [`staya_sim::nearby`]. All give bitwise equal results.
 
 mod midpoint;
 mod mutual;

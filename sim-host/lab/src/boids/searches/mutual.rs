@@ -1,24 +1,24 @@
-//! All pairs, each looked at once.
+//! Search over all pairs that computes each distance once.
 
 use staya_sim::nearby::{Found, Nearest, Query, Real, Search, Space, numbered};
 
-/// Every pair once: what one has found of the other is turned round for the other (STA, section 2.2: the symmetric
+/// Search over all pairs that uses each result for both points (STA, section 2.2: the symmetric
 /// search over all pairs).
 ///
-/// Half the distances of [`AllPairs`](staya_sim::nearby::AllPairs), O(n^2) at building, and memory for every pair within the radius. It answers queries
-/// of its radius or less by the points themselves; any other is looked up among all points.
+/// It computes half the distances of [`AllPairs`](staya_sim::nearby::AllPairs), O(n^2) when built,
+/// and stores every pair within the radius. It answers queries at its points with at most its
+/// radius; any other query searches all points.
 #[derive(Clone, Debug)]
 pub struct MutualPairs<R, const D: usize> {
     space: Space<R, D>,
     radius: R,
-    /// Folded.
+    /// Folded into the torus.
     points: Vec<[R; D]>,
-    /// Who is near each, with the way there.
     near: Vec<Vec<(u32, [R; D])>>,
 }
 
 impl<R: Real, const D: usize> MutualPairs<R, D> {
-    /// A search over no points yet, for queries of this radius by the points themselves.
+    /// Creates a search without points, for queries of at most this radius at its points.
     #[must_use]
     pub const fn new(space: Space<R, D>, radius: R) -> Self {
         Self { space, radius, points: Vec::new(), near: Vec::new() }

@@ -1,21 +1,21 @@
-//! A k-d tree, by the crate `kiddo`.
+//! The k-d tree of the crate `kiddo`.
 
 use kiddo::SquaredEuclidean;
 use kiddo::immutable::float::kdtree::ImmutableKdTree;
 use staya_sim::nearby::{Found, Nearest, Query, Real, Search, Space, margin, numbered};
 
-/// Points in a leaf of the k-d tree: the library's own default.
+/// Most points in a leaf: the library's default.
 const LEAF: usize = 32;
 
-/// A number type that the library builds trees over; its own bounds are not public.
+/// A number type supported by the library, whose own trait bounds are not public.
 pub trait Grow: Real {
-    /// The library's tree over points of this number type.
+    /// The library's tree for this number type.
     type Over<const D: usize>: Clone + std::fmt::Debug + Send + Sync;
 
-    /// Builds the tree over finite points, at least one.
+    /// Builds the tree over at least one point; all points are finite.
     fn grow<const D: usize>(points: &[[Self; D]]) -> Self::Over<D>;
 
-    /// Calls `each` with the index of every point nearer than the root of `squared`.
+    /// Calls `each` with the index of every point within the root of `squared`.
     fn visit<const D: usize>(tree: &Self::Over<D>, at: &[Self; D], squared: Self, each: &mut dyn FnMut(u32));
 }
 
@@ -40,23 +40,23 @@ macro_rules! impl_tree {
 impl_tree!(f32);
 impl_tree!(f64);
 
-/// A k-d tree: O(n log n) to build, O(log n + found) for most queries, wherever points lie.
+/// A k-d tree. Build: O(n log n). Query: O(log n + found) for most queries, wherever points lie.
 ///
-/// The library says who may be near; distances, limits and order are computed here, as by the other searches.
-/// On a torus the ball is looked for once more for each border that it crosses.
+/// The library returns candidates. Distances, limits and order are computed here, as in the other
+/// searches. On a torus, a ball is searched once more for each border that it crosses.
 #[derive(Clone, Debug)]
 pub struct Tree<R: Grow, const D: usize> {
     space: Space<R, D>,
-    /// `None`: no points.
+    /// `None` without points.
     tree: Option<R::Over<D>>,
-    /// Folded; those that are not finite are left out.
+    /// The finite points, folded into the torus.
     points: Vec<[R; D]>,
-    /// Their indices for those who built the tree; empty when nobody was left out.
+    /// Original indices of the points; empty if all points are finite.
     indices: Vec<u32>,
 }
 
 impl<R: Grow, const D: usize> Tree<R, D> {
-    /// A search over no points yet.
+    /// Creates a search without points.
     #[must_use]
     pub const fn new(space: Space<R, D>) -> Self {
         Self { space, tree: None, points: Vec::new(), indices: Vec::new() }
@@ -114,7 +114,7 @@ impl<R: Grow, const D: usize> Search<R, D> for Tree<R, D> {
     }
 }
 
-/// The centres of a ball and of those of its images around the torus that may reach into it.
+/// Centres of a ball and of its images around the torus that may reach into it.
 pub(super) fn images<R: Real, const D: usize>(at: [R; D], radius: R, period: [R; D]) -> Vec<[R; D]> {
     let mut balls = vec![at];
     for axis in 0..D {
@@ -137,11 +137,11 @@ pub(super) fn images<R: Real, const D: usize>(at: [R; D], radius: R, period: [R;
     balls
 }
 
-/// The squared radius for the library: a little more, because it may round otherwise.
+/// The squared radius for the library, slightly enlarged because the library may round differently.
 fn squared<R: Real, const D: usize>(at: &[R; D], radius: R) -> R {
     let far = at.iter().fold(radius, |far, &c| far.max(c.abs()));
     let reach = radius + margin(far, radius);
-    // Where the square is too small for a number, the smallest number will do.
+    // If the square underflows, the smallest number suffices.
     let squared = reach * reach + R::EPSILON * R::EPSILON * R::EPSILON;
     squared.min(R::MAX)
 }

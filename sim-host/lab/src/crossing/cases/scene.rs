@@ -1,4 +1,4 @@
-//! The scenes of [`super::Case`]: where robots start, where they go, what stands in their way.
+//! The scenes of [`super::Case`]: starts, goals and obstacles.
 
 use super::{Case, Plan};
 use staya_controller::agent::{GuidanceSetup, RouteSetup, SafetyKind};
@@ -13,23 +13,19 @@ use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 use std::f64::consts::PI;
 
-/// Radius of a robot, metres, where they are all alike.
 pub(super) const RADIUS_M: f64 = 0.3;
-/// How near to its goal a robot has arrived, metres.
+/// Distance from its goal at which a robot has arrived, metres.
 const TOLERANCE_M: f64 = 0.1;
 /// Half the width of a road, metres: three robots fit side by side.
 const ROAD_M: f64 = 1.2;
-/// How far roads and walls go, metres.
 const FAR_M: f64 = 30.0;
-/// Distance of robots of a group at the start and at their goals, metres.
+/// Distance between robots of a group at the start and at their goals, metres.
 const APART_M: f64 = 0.9;
-/// Spacing of the flock, metres.
 pub(super) const SPACING_M: f64 = 0.7;
 
-/// Keeps the draws of this module apart from all others.
 const NOISE: u32 = 0x0045_0002;
 
-/// A robot at rest that goes by places to the last of them.
+/// A stationary robot that moves through these places to the last of them.
 fn start(at: [f64; 2], places: &[[f64; 2]]) -> Start {
     let fixed = |&[x, y]: &[f64; 2]| Target { position_m: [x, y, 0.0], velocity_mps: [0.0; 3] };
     Start {
@@ -40,20 +36,20 @@ fn start(at: [f64; 2], places: &[[f64; 2]]) -> Start {
     }
 }
 
-/// A wall along these points, closed.
 fn polygon(points: &[[f64; 2]]) -> impl Iterator<Item = Solid> {
     let next = points.iter().cycle().skip(1);
     points.iter().zip(next).map(|(&from, &to)| Solid::Wall([from, to]))
 }
 
-/// The place of number `index` in rows of `row` robots: along the way, and across it around the middle.
+/// Place of robot `index` in rows of `row` robots: along the direction of travel, and across it,
+/// centred.
 fn in_rows(index: u32, row: u32, count: u32) -> [f64; 2] {
     let wide = row.min(count);
     [f64::from(index / row) * APART_M, (f64::from(index % row) - f64::from(wide - 1) / 2.0) * APART_M]
 }
 
 impl Plan {
-    /// The scenario of one run of a case with so many robots in a group.
+    /// Builds the scenario of one run of a case.
     #[must_use]
     pub fn scenario(&self, case: Case, seed: u64) -> Scenario {
         let count = self.robots.unwrap_or_else(|| case.robots());
@@ -78,7 +74,7 @@ impl Plan {
             self.mix(&mut setup);
         }
         if case == Case::Intruder {
-            // So that it is in the middle when the robots are.
+            // The intruder reaches the middle at the same time as the robots.
             let way_m = circle_m(count);
             setup.intruders.push(Intruder {
                 position_m: [-way_m - 2.0, 0.2, 0.0].map(|x| x * self.size),
@@ -96,7 +92,7 @@ impl Plan {
         let mut scenario = self.conditions.scenario(case.name(), seed, self.longest_s, setup);
         scenario.radio.range_m *= self.size;
         if case == Case::Blackout {
-            // Just when they come into each other's reach.
+            // The failure starts just before the robots meet.
             let meet_s = circle_m(count) / self.conditions.speed_mps;
             scenario.radio.blackout_s = vec![[0.6 * meet_s, 0.6 * meet_s + self.blackout_s]];
         }
@@ -106,7 +102,6 @@ impl Plan {
         scenario
     }
 
-    /// What robots of a case are like.
     fn general(&self, case: Case) -> RobotGroup {
         let speed_mps = self.conditions.speed_mps * self.size;
         let group = self.conditions.group_at(speed_mps, RADIUS_M * self.size, TOLERANCE_M * self.size);
@@ -128,7 +123,6 @@ impl Plan {
         }
     }
 
-    /// Robots of five sizes and three speeds by turns.
     fn mix(&self, setup: &mut PlaneSetup) {
         for (index, start) in setup.starts.iter_mut().enumerate() {
             let radius_m = RADIUS_M * self.size * [0.4, 0.7, 1.0, 1.3, 1.6][index % 5];
@@ -139,8 +133,9 @@ impl Plan {
     }
 }
 
-/// Four groups in the corners, each bound for the opposite one, between four square blocks whose lanes cross in the
-/// middle; each goes by the lanes' ends, as a planner would say (RVO2's example `Blocks` at 0.15 m to its unit).
+/// Four groups in the corners, each with the opposite corner as its goal, and between them four
+/// square blocks whose lanes cross in the middle. Robots pass the ends of the lanes as via points,
+/// as a planner would choose them (RVO2's example `Blocks` at 0.15 m per unit).
 fn blocks(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let unit = 0.15;
     let mut solids = Vec::new();
@@ -159,7 +154,8 @@ fn blocks(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, solids)
 }
 
-/// Roads that meet: from each arm a group goes straight across, on the tee those from the stem turn off by turns.
+/// Roads that meet. A group from each arm goes straight across; on the tee, robots from the stem
+/// turn off to alternating sides.
 fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
     let (near, far) = (ROAD_M, FAR_M);
     let mut solids = Vec::new();
@@ -175,19 +171,19 @@ fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
     } else {
         solids.push(Solid::Wall([[-far, near], [far, near]]));
     }
-    // Towards the crossing from west, east, south and north.
+    // Directions towards the crossing from west, east, south and north.
     let ways = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
     let mut starts = Vec::new();
     for index in 0..count {
         for [wx, wy] in ways.into_iter().take(arms as usize) {
             let [back, side] = in_rows(index, 2, count);
             let at = |along: f64| [wx * along - wy * side, wy * along + wx * side];
-            // Who starts in front goes to the back.
+            // The front robot gets the rearmost goal.
             let [end, _] = in_rows(count - 1 - index, 2, count);
             let goal = at(5.0 + end);
             let turn = if index % 2 == 0 { 1.0 } else { -1.0 };
             let stem = arms == 3 && wx == 0.0;
-            // Behind those who go straight.
+            // Behind the robots that go straight.
             let [behind, _] = in_rows(count + 1, 2, count);
             let turned = [turn * (5.0 + behind + end), turn * side.abs()];
             let places = if stem { vec![[0.0, 0.0], turned] } else { vec![goal] };
@@ -197,7 +193,7 @@ fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, solids)
 }
 
-/// A wall along x = 0 with doors in which one robot fits, at these y, from the lowest on.
+/// A wall along x = 0 with doors for one robot at these y, in ascending order.
 fn wall_with_doors(doors: &[f64]) -> Vec<Solid> {
     let half = 0.5;
     let mut from = -FAR_M;
@@ -210,13 +206,14 @@ fn wall_with_doors(doors: &[f64]) -> Vec<Solid> {
     solids
 }
 
-/// Of a crowd of `count` before a wall, the place of number `index`: how far from the wall, and how far aside.
+/// Place of robot `index` in a crowd of `count` before a wall: distance from the wall, and
+/// sideways.
 fn before_wall(index: u32, count: u32) -> [f64; 2] {
     let [along, side] = in_rows(index, 5, count);
     [2.5 + along * 1.3, side * 1.6]
 }
 
-/// Two crowds and a wall with doors in which one robot fits.
+/// Two crowds and a wall with doors for one robot.
 fn door(count: u32, doors: &[f64]) -> (Vec<Start>, Vec<Solid>) {
     let mut starts = Vec::new();
     for index in 0..count {
@@ -227,7 +224,8 @@ fn door(count: u32, doors: &[f64]) -> (Vec<Start>, Vec<Solid>) {
     (starts, wall_with_doors(doors))
 }
 
-/// A crowd, a door, and behind it rows of robots that nobody has sent anywhere and that stand half a body apart. Half of the crowd goes to places in the middle of four of these, the others behind them all.
+/// A crowd, a door, and behind it rows of parked robots without goals, half a body apart. Half of
+/// the crowd has goals in the middle of four parked robots, the others behind them all.
 fn parked_door(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let (first_m, parked) = (1.8, (count + count.div_ceil(2)).next_multiple_of(5).max(10));
     let mut starts = Vec::new();
@@ -250,7 +248,6 @@ fn parked_door(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, wall_with_doors(&[0.0]))
 }
 
-/// Makes ways and walls so many times as large.
 fn resize(setup: &mut PlaneSetup, size: f64) {
     let scale = |place: &mut [f64]| place.iter_mut().for_each(|x| *x *= size);
     for start in &mut setup.starts {
@@ -269,7 +266,7 @@ fn resize(setup: &mut PlaneSetup, size: f64) {
     }
 }
 
-/// Two groups meet in a corridor in which two robots pass each other.
+/// Two groups meet in a corridor that is two robots wide.
 fn corridor(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let half = 0.8;
     let solids = [-half, half].map(|y| Solid::Wall([[-FAR_M, y], [FAR_M, y]]));
@@ -282,7 +279,7 @@ fn corridor(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, solids.into())
 }
 
-/// One robot whose goal is behind a row of others that stand at theirs.
+/// One robot whose goal is behind a row of robots that stay at theirs.
 fn parked(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let mut starts = vec![start([-2.0, 0.0], &[[2.0, 0.0]])];
     for index in 0..count.saturating_sub(1) {
@@ -293,7 +290,7 @@ fn parked(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, Vec::new())
 }
 
-/// Radius of a circle on which robots, the largest too, have room, metres.
+/// Radius of a circle with enough space for the robots, even for the largest size, metres.
 fn circle_m(count: u32) -> f64 {
     (0.2 * f64::from(count)).max(3.0)
 }
@@ -302,7 +299,7 @@ fn circle(count: u32) -> Vec<Start> {
     circle_starts(count, circle_m(count), 0.0, 0)
 }
 
-/// Robots evenly on a sphere (along a spiral), each bound for the opposite point.
+/// Robots evenly on a sphere (along a spiral), each with the opposite point as its goal.
 fn sphere(count: u32) -> Vec<Start> {
     let radius_m = 3.0 * libm::sqrt(f64::from(count.max(16)) / 16.0);
     let golden = PI * (3.0 - libm::sqrt(5.0));
@@ -321,10 +318,10 @@ fn sphere(count: u32) -> Vec<Start> {
         .collect()
 }
 
-/// Side of the land with the dead end, cells of a metre.
+/// Side of the terrain of the dead end, in cells of 1 m.
 const LAND: i16 = 40;
 
-/// Robots in a bag of walls deeper than they see; their goals are behind its bottom.
+/// Robots in a bag of walls deeper than their window; their goals are behind its bottom.
 fn dead_end(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let starts = (0..count).map(|index| {
         let [x, y] = [14 + (index / 5) as i16, 18 + (index % 5) as i16].map(|cell| f64::from(cell) + 0.5);
@@ -333,7 +330,7 @@ fn dead_end(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts.collect(), Vec::new())
 }
 
-/// Puts the dead end into its land: a bag from x = 10 to 24, open to the west.
+/// Adds the terrain of the dead end: a bag from x = 10 to 24, open to the west.
 fn on_land(scenario: &mut Scenario) {
     let mut land = Terrain::flat(LAND as u16, LAND as u16);
     for x in 10..=24 {
@@ -357,7 +354,7 @@ fn on_land(scenario: &mut Scenario) {
         .collect();
 }
 
-/// A flock behind a reference that goes on past two balls.
+/// A flock behind a reference that moves past two balls.
 fn flock(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let row = libm::ceil(libm::sqrt(f64::from(count))) as u32;
     let target = Target { position_m: [0.0; 3], velocity_mps: [0.3, 0.0, 0.0] };

@@ -6,7 +6,6 @@ use staya_console::{Ended, Global, Stop};
 use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Eight runs of a tenth of a second in all, with noise and losses.
 fn plan() -> swap::Plan {
     let conditions = crate::crossing::Conditions { loss: 0.2, ..Default::default() };
     swap::Plan { robots: vec![3, 4], seeds: 4, noise_m: 0.02, patience: 2.0, conditions, ..swap::Plan::default() }
@@ -25,7 +24,7 @@ fn text(out: &Path, name: &str) -> String {
 }
 
 #[test]
-fn rows_say_what_was_given_and_what_came_of_it() {
+fn rows_contain_parameters_and_figures() {
     let dir = tempfile::tempdir().expect("a folder");
     command(dir.path(), &Keeping::default()).expect("done");
     let rows = text(dir.path(), ROWS);
@@ -41,7 +40,7 @@ fn rows_say_what_was_given_and_what_came_of_it() {
     assert_eq!(column("loss"), ["0.2"; 8]);
     assert!(column("trace_hash").iter().all(|hash| hash.len() == 16));
     assert!(column("version").iter().all(|version| version.starts_with(env!("CARGO_PKG_VERSION"))));
-    // Figures are those of the report, to the bit.
+    // Figures equal those of the report, bit for bit.
     let report = plan().measure().expect("a report");
     let ratios: Vec<String> = report.runs.iter().map(|run| Figure(run.time_ratio).to_string()).collect();
     assert_eq!(column("time_ratio"), ratios);
@@ -53,13 +52,14 @@ fn rows_say_what_was_given_and_what_came_of_it() {
 }
 
 #[test]
-fn a_part_that_is_resumed_and_shards_give_the_rows_of_one_go() {
+fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     let dir = tempfile::tempdir().expect("a folder");
     let out = |name: &str| dir.path().join(name);
     command(&out("whole"), &Keeping::default()).expect("done");
     let whole = [ROWS, AGGREGATES].map(|name| text(&out("whole"), name));
     let same = |name: &str| assert_eq!([ROWS, AGGREGATES].map(|file| text(&out(name), file)), whole, "{name}");
-    // Shards, then the whole; the same again where a line was cut off, as by a kill.
+    // Shards first, then the whole; then again from a file with an incomplete line, as after a
+    // kill.
     for shard in ["2/3", "1/3", "3/3"] {
         let keeping = Keeping { shard: shard.parse().expect("a shard"), ..Keeping::default() };
         command(&out("shards"), &keeping).expect("done");
@@ -75,7 +75,7 @@ fn a_part_that_is_resumed_and_shards_give_the_rows_of_one_go() {
     assert!(refused.contains("--resume does the others, --anew forgets these"), "{refused}");
     command(&out("cut"), &resume).expect("done");
     same("cut");
-    // What came to its end is replaced; what is of another plan is not taken up.
+    // Completed results are replaced; those of another plan are not continued.
     command(&out("cut"), &Keeping::default()).expect("done");
     same("cut");
     let other = swap::Plan { noise_m: 0.01, ..plan() };
@@ -85,7 +85,7 @@ fn a_part_that_is_resumed_and_shards_give_the_rows_of_one_go() {
 }
 
 #[test]
-fn an_early_end_keeps_what_is_done() {
+fn early_end_keeps_finished_runs() {
     let dir = tempfile::tempdir().expect("a folder");
     let (asked, keeping, plan) = (AtomicUsize::new(0), Keeping::default(), plan());
     let goes_on = |_: usize| asked.fetch_add(1, Ordering::Relaxed) < 700;
@@ -104,7 +104,7 @@ fn an_early_end_keeps_what_is_done() {
     assert_eq!(jobs.course().expect("rows").found, course.done);
 }
 
-/// Rows of a plan are sound, and tell plans apart.
+/// Checks that rows of a plan are valid and that another plan has another fingerprint.
 fn check<E: Experiment>(plan: &E, other: &E) {
     plan.check().unwrap_or_else(|what| panic!("{}: {what}", E::NAME));
     let sheet = Sheet::new(plan);
@@ -120,12 +120,12 @@ fn check<E: Experiment>(plan: &E, other: &E) {
     for run in [0, sheet.runs() - 1] {
         assert_eq!(sheet.values(run).len(), sheet.parameters().len());
     }
-    // Points differ in what was given, so that no two rows mean one run.
+    // All points have different parameters, so that no two rows mean the same run.
     let mut points: Vec<Vec<String>> =
         (0..plan.points() as u64).map(|p| sheet.values(p * sheet.runs_per_point())).collect();
     points.sort_unstable();
     assert!(points.windows(2).all(|pair| pair[0] != pair[1]), "{}", E::NAME);
-    // What is written is read back to the bit.
+    // Rows are read back bit for bit.
     let (point, run) = sheet.place(sheet.runs() - 1);
     let mut blank = plan.blank(point, run);
     let mut number = 0.0;
@@ -140,7 +140,7 @@ fn check<E: Experiment>(plan: &E, other: &E) {
 }
 
 #[test]
-fn rows_of_all_experiments_are_sound() {
+fn rows_of_all_experiments_are_valid() {
     check(&plan(), &swap::Plan { patience: 3.0, ..plan() });
     check(&doorway::Plan::default(), &doorway::Plan { robots: 3, ..doorway::Plan::default() });
     check(&cases::Plan::default(), &cases::Plan { seed: 77, ..cases::Plan::default() });
@@ -153,7 +153,7 @@ fn rows_of_all_experiments_are_sound() {
 }
 
 #[test]
-fn cells_take_what_they_can_be() {
+fn cells_accept_only_values_of_their_type() {
     let mut count = 3_usize;
     assert!(!count.set(None) && !count.set(Some(-1.0)) && !count.set(Some(0.5)) && count.set(Some(4.0)));
     assert_eq!(count, 4);

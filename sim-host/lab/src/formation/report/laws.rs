@@ -1,4 +1,4 @@
-//! What other laws gave beside ours.
+//! Results of other laws compared with ours.
 
 use super::{Journey, Point, Report};
 use crate::experiment::Maybe;
@@ -7,18 +7,17 @@ use serde::Serialize;
 use staya_plot::{Chart, Panels, Series};
 use std::fmt::{self, Formatter};
 
-/// The six under another law.
+/// Results with another law.
 #[derive(Clone, Debug, Serialize)]
 pub struct LawJourney {
-    /// Which law.
+    /// The law.
     pub law: Law,
-    /// How they fared.
+    /// Its results.
     #[serde(flatten)]
     pub journey: Journey,
 }
 
 impl Point {
-    /// Who crossed it under a law at a loss.
     fn under(&self, law: Law, loss: f64) -> Option<&Journey> {
         if law == Law::Staya {
             return self.with_loss(loss);
@@ -33,8 +32,8 @@ impl Point {
 }
 
 impl Report {
-    /// The laws that were tried, the planned one first, and the losses by rising value; none when there was no other
-    /// law.
+    /// The laws that were tried, the planned one first, and the losses in ascending order; empty
+    /// without other laws.
     fn laws(&self) -> (Vec<Law>, Vec<f64>) {
         let tried = self.points.first().map_or(&[][..], |point| &point.other_laws);
         let has = |law: Law| law == Law::Staya || tried.iter().any(|other| other.law == law);
@@ -44,7 +43,6 @@ impl Report {
         (Law::ALL.into_iter().filter(|&law| has(law)).collect(), losses)
     }
 
-    /// A line per law and loss, a column per point.
     pub(super) fn write_laws(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (laws, losses) = self.laws();
         if losses.is_empty() {
@@ -86,7 +84,7 @@ impl Report {
         self.write_waiting(f)
     }
 
-    /// What our waiting buys and costs, at the least loss.
+    /// Writes benefit and cost of waiting at the lowest loss.
     fn write_waiting(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (laws, losses) = self.laws();
         let (Some(&loss), true) = (losses.first(), laws.contains(&Law::Unwaiting)) else {
@@ -119,7 +117,7 @@ impl Report {
         Ok(())
     }
 
-    /// Figure 6 by each law; `None` when there was no other law.
+    /// Figure 6 for each law; `None` without other laws.
     pub(in crate::formation) fn laws_picture(&self) -> Option<Panels> {
         let (laws, losses) = self.laws();
         let loss = *losses.first()?;
@@ -143,7 +141,6 @@ impl Report {
     }
 }
 
-/// Journeys of the laws in the order of their ways.
 pub(super) fn journeys(ways: impl Iterator<Item = (Law, Option<Journey>)>) -> Vec<LawJourney> {
     ways.filter_map(|(law, journey)| Some(LawJourney { law, journey: journey? })).collect()
 }

@@ -8,44 +8,42 @@ use staya_sim::scenario::{ScenarioError, Source};
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
-/// Most values of one axis.
 const MOST: u32 = 1_000_000;
 
 /// A field and its values.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// Which one.
+    /// The field.
     pub field: Field,
-    /// In order.
+    /// Values in order.
     pub values: Vec<Value>,
-    /// Where the plan says so.
+    /// Line in the plan.
     pub line: usize,
-    /// Whether they were asked for in equal ratios.
+    /// Whether the values form a geometric sequence.
     pub is_log: bool,
-    /// A range, which has no meaning where words stand.
+    /// Whether the values come from a range, which is invalid for text fields.
     pub is_range: bool,
     span: Range<usize>,
 }
 
-/// All fields that a plan has something to say about.
+/// All fields that a plan varies or sets.
 #[derive(Debug, Default)]
 pub struct Axes {
-    /// Each by itself, in the order of columns.
+    /// Axes, in the order of columns.
     pub axes: Vec<Axis>,
-    /// Those that advance together.
+    /// Groups of axes that advance together.
     pub groups: Vec<Range<usize>>,
-    /// The same in all runs.
+    /// Fields with one value for all runs.
     pub set: Vec<(Field, Value, Range<usize>)>,
 }
 
-/// A field in the plan's text, and what stands behind it.
 struct Entry<'a> {
     field: Field,
     span: Range<usize>,
     value: &'a toml::Value,
 }
 
-/// Reads all of them.
+/// Reads all axes and settings of a plan.
 pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError> {
     let mut all = Axes::default();
     let root = source.root();
@@ -111,7 +109,7 @@ pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError>
     Ok(all)
 }
 
-/// Refuses a range where the scenario has words, or truths.
+/// Refuses a range for a field that has a text or a truth value in the scenario.
 pub fn check_kind(source: &Source<'_>, axis: &Axis, stands: Option<&toml::Value>) -> Result<(), ScenarioError> {
     let is = match stands {
         Some(toml::Value::String(word)) => format!("a text ({word:?})"),
@@ -129,12 +127,11 @@ pub fn check_kind(source: &Source<'_>, axis: &Axis, stands: Option<&toml::Value>
     Ok(())
 }
 
-/// What is wrong with a range of texts, and what to do.
+/// Cause and remedy of a range for text.
 pub fn no_range(is: &str) -> (String, String) {
     (format!("it is {is}, which has no range"), "give a list of values".to_owned())
 }
 
-/// A table of the plan as it stands in the text.
 fn table<'a, 't>(root: &'a DeTable<'t>, name: &str, index: Option<usize>) -> Option<&'a DeTable<'t>> {
     let value = root.get(name)?.get_ref();
     match (value, index) {
@@ -151,7 +148,8 @@ fn as_table<'a, 't>(value: &'a DeValue<'t>) -> Option<&'a DeTable<'t>> {
     }
 }
 
-/// Fields of a table in the order of the text, those of tables in it by dotted names. A table with `from` is a range.
+/// Fields of a table in the order of the text; nested tables give dotted names. A table with `from`
+/// is a range.
 fn entries<'a>(
     source: &Source<'_>,
     here: Option<&DeTable<'_>>,
@@ -192,7 +190,6 @@ fn collect<'a>(
     }
 }
 
-/// An axis whose values are said.
 fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_>) -> Result<Axis, ScenarioError> {
     let wrong = |what: String, remedy: &str| source.error_at(span.clone(), field.name(), what, remedy);
     let (values, is_log, is_range) = match value {
@@ -227,7 +224,6 @@ fn range(value: &toml::Value) -> Result<RangeTable, String> {
     Ok(range)
 }
 
-/// The values of a range.
 fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
     let RangeTable { from, to, log, .. } = *range;
     check_log(range)?;
@@ -240,7 +236,7 @@ fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
         }
         (None, Some(step)) => {
             let steps = libm::floor((to - from) / step + 1e-9);
-            // Neither a step of 0 nor one the wrong way leads anywhere.
+            // A step of 0 or of the wrong sign never reaches the end.
             if log || !(0.0..f64::from(MOST)).contains(&steps) {
                 let what = format!("steps of {step} do not lead from {from} to {to}");
                 return Err((what, "give a step towards `to`, at most a million times; for equal ratios give `count`"));
@@ -262,7 +258,7 @@ fn check_log(range: &RangeTable) -> Result<(), (String, &'static str)> {
     Ok(())
 }
 
-/// What lies at this share of the way.
+/// The value at a share of the range.
 fn between(range: &RangeTable, share: f64) -> f64 {
     let RangeTable { from, to, log, .. } = *range;
     if share == 0.0 {
@@ -276,7 +272,7 @@ fn between(range: &RangeTable, share: f64) -> f64 {
     }
 }
 
-/// To twelve digits, as a person would write it: 0.3 and not 0.30000000000000004.
+/// Rounds to twelve digits, for 0.3 instead of 0.30000000000000004.
 fn neat(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
@@ -285,7 +281,7 @@ fn rounded(range: &RangeTable, value: f64) -> Value {
     Value::of(if range.whole { libm::round(value) } else { value })
 }
 
-/// An axis whose values are drawn.
+/// Reads an axis with random values.
 fn sampled(
     source: &Source<'_>,
     Entry { field, span, value }: Entry<'_>,
@@ -311,7 +307,7 @@ fn sampled(
     Ok(Axis { field, values, line, is_log, is_range: is_ends, span })
 }
 
-/// A value that stands there twice. O(n log n).
+/// Finds a duplicate value. O(n log n).
 fn twice(values: &[Value]) -> Option<String> {
     let mut texts: Vec<String> = values.iter().map(ToString::to_string).collect();
     texts.sort_unstable();

@@ -1,4 +1,4 @@
-//! Whether the runs of a plan can be done, found out before the first one is begun.
+//! Checks the runs of a plan before the first one starts.
 
 use super::Plan;
 use crate::sweep::jobs;
@@ -8,10 +8,11 @@ use staya_sim::summary::Summary;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-/// Most points that are tried; of larger plans those that show each value once, and others in between.
+/// Most points to check. Of larger plans, checks points that cover each value, and points in
+/// between.
 const MOST: u64 = 500;
 
-/// Lets the scenario's own reader check points of the plan. Returns the names of all figures.
+/// Checks points of the plan with the scenario's parser. Returns the names of all figures.
 pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
     let mut known = figures(plan, source)?;
     let points: Vec<u64> = points(plan).into_iter().collect();
@@ -23,7 +24,7 @@ pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioEr
         |index, read| match read {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => {
-                // Of several the first, whoever was quicker.
+                // Reports the error of the first point, whichever thread was first.
                 if wrong.as_ref().is_none_or(|(before, _)| index < *before) {
                     wrong = Some((index, error));
                 }
@@ -37,7 +38,7 @@ pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioEr
     }
 }
 
-/// The names of the figures, of the first run before its first tick.
+/// Names of the figures, from the first run before its first tick.
 fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
     let scenario = plan.scenario(&plan.run(0))?;
     let outcome = simulate(&scenario, |_, _| ControlFlow::Break(())).map_err(|error| {
@@ -50,7 +51,8 @@ fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioErro
     Ok(Summary::new(&scenario, &outcome, Vec::new()).figures().into_iter().map(|(name, _)| name).collect())
 }
 
-/// All points, or in large plans each value of each axis with the first ones of the others, and points between.
+/// Points to check: all of them or, in large plans, each value of each axis combined with the first
+/// values of the others, and points in between.
 fn points(plan: &Plan) -> BTreeSet<u64> {
     let count = plan.runs() / plan.seeds();
     if count <= MOST {
@@ -60,7 +62,7 @@ fn points(plan: &Plan) -> BTreeSet<u64> {
     let mut stride = 1;
     for group in plan.groups.iter().rev() {
         let values = plan.axes[group.start].values.len() as u64;
-        // A sample's values are too many; its ends show whether its range can be.
+        // A sample has too many values; its extremes show whether its range is valid.
         let extremes = group.clone().flat_map(|index| {
             let by_size = |number: &u64| {
                 let value = plan.axes[index].values[*number as usize].number();

@@ -1,4 +1,4 @@
-//! What a plan's file may say: every field, as docs/sweeps.md explains them.
+//! Structure of a plan's file; docs/sweeps.md explains every field.
 
 use crate::sweep::sample::Kind;
 use serde::Deserialize;
@@ -12,14 +12,15 @@ pub struct PlanFile {
     pub name: String,
     /// The scenario, relative to the plan's file.
     pub scenario: PathBuf,
-    /// How many seeds (1, 2, ...), a list of them, or `{ from, count }`. Default: the scenario's own.
+    /// A number of seeds (1, 2, ...), a list of them, or `{ from, count }`. Default: the scenario's
+    /// own.
     pub seeds: Option<Seeds>,
-    /// Figures of `summary.json` to keep. Default: all but what robots waited for.
+    /// Figures of `summary.json` to record. Default: all except the reasons for waiting.
     pub measures: Option<Vec<String>>,
     /// Fields with one value for all runs.
     #[serde(default)]
     pub set: toml::Table,
-    /// Fields with several values, crossed with each other: the last one changes first.
+    /// Fields with several values, crossed with each other; the last one changes first.
     #[serde(default)]
     pub axes: toml::Table,
     /// Fields whose values advance together, crossed with the rest.
@@ -28,7 +29,7 @@ pub struct PlanFile {
     /// Fields with random values, crossed with the rest.
     #[serde(default)]
     pub sample: Vec<SampleTable>,
-    /// Pictures of figures. Default: each chosen figure over the first axes.
+    /// Pictures of figures. Default: each recorded figure over the first axes.
     #[serde(default)]
     pub plot: Vec<PlotTable>,
 }
@@ -37,11 +38,11 @@ pub struct PlanFile {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged, expecting = "invalid seeds, expected a number, a list of numbers, or { from, count }")]
 pub enum Seeds {
-    /// 1 to so many.
+    /// Seeds 1 to this number.
     Count(u32),
-    /// These.
+    /// Listed seeds.
     List(Vec<u64>),
-    /// So many from one on.
+    /// Consecutive seeds.
     Range(SeedRange),
 }
 
@@ -49,28 +50,28 @@ pub enum Seeds {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeedRange {
-    /// The first.
+    /// The first seed.
     pub from: u64,
-    /// How many.
+    /// Number of seeds.
     pub count: u32,
 }
 
-/// `{ from, to, ... }`: an axis by its ends.
+/// `{ from, to, ... }`: an axis given by its ends.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RangeTable {
     /// The first value.
     pub from: f64,
-    /// The last one, or with `step` the most that one may be.
+    /// The last value; with `step`, its upper limit.
     pub to: f64,
-    /// How many; not in a sample.
+    /// Number of values; not in a sample.
     pub count: Option<u32>,
-    /// From one to the next, instead of `count`.
+    /// Distance of two values, instead of `count`.
     pub step: Option<f64>,
     /// Equal ratios instead of equal distances. Default: false.
     #[serde(default)]
     pub log: bool,
-    /// Rounded to whole numbers, each once. Default: false.
+    /// Rounded to whole numbers without duplicates. Default: false.
     #[serde(default)]
     pub whole: bool,
 }
@@ -81,12 +82,12 @@ pub struct RangeTable {
 pub struct SampleTable {
     /// `"random"` or `"latin_hypercube"`.
     pub kind: Kind,
-    /// How many.
+    /// Number of samples.
     pub count: u32,
-    /// Seed of the sample, which has nothing to do with those of the runs. Default: 0.
+    /// Seed of the sample, independent of the seeds of the runs. Default: 0.
     #[serde(default)]
     pub seed: u64,
-    /// From where to where, or of which values.
+    /// Range or list of values of each field.
     pub axes: toml::Table,
 }
 
@@ -94,7 +95,7 @@ pub struct SampleTable {
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlotTable {
-    /// A figure that the plan measures.
+    /// A figure that the plan records.
     pub figure: String,
     /// The axis from left to right.
     pub over: String,

@@ -6,7 +6,6 @@ use tempfile::TempDir;
 const SCENARIO: &str = "name = 'duel'\nseed = 9\nticks = 20\ntick_s = 0.1\n\n[radio]\nrange_m = 5\n\n[plane]\nradius_m = 0.2\n\
     max_speed_mps = 1\n\n[plane.robots.circle]\ncount = 4\nradius_m = 3\n";
 
-/// A folder with that scenario.
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("duel.toml"), SCENARIO).expect("room");
@@ -31,7 +30,6 @@ fn error(text: &str) -> String {
     parse(&folder(), text).expect_err("something is wrong")
 }
 
-/// The values of an axis, as a table has them.
 fn values(plan: &Plan, axis: &str) -> Vec<String> {
     plan.values(axis).expect("an axis").iter().map(ToString::to_string).collect()
 }
@@ -53,19 +51,19 @@ fn axes_are_crossed_in_the_order_of_the_file_and_seeds_change_first() {
 }
 
 #[test]
-fn a_run_is_the_scenario_with_its_values() {
+fn run_is_the_scenario_with_the_values_of_its_point() {
     let plan =
         plan("seeds = { from = 40, count = 2 }\n[set]\nticks = 33\n[axes]\nplane.robots.circle.count = [2, 6]\n");
     let scenario = plan.scenario(&plan.run(3)).expect("a scenario");
     assert_eq!((scenario.robots.len(), scenario.seed, scenario.ticks), (6, 41, 33));
-    // Without seeds it is the scenario's own.
+    // Without seeds, the plan uses the scenario's own.
     let folder = folder();
     let plan = parse(&folder, "[axes]\nradio.loss = [0, 1]\n").expect("a plan");
     assert_eq!((plan.runs(), plan.run(1).seed), (2, 9));
 }
 
 #[test]
-fn ranges_have_their_ends_and_neat_values() {
+fn ranges_include_their_ends_and_have_short_decimals() {
     for (range, expected) in [
         ("{ from = 0, to = 0.3, count = 4 }", "0 0.1 0.2 0.3"),
         ("{ from = 0.1, to = 0.7, step = 0.2 }", "0.1 0.3 0.5 0.7"),
@@ -89,7 +87,7 @@ fn zipped_fields_advance_together() {
 }
 
 #[test]
-fn samples_are_a_function_of_their_seed() {
+fn samples_depend_only_on_their_seed() {
     let text = |seed: u32, kind: &str| {
         format!(
             "[[sample]]\nkind = '{kind}'\ncount = 20\nseed = {seed}\n[sample.axes]\n\
@@ -110,14 +108,14 @@ fn samples_are_a_function_of_their_seed() {
         let ranges = values(&a, "radio.range_m");
         assert!(ranges.iter().any(|value| value == "3") && ranges.iter().any(|value| value == "8"));
     }
-    // Half of the parts of equal ratios are below their geometric mean.
+    // Half of the parts of a logarithmic axis lie below its geometric mean.
     let even = plan(&text(3, "latin_hypercube"));
     let delays = even.values("radio.delay_ms").expect("an axis").iter().filter_map(Value::number);
     assert_eq!(delays.filter(|&delay| delay < 31.62).count(), 10);
 }
 
 #[test]
-fn what_is_wrong_is_said_with_plan_line_and_field() {
+fn errors_name_the_plan_the_line_and_the_field() {
     let axes = |text: &str| error(&format!("[axes]\n{text}\n"));
     for (said, expected) in [
         (axes("radio.los = [1]"), "plan.toml:4: radio.los: unknown field `los`"),
@@ -192,7 +190,7 @@ fn what_is_wrong_is_said_with_plan_line_and_field() {
 }
 
 #[test]
-fn a_wrong_scenario_is_named_with_its_own_line() {
+fn errors_of_the_scenario_name_its_own_line() {
     let folder = folder();
     fs::write(folder.path().join("duel.toml"), SCENARIO.replace("range_m", "range")).expect("room");
     let said = parse(&folder, "[axes]\nradio.loss = [0]").expect_err("a wrong field");
@@ -204,14 +202,14 @@ fn a_wrong_scenario_is_named_with_its_own_line() {
 }
 
 #[test]
-fn words_can_be_listed_where_a_field_chooses_among_them() {
+fn text_fields_accept_lists_of_words() {
     let plan = plan("[axes]\nradio.format = ['postcard', 'mavlink']\n");
     assert_eq!(values(&plan, "radio.format"), ["postcard", "mavlink"]);
     assert!(error("[axes]\nradio.format = ['postcard', 'morse']").contains("unknown variant `morse`"));
 }
 
 #[test]
-fn a_fingerprint_is_of_what_runs_depend_on_and_of_nothing_else() {
+fn fingerprint_covers_exactly_the_inputs_of_runs() {
     let folder = folder();
     let of = |text: &str| parse(&folder, text).expect("a plan").fingerprint();
     let text = "seeds = 2\n[axes]\nradio.loss = [0, 0.5]\n";
@@ -233,7 +231,7 @@ fn a_fingerprint_is_of_what_runs_depend_on_and_of_nothing_else() {
 }
 
 #[test]
-fn a_map_that_changes_makes_another_plan() {
+fn changed_map_changes_the_fingerprint() {
     let folder = folder();
     let land = |rows: &str| format!("type octile\nheight 2\nwidth 3\nmap\n{rows}\n");
     fs::write(folder.path().join("land.map"), land("...\n...")).expect("room");
@@ -247,7 +245,7 @@ fn a_map_that_changes_makes_another_plan() {
 }
 
 #[test]
-fn each_field_of_a_plan_is_in_the_documentation() {
+fn every_field_of_a_plan_is_documented() {
     let fields = include_str!("table.rs").lines().filter_map(|line| line.strip_prefix("    pub ")?.split_once(": "));
     let fields: Vec<&str> = fields.map(|(name, _)| name).collect();
     assert!(fields.len() > 15, "{fields:?}");
@@ -263,9 +261,9 @@ fn each_field_of_a_plan_is_in_the_documentation() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Whatever stands in a plan, it is a plan or an error, and its numbers are all different runs.
+    /// Any plan is either refused or gives a different run for each number.
     #[test]
-    fn each_number_is_another_run(
+    fn numbers_denote_different_runs(
         losses in proptest::collection::btree_set(0u32..100, 1..5),
         delays in proptest::collection::btree_set(0u32..100, 1..4),
         seeds in 1u32..4,

@@ -11,7 +11,6 @@ const SCENARIO: &str = "name = 'duel'\nticks = 20\ntick_s = 0.1\n[plane]\nradius
 const PLAN: &str =
     "name = 'p'\nscenario = 'duel.toml'\nseeds = 3\n[axes]\nradio.loss = [0, 0.25, 0.5]\nticks = [5, 10]\n";
 
-/// A folder with that plan.
 fn folder() -> (TempDir, Plan) {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("duel.toml"), SCENARIO).expect("room");
@@ -42,7 +41,6 @@ fn perform_all(plan: &Plan, out: &Path, shards: &[&str], existing: Existing) -> 
     last
 }
 
-/// What the whole plan gives.
 fn merged(plan: &Plan, out: &Path) -> String {
     let merged = Merged::read(plan, &files(out).expect("a folder")).unwrap_or_else(|what| panic!("{what}"));
     let merged = merged.whole(plan, out, "").unwrap_or_else(|what| panic!("{what}"));
@@ -51,7 +49,7 @@ fn merged(plan: &Plan, out: &Path) -> String {
 }
 
 #[test]
-fn shards_of_any_number_give_the_same_bytes() {
+fn any_number_of_shards_gives_identical_bytes() {
     let (folder, plan) = folder();
     let out = |name: &str| folder.path().join(name);
     perform_all(&plan, &out("1"), &["1/1"], Existing::Refuse);
@@ -61,7 +59,7 @@ fn shards_of_any_number_give_the_same_bytes() {
     assert_eq!(merged(&plan, &out("2")), whole);
     perform_all(&plan, &out("7"), &["3/7", "1/7", "7/7", "2/7", "6/7", "5/7", "4/7"], Existing::Refuse);
     assert_eq!(merged(&plan, &out("7")), whole);
-    // In whatever order rows came.
+    // The rows may be in any order.
     let file = out("1").join("shards/1-of-1.csv");
     let text = fs::read_to_string(&file).expect("rows");
     let (header, rows) = text.split_once('\n').expect("lines");
@@ -71,7 +69,7 @@ fn shards_of_any_number_give_the_same_bytes() {
 }
 
 #[test]
-fn a_file_that_is_cut_off_anywhere_is_completed() {
+fn truncated_file_is_completed() {
     let (folder, plan) = folder();
     let out = folder.path().join("out");
     perform_all(&plan, &out, &["1/1"], Existing::Refuse);
@@ -88,14 +86,14 @@ fn a_file_that_is_cut_off_anywhere_is_completed() {
 }
 
 #[test]
-fn an_early_end_keeps_what_is_done_and_resume_does_what_is_missing() {
+fn early_end_keeps_finished_runs_and_resume_makes_the_missing_ones() {
     let (folder, plan) = folder();
     let out = folder.path().join("out");
     let asked = AtomicU64::new(0);
     let goes_on = || asked.fetch_add(1, Ordering::Relaxed) < 40;
     let course = done(&plan, Shard::default(), &out, Existing::Refuse, &goes_on).expect("no error");
     assert!(course.done > 0 && course.missing() > 0, "{course:?}");
-    // Somebody else's part counts too.
+    // Rows of another process count too.
     let other = perform_all(&plan, &out, &["2/3"], Existing::Resume);
     let rest = perform_all(&plan, &out, &["1/1"], Existing::Resume);
     assert_eq!(rest.done, 18 - course.done - other.done);
@@ -108,7 +106,7 @@ fn an_early_end_keeps_what_is_done_and_resume_does_what_is_missing() {
 }
 
 #[test]
-fn rows_that_are_there_are_not_touched_without_a_word() {
+fn existing_rows_are_kept_unless_an_option_permits_it() {
     let (folder, plan) = folder();
     let out = folder.path().join("out");
     perform_all(&plan, &out, &["1/2"], Existing::Refuse);
@@ -123,7 +121,7 @@ fn rows_that_are_there_are_not_touched_without_a_word() {
             "{said}"
         );
     }
-    // Of a plan that has changed.
+    // Rows of a plan that has changed.
     let text = PLAN.replace("0.25", "0.3");
     let changed = Plan::parse(&text, &folder.path().join("plan.toml")).expect("a plan");
     let before = fs::read(out.join("shards/1-of-2.csv")).expect("rows");
@@ -139,7 +137,7 @@ fn rows_that_are_there_are_not_touched_without_a_word() {
 }
 
 #[test]
-fn two_processes_do_not_share_a_file() {
+fn two_processes_cannot_share_a_file() {
     let (folder, plan) = folder();
     let out = folder.path().join("out");
     let (first, _) = Appended::open(&plan, &out, Shard::default(), Existing::Resume).expect("a file");
@@ -150,7 +148,7 @@ fn two_processes_do_not_share_a_file() {
 }
 
 #[test]
-fn what_does_not_go_together_is_refused() {
+fn inconsistent_rows_are_refused() {
     let (folder, plan) = folder();
     let out = folder.path().join("out");
     perform_all(&plan, &out, &["1/2", "2/2"], Existing::Refuse);
@@ -159,13 +157,13 @@ fn what_does_not_go_together_is_refused() {
     let second = rows.lines().nth(1).expect("a row").to_owned();
     let number = second.split(',').next().expect("a number").to_owned();
     let read = |files: &[PathBuf]| Merged::read(&plan, files);
-    // The same row twice is one.
+    // An identical row counts once.
     let whole = merged(&plan, &out);
     let doubled = read(&[one.clone(), two.clone(), one.clone()]).expect("the same rows");
     assert_eq!((doubled.doubles, doubled.rows.len()), (9, 18));
     fs::write(&one, format!("{rows}{second}\n")).expect("room");
     assert_eq!(merged(&plan, &out), whole);
-    // In a merged file it is not.
+    // In a merged file, a duplicate is an error.
     let file = out.join("rows.csv");
     let merged_text = read(&[one.clone(), two.clone()]).expect("rows").text(&plan);
     fs::write(&file, &merged_text).expect("room");
@@ -174,7 +172,7 @@ fn what_does_not_go_together_is_refused() {
     fs::write(&file, merged_text.replacen(first, &format!("{first}\n{first}"), 1)).expect("room");
     let said = Merged::reread(&plan, &file).expect_err("twice").to_string();
     assert!(said.contains("rows.csv:3: run 0 has two rows, or is out of order; merge the shards again"), "{said}");
-    // A row that differs is of a changed program.
+    // A row that differs comes from a changed program.
     let other = second.replacen(",done,", ",done,7", 1);
     fs::write(&one, format!("{rows}{other}\n")).expect("room");
     let said = read(&[one.clone(), two.clone()]).expect_err("they differ").to_string();
@@ -182,7 +180,6 @@ fn what_does_not_go_together_is_refused() {
         said.contains(&format!("1-of-2.csv:11: run {number} has another row in")) && said.contains("--anew"),
         "{said}"
     );
-    // Damage.
     for (cells, what) in [
         ("1,2,3", "it is no row"),
         ("", "it is no row"),
@@ -201,7 +198,7 @@ fn what_does_not_go_together_is_refused() {
 }
 
 #[test]
-fn what_is_missing_is_named() {
+fn missing_runs_are_named() {
     let (folder, plan) = folder();
     let out = folder.path().join("out");
     perform_all(&plan, &out, &["2/3"], Existing::Refuse);
@@ -213,7 +210,7 @@ fn what_is_missing_is_named() {
 }
 
 #[test]
-fn what_is_impossible_has_a_row_and_is_tried_again() {
+fn impossible_run_has_a_row_and_is_tried_again() {
     let (folder, _) = folder();
     let (map, out) = (folder.path().join("land.map"), folder.path().join("out"));
     let land = "type octile\nheight 1\nwidth 3\nmap\n...\n";
@@ -238,7 +235,7 @@ fn what_is_impossible_has_a_row_and_is_tried_again() {
 }
 
 #[test]
-fn shards_are_part_of_the_whole() {
+fn invalid_shards_are_refused() {
     for bad in ["", "3", "0/2", "3/2", "1/0", "a/b", "-1/2", "1/2/3", "1/ 2"] {
         assert!(bad.parse::<Shard>().is_err(), "{bad:?}");
     }
