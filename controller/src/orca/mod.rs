@@ -6,11 +6,11 @@
 //!
 //! | file | content | in RVO2's `Agent.cc` |
 //! | --- | --- | --- |
-//! | `avoider.rs` | one step: nearest obstacles and robots, margins, inertia | `computeNewVelocity` |
+//! | `avoider.rs` | one step: nearest obstacles and robots, margins | `computeNewVelocity` |
 //! | `plane.rs` | half-plane of a disc; best velocity on a line | agents' lines, `linearProgram1` |
 //! | `space.rs` | half-space of a ball; best velocity on a plane | RVO2-3D, `linearProgram2` |
 //! | `wall.rs` | half-plane of a wall | obstacles' lines |
-//! | `linear_program.rs` | best velocity of all; least bad one | `linearProgram2`, `3` (3D: `3`, `4`) |
+//! | `linear_program.rs` | best velocity; least bad one | `linearProgram2`, `3` (3D: `3`, `4`) |
 //! | `dimension.rs` | half-spaces, balls; differences of plane and space | |
 //! | `deadlock/` | the preferred velocity that avoids deadlocks | not included |
 //!
