@@ -1,4 +1,5 @@
-//! A robot on three omni wheels, with the numbers of a part without an FPU, goes to its place while it spins: ticks in, duties out.
+//! A robot on three omni wheels with fixed-point numbers reaches its goal while it spins; encoder
+//! ticks are the input, PWM duties the output.
 
 use crate::common;
 use core::convert::Infallible;
@@ -93,7 +94,7 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
         let Ok(()) = motors.turn(&mixer.mix(&twist, TICK));
         now = now + TICK;
 
-        // The wheels do as the pins say.
+        // The wheels follow the pins.
         let speed = |(power, ahead): &(Power, Ahead)| {
             let sign = if ahead.0.get() { 1.0 } else { -1.0 };
             sign * FULL_MPS * f64::from(power.0.get()) / f64::from(MAX_DUTY)
