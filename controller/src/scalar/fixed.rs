@@ -1,4 +1,4 @@
-//! Q16.16: fixed point for parts without an FPU. Integers only, nothing overflows.
+//! Q16.16: fixed point for parts without an FPU. Integers only, without overflow.
 
 use super::integer::{bow_q32, log2_q32, polynomial_q30};
 use super::{Scalar, sealed};
@@ -8,8 +8,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A number from -32768 to 32767.99998 in steps of 2^-16 (0.000015), saturating everywhere.
 ///
-/// Products are rounded to nearest. There is neither NaN nor infinity: what is out of range becomes
-/// [`Scalar::MAX`] or its negative, and [`Scalar::is_finite`] is always true.
+/// Products are rounded to nearest. There is neither NaN nor infinity: a result out of range
+/// becomes [`Scalar::MAX`] or its negative, and [`Scalar::is_finite`] is always true.
 ///
 /// Errors against exact functions, each beside the half step of rounding: `sqrt` and `norm` one
 /// step (rounded down); `sin_cos`, `atan2`, `ln` one step; `exp` a factor of 1 + 1e-8.
@@ -39,7 +39,7 @@ impl Q16 {
     }
 }
 
-/// As its bits.
+/// Serializes the bits.
 impl Serialize for Q16 {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         serializer.serialize_i32(self.bits())
