@@ -64,7 +64,7 @@ pub enum Algorithm {
     #[default]
     Three,
     /// Like [`Algorithm::Three`], but no robot pushes a robot that is nearer to the reference. Not
-    /// in the paper: see the source of this module.
+    /// in the paper: see the description of this module.
     ThreeInTurn,
 }
 
