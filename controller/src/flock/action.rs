@@ -12,8 +12,8 @@ pub fn epsilon<S: Scalar>() -> S {
     S::from_ratio(1, 10)
 }
 
-/// A length in the sigma norm: sigma = (sqrt(1 + e z^2) - 1) / e, and its slope n = z / sqrt(1 + e z^2), which is
-/// the length of n_ij.
+/// A length in the sigma norm: sigma = (sqrt(1 + e z^2) - 1) / e, and its slope n = z / sqrt(1 + e
+/// z^2), which is the length of n_ij.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SigmaNorm<S> {
@@ -61,8 +61,8 @@ pub fn sigma_1<S: Scalar>(z: S) -> S {
     if z < S::ZERO { -magnitude } else { magnitude }
 }
 
-/// The uneven sigmoid phi(z) = ((a + b) sigma_1(z + c) + (a - b)) / 2 with c = |a - b| / sqrt(4 a b), which makes
-/// phi(0) = 0. `c` is [`sigmoid_shift`].
+/// The uneven sigmoid phi(z) = ((a + b) sigma_1(z + c) + (a - b)) / 2 with c = |a - b| / sqrt(4 a
+/// b), which makes phi(0) = 0. `c` is [`sigmoid_shift`].
 #[must_use]
 pub fn phi<S: Scalar>(z: S, a: S, b: S, c: S) -> S {
     ((a + b) * sigma_1(z + c) + (a - b)) * S::HALF
