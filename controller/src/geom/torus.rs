@@ -44,7 +44,8 @@ impl<S: Scalar> Torus<S> {
                 return mm;
             };
             let back = ahead.wrapping_sub(size_mm);
-            // An exact half keeps its sign, so that two robots see each other in opposite directions.
+            // An exact half keeps its sign, so that two robots see each other in opposite
+            // directions.
             let is_behind = ahead > size_mm >> 1 || ahead.wrapping_add(back) == 0 && mm < own;
             own.wrapping_add(if is_behind { back } else { ahead })
         };
