@@ -74,7 +74,8 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         if width == 0 || height == 0 {
             return Some(walls);
         }
-        // West sides of cells from south to north, then south sides from west to east. All of them are in the window.
+        // West sides of cells from south to north, then south sides from west to east. All of them
+        // are in the window.
         let (cells, row) = (window.cells(), usize::from(window.width()));
         for x in first.x.saturating_add(1)..=last.x {
             let begin = window.index(Cell::new(x, first.y))?;
@@ -152,7 +153,8 @@ mod tests {
 
     const FRAME: GridFrame<f64> = GridFrame { origin_m: Vec2::new(100.0, -50.0), cell_m: 2.0 };
 
-    /// A window from rows of `#` and `.`, the northernmost first, with its south-west cell at (10, 20).
+    /// A window from rows of `#` and `.`, the northernmost first, with its south-west cell at (10,
+    /// 20).
     fn cells(rows: &[&str]) -> List<u8> {
         let rows = rows.iter().rev();
         rows.flat_map(|row| row.bytes().map(|b| if b == b'#' { BLOCKED } else { 1 })).collect()
