@@ -100,8 +100,8 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// # Errors
     /// [`Unreachable`] when no exit can be reached, or `from` is not in the window.
     ///
-    /// Work: at most three searches, each O(w h) while costs lie within 64 times the cheapest move of
-    /// each other, as they do with sensible gains, and never more than O((w h)^2).
+    /// Work: at most three searches, each O(w h) while costs lie within 64 times the cheapest move
+    /// of each other, as they do with sensible gains, and never more than O((w h)^2).
     pub fn weights<const M: usize>(
         &mut self,
         params: &RouteParams,

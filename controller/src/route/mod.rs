@@ -43,13 +43,14 @@ named! {
         /// The border cell with the least path cost + a3 * distance to the target (eq. 10).
         #[default]
         Best = "best",
-        /// The border cell where the ray to the target crosses the border (alg. 3, line 8); if it is
-        /// blocked, the nearest border cell that can be reached.
+        /// The border cell where the ray to the target crosses the border (alg. 3, line 8); if it
+        /// is blocked, the nearest border cell that can be reached.
         Ray = "ray",
     }
 }
 
-/// Parameters of the route cost T(r) = a0 sum |d| u + a1 #occupied + a2 sum visits + a3 |exit - target|.
+/// Parameters of the route cost T(r) = a0 sum |d| u + a1 #occupied + a2 sum visits + a3 |exit -
+/// target|.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RouteParams {
