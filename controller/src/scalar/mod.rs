@@ -67,7 +67,8 @@ pub trait Scalar:
     const EPSILON: Self;
     /// The largest finite number; its negative is in range too.
     const MAX: Self;
-    /// Whether precision is relative: the square of a short or a long vector's length is as precise as the length.
+    /// Whether precision is relative: the square of a short or a long vector's length is as precise
+    /// as the length.
     const IS_FLOATING: bool;
 
     /// An integer, rounded to nearest; saturates.
