@@ -83,7 +83,6 @@ impl TemplateAssignment {
         }))
     }
 
-    /// The index of this part's first entry in the template.
     fn start(&self) -> usize {
         usize::from(self.part) * TEMPLATE_PART
     }

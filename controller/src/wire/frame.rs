@@ -421,7 +421,6 @@ fn write<const N: usize>(
     Ok(frame.len())
 }
 
-/// Writes the content and returns its length; `None` if `content` is too short.
 #[expect(clippy::arithmetic_side_effects, reason = "lengths within a frame")]
 fn fill(
     header: Header,

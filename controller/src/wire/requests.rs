@@ -78,7 +78,6 @@ pub enum Due {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Pending {
     request: Request,
-    /// Number of sends so far.
     sent: u8,
     /// When to send again or to give up.
     due: Instant,

@@ -5,7 +5,6 @@ use super::{KeyAssignment, KeyPhase};
 use crate::auth::{Key, Mac, Seed};
 use serde::{Deserialize, Serialize};
 
-/// The swarm's key of one generation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Group {
     generation: u16,

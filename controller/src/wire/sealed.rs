@@ -130,7 +130,6 @@ impl<const N: usize> Sealed<N> {
         &mut self.guard
     }
 
-    /// The latest counter that is accepted from a sender, with any key.
     fn latest(&self, sender: RobotId) -> u64 {
         let known = self.guard.newest(sender.0).unwrap_or(self.guard.floor()) & COUNTED;
         known.max(counter(self.epochs.epoch, 0)).saturating_add(counter(REACH_STARTS << WRAP_BITS, 0))

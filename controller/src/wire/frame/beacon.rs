@@ -13,7 +13,6 @@ use crate::wire::Beacon;
 /// The modes, indexed by their number on the wire.
 const MODES: [Mode; 7] =
     [Mode::Idle, Mode::Forming, Mode::Cruise, Mode::Hold, Mode::Arrived, Mode::Fault, Mode::Passive];
-/// The variant index of [`Message::Beacon`].
 const BEACON: u8 = 0;
 
 /// Decodes header and beacon from a frame's `body`.

@@ -39,7 +39,6 @@ fn beacon() -> Message {
     })
 }
 
-/// The longest message of each kind and its bound.
 fn longest() -> [(Message, usize); 6] {
     let entry = TemplateEntry { offset: FAR, id: LAST, hops: u8::MAX };
     [
@@ -118,7 +117,6 @@ fn seal(content: &[u8]) -> StdVec<u8> {
     content
 }
 
-/// Version, header and message, without tag and CRC.
 fn content(version: u8, header: Header, message: &Message) -> StdVec<u8> {
     let mut buffer = [0; MAX_FRAME_LEN];
     postcard::to_slice(&(version, header, message), &mut buffer).unwrap().to_vec()

@@ -97,7 +97,6 @@ fn a_stop_that_comes_after_the_resume_sent_later_is_ignored() {
         assert_eq!(receive(&mut orders, A, resume, Resume, START), NEW);
         assert_eq!(receive(&mut orders, A, number, Stop, after(10)), REFUSED);
         assert!(!orders.is_stopped(after(10)));
-        // Redirection is another matter.
         assert_eq!(receive(&mut orders, A, number, Redirect, after(10)), NEW);
         assert_eq!(receive(&mut orders, A, number, Redirect, after(20)), REPEATED);
     }

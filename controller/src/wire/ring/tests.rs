@@ -192,7 +192,6 @@ proptest! {
             let wire = &mut robots[index as usize];
             let before = wire.held().unwrap().0;
             match fate % 8 {
-                // Lost.
                 0 => {}
                 // Restarts with its stored keys, or with its first key.
                 1 | 2 => {
@@ -202,7 +201,6 @@ proptest! {
                     *wire = robot(index + 1, stored, starts);
                     continue;
                 }
-                // Damaged.
                 3 => {
                     if let Some(frame) = recorded.last() {
                         let mut frame = frame.clone();

@@ -26,7 +26,6 @@ fn goal() -> Message {
     Message::Goal(super::super::GoalAssignment { to: RobotId(2), version: 4, target: crate::grid::Cell::new(-3, 8) })
 }
 
-/// Encodes a frame without its delimiter.
 fn said<W: Wire>(by: &mut W, header: Header) -> StdVec<u8> {
     let mut out = Vec::<u8, 64>::new();
     by.encode(header, &goal(), &mut out).unwrap();
