@@ -77,7 +77,6 @@ pub struct InSpace<S> {
 }
 
 impl<S: Scalar> Default for InSpace<S> {
-    /// Balls.
     fn default() -> Self {
         Self { downwash: S::ONE }
     }
@@ -93,7 +92,6 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
         params: &Params<S>,
     ) -> Option<HalfSpace<Vec3<S>>> {
         let high = self.downwash;
-        // A downwash that is not a number counts as 1.
         let is_higher = high > S::ONE;
         if !is_higher {
             return half_space(own_velocity_mps, ball, params);
@@ -216,7 +214,6 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         (hard, constraints)
     }
 
-    /// Collects the constraints of obstacles (returning their number), then of robots.
     fn constraints(
         &self,
         body: &Body<S>,
@@ -310,7 +307,6 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     }
 }
 
-/// The constraint of an obstacle. It does nothing to avoid, so the whole correction is the robot's.
 fn static_obstacle<V: Dimension>(
     params: &AvoidParams<V::Scalar>,
     body: &Body<V::Scalar>,

@@ -41,7 +41,6 @@ fn half_planes_by_fast32_are_off_by_hundredths_of_a_degree_and_millimetres_a_sec
         let exact = asked::<f64>(own, offset, velocity, radii);
         let fast = asked::<Fast32>(own, offset, velocity, radii);
         let turned = (fast[0] - exact[0]).abs();
-        // If two borders are equally near, either is right.
         let turned = turned.min(360.0 - turned);
         let off = [if turned > 10.0 { 0.0 } else { turned }, (fast[1] - exact[1]).abs()];
         for (at, off) in off.into_iter().enumerate() {

@@ -98,7 +98,6 @@ fn least_penetration<V: Dimension, const N: usize>(
         for (other_index, other) in constraints.iter().enumerate().take(index) {
             let bisector = if other_index < hard { Some(*other) } else { bisector(constraint, other) };
             if let Some(bisector) = bisector {
-                // There is space for every constraint.
                 let _ = bisectors.push(bisector);
             }
         }

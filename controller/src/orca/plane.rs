@@ -190,7 +190,6 @@ fn best_on_line<S: Scalar>(
     Some(foot + direction * t)
 }
 
-/// The rounding error of a penetration.
 fn rounding<S: Scalar>(speed: S, plane: &HalfPlane<S>) -> S {
     let scale = speed + plane.point.x.abs() + plane.point.y.abs();
     S::EPSILON * S::from_i32(16) * scale.max(S::ONE)

@@ -81,7 +81,6 @@ pub fn half_space<S: Scalar>(
             // The angle between the sides of the cone and the line of centres has this sine.
             let sin = r.checked_div(distance)?;
             if w.dot(ahead) < -(sin * w.norm()) {
-                // Nearest to the cut-off ball.
                 leave_ball(w, r.checked_div(params.horizon_s)?, -ahead)
             } else {
                 // Nearest to the side of the cone, on the own side of its axis. The rest happens in
@@ -93,7 +92,6 @@ pub fn half_space<S: Scalar>(
             }
         }
         _ => {
-            // Overlapping: separate within the separation time.
             let away = (-p).normalized().or_else(|| tie.normalized());
             let away = away.unwrap_or(Vec3::new(S::ONE, S::ZERO, S::ZERO));
             let w = v - divided(p, params.separation_s)?;
@@ -117,9 +115,7 @@ fn right_of<S: Scalar>(ahead: Vec3<S>) -> Vec3<S> {
 }
 
 struct Line<S> {
-    /// The point nearest to the origin.
     foot: Vec3<S>,
-    /// Unit vector.
     direction: Vec3<S>,
 }
 
@@ -172,7 +168,6 @@ fn best_on_line<S: Scalar>(
                     high = high.min(t);
                 }
             }
-            // Parallel: the whole line is permitted, or none of it.
             _ if gap > S::ZERO => return None,
             _ => {}
         }
@@ -200,7 +195,6 @@ fn half_width<S: Scalar>(foot: Vec3<S>, speed: S) -> Option<S> {
     (distance <= speed).then(|| ((speed - distance) * (speed + distance)).sqrt())
 }
 
-/// The intersection of two borders; `None` if they are parallel.
 fn intersection<S: Scalar>(space: &HalfSpace<Vec3<S>>, other: &HalfSpace<Vec3<S>>) -> Option<Line<S>> {
     let cross = space.normal.cross(other.normal);
     // The intersection of nearly parallel borders has a direction that is mere rounding.

@@ -15,11 +15,8 @@ use crate::scalar::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VelocityObstacle<S> {
-    /// Unit vector to the neighbour.
     ahead: Vec2<S>,
-    /// Centre of the disc, m/s.
     tip_mps: Vec2<S>,
-    /// Radius of the disc, m/s.
     radius_mps: S,
     /// Sine of the angle between the legs and `ahead`.
     sin: S,

@@ -9,7 +9,6 @@ use std::vec::Vec;
 
 type V = [f64; 2];
 
-/// A run and its results.
 struct Run {
     radius_m: f64,
     step_s: f64,
@@ -18,9 +17,7 @@ struct Run {
     door_x: Option<f64>,
     robots: Vec<Robot>,
     time_s: f64,
-    /// Least distance between the borders of two robots.
     clearance_m: f64,
-    /// Least distance between a robot's border and a wall.
     wall_clearance_m: f64,
     /// The direction (eastwards?) of each passage through the door, in order.
     passed: Vec<bool>,
@@ -302,7 +299,6 @@ fn a_robot_behind_a_wall_heads_for_the_door_from_afar() {
     run.robots[0].at = [-4.0, 4.5];
     run.robots[0].goal = [4.0, 4.5];
     assert_eq!(run.until(40.0), 1);
-    // Two doors in a row: first through the nearer one.
     for x in [3.2, 6.6] {
         run.walls.push([[x, -5.0], [x, -0.5]]);
         run.walls.push([[x, 0.5], [x, 5.0]]);

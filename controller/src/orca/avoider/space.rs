@@ -23,7 +23,6 @@ fn floor(distance_m: f64) -> Obstacle<f64> {
     Obstacle::Plane { normal: v(0.0, 0.0, 1.0), distance_m }
 }
 
-/// One step with the default parameters.
 fn fly<const K: usize>(
     body: &Body<f64>,
     wish: V,
@@ -36,7 +35,6 @@ fn fly<const K: usize>(
     solution.velocity_mps
 }
 
-/// The constraint of an obstacle on a robot of `radius_m` with this velocity.
 fn obstacle(own: V, obstacle: &Obstacle<f64>, radius_m: f64, horizon_s: f64) -> Option<HalfSpace<V>> {
     let params = AvoidParams { wall_horizon_s: horizon_s, margin_m: 0.0, ..AvoidParams::default() };
     let body = Body { radius_m, ..body(1, [0.0; 3]) };
@@ -84,7 +82,6 @@ fn swap(starts: &[V], most_s: f64) -> (Option<f64>, f64) {
 
 #[test]
 fn paths_that_cross_in_one_point_are_flown_without_contact() {
-    // Axes of the octahedron and of the cube, and a ring in the plane.
     let mut stars: StdVec<StdVec<V>> = StdVec::new();
     let axis = |i: usize, sign: f64| {
         let mut components = [0.0; 3];
@@ -206,7 +203,6 @@ fn the_margin_applies_to_obstacles() {
     let own = body(1, xyz(down));
     let below = [floor(RADIUS_M + 0.3)];
     let got = avoider.velocity(&own, down, None, &[], &below, &mut rng_of(1, 1));
-    // 0.2 m in a second.
     assert!((got.velocity_mps.z + 0.2).abs() < 1e-9, "{got:?}");
 }
 
@@ -240,7 +236,6 @@ fn obstacles_that_are_not_finite_forbid_nothing() {
     }
 }
 
-/// A vector in the plane with components up to `most`.
 fn flat(most: f64) -> impl Strategy<Value = [f64; 2]> {
     [-most..most, -most..most]
 }
@@ -292,7 +287,6 @@ proptest! {
         wish in flat(0.6),
         acceleration in prop_oneof![Just(f64::MAX), 0.5..8.0_f64],
         nearby in flat_robots(),
-        // Two walls may form a gap, where robots take turns.
         obstacles in flat_obstacles(1),
     ) {
         fn step<const K: usize>(
@@ -315,7 +309,6 @@ proptest! {
         }
         let own = Body { max_acceleration_mps2: acceleration, ..body(1, own) };
         step::<32>(&own, vector(wish), &nearby, &obstacles)?;
-        // Only the nearest count.
         step::<6>(&own, vector(wish), &nearby, &obstacles)?;
     }
 
@@ -378,7 +371,6 @@ proptest! {
             let mut avoider = Avoider::<f32, 4, _>::in_space(AvoidParams::default());
             let got = avoider.velocity(&own, wish, goal, &[other], &[ball], &mut rng_of(1, 1));
             prop_assert!(got.velocity_mps.is_finite(), "{got:?}");
-            // A body that is too fast slows down first.
             prop_assert!(got.velocity_mps.norm() <= 0.5001 || acceleration < 10.0, "{got:?}");
         }
     }

@@ -70,7 +70,6 @@ fn walls_balls_and_planes_stop_a_robot_in_time() {
     for obstacle in obstacles {
         let solution =
             avoider().velocity(&body(1, [0.5, 0.0]), Vec2::new(0.5, 0.0), None, &[], &[obstacle], &mut rng());
-        // 0.25 m in one second.
         let ahead = solution.velocity_mps.x;
         assert!((0.2..0.2501).contains(&ahead), "{obstacle:?} {ahead}");
     }
@@ -207,7 +206,6 @@ proptest! {
             for wish in [Vec2::new(f[0], f[5]), Vec2::new(0.3, 0.1)] {
                 let got = avoider.velocity(&own, wish, goal, &others, &obstacles, &mut rng());
                 prop_assert!(got.velocity_mps.is_finite() && got.penetration_mps.is_finite(), "{got:?}");
-                // A body that is too fast slows down first.
                 let is_bounded = got.velocity_mps.norm() < 0.501 || acceleration < 10.0;
                 prop_assert!(is_bounded, "{got:?}");
             }

@@ -8,7 +8,6 @@ use crate::scalar::Scalar;
 /// door.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gap<S> {
-    /// Its middle, metres.
     pub(super) middle: Vec2<S>,
     /// Unit vector through it, towards the goal.
     pub(super) ahead: Vec2<S>,
@@ -20,11 +19,8 @@ pub(super) struct Gap<S> {
     pub(super) is_only_way: bool,
 }
 
-/// The gaps to look for.
 pub(super) struct Wanted<S> {
-    /// Least width, metres.
     pub(super) least_m: S,
-    /// Greatest width, metres.
     pub(super) most_m: S,
     /// Longest passage among gaps that are not narrow, metres.
     pub(super) deepest_m: S,
@@ -44,7 +40,6 @@ impl<S: Scalar> Gap<S> {
         Vec2::new(if x < S::ZERO { -beyond } else { beyond }, y)
     }
 
-    /// The components of a vector ahead and to the right.
     pub(super) fn turn(&self, vector: Vec2<S>) -> Vec2<S> {
         Vec2::new(vector.dot(self.ahead), -self.ahead.det(vector))
     }
@@ -56,7 +51,6 @@ impl<S: Scalar> Gap<S> {
         self.middle + self.ahead * (place.x + depth) - self.ahead.perp() * place.y
     }
 
-    /// The gap between two wall ends, towards `target`.
     fn between(a: Vec2<S>, b: Vec2<S>, target: Vec2<S>) -> Option<Self> {
         let across = (b - a).perp().normalized()?;
         let middle = (a + b) * S::HALF;
@@ -177,7 +171,6 @@ fn for_each_gap<S: Scalar>(
     }
 }
 
-/// Whether the path from the robot to `target` crosses the segment.
 fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
     let along = b - a;
     let sides = (along.det(-a) > S::ZERO) != (along.det(target - a) > S::ZERO);

@@ -30,7 +30,6 @@ pub struct Patience<S> {
 }
 
 impl<S: Scalar> Patience<S> {
-    /// The state of a robot that has not moved yet.
     pub(in crate::orca) const NEW: Self = Self { course_mps: Vec2::ZERO, left: S::ZERO };
 
     /// Returns the wish, or the velocity to back off with if the robot made no progress in the time

@@ -78,7 +78,6 @@ pub struct RightOfWay<S> {
     /// How long no robot has been seen in the gap, and the limit of that time; as distances that
     /// one could have travelled, own radii.
     idle: Option<(S, S)>,
-    /// Whether the robot was allowed to go in the last step.
     goes: bool,
     is_narrow: bool,
 }
@@ -93,7 +92,6 @@ struct Approach<'a, S: Scalar> {
     is_narrow: bool,
 }
 
-/// The other robots at the gap.
 struct Traffic<S> {
     /// Number of robots on this side that are nearer to the gap.
     rank: i32,
@@ -115,7 +113,6 @@ struct Traffic<S> {
     opposite: bool,
     /// One of those has priority by distance or number.
     opposite_is_nearer: bool,
-    /// Radius of the largest robot.
     largest: S,
 }
 
@@ -123,7 +120,6 @@ impl<S: Scalar> RightOfWay<S> {
     pub(in crate::orca) const NEW: Self =
         Self { last_went_ahead: None, turn_m: S::ZERO, idle: None, goes: false, is_narrow: false };
 
-    /// Whether the robot waits at a gap.
     pub(in crate::orca) const fn waits(&self) -> bool {
         self.idle.is_some() && !self.goes
     }
@@ -233,7 +229,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         self.situation.body.radius_m * S::from_milli(thousandths)
     }
 
-    /// Whether robots can pass each other in the gap.
     fn has_lanes(&self, largest: S) -> bool {
         let two = self.situation.body.radius_m + largest;
         self.gap.half + self.gap.half >= two + two + self.radii(PLAY)
@@ -263,7 +258,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         let tie = self.situation.body.radius_m * S::from_micro(TIE);
         let own_distance = self.own.norm();
         let own_along = self.gap.turn(-self.gap.middle).x;
-        // The nearest robot ahead in the gap.
         let mut next = None;
         for other in self.situation.nearby {
             let is_parked = other.mode.is_parked();
@@ -308,14 +302,12 @@ impl<'a, S: Scalar> Approach<'a, S> {
         traffic
     }
 
-    /// Accounts for a robot that waits before this one.
     fn keep_queue(&self, offset: Vec2<S>, traffic: &mut Traffic<S>) {
         let distance = offset.norm();
         if distance >= self.radii(QUEUE) {
             return;
         }
         traffic.is_behind |= offset.dot(self.gap.middle) > S::ZERO;
-        // The nearest robot comes first.
         if distance < self.radii(APART) && traffic.crowds.is_none() {
             traffic.crowds = Some(offset);
         }
@@ -326,10 +318,8 @@ impl<'a, S: Scalar> Approach<'a, S> {
         let lane = self.lane(has_lanes);
         let play = self.gap.half - self.situation.body.radius_m;
         if self.own.x > S::ZERO {
-            // Out, and to the right.
             Vec2::new(self.radii(4_000), lane + self.radii(300))
         } else if self.own.x < S::ZERO && (self.own.y - lane).abs() > play.max(self.radii(300)) {
-            // Into the lane first.
             Vec2::new(-self.radii(800), lane)
         } else {
             Vec2::new(self.radii(2_000), lane)
@@ -346,7 +336,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         let is_in_lane = own.y.abs() < edge + radius && own.x > -self.radii(YARD);
         if is_in_lane && !has_lanes {
             return Some(if own.x > -self.radii(1_300) {
-                // Back out of the gap.
                 Vec2::new(-self.radii(2_500), spot.y)
             } else {
                 Vec2::new(own.x, spot.y + radius * S::HALF * side)

@@ -16,7 +16,6 @@ pub fn spread<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -> Ve
     if meets_somebody(horizon_s, situation) { turned(situation.body.id, situation.wish) } else { situation.wish }
 }
 
-/// Whether a robot is ahead, and nearer than the goal.
 fn meets_somebody<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -> bool {
     let Some(ahead) = situation.wish.normalized() else {
         return false;

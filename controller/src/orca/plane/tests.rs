@@ -40,7 +40,6 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     let p = params(2.0, 0.5);
     let overlapping = half_plane(V::ZERO, &ball(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(-1.0, 0.0));
-    // 0.5 m of overlap in 0.05 s, half of it ours.
     assert!((overlapping.point.x + 5.0).abs() < 1e-9);
     let tied = |tie: V| {
         let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
@@ -97,7 +96,6 @@ fn copies_of_a_half_plane_change_nothing() {
 #[test]
 fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     let plane = |x: f64, nx: f64| HalfPlane { point: v(x, 0.0), normal: v(nx, 0.0) };
-    // x >= 0.5 and x <= -0.3 contradict each other.
     let planes = [plane(0.5, 1.0), plane(-0.3, -1.0)];
     let soft = solve::<_, 4>(&planes, 0, V::ZERO, 1.0);
     assert!((soft.velocity_mps.x - 0.1).abs() < 1e-9, "{soft:?}");
@@ -121,7 +119,6 @@ fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {
     })
 }
 
-/// The best of many velocities in the disc: least penetration first, then nearest.
 fn oracle(planes: &[HalfPlane<f64>], preferred: V, speed: f64) -> (f64, f64) {
     let steps = 120;
     let mut best = (f64::MAX, f64::MAX);

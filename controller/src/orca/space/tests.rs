@@ -53,7 +53,6 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     let p = params(2.0, 0.5);
     let overlapping = half_space(V::ZERO, &ball(v(0.0, 0.0, 0.5), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(0.0, 0.0, -1.0));
-    // 0.5 m of overlap in 0.05 s, half of it ours.
     assert!((overlapping.point.z + 5.0).abs() < 1e-9);
     let tied = |tie: V| {
         let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
@@ -81,7 +80,6 @@ fn non_finite_input_gives_no_constraint_and_never_spreads() {
     }
     let thin = ball(v(3.0, 0.0, 0.0), V::ZERO, f64::NAN);
     assert_eq!(half_space(V::ZERO, &thin, &p), None);
-    // An invalid speed stops the robot.
     for speed in [0.0, -1.0, f64::NAN] {
         let stopped = solve::<_, 4>(&[], 0, v(1.0, 1.0, 1.0), speed);
         assert_eq!(stopped.velocity_mps, V::ZERO);
@@ -100,7 +98,6 @@ fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     // Contradictions among hard constraints are shared as well.
     let torn = solve::<_, 4>(&spaces, 2, V::ZERO, 1.0);
     assert!((torn.penetration_mps - 0.4).abs() < 1e-9, "{torn:?}");
-    // Constraints beyond the capacity are ignored.
     let one = solve::<_, 1>(&spaces, 0, V::ZERO, 1.0);
     assert_eq!(one.velocity_mps, v(0.0, 0.0, 0.5));
 }
@@ -161,7 +158,6 @@ fn nearest_permitted(spaces: &[HalfSpace<V>], preferred: V, speed: f64) -> Optio
     permitted.map(|at| (at - preferred).norm()).min_by(f64::total_cmp)
 }
 
-/// The least penetration over a grid of velocities in the ball.
 fn least_penetration(spaces: &[HalfSpace<V>], speed: f64) -> f64 {
     let steps = 16;
     let axis = || (-steps..=steps).map(|i| speed * f64::from(i) / f64::from(steps));
