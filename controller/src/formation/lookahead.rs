@@ -92,7 +92,6 @@ impl Course {
     }
 }
 
-/// Length of a vector, rounded down.
 fn length(x: i32, y: i32) -> i32 {
     (x.unsigned_abs().pow(2) + y.unsigned_abs().pow(2)).isqrt().cast_signed()
 }

@@ -81,7 +81,6 @@ pub fn find_neighbors<const F: usize>(
         };
         match seen {
             Some(seen) => {
-                // There is space for every entry.
                 let _ = found.members.push(Member { seen, offset: entry.offset, hops: entry.hops });
             }
             None => {

@@ -120,7 +120,6 @@ fn dot<S: Scalar>(a: Vec2<S>, b: Vec2<S>) -> S {
     a.dot(b)
 }
 
-/// `v * s`.
 #[inline(never)]
 pub(crate) fn scaled<S: Scalar>(v: Vec2<S>, s: S) -> Vec2<S> {
     v * s

@@ -246,7 +246,6 @@ mod tests {
                     let mut held: Vec<u8> = slots.into_iter().flatten().collect();
                     held.sort_unstable();
                     assert!(held.windows(2).all(|pair| pair[0] < pair[1]), "{numbers:?} {dead} {second}: {slots:?}");
-                    // No robot appears in two places.
                     for own in (0..6).filter(|&own| file.is_alive[own]) {
                         let others = (0..6).filter(|&other| other != own);
                         let heard = others.filter_map(|other| Some((RobotId(numbers[other]), slots[other]?)));

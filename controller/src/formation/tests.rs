@@ -19,7 +19,6 @@ fn seen(id: u32, x: i16, y: i16) -> Seen {
     Seen { id: RobotId(id), cell, predicted: cell, heading: Dir::Stay, leader: RobotId::NOBODY, mode: Mode::Cruise }
 }
 
-/// All robots in their places, robot 1 at `top`.
 fn in_place(top: Cell) -> Vec<Seen> {
     (1..).zip(PLACES).map(|(id, place)| seen(id, top.x + place.x, top.y + place.y)).collect()
 }
