@@ -31,7 +31,6 @@ pub struct BetaAgent<S> {
 #[must_use]
 pub fn beta_agent<S: Scalar>(obstacle: &Obstacle<S>, own_velocity_mps: Vec3<S>) -> Option<BetaAgent<S>> {
     let v = own_velocity_mps;
-    // P p.
     let along = |normal: Vec3<S>| v - normal * v.dot(normal);
     let east = Vec3::new(S::ONE, S::ZERO, S::ZERO);
     match *obstacle {

@@ -153,7 +153,6 @@ impl<S: Scalar> BoidsParams<S> {
                 self.towards(aligned, offsets)
             }
         };
-        // One step of Newton's method towards length 1.
         let three_halves = S::ONE + S::HALF;
         next * (three_halves - S::HALF * next.norm_squared())
     }

@@ -293,9 +293,7 @@ struct Law<'a, S> {
     /// Units per metre, 7 / d, and metres per unit.
     units: S,
     metres: S,
-    /// r^2.
     range_squared: S,
-    /// d'.
     obstacle_distance: S,
     phi_alpha: PhiAlpha<S>,
     phi_beta: PhiBeta<S>,

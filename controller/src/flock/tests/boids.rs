@@ -37,7 +37,6 @@ fn alone_a_boid_keeps_its_heading() {
         let far = [flying(2, 150.001, 0.0, 1.0), flying(3, 0.0, -151.0, 1.0)];
         assert!(is_close(paper().turn(OWN, heading, &far), heading));
     }
-    // Exactly at `closest` counts.
     assert!(paper().turn(OWN, 0.0, &[flying(2, 0.0, 150.0, 1.0)]) > 0.0);
 }
 
@@ -65,7 +64,6 @@ fn mean_of_headings_is_taken_on_the_circle() {
 
 #[test]
 fn cohesion_turns_to_the_middle_and_not_away() {
-    // Same heading: only the middle counts.
     let left = [flying(2, 0.0, 100.0, 0.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &left), 0.05));
     let right = [flying(2, 60.0, -100.0, 0.0), flying(3, -60.0, -50.0, 0.0)];
@@ -88,7 +86,6 @@ fn crowded_boids_turn_away_from_the_heading_of_the_nearest() {
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 20.0, 0.0, -1.0)]), 0.02));
     // Exactly at `crowded` is not crowded: it turns to the other.
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 30.0, 0.0, 1.0)]), 0.0));
-    // Head-on: both to the right.
     assert!(is_close(paper().turn(OWN, 0.0, &[near(2, [9.0, 0.0, 0.0], [-2.0, 0.0, 0.0])]), -0.02));
 }
 
@@ -188,7 +185,6 @@ fn others_are_seen_at_their_nearest_image() {
         // Half a turn: each on its own side of the other.
         (place(500_000, 300_000), place(100_000, 0), place(500_000, 300_000)),
         (place(100_000, 0), place(500_000, 300_000), place(100_000, 0)),
-        // Positions that differ by more than 32 bits work.
         (place(i32::MAX, 0), place(i32::MIN, 0), place(i32::MAX, 0)),
     ] {
         assert_eq!(torus.image(other, own), seen, "{other:?} from {own:?}");

@@ -53,7 +53,6 @@ fn goal_pulls_with_its_gain_limited_to_the_speed() {
 
 #[test]
 fn last_step_ends_on_the_goal() {
-    // A step is 2 m/s * 0.02 s = 0.04 m.
     for gain in [1.0, 150.0] {
         let got = wished([gain, 0.0, 0.0], goal(0.01, 0.0, 0.0), &[]);
         assert_close(got * 0.02, [0.01, 0.0, 0.0]);
@@ -183,7 +182,6 @@ fn robot_goes_to_the_middle_then_to_the_goal_it_draws() {
     let index = goals.update(on_edge, 0.5, 1, robot).unwrap();
     assert_eq!(goals.stage(), Stage::Goal(index));
     assert_eq!(goals.current(), Some(goals.as_slice()[index]));
-    // It keeps its goal, and follows it when that moves.
     assert_eq!(goals.update(on_edge, 0.5, 1, robot), None);
     let moved = Position::from_mm([9, 9, 9]);
     assert!(goals.set_goal(index, moved));

@@ -48,7 +48,6 @@ fn sigma_norm_of_the_lattice_distances_is_that_of_the_formula() {
     assert!(is_close(sigma_norm(17.64).sigma, D_BETA));
     assert_eq!(sigma_norm(0.0).sigma, 0.0);
     assert_eq!(sigma_norm(0.0).slope, 1.0);
-    // sqrt(1 + 0.1 * 30) = 2.
     assert!(is_close(sigma_norm(30.0).sigma, 10.0) && is_close(sigma_norm(30.0).slope, 0.5));
 }
 
@@ -136,7 +135,6 @@ fn force_of_an_obstacle_has_its_known_values() {
         assert!((facing(&params, [0.0; 3], wall).x + expected).abs() < 1e-8);
     }
     assert_eq!(facing(&params, [0.0; 3], ball(7.2, 3.0)), V::ZERO, "exactly at d'");
-    // Algorithms 1 and 2 ignore obstacles.
     for algorithm in [Algorithm::One, Algorithm::Two] {
         assert_eq!(facing(&bare(algorithm), [0.0; 3], ball(4.0, 3.0)), V::ZERO);
     }
@@ -315,7 +313,6 @@ fn values_that_are_not_a_number_contribute_nothing() {
             let params = LatticeParams { algorithm, ..params };
             assert_eq!(acceleration(&params, &own, &[good], &[], Some(&reference)), expected);
         }
-        // Own or other velocity unknown: positions still count.
         let mut blind = own;
         blind.velocity_mps.x = f64::NAN;
         let got = acceleration(&params, &blind, &[good], &[ball(4.0, 3.0)], None);
@@ -416,9 +413,7 @@ fn with_turns_no_robot_pushes_one_nearer_to_the_reference() {
         (near(2, [6.3, 0.0, 0.0], [0.0; 3]), 0.5),
         (near(2, [5.6, 0.0, 0.0], [0.0; 3]), 0.0),
         (near(2, [1.0, 0.0, 0.0], [0.0; 3]), 0.0),
-        // Behind.
         (near(2, [-3.5, 0.0, 0.0], [0.0; 3]), 1.0),
-        // Of another flock.
         (Nearby { is_stranger: true, ..near(2, [0.1, 6.9, 0.0], [0.0; 3]) }, 1.0),
     ] {
         let got = pulled(&params, &[other], &reference);

@@ -101,7 +101,6 @@ proptest! {
     fn f32_q16_and_fast32_agree_with_f64(case in case(1.0)) {
         for spacing in [0.5, 7.0] {
             let plain = answer::<f64>(spacing, &case, |v| v);
-            // On the border of the obstacle the force jumps.
             let clear = vec3::<f64>(case.center).norm() - 0.7;
             prop_assume!(clear.abs() > 0.01 && vec3::<f64>(case.center).norm() > 0.01);
             let scale = plain.norm().max(10.0);

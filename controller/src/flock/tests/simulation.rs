@@ -28,11 +28,9 @@ struct Flock {
     delay: usize,
     loss: f64,
     rng: Rng,
-    /// Positions and velocities before each step.
     past: Vec<(Vec<V>, Vec<V>)>,
     /// The step from which robot i knows robot j.
     heard: Vec<Vec<usize>>,
-    /// Least distance of two robots and least clearance of an obstacle so far.
     least_pair: f64,
     least_clearance: f64,
 }
@@ -199,7 +197,6 @@ fn course(seed: u64, square: [f64; 2], goal: [f64; 3], speed: f64, matrix: &[[f6
         steps += 1;
         assert!(steps < 5000, "not all through after 100 s");
         if steps == 100 {
-            // The random start has robots almost in one place.
             flock.least_pair = f64::MAX;
         }
     }
