@@ -23,7 +23,6 @@ pub(super) struct Escape {
     met: Option<u64>,
     /// The number of the direction that is tried first, along a wall.
     first: u8,
-    /// The last move chosen.
     next: Dir,
 }
 

@@ -44,7 +44,6 @@ pub struct CostField<const CELLS: usize> {
     /// Impassability of the easiest land in the window, and whether there are walls.
     easiest: u8,
     has_walls: bool,
-    /// Whether `extra` holds learned costs.
     learns: bool,
     /// The robot's own cell, which routes must not use.
     closed: usize,
@@ -209,7 +208,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         (weights.get(dir) <= here).then_some(dir)
     }
 
-    /// Array index of a cell inside the loaded window.
     fn index(&self, cell: Cell) -> Option<usize> {
         let dx = u16::try_from(i32::from(cell.x) - i32::from(self.origin.x)).ok()?;
         let dy = u16::try_from(i32::from(cell.y) - i32::from(self.origin.y)).ok()?;
@@ -221,7 +219,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.impassability.get(at).is_some_and(|&u| u != BLOCKED)
     }
 
-    /// Copies the part of `window` within the radius and prices its cells.
     #[inline(never)]
     pub(super) fn load(&mut self, params: &RouteParams, window: &Window<'_>, from: Cell) {
         let (origin, width, height) = window.cut(from, params.radius);
@@ -283,14 +280,12 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// One search from one exit, if there is one.
     fn search_from(&mut self, query: &Query<'_>, exit: Option<usize>) {
         self.begin(query);
         exit.into_iter().for_each(|at| self.offer(at, 0));
         self.search(query);
     }
 
-    /// One search from the exits that were offered.
     fn search(&mut self, query: &Query<'_>) {
         // Costs of the exits may lie far from 0: start the ring at the least of them.
         self.at = self.lowest_offer();
@@ -404,7 +399,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Makes a cell an exit of the given price.
     fn offer(&mut self, cell: usize, price: Cost) {
         let Some(known) = self.cost.get_mut(cell) else {
             return;
@@ -416,7 +410,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// The cells of the window's outermost ring.
     fn border(&self) -> impl Iterator<Item = Cell> + use<CELLS> {
         let (origin, width, height) = (self.origin, self.width.cast_signed(), self.height.cast_signed());
         let rows = (0..width).flat_map(move |x| [(x, 0), (x, height - 1)]);
@@ -444,7 +437,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.index(nearest)
     }
 
-    /// Weights of the moves out of the query's cell.
     fn outgoing(&self, query: &Query<'_>) -> Weights {
         self.outgoing_with(query, |at| self.cost.get(at).copied().filter(|&cost| cost != EXCLUDED))
     }

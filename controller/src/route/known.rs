@@ -27,7 +27,6 @@ pub const fn supposed(class: u8) -> u8 {
 /// 6 bytes per cell.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LandMemory<const N: usize> {
-    /// Sorted by cell.
     cells: Seldom<(Cell, u8), N>,
 }
 

@@ -100,7 +100,6 @@ impl Default for RouteParams {
 }
 
 impl RouteParams {
-    /// Whether the land allows the move from `cell`, as far as the window shows it.
     fn opens(&self, window: &Window<'_>, cell: Cell, dir: Dir) -> bool {
         let Cell { x, y } = dir.offset();
         let passable = |dx, dy| window.is_passable(cell + Cell::new(dx, dy));
@@ -115,7 +114,6 @@ impl RouteParams {
     }
 }
 
-/// The cell where the ray from `from` to `target` crosses the border of the square of that radius.
 fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
     let (dx, dy) = (i64::from(target.x) - i64::from(from.x), i64::from(target.y) - i64::from(from.y));
     let longest = dx.abs().max(dy.abs());
@@ -124,6 +122,5 @@ fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
         let half = if d < 0 { -longest } else { longest };
         (2 * d * i64::from(radius) + half).checked_div(2 * longest).unwrap_or(0)
     };
-    // At most the radius in each coordinate.
     from + Cell::new(scale(dx) as i16, scale(dy) as i16)
 }

@@ -60,7 +60,6 @@ pub struct Router<const M: usize, const L: usize = 0> {
     least: u64,
     /// Moves since then.
     idle: u8,
-    /// State of wall following.
     escape: Option<Escape>,
 }
 
@@ -233,7 +232,6 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.plan.last().map(|&(dir, _)| dir).ok_or(Unreachable)
     }
 
-    /// Whether the robot follows the wall, or starts to.
     fn escapes(&self) -> bool {
         let patience = if L == 0 { IDLE } else { IDLE_LEARNING };
         self.escape.is_some() || self.idle > patience

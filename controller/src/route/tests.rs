@@ -178,7 +178,6 @@ fn extreme_gains_neither_close_a_route_nor_take_long() {
     }
 }
 
-/// Reference: Bellman-Ford over the same moves.
 fn oracle(cells: &[u8], width: usize, from: usize, exits: &[(usize, Cost)], params: &RouteParams) -> Vec<u64> {
     let height = cells.len() / width;
     let mut cost = std::vec![u64::MAX; cells.len()];

@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 /// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes per cell.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct VisitMemory<const M: usize> {
-    /// In order of the last entry, oldest first.
     visits: Seldom<(Cell, u8), M>,
 }
 

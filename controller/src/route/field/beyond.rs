@@ -5,7 +5,6 @@ use crate::cost::{Cost, EXCLUDED};
 use crate::grid::{Cell, DIAGONAL};
 use crate::land::Outlook;
 
-/// Knowledge of the land beyond the window.
 #[derive(Clone, Copy, Default)]
 pub(in crate::route) struct Beyond<'a> {
     /// Lower bounds of the cost from some cells.

@@ -1,11 +1,9 @@
 //! The queue of a search: cells in a ring of buckets by cost (Dial 1969), each bucket a linked list
 //! in arrays.
 
-/// Buckets in the ring; a power of two.
 pub(super) const RING: u32 = 64;
 /// End of a list, and "in no bucket". Zero, so that a zeroed queue is an empty one.
 const NIL: u16 = 0;
-/// Maximum number of cells.
 pub(super) const MOST_CELLS: usize = u16::MAX as usize;
 
 /// The name of a cell in the lists: its number plus one.
@@ -60,7 +58,6 @@ impl<const CELLS: usize> Queue<CELLS> {
         self.bucket.get(cell).is_some_and(|&bucket| u16::from(bucket) != NIL)
     }
 
-    /// All cells in the queue, bucket by bucket.
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         let heads = self.heads.iter().copied().filter(|&head| head != NIL);
         let cells = heads.flat_map(|head| {
@@ -92,7 +89,6 @@ impl<const CELLS: usize> Queue<CELLS> {
         self.occupied |= 1 << slot;
     }
 
-    /// Removes a cell from its bucket, if it is in one.
     #[inline]
     pub(super) fn unlink(&mut self, at: usize) {
         let Some(of) = self.bucket.get_mut(at) else {
@@ -120,7 +116,6 @@ impl<const CELLS: usize> Queue<CELLS> {
         }
     }
 
-    /// Removes a cell from the bucket of this number and returns it.
     #[inline]
     pub(super) fn pop(&mut self, bucket: u32) -> Option<usize> {
         let head = self.heads.get((bucket & (RING - 1)) as usize).copied().filter(|&head| head != NIL)?;
