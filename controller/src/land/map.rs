@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 /// Ages up to which the robot's own observations override messages.
 const OWN_STANDS: u8 = AGES >> 2;
-/// log2 of a patch's sides.
 const PATCH_BITS: [u32; 2] = [PATCH_WIDTH.trailing_zeros(), PATCH_HEIGHT.trailing_zeros()];
 
 /// Parameters of a map.
@@ -23,7 +22,6 @@ pub struct MapParams {
 }
 
 impl Default for MapParams {
-    /// 10 minutes.
     fn default() -> Self {
         Self { forget_after: Duration::from_millis(600_000) }
     }
@@ -33,7 +31,6 @@ impl Default for MapParams {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Known {
     pub(super) tile: Tile,
-    /// The robot saw it itself.
     is_own: bool,
     /// The robot saw it itself and has not sent it yet.
     is_news: bool,
@@ -51,7 +48,6 @@ pub struct LandMap<const T: usize> {
     tiles: Seldom<Known, T>,
     /// The south-west tile, a patch's corner.
     origin: Cell,
-    /// When the tiles last aged.
     aged_at: Option<Instant>,
     /// The next patch to be repeated.
     next: u16,
@@ -66,13 +62,11 @@ impl<const T: usize> Default for LandMap<T> {
 }
 
 impl<const T: usize> LandMap<T> {
-    /// log2 of the tiles along each side.
     pub(super) const BITS: u32 = {
         let bits = T.trailing_zeros() >> 1;
         assert!(T == 0 || T == 256 || T == 1024 || T == 4096, "a map has 0, 256, 1024 or 4096 tiles");
         if T == 0 { 0 } else { bits }
     };
-    /// Tiles along each side.
     const SIDE: i16 = if T == 0 { 0 } else { 1 << Self::BITS };
 
     /// Creates a map without known tiles.
@@ -87,7 +81,6 @@ impl<const T: usize> LandMap<T> {
         self.index(at).and_then(|index| self.tiles.get(index)).map_or(Tile::UNKNOWN, |known| known.tile)
     }
 
-    /// The south-west tile of the square.
     pub(super) const fn origin(&self) -> Cell {
         self.origin
     }
@@ -98,7 +91,6 @@ impl<const T: usize> LandMap<T> {
         self.tiles.is_empty()
     }
 
-    /// Index of a tile of the square.
     fn index(&self, at: Cell) -> Option<usize> {
         let inside = |at: i16, origin: i16| (0..i32::from(Self::SIDE)).contains(&(i32::from(at) - i32::from(origin)));
         let mask = Self::SIDE.saturating_sub(1);
@@ -139,7 +131,6 @@ impl<const T: usize> LandMap<T> {
         }
     }
 
-    /// The positions of a square.
     fn places(&self, origin: Cell) -> impl Iterator<Item = Cell> + use<T> {
         (0..Self::SIDE).flat_map(move |y| (0..Self::SIDE).map(move |x| origin + Cell::new(x, y)))
     }
@@ -233,7 +224,6 @@ impl<const T: usize> LandMap<T> {
         Some(patch)
     }
 
-    /// The south-west tiles of the patches.
     fn corners(&self) -> impl Iterator<Item = Cell> + Clone + use<T> {
         let (origin, [x_bits, y_bits]) = (self.origin, PATCH_BITS);
         let rows = 0..Self::SIDE >> y_bits;

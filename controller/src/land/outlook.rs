@@ -11,7 +11,6 @@ use core::fmt::Debug;
 /// 14.1, 14.8, 12.2, 14.3 % at 70, 100, 130, 160 obstacles; with 8, 14.7, 16.2, 12.3, 13.9 %; with
 /// 16, 15.6, 15.4, 12.3, 15.2 %.
 const BELIEVED_16: i64 = 10;
-/// Half the side of a tile, cells.
 const HALF_TILE: u32 = TILE.unsigned_abs() as u32 >> 1;
 /// Rounds of two sweeps each after which the search ends: a path that turns back more often is
 /// priced too high.
@@ -44,9 +43,7 @@ pub struct Outlook<'a> {
     costs: &'a [Cost],
     /// South-west tile.
     origin: Cell,
-    /// log2 of the tiles along each side.
     bits: u32,
-    /// The target's tile.
     target: Cell,
     gains: Gains,
 }
@@ -77,7 +74,6 @@ impl Outlook<'_> {
     }
 }
 
-/// Cost between two tiles across unknown land.
 fn unknown(gains: &Gains, from: Cell, to: Cell) -> Cost {
     let (dx, dy) = (from.x.abs_diff(to.x), from.y.abs_diff(to.y));
     let (longer, shorter) = (u32::from(dx.max(dy)), u32::from(dx.min(dy)));
@@ -122,7 +118,6 @@ impl<const T: usize> Search<T> {
         best < before
     }
 
-    /// Sweeps forth and back over all tiles until nothing changes.
     fn sweep(&mut self, norm: Norm) {
         const BEFORE: [(i32, i32); 4] = [(-1, 0), (-1, -1), (0, -1), (1, -1)];
         const BEHIND: [(i32, i32); 4] = [(1, 0), (1, 1), (0, 1), (-1, 1)];

@@ -72,7 +72,6 @@ fn tiles_outside_the_square_are_forgotten_and_the_rest_stay() {
     seeing(&mut map, at(60, 0), at(58, 0), 4, 7);
     assert_eq!(map.get(at(4, 0)).ticks_16(), Some(48));
     assert_eq!(map.get(at(-5, 0)), Tile::UNKNOWN);
-    // The same positions modulo the side.
     assert_eq!(map.get(at(4 - 32, 0)), Tile::UNKNOWN);
     seeing(&mut map, at(i16::MAX, i16::MIN), at(i16::MAX - 3, i16::MIN), 4, 2);
     assert_eq!(map.get(at(4, 0)), Tile::UNKNOWN);
@@ -121,7 +120,6 @@ fn own_observations_override_messages_until_they_are_old() {
     map.age(&params, Instant::from_micros(4_000_000));
     map.hear(&lie);
     assert_eq!(map.get(at(0, 0)).ticks_16(), Some(512));
-    // One look is enough.
     seeing(&mut map, at(2, 2), at(0, 0), 8, 2);
     assert_eq!([map.get(at(0, 0)), map.get(at(1, 0))].map(Tile::ticks_16), [Some(32); 2]);
 }
@@ -137,7 +135,6 @@ fn a_map_of_capacity_zero_works() {
     map.look(&GAINS, at(9, 9), &mut |_| panic!("it knows nothing"));
 }
 
-/// The surplus of the path from `cell` to `target`.
 fn surplus(map: &Map, cell: Cell, target: Cell) -> Option<i64> {
     let mut surplus = None;
     map.look(&GAINS, target, &mut |outlook| surplus = Some(outlook.surplus(cell)));

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 pub(super) const TILE_BITS: u32 = 2;
 /// Cells along each side of a tile.
 pub const TILE: i16 = 1 << TILE_BITS;
-/// Cells of a tile.
 const CELLS: u32 = 1 << (2 * TILE_BITS);
 /// Number of visible cells from which a tile is known.
 const ENOUGH: u32 = CELLS >> 1;
@@ -71,7 +70,6 @@ impl Tile {
         self.0 >> 4
     }
 
-    /// The number of its price.
     pub(super) const fn level(self) -> u8 {
         self.0 & 0xF
     }
