@@ -53,7 +53,6 @@ struct Peer {
 /// [`Self::import`]; or raise [`Self::set_floor`] above the counters recorded on earlier days.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ReplayGuard<const N: usize> {
-    /// Sorted by sender.
     peers: Vec<Peer, N>,
     /// The least counter accepted from unknown senders.
     floor: u64,

@@ -13,7 +13,6 @@ const START: [u32; 8] =
 pub struct Sha256 {
     state: [u32; 8],
     block: [u8; BLOCK],
-    /// Bytes so far.
     len: u64,
 }
 
@@ -48,7 +47,6 @@ impl Sha256 {
     pub fn finish(mut self) -> [u8; 32] {
         let bits = self.len.wrapping_mul(8).to_be_bytes();
         self.push(0x80);
-        // At most 63 zeros.
         while self.at() != BLOCK - bits.len() {
             self.push(0);
         }
@@ -60,7 +58,6 @@ impl Sha256 {
         hash
     }
 
-    /// Position of the next byte in the block.
     const fn at(&self) -> usize {
         self.len as usize & (BLOCK - 1)
     }
