@@ -183,16 +183,10 @@ impl<'a, S: Scalar> Scene<'a, S> {
         in_the_way.min_by_key(key).unwrap_or(&[])
     }
 
-    /// The evading step.
     fn evade(&self, step: Vec3<S>) -> Vec3<S> {
         let model = self.params.model;
         let longest = self.body.max_speed_mps * self.body.step_s;
-        let mut best = Best {
-            // Stop unless a better step is found.
-            depth: self.depth(Vec3::ZERO, S::MAX),
-            change: u64::MAX,
-            step: Vec3::ZERO,
-        };
+        let mut best = Best { depth: self.depth(Vec3::ZERO, S::MAX), change: u64::MAX, step: Vec3::ZERO };
         // Whether model 1 has tried to step sideways, which is the same step for all zones;
         // vertical zones have another one.
         let (mut has_sidestepped, mut has_sidestepped_upright) = (false, false);

@@ -29,11 +29,7 @@ enum Shape<S> {
     /// Around a robot, a ball or the end of a wall.
     Ball { center: Vec3<S>, radius: S, otherwise: Otherwise<S> },
     /// Behind a plane: a half-space or the side of a wall.
-    Half {
-        normal: Vec3<S>,
-        /// How far the robot is in front of it.
-        room: S,
-    },
+    Half { normal: Vec3<S>, room: S },
 }
 
 /// The exit from the exact centre of a ball. That of a pair of robots takes a sine, and is rarely
@@ -171,7 +167,6 @@ impl<S: Scalar> Zone<S> {
         evading.map(|evading| evading + (step - part))
     }
 
-    /// The part of a step that matters.
     fn part(&self, step: Vec3<S>) -> Vec3<S> {
         if self.is_upright { step.xy().extend(S::ZERO) } else { step }
     }
@@ -224,7 +219,6 @@ fn sideways<S: Scalar>(step: Vec3<S>) -> Vec3<S> {
     left.extend(S::ZERO) * step.norm()
 }
 
-/// Whether a step with this lateral part is straight, within half a degree.
 fn is_straight<S: Scalar>(across: Vec3<S>, step: Vec3<S>) -> bool {
     across.norm() <= step.norm() * S::from_ratio(1, 100)
 }
@@ -249,7 +243,6 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             let distance = center.norm();
             let inwards = step.dot(ahead);
             if distance - radius < inside {
-                // Already inside: no detour.
                 let point = if inwards > S::ZERO { Vec3::ZERO } else { step };
                 let away = (point - center).normalized().unwrap_or(-ahead);
                 return center + away * radius;
@@ -287,12 +280,7 @@ fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<V
         }
     };
     let across = direction - axis * direction.dot(axis);
-    let across = if is_straight(across, direction) {
-        // Straight at it: to the left.
-        sideways(direction)
-    } else {
-        across.normalized()?
-    };
+    let across = if is_straight(across, direction) { sideways(direction) } else { across.normalized()? };
     // The rounding error of a nearly straight step along the axis would lead in.
     let across = (across - axis * across.dot(axis)).normalized()?;
     let width = ((length - along) * (length + along)).sqrt();
@@ -307,7 +295,6 @@ fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
     let sum = distance + radius;
     let over = |x: S| x.checked_div(distance);
     if gap >= S::ZERO && length * length >= gap * sum {
-        // The border is nearer than the end: the tangent.
         let squared = over(gap).zip(over(sum)).map(|(a, b)| a * b);
         return squared.unwrap_or(S::ZERO).sqrt();
     }
@@ -317,6 +304,5 @@ fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
         let far = gap.checked_div(length)? * over(sum)? * S::HALF;
         Some(near + far)
     };
-    // Far inside: straight out.
     terms().map_or(-S::ONE, |cos| cos.clamp(-S::ONE, S::ONE))
 }
