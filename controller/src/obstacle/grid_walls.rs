@@ -43,7 +43,6 @@ pub fn grid_walls<S: Scalar, const K: usize>(
     list::collect(walls.iter().map(|wall| Obstacle::Wall(wall.ends_m)))
 }
 
-/// The nearest walls found so far.
 struct Walls<S, const K: usize> {
     /// South-west corner of the robot's own cell relative to the robot, metres.
     corner_m: Vec2<S>,
@@ -106,7 +105,6 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         }
     }
 
-    /// Adds the wall between two corners of the grid if it is near enough.
     fn add(&mut self, from: Cell, to: Cell) {
         let ends_m = [from, to].map(|corner| {
             let steps = |to: i16, from: i16| S::from_i32(i32::from(to) - i32::from(from));
@@ -114,7 +112,6 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
             self.corner_m + way * self.cell_m
         });
         let [a, b] = ends_m;
-        // Along an axis: the nearest point needs no projection.
         let foot = Vec2::new(S::ZERO.clamp(a.x, b.x), S::ZERO.clamp(a.y, b.y));
         let is_near = foot.norm() <= self.reach_m;
         if !(foot.is_finite() && is_near) {
@@ -200,7 +197,6 @@ mod tests {
         let walls = [[0.0, 1.0, 6.0, 1.0], [0.0, 2.0, 6.0, 2.0]];
         assert_eq!(seen::<8>(&rows, (2.5, 1.25), 9.0), walls);
         assert_eq!(seen::<8>(&rows, (2.5, 1.75), 9.0), [walls[1], walls[0]]);
-        // In reach of neither, and of one only.
         assert!(seen::<8>(&rows, (2.5, 1.25), 0.2).is_empty());
         assert_eq!(seen::<8>(&rows, (2.5, 1.25), 0.3), [walls[0]].map(|[_, y, _, w]| [1.0, y, 4.0, w]));
     }
@@ -209,7 +205,6 @@ mod tests {
     fn beyond_the_window_nothing_is_assumed() {
         assert!(seen::<8>(&["...", "...", "..."], (1.5, 1.5), 9.0).is_empty());
         assert!(seen::<8>(&["###", "###", "###"], (1.5, 1.5), 9.0).is_empty());
-        // Far outside the window, and off the grid.
         assert!(seen::<8>(&[".#", "#."], (400.0, 1.0), 9.0).is_empty());
         assert!(seen::<8>(&[".#", "#."], (1e9, 1.0), 9.0).is_empty());
         let empty = Window::new(&[], Cell::new(10, 20), 0, 0).unwrap();
@@ -249,7 +244,6 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// In other scalars the walls are the same.
         #[test]
         fn f32_and_q16_see_the_same_walls(x in 2.0_f64..10.0, y in 2.0_f64..10.0, seed: u64) {
             let mut rng = Rng::new(seed);
