@@ -29,7 +29,6 @@ impl Q16 {
         self.0
     }
 
-    /// The nearest number to `bits` / 65536 that is in range.
     fn saturating(bits: i64) -> Self {
         Self::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
     }
@@ -39,7 +38,6 @@ impl Q16 {
     }
 }
 
-/// Serializes the bits.
 impl Serialize for Q16 {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         serializer.serialize_i32(self.bits())
@@ -150,7 +148,6 @@ impl Scalar for Q16 {
     }
 
     fn from_micro(micro: i32) -> Self {
-        // 0.065536 in Q34.
         const STEPS_Q34: i64 = 1_125_899_907;
         Self::saturating((i64::from(micro) * STEPS_Q34 + (1 << 33)) >> 34)
     }
@@ -169,7 +166,6 @@ impl Scalar for Q16 {
     }
 
     fn from_f32(value: f32) -> Option<Self> {
-        // The product is exact, and the cast saturates.
         (!value.is_nan()).then(|| Self::from_bits(libm::roundf(value * 65_536.0) as i32))
     }
 

@@ -125,7 +125,6 @@ fn number() -> impl Strategy<Value = f64> {
     prop_oneof![9 => magnitude, 1 => Just(0.0)]
 }
 
-/// Calls every function; the results only have to exist and to satisfy what holds for any bits.
 fn survives<S: Scalar>(a: S, b: S, c: S) {
     let (sum, product) = (a + b, a * b);
     let _ = (sum - c, -product, a.abs(), a.checked_div(b));
