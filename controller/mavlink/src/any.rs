@@ -50,7 +50,6 @@ impl DerefMut for Keyless {
     }
 }
 
-/// Applies `$do` to the format inside.
 macro_rules! each {
     ($any:expr, $wire:ident => $do:expr) => {
         match $any {

@@ -16,10 +16,8 @@ pub const SIGNATURE_LEN: usize = 13;
 
 const START_V1: u8 = 0xFE;
 const START_V2: u8 = 0xFD;
-/// Incompatibility flag: a signature follows the checksum.
 const SIGNED: u8 = 1;
 
-/// The checksum's table, shared by the crate.
 pub(crate) static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
 
 /// The sender of a frame and the frame's sequence number.
@@ -78,7 +76,6 @@ pub enum Scan<'a> {
     },
 }
 
-/// Why bytes are not a frame.
 enum Fault {
     /// More bytes are needed.
     Short,
@@ -126,7 +123,6 @@ pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<RawFrame<'a>> {
     }
 }
 
-/// The frame at the beginning of `bytes`.
 fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
     let (frame, checked, payload, checksum) = match bytes {
         [START_V1, rest @ ..] => {
@@ -177,7 +173,6 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
     if checksum_of(checked.ok_or(Fault::Short)?, payload, extra) == checksum { Ok(frame) } else { Err(Fault::Bad) }
 }
 
-/// Payload, checksum and the frame's length.
 #[expect(clippy::arithmetic_side_effects, reason = "10, 255, 2 and 13 bytes at most")]
 fn body(bytes: &[u8], header: usize, len: u8, is_signed: bool) -> Result<(&[u8], u16, usize), Fault> {
     let end = header + usize::from(len);

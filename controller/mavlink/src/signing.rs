@@ -17,12 +17,9 @@ pub const MONTH: u64 = 30 * 24 * 60 * MINUTE;
 /// The time of timestamp 0: the first second of 2015 (UTC), in seconds since 1970.
 pub const EPOCH_UNIX_S: u64 = 1_420_070_400;
 
-/// Timestamps have 48 bits.
 const LAST_TIMESTAMP: u64 = (1 << 48) - 1;
 const START_V2: u8 = 0xFD;
-/// Incompatibility flag: a signature follows the checksum.
 const SIGNED: u8 = 1;
-/// Length of a header in bytes, before the payload.
 const HEADER: usize = 10;
 
 /// Why a frame was not signed.
@@ -238,7 +235,6 @@ impl<const N: usize> Signing<N> {
         }
     }
 
-    /// The latest timestamp that is accepted.
     fn latest(&self) -> u64 {
         let (base, lead) = self.clock.map_or((self.timestamp, MONTH), |clock| (clock, MINUTE));
         base.saturating_add(self.lead.unwrap_or(lead))
@@ -321,7 +317,6 @@ impl<const N: usize> Signing<N> {
     }
 }
 
-/// The value of a signature of these bytes.
 fn value_of(key: &Key, frame: &[u8], stamp: &[u8; 7]) -> [u8; 6] {
     let mut hash = Sha256::new();
     hash.update(key.as_bytes());

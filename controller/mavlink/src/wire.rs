@@ -266,7 +266,6 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
     Ok(Frame { header, message, tag: None })
 }
 
-/// Boot, sequence and message.
 type Parts = Result<(u8, u16, Message), DecodeError>;
 
 fn body<D: MessageData>(raw: &RawFrame<'_>) -> Result<D, DecodeError> {

@@ -34,7 +34,6 @@ impl<'de, S: Deserialize<'de>, G: Deserialize<'de>> Deserialize<'de> for AnyWire
     }
 }
 
-/// Reads the number of a format, then the format.
 struct Parts<S, G>(PhantomData<(S, G)>);
 
 impl<'de, S: Deserialize<'de>, G: Deserialize<'de>> Visitor<'de> for Parts<S, G> {

@@ -150,7 +150,6 @@ proptest! {
         prop_assert_eq!((found, buffer.len()), (10, 0));
     }
 
-    /// Each flipped bit of a frame is detected.
     #[test]
     fn flipped_bit_is_detected(bit in 0..(8 * 21_usize)) {
         let mut bytes = framed(&goal(77));

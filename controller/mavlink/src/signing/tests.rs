@@ -130,7 +130,6 @@ fn timestamps_catch_up_with_received_ones() {
     assert_eq!(judged(&mut young, &heard), Verdict::Authentic);
     let accepted = signed(&mut young, &heartbeat(2, 1));
     assert_eq!(judged(&mut old, &accepted), Verdict::Authentic);
-    // A sender with another key.
     let mut liar = Signing::<2>::new(Key::of_passphrase(b"another"), 0, NOW + MINUTE);
     let before = young.timestamp();
     assert_eq!(judged(&mut young, &signed(&mut liar, &heartbeat(3, 0))), Verdict::Forged);

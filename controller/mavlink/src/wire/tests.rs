@@ -16,7 +16,6 @@ fn framed(header: Header, message: &Message) -> Bytes {
     out
 }
 
-/// A frame of arbitrary `data`.
 fn raw(data: &impl MessageData) -> Bytes {
     let mut out = Vec::new();
     let sender = Sender { system: 7, component: COMPONENT, sequence: 0 };
