@@ -52,7 +52,6 @@ impl<S: Scalar> Encoder<S> {
         S::from_i32(turns) * self.rim_m + self.place(in_turn) - self.place(before)
     }
 
-    /// Position on the rim, metres.
     fn place(&self, in_turn: i32) -> S {
         let part = S::from_i32(in_turn).checked_div(S::from_i32(self.ticks_per_turn.into()));
         part.unwrap_or(S::ZERO) * self.rim_m
@@ -69,7 +68,6 @@ impl<S: Scalar> Encoder<S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Odometry<S> {
     position: Position,
-    /// The remainder below a millimetre.
     rest_m: Vec2<S>,
     heading_rad: S,
     twist: Twist<S>,

@@ -27,7 +27,6 @@ const TICKS_PER_TURN: u16 = 1200;
 
 type Power = common::Channel<MAX_DUTY>;
 
-/// A direction pin.
 #[derive(Clone, Default)]
 struct Ahead(Rc<Cell<bool>>);
 
@@ -53,11 +52,9 @@ fn q(value: f64) -> Q16 {
 
 #[test]
 fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
-    // The world.
     let pins: [(Power, Ahead); 3] = Default::default();
     let wheels = Omni::<f64, 3>::new(0.3, ARM_M).unwrap();
     let (mut place, mut heading, mut ways) = (Vec2::new(0.0, 0.0), 1.0f64, [0.0f64; 3]);
-    // The robot.
     let limits = Limits { speed_mps: q(0.6), acceleration_mps2: q(2.0) };
     let mut mixer = Mixer::new(Omni::<Q16, 3>::new(q(0.3), q(ARM_M)).unwrap(), limits).unwrap();
     let linear = Calibration::linear(q(FULL_MPS));

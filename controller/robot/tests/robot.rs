@@ -144,7 +144,6 @@ impl Body {
     fn counts(&self) -> [u16; 2] {
         let ticks =
             |way: f64| (way / (core::f64::consts::TAU * WHEEL_M) * f64::from(TICKS_PER_TURN)).floor() as i64 as u16;
-        // The right one counts down.
         [ticks(self.ways[0]), ticks(-self.ways[1])]
     }
 
@@ -188,7 +187,6 @@ fn crossing(from: Vec2<f64>, ahead: Vec2<f64>, [a, b]: [Vec2<f64>; 2]) -> Option
     (range >= 0.0 && (0.0..=1.0).contains(&part)).then_some(range)
 }
 
-/// A robot's firmware.
 struct Firmware<G: Guidance<f32>> {
     agent: Agent<f32, G, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>>,
     workspace: G::Workspace,

@@ -73,7 +73,6 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         &self.kinematics
     }
 
-    /// Limits the speeds.
     fn slowed(&self, rims_mps: [S; W]) -> [S; W] {
         let top = self.limits.speed_mps;
         let mut rims = rims_mps.iter();

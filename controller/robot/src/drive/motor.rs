@@ -141,7 +141,6 @@ impl<P: SetDutyCycle> Motor for HBridge<P> {
     }
 }
 
-/// The duty's magnitude in [0, `max`], rounded to nearest.
 fn scaled(duty: i16, max: u16) -> u16 {
     let full = u32::from(FULL.unsigned_abs());
     let power = u32::from(duty.unsigned_abs()).min(full);

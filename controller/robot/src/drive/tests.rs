@@ -286,7 +286,6 @@ proptest! {
     }
 }
 
-/// Motors on mocked pins.
 mod pins {
     use super::*;
     use embedded_hal_mock::eh1::MockError;
@@ -358,7 +357,6 @@ mod pins {
         let (mut ahead, mut back) = motor.release();
         ahead.done();
         back.done();
-        // If it fails, the other side stays off.
         let idle = Pwm::new(&[PwmStep::set_duty_cycle(0).with_error(failed())]);
         let mut motor = HBridge::new(Pwm::new(&[]), idle);
         assert_eq!(motor.set(FULL), Err(failed()));

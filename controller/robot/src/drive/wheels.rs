@@ -37,7 +37,6 @@ impl<S: Scalar> Calibration<S> {
         })
     }
 
-    /// The duty's magnitude; `None` for zero.
     fn power(&self, rim_mps: S) -> Option<i16> {
         let speed = rim_mps.abs();
         if !(speed > self.still_mps && speed > S::ZERO && rim_mps.is_finite()) {
@@ -83,7 +82,6 @@ impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
         let motors = self.motors.iter_mut().zip(rims_mps);
         for ((motor, calibration), rim) in motors {
             if let Err(error) = motor.set(calibration.duty(*rim)) {
-                // Further errors are not reported.
                 let _ = self.stop();
                 return Err(error);
             }

@@ -4,7 +4,6 @@ use super::{Counts, Framing, Receiver, Sender};
 use embedded_io::{Read, ReadReady, Write, WriteReady};
 use staya_controller::wire::Postcard;
 
-/// Bytes that one call moves at a time.
 pub(super) const PIECE: usize = 32;
 
 /// Frames of the wire format `F` over a line `U`. `IN` and `OUT` are the buffer sizes in bytes for

@@ -44,7 +44,6 @@ impl Counts {
     const NONE: Self = Self { frames: 0, refused: 0, dropped: 0, line_errors: 0 };
 }
 
-/// Adds to a counter, saturating.
 fn count(counter: &mut u32, more: usize) {
     *counter = counter.saturating_add(u32::try_from(more).unwrap_or(u32::MAX));
 }

@@ -59,7 +59,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
             }
             let room = N.saturating_sub(self.bytes.len());
             let (piece, later) = rest.split_at_checked(room).unwrap_or((rest, &[]));
-            // It fits.
             let _ = self.bytes.extend_from_slice(piece);
             rest = later;
             self.sort();
@@ -140,7 +139,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// Classifies the received bytes.
     fn sort(&mut self) {
         loop {
             let coming = self.bytes.get(self.whole..).unwrap_or_default();

@@ -22,7 +22,6 @@ pub struct Sender<F, const N: usize> {
 }
 
 impl<F: Framing, const N: usize> Sender<F, N> {
-    /// Length of a delimiter.
     const END: usize = F::DELIMITER.is_some() as usize;
 
     /// Creates an empty sender.
@@ -100,7 +99,6 @@ impl<F: Framing, const N: usize> Sender<F, N> {
             count(&mut self.counts.dropped, usize::from(oldest > Self::END));
             remove(&mut self.bytes, self.begun, oldest);
         }
-        // It fits now.
         let _ = self.bytes.extend_from_slice(frame);
     }
 

@@ -125,7 +125,6 @@ mod each {
         let mut receiver = Receiver::<F, 512>::new();
         let whole = frame::<F>(5);
         receiver.push(&whole[..3]);
-        // The delimiter may be missing.
         let end = usize::from(F::DELIMITER.is_some());
         receiver.push_packet(&whole[..whole.len() - end]);
         receiver.push_packet(&stream::<F>([6, 7]));
@@ -220,7 +219,6 @@ mod each {
         let mut link = PacketLink::<Uart, F, 512, 256>::new(uart);
         link.send(&stream::<F>([4, 5]));
         link.pump().unwrap();
-        // In the middle of a frame, both ways.
         link.line_mut().read_fails = true;
         link.line_mut().write_fails = true;
         assert_eq!(link.pump(), Err(ErrorKind::InvalidData));
@@ -305,7 +303,6 @@ mod each {
         use core::{future::Future, pin::pin, task::Context, task::Poll, task::Waker};
         let inbound = stream::<F>([1, 2, 3]);
         let mut reads: Vec<_> = inbound.chunks(4).map(|c| Ok(c.to_vec())).collect();
-        // An error within the second frame, and a line that reports its end.
         reads.insert(inbound.len() / 8, Err(ErrorKind::Other));
         reads.push(Ok(Vec::new()));
         let room = |len: usize| Ok(std::vec![0; len]);

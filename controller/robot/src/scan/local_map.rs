@@ -41,7 +41,6 @@ impl Default for MapParams {
     }
 }
 
-/// The state of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Known {
     /// Evidence of an obstacle.
@@ -221,7 +220,6 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         true
     }
 
-    /// Updates the evidence with the observations of the scan.
     fn judge(&mut self) {
         let params = self.params;
         for known in self.known.as_flattened_mut() {

@@ -80,7 +80,6 @@ pub fn outline<S: Scalar, const K: usize>(
     obstacles
 }
 
-/// A wall that may grow.
 struct Sleeve<S> {
     first: Vec2<S>,
     last: Vec2<S>,

@@ -25,7 +25,6 @@ fn look(map: &mut LocalMap, heading: f64, scan: &Scan<'_, f64>) {
     assert!(map.observe(&FRAME, middle(), heading, scan, NOW, |_| false));
 }
 
-/// Blocked cells, relative to the robot's.
 fn blocked<const SIDE: usize>(map: &LocalMap<SIDE>) -> Vec<(i16, i16)> {
     let window = map.window().unwrap();
     let cells = window.cells().iter().zip(0i16..);
@@ -44,7 +43,6 @@ fn the_second_hit_blocks_a_cell_and_the_beam_clears_it_when_it_is_gone() {
     assert_eq!(blocked(&map), [(3, 0)]);
     look(&mut map, 0.0, &scan(0.0, 0.0, &open));
     assert!(blocked(&map).is_empty());
-    // At the ceiling it takes ten scans.
     for _ in 0..50 {
         look(&mut map, 0.0, &scan(0.0, 0.0, &wall));
     }
@@ -305,7 +303,6 @@ fn misses(found: &[Obstacle<f64>], scan: &Scan<'_, f64>, heading: f64) -> f64 {
 proptest! {
     #[test]
     fn walls_miss_no_hit_by_more_than_the_tolerance(ranges in proptest::collection::vec(0.06f64..5.0, 1..60), wobble in 0.0f64..2.0, heading in -4.0f64..4.0) {
-        // From noise to a smooth room.
         let room = room::<60>();
         let ranges: Vec<f64> = ranges.iter().zip(room).map(|(noise, room)| room + (noise - 2.5) * wobble * wobble * wobble / 50.0).collect();
         let scan = scan(0.1, core::f64::consts::TAU / 60.0, &ranges);

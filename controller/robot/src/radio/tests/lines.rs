@@ -6,7 +6,6 @@ pub use halves::half;
 use std::collections::VecDeque;
 use std::vec::Vec;
 
-/// A UART whose readiness and errors the test controls.
 #[derive(Default)]
 pub struct Uart {
     pub inbound: VecDeque<u8>,
