@@ -24,7 +24,6 @@ pub const VERSION: u16 = 1;
 /// Length of the header in bytes, before the components.
 pub const HEADER_LEN: usize = 48;
 const MAGIC: [u8; 4] = *b"FVM\0";
-/// Offset of the checksum.
 const CHECKED: usize = 44;
 /// Without a table: slower once, instead of 1 KiB of flash permanently.
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);

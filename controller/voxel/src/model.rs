@@ -55,7 +55,6 @@ impl<S: Scalar> Local<S, 2> {
 /// Size of the model itself: about 8 + 13 V bytes (`f32`); nothing is copied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model<'a, S, const V: usize> {
-    /// The components, node by node.
     nodes: &'a [u8],
     /// Length in bytes of a component, and of a node.
     component_len: usize,
@@ -71,7 +70,6 @@ pub struct Model<'a, S, const V: usize> {
 struct Axis<S> {
     first: S,
     per_step: S,
-    /// The last node.
     last: i32,
     /// Index distance of neighbouring nodes along this axis.
     stride: usize,
@@ -262,14 +260,12 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
 }
 
 impl<S: Scalar> Axis<S> {
-    /// Steps from the first node; `None` outside.
     #[inline]
     fn steps(&self, x: S) -> Option<S> {
         let is_inside = x >= self.first && x <= self.high;
         is_inside.then(|| (x - self.first) * self.per_step)
     }
 
-    /// The node `index` nodes further along this axis.
     #[inline]
     fn advance(&self, node: usize, index: i32) -> Option<usize> {
         Some(node.saturating_add(usize::try_from(index).ok()?.saturating_mul(self.stride)))

@@ -94,7 +94,6 @@ fn invalid_models_return_their_error() {
         change(&mut bytes);
         Model::<f32, 2>::from_bytes(&bytes).unwrap_err()
     };
-    // A sealed header with another field.
     let field = |at: usize, value: &[u8]| {
         refused(&|bytes| {
             bytes[at..at + value.len()].copy_from_slice(value);
