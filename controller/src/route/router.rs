@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Moves in a plan; a longer route is planned again after this many.
 pub const PLAN: usize = 32;
 
-/// Moves without approaching the target closer than before after which the robot follows the wall,
-/// if it cannot learn.
+/// Number of moves without a new least distance to the target after which the robot follows the
+/// wall, if it cannot learn.
 const IDLE: u8 = 20;
 /// The same limit for a robot that learns; higher, as learning is usually the shorter solution.
 const IDLE_LEARNING: u8 = 100;
