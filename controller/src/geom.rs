@@ -1,4 +1,5 @@
-//! Vectors in the plane and in space. Degenerate geometry is a value, never a NaN in disguise.
+//! Vectors in the plane and in space. Degenerate geometry returns `None` or a defined value, never
+//! a hidden NaN.
 
 use crate::scalar::{Scalar, cast};
 use core::fmt::Debug;
@@ -32,7 +33,7 @@ pub struct Vec3<S> {
 }
 
 impl<S> Vec2<S> {
-    /// The vector with these components.
+    /// Creates a vector from its components.
     #[must_use]
     pub const fn new(x: S, y: S) -> Self {
         Self { x, y }
@@ -40,14 +41,15 @@ impl<S> Vec2<S> {
 }
 
 impl<S> Vec3<S> {
-    /// The vector with these components.
+    /// Creates a vector from its components.
     #[must_use]
     pub const fn new(x: S, y: S, z: S) -> Self {
         Self { x, y, z }
     }
 }
 
-/// What algorithms of any dimension need of [`Vec2`] and [`Vec3`]; each has the same methods of its own.
+/// The operations that algorithms of any dimension need of [`Vec2`] and [`Vec3`]; both types also
+/// have them as methods.
 #[expect(missing_docs, reason = "the vectors' own methods document them")]
 pub trait Vector:
     Copy
@@ -67,7 +69,7 @@ pub trait Vector:
     fn is_finite(self) -> bool;
 }
 
-/// What both kinds of vectors can do, written once over their components.
+/// The operations of both vector types, written once over their components.
 macro_rules! impl_vector {
     ($vector:ident { $($c:ident),+ }, $padded:expr) => {
         impl<S: Scalar> $vector<S> {
@@ -113,10 +115,10 @@ macro_rules! impl_vector {
                 Some(Vec3::new(x, y, z).into())
             }
 
-            /// The vector itself if it is at most `max` long, else shortened to `max`.
+            /// The vector itself if it is at most `max` long, otherwise shortened to `max`.
             ///
-            /// Zero when a component is not finite or `max` is not positive: a command that makes
-            /// no sense moves nobody.
+            /// Zero if a component is not finite or `max` is not positive, so that an invalid
+            /// command causes no motion.
             #[must_use]
             pub fn clamp_norm(self, max: S) -> Self {
                 let sensible = self.is_finite() && max > S::ZERO;
@@ -218,7 +220,7 @@ impl<S: Scalar> From<Vec3<S>> for Vec2<S> {
 }
 
 impl<S: Scalar> Vec2<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Vec2<T> {
         Vec2 { x: cast(self.x), y: cast(self.y) }
@@ -250,13 +252,13 @@ impl<S: Scalar> Vec2<S> {
 }
 
 impl<S: Scalar> Vec3<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Vec3<T> {
         Vec3 { x: cast(self.x), y: cast(self.y), z: cast(self.z) }
     }
 
-    /// The vector of so many thousandths: metres from millimetres.
+    /// Converts from thousandths, such as millimetres to metres.
     #[must_use]
     pub fn from_milli(milli: [i32; 3]) -> Self {
         let [x, y, z] = milli.map(S::from_milli);
@@ -280,10 +282,11 @@ impl<S: Scalar> Vec3<S> {
     }
 }
 
-/// A place in the world in whole millimetres, within 2147 km of the shared origin along each axis.
+/// A position in the world in whole millimetres, within 2147 km of the shared origin along each
+/// axis.
 ///
-/// Integers, because a float of 32 bits knows a place 1000 km from the origin to 6 cm only, and fixed
-/// point ends at 32 km. Everything else is computed from differences, which are small.
+/// It uses integers, because 32-bit floats have a resolution of only 6 cm 1000 km from the origin,
+/// and fixed point ends at 32 km. Everything else is computed from differences, which are small.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Position {
@@ -295,20 +298,20 @@ impl Position {
     /// The shared origin.
     pub const ORIGIN: Self = Self::from_mm([0; 3]);
 
-    /// The place with these coordinates in millimetres.
+    /// The position with these coordinates in millimetres.
     #[must_use]
     pub const fn from_mm(mm: [i32; 3]) -> Self {
         Self { mm }
     }
 
-    /// The place at these coordinates in metres, rounded to millimetres, saturating; `None` when one of them is
-    /// not a number. For hosts and start-up (see [`Scalar::from_f64`]).
+    /// The position at these coordinates in metres, rounded to millimetres, saturating; `None` if
+    /// one of them is not a number. For hosts and start-up (see [`Scalar::from_f64`]).
     #[must_use]
     pub fn from_metres([x, y, z]: [f64; 3]) -> Option<Self> {
         Self::ORIGIN.moved(Vec3::new(x, y, z))
     }
 
-    /// The way from `other` to here, metres. Exact up to the scalar's own precision; saturates.
+    /// The vector from `other` to here, metres. Exact up to the scalar's own precision; saturates.
     #[must_use]
     pub fn since<S: Scalar>(self, other: Self) -> Vec3<S> {
         let [a, b, c] = self.mm;
@@ -317,7 +320,7 @@ impl Position {
         Vec3::new(way(a, x), way(b, y), way(c, z))
     }
 
-    /// The place so far from here, metres; saturates, `None` when `way_m` is not a number.
+    /// The position moved by `way_m`, metres; saturates, `None` if `way_m` is not a number.
     #[must_use]
     pub fn moved<S: Scalar>(self, way_m: Vec3<S>) -> Option<Self> {
         let [x, y, z] = self.mm;
@@ -351,7 +354,7 @@ mod tests {
     }
 
     #[test]
-    fn senseless_vectors_and_limits_clamp_to_zero() {
+    fn invalid_vectors_and_limits_clamp_to_zero() {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let v = Vec3::new(1.0, bad, 0.0);
             assert!(!v.is_finite() && v.normalized().is_none());
@@ -379,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn quarter_turns_go_counter_clockwise() {
+    fn quarter_turns_are_counter_clockwise() {
         let east = Vec2::new(1.0f32, 0.0);
         let north = Vec2::new(0.0, 1.0);
         assert_eq!(east.perp(), north);
@@ -482,7 +485,7 @@ mod tests {
         }
 
         #[test]
-        fn clamped_vectors_are_finite_whatever_the_bits(bits: [u32; 3], limit: u32) {
+        fn clamped_vectors_are_finite_for_any_bits(bits: [u32; 3], limit: u32) {
             let [x, y, z] = bits.map(f32::from_bits);
             let clamped = Vec3::new(x, y, z).clamp_norm(f32::from_bits(limit));
             prop_assert!(clamped.is_finite());

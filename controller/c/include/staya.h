@@ -1,15 +1,19 @@
-/* Staya's controller in C: swarm control that runs on the robot. Generated from controller/c/src; docs/c.md has a tour.
+/* Staya's controller in C: swarm control that runs on the robot. Generated from controller/c/src;
+ * docs/c.md has a tour.
  *
- * Conventions. SI units, the unit in each name; times are microseconds of the robot's own clock. World frame: x east, y north, z up.
- * Every function answers with a StayaStatus, whose name and text there are functions for. Fields and arguments that name one of
- * several are integers, and their enums stand here.
+ * Conventions. SI units, with the unit in each name; times are microseconds of the robot's own
+ * clock. World frame: x east, y north, z up. Every function returns a StayaStatus; two functions
+ * give its name and text. Fields and arguments that select one of several choices are integers;
+ * their enums are declared here.
  *
- * What is checked: null pointers, their alignment, the size of memory, every number that must be sound, and that an agent was made
- * where one is used. What is up to you: pointers that are not null lead to memory of yours that holds what the function's types say
- * (anything, even zeros, where something is written); nobody else, neither an interrupt nor another task, uses it during the call;
- * arrays do not overlap what is written, but for the same argument.
+ * Checked by the library: null pointers, their alignment, the size of memory, the validity of
+ * numbers, and that an agent exists where one is used. Required of the caller: a pointer that is
+ * not null points to memory that holds what the function's types say (anything, even zeros, where
+ * something is written); neither an interrupt nor another task uses this memory during the call;
+ * arrays do not overlap memory that is written, except within the same argument.
  *
- * No function allocates, calls back, waits or panics, and none has state of its own: two robots in one program are two agents.
+ * Functions do not allocate, call back, wait or panic, and have no state of their own: two robots
+ * in one program are two agents.
  */
 
 #ifndef STAYA_H
@@ -28,67 +32,67 @@
 
 
 /**
- * Bytes that are enough for an agent of any build of the library, its scratch memory included.
+ * Bytes that suffice for an agent in any build of the library, including its scratch memory.
  */
 #define STAYA_AGENT_SIZE 10240
 
 /**
- * Bytes that are enough for one of a library without the features `auth` and `grid`.
+ * Bytes that suffice for an agent if the library lacks the features `auth` and `grid`.
  */
 #define STAYA_AGENT_SIZE_IN_PLANE 3328
 
 /**
- * How memory for agents and avoiders must be aligned, bytes.
+ * Alignment of the memory for agents and avoiders, bytes.
  */
 #define STAYA_ALIGN 8
 
 /**
- * Waypoints that an agent has room for.
+ * Maximum number of waypoints of an agent.
  */
 #define STAYA_WAYPOINTS 4
 
 /**
- * Neighbours that an agent knows at most.
+ * Maximum number of neighbours of an agent.
  */
 #define STAYA_NEIGHBORS 16
 
 /**
- * Bytes that are enough for an avoider.
+ * Bytes that suffice for an avoider.
  */
 #define STAYA_ORCA_SIZE 256
 
 /**
- * Robots that a behaviour by itself takes into account: the nearest of all that it is told of.
+ * Maximum number of robots that these behaviours consider: the nearest of all that are given.
  */
 #define STAYA_NEARBY 16
 
 /**
- * Bytes that one step can send.
+ * Maximum number of bytes that one step can send.
  */
 #define STAYA_OUTBOX 256
 
 /**
- * Events that one step can report.
+ * Maximum number of events that one step can report.
  */
 #define STAYA_EVENTS 8
 
 /**
- * Bytes of StayaOutputs, on every machine.
+ * Size of StayaOutputs in bytes, on every machine.
  */
 #define STAYA_OUTPUTS_SIZE 444
 
 /**
- * Bytes of a swarm's key.
+ * Length of a swarm's key in bytes.
  */
 #define STAYA_KEY 32
 
 /**
- * Bytes of a StayaSetup, on every machine.
+ * Size of a StayaSetup in bytes, on every machine.
  */
 #define STAYA_SETUP_SIZE 400
 
 /**
- * Entries of a formation's template.
+ * Maximum number of entries in a formation's template.
  */
 #define STAYA_TEMPLATE 8
 
@@ -98,7 +102,8 @@
 #define STAYA_MAX_RADIUS 5
 
 /**
- * What a function answers. Nothing has changed unless it is `STAYA_STATUS_OK`, but for `staya_init`, which then leaves no agent.
+ * The result of a function. Unless it is `STAYA_STATUS_OK` nothing has changed, except that
+ * `staya_init` then leaves no agent.
  */
 enum StayaStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -106,15 +111,16 @@ enum StayaStatus
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * It is done.
+     * Success.
      */
     STAYA_STATUS_OK = 0,
     /**
-     * A pointer that is needed is null, or is null with a length above 0.
+     * A required pointer is null, or null with a length above 0.
      */
     STAYA_STATUS_NULL = 1,
     /**
-     * A pointer is not aligned as its type asks; memory for agents and avoiders: by STAYA_ALIGN.
+     * A pointer is not aligned as its type requires; memory for agents and avoiders: to
+     * STAYA_ALIGN.
      */
     STAYA_STATUS_ALIGNMENT = 2,
     /**
@@ -122,7 +128,7 @@ enum StayaStatus
      */
     STAYA_STATUS_MEMORY_SIZE = 3,
     /**
-     * There is no agent, or no avoider, in this memory: call `staya_init`, or `staya_orca_init`.
+     * This memory does not hold an agent or avoider: call `staya_init` or `staya_orca_init`.
      */
     STAYA_STATUS_NOT_THERE = 4,
     /**
@@ -130,7 +136,7 @@ enum StayaStatus
      */
     STAYA_STATUS_VERSION = 5,
     /**
-     * The robot's number is 0, which is nobody.
+     * The robot's number is 0; numbers begin at 1.
      */
     STAYA_STATUS_NOBODY = 6,
     /**
@@ -138,15 +144,15 @@ enum StayaStatus
      */
     STAYA_STATUS_NUMBER = 7,
     /**
-     * A field that names one of several has another number.
+     * A field that selects one of several choices has an invalid number.
      */
     STAYA_STATUS_CHOICE = 8,
     /**
-     * The library was built without it: see its features.
+     * The library was built without this feature.
      */
     STAYA_STATUS_NOT_BUILT = 9,
     /**
-     * The guidance law has no use for this task.
+     * The guidance law does not support this order.
      */
     STAYA_STATUS_TASK = 10,
     /**
@@ -154,19 +160,19 @@ enum StayaStatus
      */
     STAYA_STATUS_SEARCH = 11,
     /**
-     * More of them than there is room for.
+     * There are more elements than fit.
      */
     STAYA_STATUS_TOO_MANY = 12,
     /**
-     * The window has no width or no height, or a graph or a template makes no sense.
+     * The window has no width or no height, or a graph or a template is invalid.
      */
     STAYA_STATUS_SHAPE = 13,
     /**
-     * The robot has no such parameter, or the value is out of its range, or does not go with the others.
+     * The robot does not have this parameter, or the value is out of range or contradicts others.
      */
     STAYA_STATUS_PARAMETER = 14,
     /**
-     * There is no such name or number.
+     * The name or number does not exist.
      */
     STAYA_STATUS_UNKNOWN = 15,
 };
@@ -179,7 +185,7 @@ typedef int32_t StayaStatus;
 #endif // __cplusplus
 
 /**
- * How a robot goes: its guidance law.
+ * Guidance law: how a robot moves.
  */
 enum StayaLaw
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -187,15 +193,17 @@ enum StayaLaw
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Straight to its waypoint, `speed_mps`, until it is within `tolerance_m`.
+     * Straight to its waypoint at `speed_mps`, until it is within `tolerance_m`.
      */
     STAYA_LAW_WAYPOINT = 0,
     /**
-     * The alpha flock (R. Olfati-Saber 2006): equal distances, and waypoint 0, if there is one, as its reference.
+     * The alpha flock (R. Olfati-Saber 2006): equal distances, with waypoint 0, if present, as the
+     * reference.
      */
     STAYA_LAW_LATTICE = 1,
     /**
-     * The goal flock (V. E. and V. V. Pavlovsky): to the middle of the waypoints together, then each to one of them.
+     * The goal flock (V. E. and V. V. Pavlovsky): together to the middle of the waypoints, then
+     * each robot to one of them.
      */
     STAYA_LAW_GOAL_FLOCK = 2,
     /**
@@ -203,19 +211,19 @@ enum StayaLaw
      */
     STAYA_LAW_BOIDS = 3,
     /**
-     * Across land in cells (A. V. Kuznetsov 2017), by velocities.
+     * A route across land in cells (A. V. Kuznetsov 2017), with velocities as commands.
      */
     STAYA_LAW_ROUTE = 4,
     /**
-     * The same, keeping a formation.
+     * A formation across land in cells, with velocities as commands.
      */
     STAYA_LAW_FORMATION = 5,
     /**
-     * Across land in cells, by moves from cell to cell.
+     * A route across land in cells, with moves from cell to cell as commands.
      */
     STAYA_LAW_ROUTE_ON_GRID = 6,
     /**
-     * The same, keeping a formation.
+     * A formation across land in cells, with moves from cell to cell as commands.
      */
     STAYA_LAW_FORMATION_ON_GRID = 7,
 };
@@ -228,7 +236,7 @@ typedef uint8_t StayaLaw;
 #endif // __cplusplus
 
 /**
- * What keeps a robot clear of others: its safety layer. Robots that move from cell to cell have none.
+ * Safety layer: how a robot keeps clear of others. Robots that move from cell to cell have none.
  */
 enum StayaSafety
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -236,7 +244,7 @@ enum StayaSafety
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Nothing.
+     * No safety layer.
      */
     STAYA_SAFETY_NONE = 0,
     /**
@@ -244,15 +252,15 @@ enum StayaSafety
      */
     STAYA_SAFETY_ORCA = 1,
     /**
-     * The same with half-planes from a table of 2 KiB.
+     * ORCA in the plane with half-planes from a table of 2 KiB.
      */
     STAYA_SAFETY_ORCA_TABLE = 2,
     /**
-     * ORCA in space, for robots that fly.
+     * ORCA in space, for flying robots.
      */
     STAYA_SAFETY_FLY = 3,
     /**
-     * Push-out: only against where others are now.
+     * Push-out: considers only the present positions of others.
      */
     STAYA_SAFETY_PUSH_OUT = 4,
 };
@@ -265,7 +273,7 @@ typedef uint8_t StayaSafety;
 #endif // __cplusplus
 
 /**
- * How robots speak; the same for all of a swarm.
+ * Wire format; the same for all robots of a swarm.
  */
 enum StayaWire
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -273,15 +281,17 @@ enum StayaWire
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * The controller's own frames, at most 60 bytes, each with a zero byte behind it.
+     * The controller's own frames of at most 60 bytes, each followed by a zero byte.
      */
     STAYA_WIRE_POSTCARD = 0,
     /**
-     * MAVLink 2 frames with messages of Staya's dialect (`controller/mavlink/messages/staya.xml`).
+     * MAVLink 2 frames with the messages of Staya's dialect
+     * (`controller/mavlink/messages/staya.xml`).
      */
     STAYA_WIRE_MAVLINK = 1,
     /**
-     * As the first, with a code that only who has the `key` can make, and with protection against replays.
+     * Like STAYA_WIRE_POSTCARD, with an authentication code that requires the `key`, and with
+     * protection against replays.
      */
     STAYA_WIRE_SEALED = 2,
 };
@@ -294,7 +304,7 @@ typedef uint8_t StayaWire;
 #endif // __cplusplus
 
 /**
- * What the body should do until the next step.
+ * What the body shall do until the next step.
  */
 enum StayaCommand
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -302,15 +312,15 @@ enum StayaCommand
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Stand.
+     * Stop.
      */
     STAYA_COMMAND_HOLD = 0,
     /**
-     * Take the first of `moves` whose cell is free and passable; none free: stand.
+     * Take the first of `moves` whose cell is free and passable; stop if none is.
      */
     STAYA_COMMAND_MOVE = 1,
     /**
-     * Go with `velocity_mps`.
+     * Move with `velocity_mps`.
      */
     STAYA_COMMAND_VELOCITY = 2,
 };
@@ -323,7 +333,7 @@ typedef uint8_t StayaCommand;
 #endif // __cplusplus
 
 /**
- * What the robot is doing as a whole.
+ * The overall activity of a robot.
  */
 enum StayaMode
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -339,11 +349,11 @@ enum StayaMode
      */
     STAYA_MODE_FORMING = 1,
     /**
-     * On its way.
+     * Moving to its goal.
      */
     STAYA_MODE_CRUISE = 2,
     /**
-     * Standing because somebody asked or no way is open.
+     * Stopped, because of a request or because no route is open.
      */
     STAYA_MODE_HOLD = 3,
     /**
@@ -351,11 +361,11 @@ enum StayaMode
      */
     STAYA_MODE_ARRIVED = 4,
     /**
-     * Own input is missing or wrong; standing.
+     * Stopped, because own input is missing or wrong.
      */
     STAYA_MODE_FAULT = 5,
     /**
-     * Its agent does not steer it.
+     * Not steered by its agent.
      */
     STAYA_MODE_PASSIVE = 6,
 };
@@ -368,7 +378,7 @@ typedef uint8_t StayaMode;
 #endif // __cplusplus
 
 /**
- * What a robot that has somewhere to go and does not get on waits for.
+ * What a robot with a goal waits for if it does not get closer.
  */
 enum StayaWait
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -380,23 +390,23 @@ enum StayaWait
      */
     STAYA_WAIT_NOTHING = 0,
     /**
-     * Its leader or its followers are not there yet.
+     * Its leader or its followers have not arrived yet.
      */
     STAYA_WAIT_FORMATION = 1,
     /**
-     * Somebody asked it to stop.
+     * A request to stop.
      */
     STAYA_WAIT_REQUEST = 2,
     /**
-     * Nothing but land or walls is in its way.
+     * Only land or walls block its route.
      */
     STAYA_WAIT_WAY = 3,
     /**
-     * It does not know where others are: they are not heard.
+     * It does not know where others are, since it does not receive them.
      */
     STAYA_WAIT_RADIO = 4,
     /**
-     * At a door others go first.
+     * Others go first through a door.
      */
     STAYA_WAIT_TURN = 5,
     /**
@@ -404,7 +414,7 @@ enum StayaWait
      */
     STAYA_WAIT_OTHERS = 6,
     /**
-     * Somebody stands on its goal; it has arrived beside it.
+     * Another robot occupies its goal; it has arrived beside it.
      */
     STAYA_WAIT_PLACE = 7,
 };
@@ -417,7 +427,7 @@ typedef uint8_t StayaWait;
 #endif // __cplusplus
 
 /**
- * A move from a cell: compass points, as in `moves` and `heading`.
+ * A move from a cell: compass directions, as in `moves` and `heading`.
  */
 enum StayaDir
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -470,7 +480,7 @@ typedef uint8_t StayaDir;
 #endif // __cplusplus
 
 /**
- * What happened in a step.
+ * An event in a step.
  */
 enum StayaEventKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -478,7 +488,7 @@ enum StayaEventKind
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Its mode changed: `before`, `after` (StayaMode).
+     * The robot's mode changed: `before`, `after` (StayaMode).
      */
     STAYA_EVENT_KIND_MODE_CHANGED = 0,
     /**
@@ -486,7 +496,7 @@ enum StayaEventKind
      */
     STAYA_EVENT_KIND_NO_ROUTE = 1,
     /**
-     * The target lay in an impassable cell and moved: `before_xy`, `after_xy`.
+     * The target lay in an impassable cell and was moved: `before_xy`, `after_xy`.
      */
     STAYA_EVENT_KIND_TARGET_MOVED = 2,
     /**
@@ -494,7 +504,7 @@ enum StayaEventKind
      */
     STAYA_EVENT_KIND_REQUEST_EXPIRED = 3,
     /**
-     * `robot` is known now.
+     * `robot` became known.
      */
     STAYA_EVENT_KIND_NEIGHBOR_FOUND = 4,
     /**
@@ -502,7 +512,7 @@ enum StayaEventKind
      */
     STAYA_EVENT_KIND_NEIGHBOR_LOST = 5,
     /**
-     * The table was full and `robot` had to go.
+     * The table was full and `robot` was dropped from it.
      */
     STAYA_EVENT_KIND_NEIGHBOR_EVICTED = 6,
     /**
@@ -510,7 +520,7 @@ enum StayaEventKind
      */
     STAYA_EVENT_KIND_NEIGHBOR_REBOOTED = 7,
     /**
-     * Nobody is heard any more.
+     * No robot is received any more.
      */
     STAYA_EVENT_KIND_NOBODY_HEARD = 8,
     /**
@@ -518,11 +528,12 @@ enum StayaEventKind
      */
     STAYA_EVENT_KIND_DUPLICATE_ID = 9,
     /**
-     * `robot` says of itself what is beyond `claims`; `after`: 0 its number, 1 radius, 2 speed, 3 place.
+     * A beacon of `robot` exceeds the limits of `claims`; `after`: 0 number, 1 radius, 2 speed, 3
+     * position.
      */
     STAYA_EVENT_KIND_OVERCLAIMED = 10,
     /**
-     * The robot says nothing any more: its counters are used up, and a new key is needed.
+     * The robot stopped sending: its counters are used up, and it needs a new key.
      */
     STAYA_EVENT_KIND_MUTED = 11,
 };
@@ -535,7 +546,7 @@ typedef uint8_t StayaEventKind;
 #endif // __cplusplus
 
 /**
- * What does not move and stands in the way.
+ * The shape of a static obstacle.
  */
 enum StayaShape
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -543,7 +554,7 @@ enum StayaShape
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * An upright wall of no thickness from (`x_m`, `y_m`) to (`x2_m`, `y2_m`).
+     * A vertical wall without thickness from (`x_m`, `y_m`) to (`x2_m`, `y2_m`).
      */
     STAYA_SHAPE_WALL = 0,
     /**
@@ -551,8 +562,8 @@ enum StayaShape
      */
     STAYA_SHAPE_BALL = 1,
     /**
-     * All that is behind a plane: (`x_m`, `y_m`, `z_m`) is its normal, of length 1 and away from the obstacle, and the robot is
-     * `size_m` in front of it.
+     * A half-space: everything behind a plane. Its normal (`x_m`, `y_m`, `z_m`) has length 1 and
+     * points away from the obstacle; the robot is `size_m` in front of it.
      */
     STAYA_SHAPE_PLANE = 2,
 };
@@ -565,7 +576,7 @@ typedef uint8_t StayaShape;
 #endif // __cplusplus
 
 /**
- * Which terms of the alpha flock act.
+ * The active terms of the alpha flock.
  */
 enum StayaLatticeTerms
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -573,15 +584,15 @@ enum StayaLatticeTerms
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * Only the others.
+     * Only the other robots.
      */
     STAYA_LATTICE_TERMS_OTHERS = 1,
     /**
-     * And the reference, with a pull that grows without bound.
+     * Also the reference, with a pull that grows without bound.
      */
     STAYA_LATTICE_TERMS_REFERENCE = 2,
     /**
-     * And obstacles; the pull of the reference is bounded.
+     * Also obstacles; the pull of the reference is bounded.
      */
     STAYA_LATTICE_TERMS_ALL = 3,
 };
@@ -594,7 +605,7 @@ typedef uint8_t StayaLatticeTerms;
 #endif // __cplusplus
 
 /**
- * What push-out makes of a step that leads too near.
+ * How push-out changes a step that leads too near.
  */
 enum StayaPushOutModel
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -602,11 +613,11 @@ enum StayaPushOutModel
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     /**
-     * It slides along and slows down.
+     * The step slides along the border and becomes shorter.
      */
     STAYA_PUSH_OUT_MODEL_RADIAL = 0,
     /**
-     * It keeps its length and is turned.
+     * The step keeps its length and is turned.
      */
     STAYA_PUSH_OUT_MODEL_TANGENTIAL = 1,
 };
@@ -619,7 +630,8 @@ typedef uint8_t StayaPushOutModel;
 #endif // __cplusplus
 
 /**
- * A number that may change while the robot runs: `staya_set_parameter`. `staya_parameter_name` and others tell its name, unit, range.
+ * A parameter that `staya_set_parameter` can change while the robot runs. `staya_parameter_name`,
+ * `staya_parameter_unit` and `staya_parameter_range` describe it.
  */
 enum StayaParameter
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -635,11 +647,11 @@ enum StayaParameter
      */
     STAYA_PARAMETER_BEACON_PERIOD = 1,
     /**
-     * Speed that it likes to go, m/s.
+     * Preferred speed, m/s.
      */
     STAYA_PARAMETER_SPEED = 2,
     /**
-     * How near counts as being there, m.
+     * Distance within which the goal counts as reached, m.
      */
     STAYA_PARAMETER_TOLERANCE = 3,
     /**
@@ -655,15 +667,15 @@ enum StayaParameter
      */
     STAYA_PARAMETER_SHARE = 6,
     /**
-     * Distance kept on top of the radii, m.
+     * Distance kept in addition to the radii, m.
      */
     STAYA_PARAMETER_MARGIN = 7,
     /**
-     * How far to the right to lean when somebody is in the way, rad.
+     * How far to turn to the right while a robot is in the way, rad.
      */
     STAYA_PARAMETER_LEAN = 8,
     /**
-     * How long a gap is left to those whose turn it is, radii.
+     * How long a gap is left to robots whose turn it is, radii.
      */
     STAYA_PARAMETER_PATIENCE_RADII = 9,
     /**
@@ -671,7 +683,7 @@ enum StayaParameter
      */
     STAYA_PARAMETER_MIN_DISTANCE = 10,
     /**
-     * How far neighbours count, m.
+     * Distance up to which neighbours count, m.
      */
     STAYA_PARAMETER_NEIGHBORHOOD = 11,
     /**
@@ -707,35 +719,35 @@ enum StayaParameter
      */
     STAYA_PARAMETER_REPULSION = 19,
     /**
-     * Robots among each other, on places, 1/s^2.
+     * Gain between robots, on positions, 1/s^2.
      */
     STAYA_PARAMETER_ALPHA_POSITION = 20,
     /**
-     * Robots among each other, on velocities, 1/s.
+     * Gain between robots, on velocities, 1/s.
      */
     STAYA_PARAMETER_ALPHA_VELOCITY = 21,
     /**
-     * Obstacles, on places, 1/s^2.
+     * Gain of obstacles, on positions, 1/s^2.
      */
     STAYA_PARAMETER_BETA_POSITION = 22,
     /**
-     * Obstacles, on velocities, 1/s.
+     * Gain of obstacles, on velocities, 1/s.
      */
     STAYA_PARAMETER_BETA_VELOCITY = 23,
     /**
-     * The reference, on places, 1/s^2.
+     * Gain of the reference, on positions, 1/s^2.
      */
     STAYA_PARAMETER_GAMMA_POSITION = 24,
     /**
-     * The reference, on velocities, 1/s.
+     * Gain of the reference, on velocities, 1/s.
      */
     STAYA_PARAMETER_GAMMA_VELOCITY = 25,
     /**
-     * Nearer than this a boid turns away, m.
+     * Distance below which a boid turns away, m.
      */
     STAYA_PARAMETER_CROWDED = 26,
     /**
-     * Up to this distance a neighbour counts, m.
+     * Distance up to which a neighbour counts, m.
      */
     STAYA_PARAMETER_CLOSEST = 27,
     /**
@@ -743,7 +755,7 @@ enum StayaParameter
      */
     STAYA_PARAMETER_MAX_TURN = 28,
     /**
-     * Turn away from one that is too near in a step, rad.
+     * Turn away from a neighbour that is too near in a step, rad.
      */
     STAYA_PARAMETER_MAX_TURN_AWAY = 29,
     /**
@@ -751,11 +763,11 @@ enum StayaParameter
      */
     STAYA_PARAMETER_TIME_GAIN = 30,
     /**
-     * What a cell with another robot costs extra, ticks.
+     * Additional cost of a cell with another robot, ticks.
      */
     STAYA_PARAMETER_OTHERS_GAIN = 31,
     /**
-     * What a cell costs extra for each earlier visit, ticks.
+     * Additional cost of a cell for each earlier visit, ticks.
      */
     STAYA_PARAMETER_VISITS_GAIN = 32,
     /**
@@ -763,7 +775,7 @@ enum StayaParameter
      */
     STAYA_PARAMETER_WAY_GAIN = 33,
     /**
-     * How far from its place a robot still counts as there, cells.
+     * Distance from its place up to which a robot is found, cells.
      */
     STAYA_PARAMETER_EPS = 34,
     /**
@@ -771,11 +783,11 @@ enum StayaParameter
      */
     STAYA_PARAMETER_PLACE_GAIN = 35,
     /**
-     * How far somebody falls behind before the leader waits, cells.
+     * How far a robot may fall behind before the leader waits, cells.
      */
     STAYA_PARAMETER_HALT_LAG = 36,
     /**
-     * How near he must be before the leader goes on, cells.
+     * How near it must be before the leader continues, cells.
      */
     STAYA_PARAMETER_RESUME_LAG = 37,
     /**
@@ -787,7 +799,7 @@ enum StayaParameter
      */
     STAYA_PARAMETER_FOOTPRINT = 39,
     /**
-     * How long they wait before each goes on for itself, decisions.
+     * How long robots wait before each continues alone, decisions.
      */
     STAYA_PARAMETER_PATIENCE = 40,
 };
@@ -800,12 +812,12 @@ typedef uint32_t StayaParameter;
 #endif // __cplusplus
 
 /**
- * A robot's controller. What is in it is the library's own business.
+ * The controller of one robot. Its contents are private to the library.
  */
 typedef struct StayaAgent StayaAgent;
 
 /**
- * ORCA of one robot. What is in it is the library's own business.
+ * ORCA for one robot. Its contents are private to the library.
  */
 typedef struct StayaAvoider StayaAvoider;
 
@@ -814,40 +826,46 @@ typedef struct StayaAvoider StayaAvoider;
  */
 typedef struct StayaOrca {
     /**
-     * Time ahead for which no collision with a robot may happen, seconds; 1 to 5. Longer gives way earlier and slows crowds.
-     * Shorter than the body needs to stop (speed / acceleration) is not safe.
+     * Time ahead for which collisions with robots are excluded, seconds; 1 to 5. With a longer
+     * time robots give way earlier and crowds become slower. A time shorter than the body needs to
+     * stop (speed / acceleration) is not safe.
      */
     float horizon_s;
     /**
-     * The same for obstacles, seconds. A robot slows to (distance / this time) in front of a wall.
+     * Time ahead for which collisions with obstacles are excluded, seconds. In front of a wall a
+     * robot slows to (distance / this time).
      */
     float wall_horizon_s;
     /**
-     * Own share of a correction: 0.5 when all do the same. Less is not safe.
+     * Own share of a correction: 0.5 if all robots use the same. Less is not safe.
      */
     float share;
     /**
-     * Kept on top of the radii, metres: the error of what is known of places.
+     * Distance kept in addition to the radii, metres: the error of the known positions.
      */
     float margin_m;
     /**
-     * How far to the right of the wish to lean while a robot is in the way, radians; 0.4 to 0.6, 0 never.
+     * How far the preferred velocity turns to the right while a robot is in the way, radians; 0.4
+     * to 0.6, 0 disables it.
      */
     float lean_rad;
     /**
-     * For how long a gap is left to those whose turn it is: the time for so many own radii at full speed; 4 to 16.
+     * How long a gap is left to robots whose turn it is: the time to travel this many own radii at
+     * full speed; 4 to 16.
      */
     float patience_radii;
     /**
-     * How the ball of a silent robot grows, m/s: the highest speed that others can have. Less is not safe when the radio is bad.
+     * Growth of the ball around a silent robot, m/s: the highest speed that others can have. Less
+     * is not safe if the radio is bad.
      */
     float growth_mps;
     /**
-     * How much the ball of one that stands grows at most, metres.
+     * Limit of this growth for a stationary robot, metres.
      */
     float growth_max_m;
     /**
-     * In space: how many times as far as beside each other robots keep apart above and below; 1 or more, for quadrotors 2.5.
+     * In space: ratio of the vertical to the horizontal distance between robots; 1 or more, for
+     * quadrotors 2.5.
      */
     float downwash;
 } StayaOrca;
@@ -857,7 +875,8 @@ typedef struct StayaOrca {
  */
 typedef struct StayaPushOut {
     /**
-     * Least distance of two centres, and of a centre from an obstacle, metres; more than bodies need by a step's length.
+     * Least distance of two centres, and of a centre from an obstacle, metres; more than bodies
+     * need by the length of a step.
      */
     float min_distance_m;
     /**
@@ -865,17 +884,19 @@ typedef struct StayaPushOut {
      */
     uint8_t model;
     /**
-     * Other than 0: only the nearest of the robots in the way is evaded.
+     * Other than 0: evades only the nearest of the robots in the way.
      */
     uint8_t only_nearest;
 } StayaPushOut;
 
 /**
- * The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3). `staya_lattice_defaults` has the paper's values.
+ * The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3). `staya_lattice_defaults` writes the
+ * paper's values.
  */
 typedef struct StayaLattice {
     /**
-     * Distance of neighbours (d), metres; 0.01 to 100, more than two radii plus half a second's way.
+     * Distance of neighbours (d), metres; 0.01 to 100, more than two radii plus the distance
+     * covered in half a second.
      */
     float spacing_m;
     /**
@@ -895,7 +916,8 @@ typedef struct StayaLattice {
      */
     float repulsion;
     /**
-     * Gains among robots on places (1/s^2) and on velocities (1/s). Old news need small ones: see `staya_lattice_soften`.
+     * Gains between robots on positions (1/s^2) and on velocities (1/s). Old beacons need small
+     * gains: see `staya_lattice_soften`.
      */
     float alpha_position;
     /**
@@ -903,7 +925,7 @@ typedef struct StayaLattice {
      */
     float alpha_velocity;
     /**
-     * The same for obstacles; well above the others.
+     * Gains of obstacles; well above the others.
      */
     float beta_position;
     /**
@@ -911,7 +933,7 @@ typedef struct StayaLattice {
      */
     float beta_velocity;
     /**
-     * The same for the reference.
+     * Gains of the reference.
      */
     float gamma_position;
     /**
@@ -923,7 +945,7 @@ typedef struct StayaLattice {
      */
     uint8_t terms;
     /**
-     * Other than 0: the reference goes where its velocity takes it. Agents only.
+     * Other than 0: the reference moves with its velocity. Agents only.
      */
     uint8_t reference_moves;
 } StayaLattice;
@@ -945,7 +967,7 @@ typedef struct StayaGoalFlock {
      */
     float repulsion_gain;
     /**
-     * How far neighbours are seen, metres; at least twice `min_distance_m`.
+     * Distance up to which neighbours count, metres; at least twice `min_distance_m`.
      */
     float neighborhood_m;
     /**
@@ -953,11 +975,12 @@ typedef struct StayaGoalFlock {
      */
     float min_distance_m;
     /**
-     * How near to a goal counts as being there, metres: about the neighbourhood, for a crowd needs room. Agents only.
+     * Distance within which a goal counts as reached, metres: about the neighbourhood, as a crowd
+     * needs space. Agents only.
      */
     float arrival_m;
     /**
-     * Seed of the draws of goals. Agents only.
+     * Seed of the random choice of goals. Agents only.
      */
     uint32_t seed;
 } StayaGoalFlock;
@@ -967,25 +990,25 @@ typedef struct StayaGoalFlock {
  */
 typedef struct StayaBoids {
     /**
-     * Nearer than this a boid turns away, metres.
+     * Distance below which a boid turns away, metres.
      */
     float crowded_m;
     /**
-     * Up to this distance a neighbour counts, metres.
+     * Distance up to which a neighbour counts, metres.
      */
     float closest_m;
     /**
-     * Largest turn to the others in a step, radians.
+     * Largest turn towards the others in a step, radians.
      */
     float max_turn_rad;
     /**
-     * Turn away from one that is too near in a step, radians.
+     * Turn away from a neighbour that is too near in a step, radians.
      */
     float max_turn_away_rad;
 } StayaBoids;
 
 /**
- * What a route across cells costs (A. V. Kuznetsov 2017); gains are in sixteenths of a tick.
+ * The costs of a route across cells (A. V. Kuznetsov 2017); gains are in sixteenths of a tick.
  */
 typedef struct StayaRoute {
     /**
@@ -993,19 +1016,21 @@ typedef struct StayaRoute {
      */
     uint16_t time_gain_16ths;
     /**
-     * What a cell with another robot costs extra (a1), sixteenths of a tick.
+     * Additional cost of a cell with another robot (a1), sixteenths of a tick.
      */
     uint16_t others_gain_16ths;
     /**
-     * What a cell costs extra for each earlier visit (a2), sixteenths of a tick.
+     * Additional cost of a cell for each earlier visit (a2), sixteenths of a tick.
      */
     uint16_t visits_gain_16ths;
     /**
-     * Price of a cell between window and target (a3), sixteenths of a tick: near the time that a cell takes on a good way.
+     * Price of a cell between window and target (a3), sixteenths of a tick: about the time that a
+     * cell takes on a good route.
      */
     uint16_t way_gain_16ths;
     /**
-     * Moves that cost so much more, in sixteenths of a tick, come first half as often; 0: the cheapest always comes first.
+     * A move that costs this much more, in sixteenths of a tick, comes first half as often; 0: the
+     * cheapest always comes first.
      */
     uint16_t halved_per_16ths;
     /**
@@ -1013,11 +1038,12 @@ typedef struct StayaRoute {
      */
     uint8_t radius_cells;
     /**
-     * Other than 0: the exit of the window lies on the ray to the target; else it is the best of all.
+     * Other than 0: the window's exit lies on the ray to the target; otherwise it is the best of
+     * all.
      */
     uint8_t exit_on_ray;
     /**
-     * Other than 0: a diagonal move counts as long as a straight one.
+     * Other than 0: a diagonal move is as long as a straight one.
      */
     uint8_t diagonals_count_as_one;
     /**
@@ -1025,7 +1051,7 @@ typedef struct StayaRoute {
      */
     uint8_t cuts_corners;
     /**
-     * Other than 0: it plans anew only when something on its way has changed, for fewer searches.
+     * Other than 0: plans again only when the land on its route has changed, for fewer searches.
      */
     uint8_t keeps_plan;
 } StayaRoute;
@@ -1045,25 +1071,26 @@ typedef struct StayaCell {
 } StayaCell;
 
 /**
- * Where a neighbour in the formation should be.
+ * The place of a neighbour in the formation.
  */
 typedef struct StayaPlace {
     /**
-     * Which robot; 0 for anyone.
+     * The neighbour's number; 0 for any robot.
      */
     uint32_t robot;
     /**
-     * Its cell minus the own one.
+     * Its cell minus that of this robot.
      */
     struct StayaCell offset;
     /**
-     * How many edges of the formation's graph are between; 1 or more.
+     * Its distance in edges of the formation's graph; 1 or more.
      */
     uint8_t hops;
 } StayaPlace;
 
 /**
- * Keeping a formation (A. V. Kuznetsov 2017); a unit is 1/70 of a cell. `staya_formation_from_graph` fills in the place.
+ * Formation keeping (A. V. Kuznetsov 2017); a unit is 1/70 of a cell. `staya_formation_from_graph`
+ * fills in the place.
  */
 typedef struct StayaFormation {
     /**
@@ -1071,7 +1098,7 @@ typedef struct StayaFormation {
      */
     struct StayaPlace neighbors[STAYA_TEMPLATE];
     /**
-     * How many of `neighbors` there are.
+     * Length of `neighbors`.
      */
     uint8_t neighbor_count;
     /**
@@ -1083,23 +1110,24 @@ typedef struct StayaFormation {
      */
     struct StayaCell offset;
     /**
-     * Price of being off one's place, sixteenths of a tick per cell.
+     * Price of being off the own place, sixteenths of a tick per cell.
      */
     uint16_t gain_16ths;
     /**
-     * How far somebody falls behind before the top leader waits, units.
+     * How far a robot may fall behind before the top leader waits, units.
      */
     uint16_t halt_lag_units;
     /**
-     * How near he must have come again, units; at most `halt_lag_units`.
+     * The lag down to which it must catch up before the leader continues, units; at most
+     * `halt_lag_units`.
      */
     uint16_t resume_lag_units;
     /**
-     * Decisions (in the plane seconds) for which they wait for each other.
+     * Number of decisions (in the plane seconds) for which robots wait for each other.
      */
     uint16_t patience;
     /**
-     * How far from its place a neighbour still counts as found, cells.
+     * Distance from its place up to which a neighbour is found, cells.
      */
     uint8_t eps_cells;
     /**
@@ -1111,39 +1139,42 @@ typedef struct StayaFormation {
      */
     uint8_t footprint_16ths;
     /**
-     * Other than 0: those behind a dead robot move up.
+     * Other than 0: robots behind a dead robot move up.
      */
     uint8_t closes_ranks;
     /**
-     * Other than 0: others are foreseen by asking what one would do in their place; dear.
+     * Other than 0: predicts others by computing the move that this robot would make in their
+     * place; expensive.
      */
     uint8_t foresees_others;
     /**
-     * Other than 0: a leader heads for where the others are off to instead of waiting.
+     * Other than 0: instead of waiting, the leader heads for where the others are displaced.
      */
     uint8_t turns_back;
 } StayaFormation;
 
 /**
- * All that makes a robot what it is before it has sensed anything. Fill it by `staya_setup_defaults`, then change what differs.
+ * The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields.
  *
- * What the chosen law and layer have no use for plays no part.
+ * Fields that the chosen law and layer do not use are ignored.
  */
 typedef struct StayaSetup {
     /**
-     * Written by `staya_setup_defaults`: header and library are of one version.
+     * Written by `staya_setup_defaults`; shows that header and library have the same version.
      */
     uint32_t version;
     /**
-     * The robot's number, 1 or more, its own in the swarm (MAVLink: up to 254; with a key: below 2^21).
+     * The robot's number, 1 or more, unique in the swarm (MAVLink: up to 254; with a key: below
+     * 2^21).
      */
     uint32_t id;
     /**
-     * Seed of what it draws at random, together with its number.
+     * Seed of its random decisions, together with its number.
      */
     uint64_t seed;
     /**
-     * Time from one step to the next, microseconds, which must then be kept; on the grid the time for a cell of impassability 1.
+     * Time from one step to the next, microseconds, which the caller must keep; on the grid the
+     * time for a cell of impassability 1.
      */
     int32_t tick_us;
     /**
@@ -1151,23 +1182,23 @@ typedef struct StayaSetup {
      */
     int32_t beacon_period_us;
     /**
-     * How old news is when it arrives, microseconds: neighbours are taken to have gone on for so long.
+     * Age of a beacon when it arrives, microseconds: neighbours are extrapolated by this time.
      */
     int32_t latency_us;
     /**
-     * News older than this is stale, microseconds: a few beacon periods.
+     * Beacons older than this are stale, microseconds: use a few beacon periods.
      */
     int32_t stale_after_us;
     /**
-     * Who is silent for longer is lost, microseconds; at most half an hour.
+     * A robot that is silent for longer is lost, microseconds; at most half an hour.
      */
     int32_t lost_after_us;
     /**
-     * How long a lost one is remembered, microseconds, at most half an hour.
+     * How long a lost robot is remembered, microseconds; at most half an hour.
      */
     int32_t remember_us;
     /**
-     * How long a stop stands that is not renewed, microseconds.
+     * How long a stop lasts unless it is renewed, microseconds.
      */
     int32_t stop_valid_us;
     /**
@@ -1175,15 +1206,16 @@ typedef struct StayaSetup {
      */
     int32_t retry_interval_us;
     /**
-     * Attempts of a request.
+     * Number of attempts of a request.
      */
     uint8_t retry_attempts;
     /**
-     * Changes with each start (counted in lasting memory or drawn), or the others take a restarted robot for a recording.
+     * Must change with each start (counted in persistent memory or random), or others take a
+     * restarted robot for a replay.
      */
     uint8_t boot;
     /**
-     * The flock that it is of; robots of other flocks are only in its way.
+     * The robot's flock; robots of other flocks are only obstacles.
      */
     uint8_t flock;
     /**
@@ -1203,11 +1235,11 @@ typedef struct StayaSetup {
      */
     float radius_m;
     /**
-     * Cruising speed, m/s; the body's own limit holds too.
+     * Cruising speed, m/s; limited by that of the body.
      */
     float speed_mps;
     /**
-     * How near to its waypoint counts as being there, metres.
+     * Distance within which its waypoint counts as reached, metres.
      */
     float tolerance_m;
     /**
@@ -1215,23 +1247,24 @@ typedef struct StayaSetup {
      */
     float max_acceleration_mps2;
     /**
-     * How fast to go when all others are lost, m/s: 0 stands until somebody speaks; above 0 only for robots that may be alone.
+     * Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0
+     * only for robots that may be alone.
      */
     float alone_mps;
     /**
-     * Largest radius that others are believed to have, metres; FLT_MAX: any.
+     * Largest radius accepted in a beacon, metres; FLT_MAX: any.
      */
     float claims_max_radius_m;
     /**
-     * Highest speed that they are believed to have, m/s; FLT_MAX: any, and places are not looked at.
+     * Highest speed accepted in a beacon, m/s; FLT_MAX: any, and positions are not checked.
      */
     float claims_max_speed_mps;
     /**
-     * How far off two places of a robot may be besides, metres.
+     * Additional tolerance between two positions of a robot, metres.
      */
     float claims_slack_m;
     /**
-     * For how long a robot that has jumped must say consistent places, microseconds.
+     * How long a robot that has jumped must send consistent positions, microseconds.
      */
     int32_t claims_settle_us;
     /**
@@ -1267,7 +1300,8 @@ typedef struct StayaSetup {
      */
     struct StayaFormation formation;
     /**
-     * With STAYA_WIRE_SEALED: how often the robot was started, counted in lasting memory from 0; below 2^20.
+     * With STAYA_WIRE_SEALED: the robot's count of starts, kept in persistent memory from 0; below
+     * 2^20.
      */
     uint32_t starts;
     /**
@@ -1277,7 +1311,7 @@ typedef struct StayaSetup {
 } StayaSetup;
 
 /**
- * Something that does not move, seen from the robot's own place, metres.
+ * A static obstacle, relative to the robot's position, metres.
  */
 typedef struct StayaObstacle {
     /**
@@ -1311,18 +1345,21 @@ typedef struct StayaObstacle {
 } StayaObstacle;
 
 /**
- * What a step is told. All zeros is a robot at the origin that stands, sees nothing and hears nobody.
+ * The input of a step. All zeros is a stationary robot at the origin that sees and receives
+ * nothing.
  *
- * Robots that go by velocities need `max_speed_mps`; those that cross land in cells `cell` and `window`, and by velocities also
- * `in_cell_x_m`, `in_cell_y_m` and `cell_m`. The rest plays no part then.
+ * Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
+ * `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
+ * The other fields are then ignored.
  */
 typedef struct StayaInputs {
     /**
-     * Own place in the world: east, north, up from an origin that all share, millimetres.
+     * The robot's position in the world: east, north, up from an origin that all robots share,
+     * millimetres.
      */
     int32_t position_mm[3];
     /**
-     * Own velocity in the world, m/s.
+     * The robot's velocity in the world, m/s.
      */
     float velocity_mps[3];
     /**
@@ -1330,11 +1367,12 @@ typedef struct StayaInputs {
      */
     uint32_t now_us;
     /**
-     * How fast the body can go where it is, m/s. With 0 the robot is in STAYA_MODE_FAULT, and stands.
+     * The body's highest possible speed in its present place, m/s. With 0 the robot is in
+     * STAYA_MODE_FAULT, and stops.
      */
     float max_speed_mps;
     /**
-     * Own cell.
+     * The robot's cell.
      */
     struct StayaCell cell;
     /**
@@ -1342,7 +1380,7 @@ typedef struct StayaInputs {
      */
     int32_t busy_us;
     /**
-     * Where in its cell it is, metres from the cell's centre.
+     * Its position in its cell, metres from the cell's centre.
      */
     float in_cell_x_m;
     /**
@@ -1354,7 +1392,7 @@ typedef struct StayaInputs {
      */
     float cell_m;
     /**
-     * South-west cell of what it sees of the land.
+     * South-west cell of the visible land.
      */
     struct StayaCell window_origin;
     /**
@@ -1366,84 +1404,85 @@ typedef struct StayaInputs {
      */
     uint16_t window_height;
     /**
-     * How hard each cell is to cross, row by row from the south-west: 1 easy, 255 hard, 0 impassable; width * height bytes. Null: it
-     * sees no land, and is in STAYA_MODE_FAULT.
+     * How hard each cell is to cross, row by row from the south-west: 1 easy, 255 hard, 0
+     * impassable; width * height bytes. Null: the robot sees no land, and is in STAYA_MODE_FAULT.
      */
     const uint8_t *window;
     /**
-     * What stands in the way, `obstacle_count` of them, at most 32 (16 if the library was built small).
+     * Obstacles, `obstacle_count` of them, at most 32 (16 if the library was built small).
      */
     const struct StayaObstacle *obstacles;
     /**
-     * How many of `obstacles` there are.
+     * Length of `obstacles`.
      */
     size_t obstacle_count;
     /**
-     * What the radio delivered since the last step, `inbox_bytes` of it, in order: whole frames, damaged ones, those of others.
+     * The bytes that the radio received since the last step, `inbox_bytes` of them, in order:
+     * intact, damaged and foreign frames.
      */
     const uint8_t *inbox;
     /**
-     * How many bytes of `inbox` there are.
+     * Length of `inbox`.
      */
     size_t inbox_bytes;
 } StayaInputs;
 
 /**
- * Something that happened.
+ * An event.
  */
 typedef struct StayaEvent {
     /**
-     * Which robot it is about; 0 for none.
+     * The robot concerned; 0 for none.
      */
     uint32_t robot;
     /**
-     * A cell before.
+     * The previous cell.
      */
     struct StayaCell before_xy;
     /**
-     * A cell now.
+     * The present cell.
      */
     struct StayaCell after_xy;
     /**
-     * StayaEventKind, which says what of the rest counts.
+     * StayaEventKind, which defines the fields that are used.
      */
     uint8_t kind;
     /**
-     * A number before.
+     * The previous number.
      */
     uint8_t before;
     /**
-     * A number now.
+     * The present number.
      */
     uint8_t after;
 } StayaEvent;
 
 /**
- * What a step gives.
+ * The output of a step.
  */
 typedef struct StayaOutputs {
     /**
-     * World velocity to go with until the next step, m/s; with STAYA_COMMAND_VELOCITY.
+     * World velocity until the next step, m/s; with STAYA_COMMAND_VELOCITY.
      */
     float velocity_mps[3];
     /**
-     * When to call again if nothing arrives before: the robot's clock, microseconds.
+     * When to call again unless bytes arrive before: the robot's clock, microseconds.
      */
     uint32_t call_again_us;
     /**
-     * Whom it follows; 0 for nobody.
+     * The leader that it follows; 0 if there is none.
      */
     uint32_t leader;
     /**
-     * The cell that it is going to; with `has_target`.
+     * The cell that it is heading for; with `has_target`.
      */
     struct StayaCell target;
     /**
-     * Frames that were heard: sound, not seen before, of somebody else.
+     * Frames accepted: intact, not received before, from another robot.
      */
     uint16_t received;
     /**
-     * Frames that were refused: damaged, repeated, not authentic.
+     * Frames rejected: damaged, repeated, not authentic.
      */
     uint16_t rejected;
     /**
@@ -1451,15 +1490,15 @@ typedef struct StayaOutputs {
      */
     uint16_t refused_unsigned;
     /**
-     * Of those: with a code of another key or of another content.
+     * Of those: with a code that does not match the key or the content.
      */
     uint16_t refused_forged;
     /**
-     * Of those: recorded, repeated, or too far ahead.
+     * Of those: replayed, or with a counter too far ahead.
      */
     uint16_t refused_replayed;
     /**
-     * Of those: of senders for whom there is no room.
+     * Of those: from senders that do not fit into the table.
      */
     uint16_t refused_no_room;
     /**
@@ -1475,11 +1514,11 @@ typedef struct StayaOutputs {
      */
     uint16_t overclaimed_speeds;
     /**
-     * Beacons of places where the robot cannot be yet.
+     * Beacons with a position that the robot cannot have reached yet.
      */
     uint16_t overclaimed_places;
     /**
-     * Bytes of `outbox`.
+     * Length of `outbox`.
      */
     uint16_t outbox_bytes;
     /**
@@ -1491,11 +1530,11 @@ typedef struct StayaOutputs {
      */
     uint8_t moves[8];
     /**
-     * How many of `moves` there are.
+     * Length of `moves`.
      */
     uint8_t move_count;
     /**
-     * What it is doing: StayaMode.
+     * Its activity: StayaMode.
      */
     uint8_t mode;
     /**
@@ -1507,11 +1546,11 @@ typedef struct StayaOutputs {
      */
     uint8_t has_target;
     /**
-     * How many of `events` there are.
+     * Length of `events`.
      */
     uint8_t event_count;
     /**
-     * What happened; the oldest ones when there are more.
+     * The events; the oldest ones if there are more.
      */
     struct StayaEvent events[STAYA_EVENTS];
     /**
@@ -1521,41 +1560,41 @@ typedef struct StayaOutputs {
 } StayaOutputs;
 
 /**
- * A place to go to, which may move.
+ * A destination, which may move.
  */
 typedef struct StayaWaypoint {
     /**
-     * Where it was, millimetres.
+     * Its position at `at_us`, millimetres.
      */
     int32_t position_mm[3];
     /**
-     * Its velocity since, m/s.
+     * Its velocity since then, m/s.
      */
     float velocity_mps[3];
     /**
-     * When it was there, the robot's clock, microseconds.
+     * Time of the position on the robot's clock, microseconds.
      */
     uint32_t at_us;
 } StayaWaypoint;
 
 /**
- * A robot as it was heard last.
+ * A robot as of its last beacon.
  */
 typedef struct StayaNeighbor {
     /**
-     * Who it is; from 2^31 on a second robot of the number below.
+     * Its number; from 2^31 on a second robot with the number reduced by 2^31.
      */
     uint32_t id;
     /**
-     * When it was heard, the own clock, microseconds.
+     * Reception time on the own clock, microseconds.
      */
     uint32_t heard_us;
     /**
-     * Where it was then, millimetres.
+     * Its position at that time, millimetres.
      */
     int32_t position_mm[3];
     /**
-     * Its velocity then, m/s.
+     * Its velocity at that time, m/s.
      */
     float velocity_mps[3];
     /**
@@ -1563,7 +1602,7 @@ typedef struct StayaNeighbor {
      */
     float radius_m;
     /**
-     * Its leader; 0 for nobody.
+     * The number of its leader; 0 if it has none.
      */
     uint32_t leader;
     /**
@@ -1571,7 +1610,7 @@ typedef struct StayaNeighbor {
      */
     struct StayaCell cell;
     /**
-     * The cell that it was going to.
+     * The cell that it was heading for.
      */
     struct StayaCell target;
     /**
@@ -1579,29 +1618,29 @@ typedef struct StayaNeighbor {
      */
     uint8_t slot;
     /**
-     * What it was doing: StayaMode.
+     * Its activity: StayaMode.
      */
     uint8_t mode;
     /**
-     * The move that it wanted next: StayaDir.
+     * The move that it wanted to make next: StayaDir.
      */
     uint8_t heading;
     /**
-     * Silent for too long: only where it was still counts.
+     * Other than 0: silent for too long; only its last position still counts.
      */
     uint8_t is_lost;
 } StayaNeighbor;
 
 /**
- * The own body.
+ * The body of this robot.
  */
 typedef struct StayaBody {
     /**
-     * Own number, 1 or more: when two are in one place it says who goes which way.
+     * Its number, 1 or more. If two robots are in one place, it decides which way each goes.
      */
     uint32_t id;
     /**
-     * Own velocity, m/s.
+     * Its velocity, m/s.
      */
     float velocity_mps[3];
     /**
@@ -1609,7 +1648,7 @@ typedef struct StayaBody {
      */
     float radius_m;
     /**
-     * How fast it can go where it is, m/s.
+     * Its highest possible speed in its present place, m/s.
      */
     float max_speed_mps;
     /**
@@ -1623,15 +1662,15 @@ typedef struct StayaBody {
 } StayaBody;
 
 /**
- * Another robot, as it is right now.
+ * The present state of another robot.
  */
 typedef struct StayaNearby {
     /**
-     * Who it is.
+     * Its number.
      */
     uint32_t id;
     /**
-     * Its place minus the own one, metres.
+     * Its position minus that of this robot, metres.
      */
     float offset_m[3];
     /**
@@ -1639,29 +1678,30 @@ typedef struct StayaNearby {
      */
     float velocity_mps[3];
     /**
-     * Radius of the ball that it is in, metres.
+     * Radius of the ball around it, metres.
      */
     float radius_m;
     /**
-     * 0: it does not make way, and all of a correction is one's own.
+     * 0: it does not give way, and this robot makes the whole correction.
      */
     uint8_t gives_way;
     /**
-     * Other than 0: it stands at its place and will stay (STAYA_MODE_ARRIVED), so others need not wait for it.
+     * Other than 0: it stands at its place and will stay (STAYA_MODE_ARRIVED), so others need not
+     * wait for it.
      */
     uint8_t is_parked;
     /**
-     * Other than 0: of another flock, and only in the way.
+     * Other than 0: it belongs to another flock, and is only an obstacle.
      */
     uint8_t is_stranger;
 } StayaNearby;
 
 /**
- * Where a flock should be, as a robot sees it.
+ * The point that a flock follows, as a robot sees it.
  */
 typedef struct StayaReference {
     /**
-     * Its place minus the own one, metres.
+     * Its position minus that of this robot, metres.
      */
     float offset_m[3];
     /**
@@ -1694,15 +1734,16 @@ extern "C" {
 const char *staya_version(void);
 
 /**
- * Bytes that an agent of this build takes: at most STAYA_AGENT_SIZE.
+ * Size of an agent of this build in bytes: at most STAYA_AGENT_SIZE.
  */
 size_t staya_agent_bytes(void);
 
 /**
- * Makes an agent in memory of the caller's: idle, without a goal, knowing nobody. `*agent` is where it is, which is `memory`; it is
- * there for as long as the memory is, must not be moved, and needs no end. It is null if the setup is refused.
+ * Creates an agent in the caller's memory: idle, without a goal or known neighbours. `*agent` then
+ * points to it, which equals `memory`. It lives as long as the memory, must not be moved, and need
+ * not be destroyed. `*agent` is null if the setup is rejected.
  *
- * Needs some kilobytes of stack for a moment (docs/c.md).
+ * Temporarily needs some kilobytes of stack (docs/c.md).
  */
 StayaStatus staya_init(void *memory,
                        size_t memory_bytes,
@@ -1710,37 +1751,39 @@ StayaStatus staya_init(void *memory,
                        struct StayaAgent **agent);
 
 /**
- * One step: hear, decide, speak. To be called once a `tick_us`, with the robot's clock and state as they are.
+ * Runs one step: receive, decide, send. Call it once per `tick_us` with the robot's present clock
+ * and state.
  *
- * Bounded work; the agent and `outputs` are unchanged when the inputs are refused.
+ * Bounded work. If the inputs are rejected, the agent and `outputs` are unchanged.
  */
 StayaStatus staya_step(struct StayaAgent *agent,
                        const struct StayaInputs *inputs,
                        struct StayaOutputs *outputs);
 
 /**
- * Gives the robot a waypoint, number `index` below STAYA_WAYPOINTS: for the laws of the plane but boids. The goal flock takes
- * several, the others number 0.
+ * Gives the robot the waypoint number `index`, below STAYA_WAYPOINTS. For the laws of the plane
+ * except boids. The goal flock uses several waypoints, the other laws only number 0.
  */
 StayaStatus staya_assign_waypoint(struct StayaAgent *agent,
                                   uint8_t index,
                                   const struct StayaWaypoint *waypoint);
 
 /**
- * Gives the robot a cell to go to: for the laws that cross land in cells. In a formation the top leader's cell is enough.
+ * Gives the robot a target cell: for the laws that cross land in cells. In a formation the cell of
+ * the top leader suffices.
  */
 StayaStatus staya_assign_cell(struct StayaAgent *agent,
                               int16_t x,
                               int16_t y);
 
 /**
- * What the robot is doing: StayaMode.
+ * Returns the robot's activity: StayaMode.
  */
 StayaStatus staya_mode(const struct StayaAgent *agent, uint8_t *mode);
 
 /**
- * Whom the robot knows, by rising number: the first `room` of them; `*count` is how many there are, which may be more.
- * `STAYA_NEIGHBORS` is always room enough.
+ * Returns the first `room` neighbours in ascending order of their numbers. `*count` is their total
+ * number, which may be greater than `room`. A room of `STAYA_NEIGHBORS` always suffices.
  */
 StayaStatus staya_neighbors(const struct StayaAgent *agent,
                             struct StayaNeighbor *neighbors,
@@ -1748,25 +1791,28 @@ StayaStatus staya_neighbors(const struct StayaAgent *agent,
                             size_t *count);
 
 /**
- * A fingerprint of the agent's whole state: agents with equal ones have the same future; the same on every machine.
+ * A hash of the agent's whole state, the same on every machine. Agents with equal hashes behave
+ * identically from then on.
  */
 StayaStatus staya_digest(const struct StayaAgent *agent,
                          uint64_t *digest);
 
 /**
- * Moves a place by a way in metres, rounded to millimetres, saturating: for odometry, and for bodies in a simulation.
+ * Moves a position by a vector in metres, rounded to millimetres, saturating. For odometry, and
+ * for bodies in a simulation.
  */
 StayaStatus staya_move(int32_t position_mm[3],
                        const float way_m[3]);
 
 /**
- * The parameters of ORCA that suit most robots.
+ * Writes the parameters of ORCA that suit most robots.
  */
 StayaStatus staya_orca_defaults(struct StayaOrca *orca);
 
 /**
- * Makes ORCA for one robot in memory of the caller's, STAYA_ORCA_SIZE bytes aligned by STAYA_ALIGN: in the plane, or with `in_space`
- * other than 0 in space. `seed` is of the draws that end ties; robots may have the same.
+ * Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN.
+ * In the plane, or in space if `in_space` is not 0. `seed` seeds the random decisions that break
+ * ties; robots may share it.
  */
 StayaStatus staya_orca_init(void *memory,
                             size_t memory_bytes,
@@ -1776,11 +1822,12 @@ StayaStatus staya_orca_init(void *memory,
                             struct StayaAvoider **avoider);
 
 /**
- * The velocity to take until the next step, m/s: the nearest to `wish_mps` that robots and obstacles permit. To be called once a
- * `step_s` for the same robot.
+ * Returns the velocity to take until the next step, m/s: the one nearest to `wish_mps` that robots
+ * and obstacles permit. Call it once per `step_s`, always for the same robot.
  *
- * `way_m` is the way to the goal, metres, null without one: near it nobody swerves. Of the robots the nearest STAYA_NEARBY count, in
- * any order. In the plane heights play no part, and the answer has the height of the wish.
+ * `way_m` is the vector to the goal, metres, or null without a goal; near the goal the robot does
+ * not turn aside. Of the robots, which may be in any order, the nearest STAYA_NEARBY count. In the
+ * plane heights are ignored, and the result has the height of the wish.
  */
 StayaStatus staya_orca_velocity(struct StayaAvoider *avoider,
                                 const struct StayaBody *body,
@@ -1793,7 +1840,8 @@ StayaStatus staya_orca_velocity(struct StayaAvoider *avoider,
                                 float velocity_mps[3]);
 
 /**
- * What a robot of an alpha flock should do to its velocity, m/s^2; not bounded by what the body can do. `reference` may be null.
+ * Returns the acceleration of a robot in an alpha flock, m/s^2; not limited to what the body can
+ * do. `reference` may be null.
  */
 StayaStatus staya_lattice_acceleration(const struct StayaLattice *lattice,
                                        const struct StayaBody *body,
@@ -1805,7 +1853,8 @@ StayaStatus staya_lattice_acceleration(const struct StayaLattice *lattice,
                                        float acceleration_mps2[3]);
 
 /**
- * The velocity that a robot of a goal flock wishes for, m/s. Places are in millimetres; `goal_mm` may be null.
+ * Returns the preferred velocity of a robot in a goal flock, m/s. Positions are in millimetres;
+ * `goal_mm` may be null.
  */
 StayaStatus staya_goal_flock_wish(const struct StayaGoalFlock *goal_flock,
                                   float speed_mps,
@@ -1817,7 +1866,7 @@ StayaStatus staya_goal_flock_wish(const struct StayaGoalFlock *goal_flock,
                                   float wish_mps[3]);
 
 /**
- * Turns a boid's heading, a unit vector, to what it is one step later.
+ * Turns a boid's heading, a unit vector, to its value one step later.
  */
 StayaStatus staya_boids_steer(const struct StayaBoids *boids,
                               uint32_t id,
@@ -1826,7 +1875,7 @@ StayaStatus staya_boids_steer(const struct StayaBoids *boids,
                               float heading[2]);
 
 /**
- * The velocity nearest to `wish_mps` by the rules of push-out, m/s, for the next `step_s`.
+ * Returns the velocity nearest to `wish_mps` by the rules of push-out, m/s, for the next `step_s`.
  */
 StayaStatus staya_push_out_velocity(const struct StayaPushOut *params,
                                     const struct StayaBody *body,
@@ -1838,41 +1887,44 @@ StayaStatus staya_push_out_velocity(const struct StayaPushOut *params,
                                     float velocity_mps[3]);
 
 /**
- * The name of a parameter, such as "horizon_s"; null if there is no such number. From 0 up, all are told.
+ * The name of a parameter, such as "horizon_s"; null if the number does not exist. Numbers start
+ * at 0 without gaps.
  */
 const char *staya_parameter_name(uint32_t parameter);
 
 /**
- * The unit of a parameter, empty for a plain number; null if there is no such number.
+ * The unit of a parameter, empty for a plain number; null if the number does not exist.
  */
 const char *staya_parameter_unit(uint32_t parameter);
 
 /**
- * The least and the greatest value that a parameter takes.
+ * Returns the least and the greatest value of a parameter.
  */
 StayaStatus staya_parameter_range(uint32_t parameter, float *least, float *greatest);
 
 /**
- * What a parameter (StayaParameter) is now. `STAYA_STATUS_PARAMETER` when this robot's law and layer have no such one.
+ * Returns the present value of a parameter (StayaParameter). `STAYA_STATUS_PARAMETER` if this
+ * robot's law and layer do not have it.
  */
 StayaStatus staya_get_parameter(const struct StayaAgent *agent,
                                 uint32_t parameter,
                                 float *value);
 
 /**
- * Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER` when this robot has no such one, the value is
- * out of range or does not go with the other parameters; then nothing has changed.
+ * Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER` if this
+ * robot does not have it, or if the value is out of range or contradicts other parameters; then
+ * nothing changes.
  */
 StayaStatus staya_set_parameter(struct StayaAgent *agent,
                                 uint32_t parameter,
                                 float value);
 
 /**
- * Fills a setup for robot `id` with what robots can do with: straight to waypoints at 0.5 m/s behind ORCA, a beacon each step, no
- * inertia, no latency. Lengths of the other laws follow from the radius.
+ * Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon
+ * each step, no inertia, no latency. Lengths of the other laws follow from the radius.
  *
- * `radius_m` is that of the ball around the body, metres; `tick_us` the time from one step to the next, microseconds. They are
- * judged by `staya_init`.
+ * `radius_m` is that of the ball around the body, metres; `tick_us` the time from one step to the
+ * next, microseconds. `staya_init` checks them.
  */
 StayaStatus staya_setup_defaults(struct StayaSetup *setup,
                                  uint32_t id,
@@ -1880,23 +1932,25 @@ StayaStatus staya_setup_defaults(struct StayaSetup *setup,
                                  int32_t tick_us);
 
 /**
- * The paper's values of the lattice for a spacing, metres: as in a setup's defaults.
+ * Writes the paper's values of the lattice for a spacing, metres, as in a setup's defaults.
  */
 StayaStatus staya_lattice_defaults(struct StayaLattice *lattice, float spacing_m);
 
 /**
- * Softens the gains as far as news ask that are `delay_s` old when they arrive and come `rate_hz` times a second: stiffer ones swing
- * the lattice apart.
+ * Reduces the gains as far as required if beacons are `delay_s` old when they arrive and come
+ * `rate_hz` times per second. Stiffer gains make the lattice oscillate and break apart.
  */
 StayaStatus staya_lattice_soften(struct StayaLattice *lattice,
                                  float delay_s,
                                  float rate_hz);
 
 /**
- * Fills in the place number `own` of a formation: its cells in any common frame, the top leader's first, and the edges of its graph.
- * Who is within `hops` edges becomes a neighbour; the robot at place i has the number i + 1.
+ * Fills in the place number `own` of a formation, given the cells of all places in any common
+ * frame, the top leader's first, and the edges of its graph. Robots within `hops` edges become
+ * neighbours; the robot at place i has the number i + 1.
  *
- * `STAYA_STATUS_SHAPE` for a place or an edge that does not exist, `STAYA_STATUS_TOO_MANY` for more than STAYA_TEMPLATE neighbours.
+ * `STAYA_STATUS_SHAPE` for a place or an edge that does not exist, `STAYA_STATUS_TOO_MANY` for
+ * more than STAYA_TEMPLATE neighbours.
  */
 StayaStatus staya_formation_from_graph(struct StayaFormation *formation,
                                        const struct StayaCell *places,
@@ -1912,7 +1966,7 @@ StayaStatus staya_formation_from_graph(struct StayaFormation *formation,
 const char *staya_status_name(int32_t status);
 
 /**
- * What a status means and what to do about it, in a line. Never null.
+ * The meaning of a status and its remedy, in one line. Never null.
  */
 const char *staya_status_text(int32_t status);
 
@@ -1922,7 +1976,7 @@ const char *staya_status_text(int32_t status);
 
 #endif  /* STAYA_H */
 
-/* As the library was compiled: no packed structures, IEEE 754. */
+/* The library's layout: no packed structures, IEEE 754. */
 STAYA_STATIC_ASSERT(sizeof(StayaSetup) == STAYA_SETUP_SIZE, "StayaSetup is laid out otherwise than in the library");
 STAYA_STATIC_ASSERT(sizeof(StayaOutputs) == STAYA_OUTPUTS_SIZE, "StayaOutputs is laid out otherwise than in the library");
 STAYA_STATIC_ASSERT(sizeof(float) == 4, "float is not IEEE 754 single precision");

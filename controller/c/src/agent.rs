@@ -1,4 +1,4 @@
-//! The agent: made in the caller's memory, told what to do, stepped, asked.
+//! The agent: creation in the caller's memory, orders, steps and queries.
 
 use crate::choices::StayaMode;
 use crate::io::{StayaInputs, StayaOutputs, array, vector};
@@ -19,15 +19,15 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::cast;
 use staya_controller::time::Instant;
 
-/// Bytes that are enough for an agent of any build of the library, its scratch memory included.
+/// Bytes that suffice for an agent in any build of the library, including its scratch memory.
 pub const STAYA_AGENT_SIZE: usize = 10240;
-/// Bytes that are enough for one of a library without the features `auth` and `grid`.
+/// Bytes that suffice for an agent if the library lacks the features `auth` and `grid`.
 pub const STAYA_AGENT_SIZE_IN_PLANE: usize = 3328;
-/// How memory for agents and avoiders must be aligned, bytes.
+/// Alignment of the memory for agents and avoiders, bytes.
 pub const STAYA_ALIGN: usize = 8;
-/// Waypoints that an agent has room for.
+/// Maximum number of waypoints of an agent.
 pub const STAYA_WAYPOINTS: usize = 4;
-/// Neighbours that an agent knows at most.
+/// Maximum number of neighbours of an agent.
 pub const STAYA_NEIGHBORS: usize = 16;
 
 const _: () = assert!(size_of::<StayaAgent>() <= STAYA_AGENT_SIZE && align_of::<StayaAgent>() <= STAYA_ALIGN);
@@ -37,8 +37,8 @@ const _: () = assert!(STAYA_WAYPOINTS == WAYPOINTS && STAYA_NEIGHBORS >= NEIGHBO
 
 type AnyAgent = Agent<Number, Law, NEIGHBORS, Layer, Speech>;
 
-/// A robot's controller. What is in it is the library's own business.
-// So that cbindgen, which does not read it like this, takes what is in it for nobody's business.
+/// The controller of one robot. Its contents are private to the library.
+// A separate item, since cbindgen would otherwise export the fields.
 #[cfg_attr(all(), repr(C))]
 pub struct StayaAgent {
     mark: u32,
@@ -68,14 +68,15 @@ const fn no_outputs() -> Outputs<Number> {
 }
 
 impl StayaAgent {
-    /// Made where it stays: each part is written on its own, so that only the law and the layer pass through the stack.
+    /// Creates the agent in place: each part is written separately, so that only law and layer pass
+    /// through the stack.
     ///
     /// # Safety
-    /// `site` came from [`site`].
+    /// `site` was returned by [`site`].
     #[inline(never)]
     unsafe fn make(site: *mut Self, setup: &StayaSetup) -> Checked<()> {
         let agent = AnyAgent::new(&setup.config()?, setup.law()?, setup.layer()?, setup.speech()?);
-        // SAFETY: aligned room for all of it; nobody else uses it.
+        // SAFETY: aligned space for the whole agent, not used elsewhere.
         unsafe {
             (&raw mut (*site).agent).write(agent);
             #[cfg(feature = "grid")]
@@ -91,7 +92,7 @@ impl StayaAgent {
     /// As for [`StayaInputs::inputs`].
     unsafe fn step(&mut self, inputs: &StayaInputs) -> Checked<()> {
         let law = self.agent.guidance().kind();
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's contract.
         let own = unsafe { inputs.inputs(law, &mut self.obstacles)? };
         let now = Instant::from_micros(inputs.now_us);
         self.agent.step_into(&own, now, &mut self.workspace, &mut self.outputs);
@@ -107,56 +108,54 @@ impl StayaAgent {
         }
     }
 
-    /// The agent itself.
     pub(crate) const fn inside(&self) -> &AnyAgent {
         &self.agent
     }
 
-    /// The agent itself, to be changed.
     pub(crate) const fn inside_mut(&mut self) -> &mut AnyAgent {
         &mut self.agent
     }
 }
 
-/// A place to go to, which may move.
+/// A destination, which may move.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StayaWaypoint {
-    /// Where it was, millimetres.
+    /// Its position at `at_us`, millimetres.
     pub position_mm: [i32; 3],
-    /// Its velocity since, m/s.
+    /// Its velocity since then, m/s.
     pub velocity_mps: [f32; 3],
-    /// When it was there, the robot's clock, microseconds.
+    /// Time of the position on the robot's clock, microseconds.
     pub at_us: u32,
 }
 
-/// A robot as it was heard last.
+/// A robot as of its last beacon.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StayaNeighbor {
-    /// Who it is; from 2^31 on a second robot of the number below.
+    /// Its number; from 2^31 on a second robot with the number reduced by 2^31.
     pub id: u32,
-    /// When it was heard, the own clock, microseconds.
+    /// Reception time on the own clock, microseconds.
     pub heard_us: u32,
-    /// Where it was then, millimetres.
+    /// Its position at that time, millimetres.
     pub position_mm: [i32; 3],
-    /// Its velocity then, m/s.
+    /// Its velocity at that time, m/s.
     pub velocity_mps: [f32; 3],
     /// Radius of the ball around its body, metres.
     pub radius_m: f32,
-    /// Its leader; 0 for nobody.
+    /// The number of its leader; 0 if it has none.
     pub leader: u32,
     /// The cell that it was in.
     pub cell: StayaCell,
-    /// The cell that it was going to.
+    /// The cell that it was heading for.
     pub target: StayaCell,
     /// Its place in the formation, or its flock.
     pub slot: u8,
-    /// What it was doing: StayaMode.
+    /// Its activity: StayaMode.
     pub mode: u8,
-    /// The move that it wanted next: StayaDir.
+    /// The move that it wanted to make next: StayaDir.
     pub heading: u8,
-    /// Silent for too long: only where it was still counts.
+    /// Other than 0: silent for too long; only its last position still counts.
     pub is_lost: u8,
 }
 
@@ -181,16 +180,17 @@ impl From<&Neighbor<Number>> for StayaNeighbor {
     }
 }
 
-/// Bytes that an agent of this build takes: at most STAYA_AGENT_SIZE.
+/// Size of an agent of this build in bytes: at most STAYA_AGENT_SIZE.
 #[unsafe(no_mangle)]
 pub const extern "C" fn staya_agent_bytes() -> usize {
     size_of::<StayaAgent>()
 }
 
-/// Makes an agent in memory of the caller's: idle, without a goal, knowing nobody. `*agent` is where it is, which is `memory`; it is
-/// there for as long as the memory is, must not be moved, and needs no end. It is null if the setup is refused.
+/// Creates an agent in the caller's memory: idle, without a goal or known neighbours. `*agent` then
+/// points to it, which equals `memory`. It lives as long as the memory, must not be moved, and need
+/// not be destroyed. `*agent` is null if the setup is rejected.
 ///
-/// Needs some kilobytes of stack for a moment (docs/c.md).
+/// Temporarily needs some kilobytes of stack (docs/c.md).
 ///
 /// # Safety
 /// See the header's introduction.
@@ -202,11 +202,12 @@ pub unsafe extern "C" fn staya_init(
     agent: *mut *mut StayaAgent,
 ) -> StayaStatus {
     let make = || {
-        // SAFETY: the caller gives room for a pointer, or what `write` refuses.
+        // SAFETY: a valid pointer by the caller's contract, or `write` rejects it.
         unsafe { memory::write(agent, core::ptr::null_mut())? };
-        // SAFETY: the caller gives so much memory, or what `site` refuses.
+        // SAFETY: this much memory by the caller's contract, or `site` rejects it.
         let site = unsafe { site::<StayaAgent>(memory, memory_bytes)? };
-        // SAFETY: the caller gives a setup, or what `shared` refuses; the site is checked.
+        // SAFETY: a valid setup by the caller's contract, or `shared` rejects it; the site is
+        // checked.
         unsafe { StayaAgent::make(site, shared(setup)?)? };
         // SAFETY: as above.
         unsafe { memory::write(agent, site) }
@@ -214,9 +215,10 @@ pub unsafe extern "C" fn staya_init(
     answer(make())
 }
 
-/// One step: hear, decide, speak. To be called once a `tick_us`, with the robot's clock and state as they are.
+/// Runs one step: receive, decide, send. Call it once per `tick_us` with the robot's present clock
+/// and state.
 ///
-/// Bounded work; the agent and `outputs` are unchanged when the inputs are refused.
+/// Bounded work. If the inputs are rejected, the agent and `outputs` are unchanged.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -233,19 +235,21 @@ pub unsafe extern "C" fn staya_step(
         if !outputs.is_aligned() {
             return Err(StayaStatus::Alignment);
         }
-        // SAFETY: the caller gives an agent that nobody else uses, or what `resident_mut` refuses.
+        // SAFETY: an agent that is not used elsewhere, by the caller's contract, or `resident_mut`
+        // rejects it.
         let agent = unsafe { resident_mut(agent)? };
-        // SAFETY: the caller gives inputs with sound pointers in them, or what is refused.
+        // SAFETY: inputs with valid pointers by the caller's contract, or they are rejected.
         unsafe { agent.step(shared(inputs)?)? };
-        // SAFETY: the caller gives room for outputs; the inputs are read by now, should they lie in the same memory.
+        // SAFETY: valid space for outputs, or it is rejected. The inputs, which may lie in the same
+        // memory, have been read.
         agent.tell(unsafe { zeroed(outputs)? });
         Ok(())
     };
     answer(step())
 }
 
-/// Gives the robot a waypoint, number `index` below STAYA_WAYPOINTS: for the laws of the plane but boids. The goal flock takes
-/// several, the others number 0.
+/// Gives the robot the waypoint number `index`, below STAYA_WAYPOINTS. For the laws of the plane
+/// except boids. The goal flock uses several waypoints, the other laws only number 0.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -256,7 +260,7 @@ pub unsafe extern "C" fn staya_assign_waypoint(
     waypoint: *const StayaWaypoint,
 ) -> StayaStatus {
     let assign = || {
-        // SAFETY: the caller gives both, or what is refused.
+        // SAFETY: both are valid by the caller's contract, or they are rejected.
         let (agent, waypoint) = unsafe { (resident_mut(agent)?, shared(waypoint)?) };
         let waypoint = Waypoint::<f32> {
             position: Position::from_mm(waypoint.position_mm),
@@ -270,7 +274,7 @@ pub unsafe extern "C" fn staya_assign_waypoint(
     answer(assign())
 }
 
-/// Three finite numbers.
+/// Conversion of three finite numbers.
 trait IntoVector {
     fn into_vector(self) -> Checked<staya_controller::geom::Vec3<f32>>;
 }
@@ -283,37 +287,39 @@ impl IntoVector for [f32; 3] {
     }
 }
 
-/// Gives the robot a cell to go to: for the laws that cross land in cells. In a formation the top leader's cell is enough.
+/// Gives the robot a target cell: for the laws that cross land in cells. In a formation the cell of
+/// the top leader suffices.
 ///
 /// # Safety
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_assign_cell(agent: *mut StayaAgent, x: i16, y: i16) -> StayaStatus {
     let assign = || {
-        // SAFETY: the caller gives an agent that nobody else uses, or what `resident_mut` refuses.
+        // SAFETY: an agent that is not used elsewhere, by the caller's contract, or `resident_mut`
+        // rejects it.
         let agent = unsafe { resident_mut(agent)? };
         agent.agent.assign(&Task::Cell(Cell::new(x, y))).map_err(|_| StayaStatus::Task)
     };
     answer(assign())
 }
 
-/// What the robot is doing: StayaMode.
+/// Returns the robot's activity: StayaMode.
 ///
 /// # Safety
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_mode(agent: *const StayaAgent, mode: *mut u8) -> StayaStatus {
     let ask = || {
-        // SAFETY: the caller gives an agent, or what `resident` refuses.
+        // SAFETY: an agent by the caller's contract, or `resident` rejects it.
         let known = unsafe { resident(agent)? }.agent.mode();
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(mode, StayaMode::from(known) as u8) }
     };
     answer(ask())
 }
 
-/// Whom the robot knows, by rising number: the first `room` of them; `*count` is how many there are, which may be more.
-/// `STAYA_NEIGHBORS` is always room enough.
+/// Returns the first `room` neighbours in ascending order of their numbers. `*count` is their total
+/// number, which may be greater than `room`. A room of `STAYA_NEIGHBORS` always suffices.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -325,10 +331,10 @@ pub unsafe extern "C" fn staya_neighbors(
     count: *mut usize,
 ) -> StayaStatus {
     let ask = || {
-        // SAFETY: the caller gives an agent and so much room, or what is refused.
+        // SAFETY: an agent and this much space by the caller's contract, or they are rejected.
         let (agent, places) = unsafe { (resident(agent)?, room(neighbors, neighbor_room)?) };
         let known = agent.agent.neighbors();
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(count, known.len())? };
         for (place, neighbor) in places.iter_mut().zip(known) {
             place.write(neighbor.into());
@@ -338,22 +344,24 @@ pub unsafe extern "C" fn staya_neighbors(
     answer(ask())
 }
 
-/// A fingerprint of the agent's whole state: agents with equal ones have the same future; the same on every machine.
+/// A hash of the agent's whole state, the same on every machine. Agents with equal hashes behave
+/// identically from then on.
 ///
 /// # Safety
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_digest(agent: *const StayaAgent, digest: *mut u64) -> StayaStatus {
     let ask = || {
-        // SAFETY: the caller gives an agent, or what `resident` refuses.
+        // SAFETY: an agent by the caller's contract, or `resident` rejects it.
         let known = unsafe { resident(agent)? }.agent.digest();
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(digest, known) }
     };
     answer(ask())
 }
 
-/// Moves a place by a way in metres, rounded to millimetres, saturating: for odometry, and for bodies in a simulation.
+/// Moves a position by a vector in metres, rounded to millimetres, saturating. For odometry, and
+/// for bodies in a simulation.
 /// cbindgen:ptrs-as-arrays=[[position_mm; 3], [way_m; 3]]
 ///
 /// # Safety
@@ -361,11 +369,11 @@ pub unsafe extern "C" fn staya_digest(agent: *const StayaAgent, digest: *mut u64
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_move(position_mm: *mut i32, way_m: *const f32) -> StayaStatus {
     let go = || {
-        // SAFETY: the caller gives both, or what `shared` refuses.
+        // SAFETY: both are valid by the caller's contract, or `shared` rejects them.
         let (from, way) = unsafe { (*shared(position_mm.cast::<[i32; 3]>())?, *shared(way_m.cast::<[f32; 3]>())?) };
         way.into_vector()?;
         let to = Position::from_mm(from).moved(vector(way)).ok_or(StayaStatus::Number)?;
-        // SAFETY: as above, and the references are no more.
+        // SAFETY: as above; the references have ended.
         unsafe { memory::write(position_mm.cast(), to.mm) }
     };
     answer(go())

@@ -1,4 +1,5 @@
-//! Behaviours by themselves, on arrays of the caller's, for robots that sense each other or have a radio of their own: ORCA here.
+//! Behaviours without an agent, on arrays of the caller, for robots that sense each other or use
+//! their own radio. ORCA is here.
 
 #[cfg(feature = "flocks")]
 pub mod flocks;
@@ -24,24 +25,24 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::scalar::cast;
 
-/// Bytes that are enough for an avoider.
+/// Bytes that suffice for an avoider.
 pub const STAYA_ORCA_SIZE: usize = 256;
-/// Robots that a behaviour by itself takes into account: the nearest of all that it is told of.
+/// Maximum number of robots that these behaviours consider: the nearest of all that are given.
 pub const STAYA_NEARBY: usize = 16;
 
 const _: () = assert!(size_of::<StayaAvoider>() <= STAYA_ORCA_SIZE && align_of::<StayaAvoider>() <= 8);
 
-/// The own body.
+/// The body of this robot.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaBody {
-    /// Own number, 1 or more: when two are in one place it says who goes which way.
+    /// Its number, 1 or more. If two robots are in one place, it decides which way each goes.
     pub id: u32,
-    /// Own velocity, m/s.
+    /// Its velocity, m/s.
     pub velocity_mps: [f32; 3],
     /// Radius of the ball around it, metres.
     pub radius_m: f32,
-    /// How fast it can go where it is, m/s.
+    /// Its highest possible speed in its present place, m/s.
     pub max_speed_mps: f32,
     /// How fast it can change its velocity, m/s^2; FLT_MAX: at once.
     pub max_acceleration_mps2: f32,
@@ -49,31 +50,32 @@ pub struct StayaBody {
     pub step_s: f32,
 }
 
-/// Another robot, as it is right now.
+/// The present state of another robot.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaNearby {
-    /// Who it is.
+    /// Its number.
     pub id: u32,
-    /// Its place minus the own one, metres.
+    /// Its position minus that of this robot, metres.
     pub offset_m: [f32; 3],
     /// Its velocity, m/s.
     pub velocity_mps: [f32; 3],
-    /// Radius of the ball that it is in, metres.
+    /// Radius of the ball around it, metres.
     pub radius_m: f32,
-    /// 0: it does not make way, and all of a correction is one's own.
+    /// 0: it does not give way, and this robot makes the whole correction.
     pub gives_way: u8,
-    /// Other than 0: it stands at its place and will stay (STAYA_MODE_ARRIVED), so others need not wait for it.
+    /// Other than 0: it stands at its place and will stay (STAYA_MODE_ARRIVED), so others need not
+    /// wait for it.
     pub is_parked: u8,
-    /// Other than 0: of another flock, and only in the way.
+    /// Other than 0: it belongs to another flock, and is only an obstacle.
     pub is_stranger: u8,
 }
 
-/// Where a flock should be, as a robot sees it.
+/// The point that a flock follows, as a robot sees it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaReference {
-    /// Its place minus the own one, metres.
+    /// Its position minus that of this robot, metres.
     pub offset_m: [f32; 3],
     /// Its velocity, m/s.
     pub velocity_mps: [f32; 3],
@@ -108,11 +110,11 @@ impl StayaNearby {
     }
 }
 
-/// The nearest ones, nearest first, of equally near ones the earlier. O(all * STAYA_NEARBY).
+/// The nearest robots, nearest first, of equally near ones the earlier. O(all * STAYA_NEARBY).
 fn nearest(all: &[StayaNearby]) -> Vec<Nearby<Number>, STAYA_NEARBY> {
     let mut kept = Vec::<(u64, Nearby<Number>), STAYA_NEARBY>::new();
     for other in all {
-        // A place that is not a number would be the nearest one.
+        // A position that is not a number would count as the nearest.
         if !other.offset_m.iter().all(|component| component.is_finite()) {
             continue;
         }
@@ -127,13 +129,13 @@ fn nearest(all: &[StayaNearby]) -> Vec<Nearby<Number>, STAYA_NEARBY> {
     }
     let mut nearest = Vec::new();
     for (_, other) in kept.as_slice() {
-        // As many places as there are.
+        // There is space for all.
         let _ = nearest.push(*other);
     }
     nearest
 }
 
-/// Moves the last one up to its place.
+/// Moves the last element up to its place.
 fn sink(kept: &mut [(u64, Nearby<Number>)]) {
     let mut rest = kept;
     while let [.., before, last] = rest {
@@ -149,10 +151,11 @@ fn sink(kept: &mut [(u64, Nearby<Number>)]) {
     }
 }
 
-/// What all of them are told.
+/// Reads the arguments that all behaviours share.
 ///
 /// # Safety
-/// The pointers are null or misaligned, or lead to as many as is said, which nobody writes to meanwhile.
+/// Each pointer is null, misaligned, or valid for the given number of elements, which are not
+/// modified during the call.
 #[expect(clippy::type_complexity, reason = "cbindgen reads no alias of it")]
 unsafe fn surroundings(
     body: *const StayaBody,
@@ -161,7 +164,7 @@ unsafe fn surroundings(
     obstacles: *const StayaObstacle,
     obstacle_count: usize,
 ) -> Checked<(Body<Number>, Vec<Nearby<Number>, STAYA_NEARBY>, Vec<Obstacle<Number>, OBSTACLES>)> {
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller's contract.
     let (body, others, seen) =
         unsafe { (shared(body)?.body(), row(nearby, nearby_count)?, row(obstacles, obstacle_count)?) };
     let mut obstacles = Vec::new();
@@ -169,8 +172,8 @@ unsafe fn surroundings(
     Ok((body, nearest(others), obstacles))
 }
 
-/// ORCA of one robot. What is in it is the library's own business.
-// So that cbindgen, which does not read it like this, takes what is in it for nobody's business.
+/// ORCA for one robot. Its contents are private to the library.
+// A separate item, since cbindgen would otherwise export the fields.
 #[cfg_attr(all(), repr(C))]
 pub struct StayaAvoider {
     mark: u32,
@@ -227,18 +230,19 @@ impl AnyAvoider {
     }
 }
 
-/// The parameters of ORCA that suit most robots.
+/// Writes the parameters of ORCA that suit most robots.
 ///
 /// # Safety
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_orca_defaults(orca: *mut StayaOrca) -> StayaStatus {
-    // SAFETY: the caller gives room for it, or what `write` refuses.
+    // SAFETY: valid space by the caller's contract, or `write` rejects it.
     answer(unsafe { memory::write(orca, StayaOrca::defaults()) })
 }
 
-/// Makes ORCA for one robot in memory of the caller's, STAYA_ORCA_SIZE bytes aligned by STAYA_ALIGN: in the plane, or with `in_space`
-/// other than 0 in space. `seed` is of the draws that end ties; robots may have the same.
+/// Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN.
+/// In the plane, or in space if `in_space` is not 0. `seed` seeds the random decisions that break
+/// ties; robots may share it.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -252,13 +256,13 @@ pub unsafe extern "C" fn staya_orca_init(
     avoider: *mut *mut StayaAvoider,
 ) -> StayaStatus {
     let make = || {
-        // SAFETY: the caller gives room for a pointer, or what `write` refuses.
+        // SAFETY: a valid pointer by the caller's contract, or `write` rejects it.
         unsafe { memory::write(avoider, core::ptr::null_mut())? };
-        // SAFETY: the caller gives so much memory, or what `site` refuses.
+        // SAFETY: this much memory by the caller's contract, or `site` rejects it.
         let site = unsafe { site::<StayaAvoider>(memory, memory_bytes)? };
-        // SAFETY: the caller gives parameters, or what `shared` refuses.
+        // SAFETY: valid parameters by the caller's contract, or `shared` rejects them.
         let inside = AnyAvoider::new(unsafe { shared(orca)? }, in_space)?;
-        // SAFETY: aligned room for all of it; nobody else uses it.
+        // SAFETY: aligned space for the whole avoider, not used elsewhere.
         unsafe { site.write(StayaAvoider { mark: StayaAvoider::MARK, avoider: inside, rng: Rng::new(seed) }) };
         // SAFETY: as above.
         unsafe { memory::write(avoider, site) }
@@ -266,11 +270,12 @@ pub unsafe extern "C" fn staya_orca_init(
     answer(make())
 }
 
-/// The velocity to take until the next step, m/s: the nearest to `wish_mps` that robots and obstacles permit. To be called once a
-/// `step_s` for the same robot.
+/// Returns the velocity to take until the next step, m/s: the one nearest to `wish_mps` that robots
+/// and obstacles permit. Call it once per `step_s`, always for the same robot.
 ///
-/// `way_m` is the way to the goal, metres, null without one: near it nobody swerves. Of the robots the nearest STAYA_NEARBY count, in
-/// any order. In the plane heights play no part, and the answer has the height of the wish.
+/// `way_m` is the vector to the goal, metres, or null without a goal; near the goal the robot does
+/// not turn aside. Of the robots, which may be in any order, the nearest STAYA_NEARBY count. In the
+/// plane heights are ignored, and the result has the height of the wish.
 /// cbindgen:ptrs-as-arrays=[[wish_mps; 3], [way_m; 3], [velocity_mps; 3]]
 ///
 /// # Safety
@@ -288,14 +293,14 @@ pub unsafe extern "C" fn staya_orca_velocity(
     velocity_mps: *mut f32,
 ) -> StayaStatus {
     let avoid = || {
-        // SAFETY: the caller gives all of them, or what is refused.
+        // SAFETY: all are valid by the caller's contract, or they are rejected.
         let (own, wish, way) =
             unsafe { (resident_mut(avoider)?, vector(*shared::<[f32; 3]>(wish_mps.cast())?), optional(way_m.cast())?) };
         // SAFETY: as above.
         let (body, others, obstacles) = unsafe { surroundings(body, nearby, nearby_count, obstacles, obstacle_count)? };
         let StayaAvoider { avoider, rng, .. } = own;
         let best = avoider.velocity(&body, wish, way.map(|way| vector(*way)), &others, &obstacles, rng);
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(velocity_mps.cast(), array(best)) }
     };
     answer(avoid())

@@ -1,4 +1,4 @@
-//! Numbers that stand for one of several, as enums for C: fields have them as integers, since C writes there what it likes.
+//! Enums for C. Fields have them as integers, since C may write any number there.
 
 use crate::status::{Checked, StayaStatus};
 use staya_controller::agent::{Event, Wait};
@@ -8,69 +8,73 @@ use staya_controller::push_out::Model;
 use staya_controller::robot::Mode;
 use staya_controller::wire::RequestKind;
 
-/// How a robot goes: its guidance law.
+/// Guidance law: how a robot moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaLaw {
-    /// Straight to its waypoint, `speed_mps`, until it is within `tolerance_m`.
+    /// Straight to its waypoint at `speed_mps`, until it is within `tolerance_m`.
     Waypoint = 0,
-    /// The alpha flock (R. Olfati-Saber 2006): equal distances, and waypoint 0, if there is one, as its reference.
+    /// The alpha flock (R. Olfati-Saber 2006): equal distances, with waypoint 0, if present, as the
+    /// reference.
     Lattice = 1,
-    /// The goal flock (V. E. and V. V. Pavlovsky): to the middle of the waypoints together, then each to one of them.
+    /// The goal flock (V. E. and V. V. Pavlovsky): together to the middle of the waypoints, then
+    /// each robot to one of them.
     GoalFlock = 2,
     /// Boids (V. A. Starovoitova 2018): constant speed, only headings change.
     Boids = 3,
-    /// Across land in cells (A. V. Kuznetsov 2017), by velocities.
+    /// A route across land in cells (A. V. Kuznetsov 2017), with velocities as commands.
     Route = 4,
-    /// The same, keeping a formation.
+    /// A formation across land in cells, with velocities as commands.
     Formation = 5,
-    /// Across land in cells, by moves from cell to cell.
+    /// A route across land in cells, with moves from cell to cell as commands.
     RouteOnGrid = 6,
-    /// The same, keeping a formation.
+    /// A formation across land in cells, with moves from cell to cell as commands.
     FormationOnGrid = 7,
 }
 
-/// What keeps a robot clear of others: its safety layer. Robots that move from cell to cell have none.
+/// Safety layer: how a robot keeps clear of others. Robots that move from cell to cell have none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaSafety {
-    /// Nothing.
+    /// No safety layer.
     None = 0,
     /// ORCA in the plane.
     Orca = 1,
-    /// The same with half-planes from a table of 2 KiB.
+    /// ORCA in the plane with half-planes from a table of 2 KiB.
     OrcaTable = 2,
-    /// ORCA in space, for robots that fly.
+    /// ORCA in space, for flying robots.
     Fly = 3,
-    /// Push-out: only against where others are now.
+    /// Push-out: considers only the present positions of others.
     PushOut = 4,
 }
 
-/// How robots speak; the same for all of a swarm.
+/// Wire format; the same for all robots of a swarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaWire {
-    /// The controller's own frames, at most 60 bytes, each with a zero byte behind it.
+    /// The controller's own frames of at most 60 bytes, each followed by a zero byte.
     Postcard = 0,
-    /// MAVLink 2 frames with messages of Staya's dialect (`controller/mavlink/messages/staya.xml`).
+    /// MAVLink 2 frames with the messages of Staya's dialect
+    /// (`controller/mavlink/messages/staya.xml`).
     Mavlink = 1,
-    /// As the first, with a code that only who has the `key` can make, and with protection against replays.
+    /// Like STAYA_WIRE_POSTCARD, with an authentication code that requires the `key`, and with
+    /// protection against replays.
     Sealed = 2,
 }
 
-/// What the body should do until the next step.
+/// What the body shall do until the next step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaCommand {
-    /// Stand.
+    /// Stop.
     Hold = 0,
-    /// Take the first of `moves` whose cell is free and passable; none free: stand.
+    /// Take the first of `moves` whose cell is free and passable; stop if none is.
     Move = 1,
-    /// Go with `velocity_mps`.
+    /// Move with `velocity_mps`.
     Velocity = 2,
 }
 
-/// What the robot is doing as a whole.
+/// The overall activity of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaMode {
@@ -78,41 +82,41 @@ pub enum StayaMode {
     Idle = 0,
     /// Taking its place in the formation.
     Forming = 1,
-    /// On its way.
+    /// Moving to its goal.
     Cruise = 2,
-    /// Standing because somebody asked or no way is open.
+    /// Stopped, because of a request or because no route is open.
     Hold = 3,
     /// At its target.
     Arrived = 4,
-    /// Own input is missing or wrong; standing.
+    /// Stopped, because own input is missing or wrong.
     Fault = 5,
-    /// Its agent does not steer it.
+    /// Not steered by its agent.
     Passive = 6,
 }
 
-/// What a robot that has somewhere to go and does not get on waits for.
+/// What a robot with a goal waits for if it does not get closer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaWait {
     /// It does not wait.
     Nothing = 0,
-    /// Its leader or its followers are not there yet.
+    /// Its leader or its followers have not arrived yet.
     Formation = 1,
-    /// Somebody asked it to stop.
+    /// A request to stop.
     Request = 2,
-    /// Nothing but land or walls is in its way.
+    /// Only land or walls block its route.
     Way = 3,
-    /// It does not know where others are: they are not heard.
+    /// It does not know where others are, since it does not receive them.
     Radio = 4,
-    /// At a door others go first.
+    /// Others go first through a door.
     Turn = 5,
     /// Other robots are in its way.
     Others = 6,
-    /// Somebody stands on its goal; it has arrived beside it.
+    /// Another robot occupies its goal; it has arrived beside it.
     Place = 7,
 }
 
-/// A move from a cell: compass points, as in `moves` and `heading`.
+/// A move from a cell: compass directions, as in `moves` and `heading`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaDir {
@@ -136,69 +140,70 @@ pub enum StayaDir {
     Stay = 8,
 }
 
-/// What happened in a step.
+/// An event in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaEventKind {
-    /// Its mode changed: `before`, `after` (StayaMode).
+    /// The robot's mode changed: `before`, `after` (StayaMode).
     ModeChanged = 0,
     /// No exit of the window can be reached.
     NoRoute = 1,
-    /// The target lay in an impassable cell and moved: `before_xy`, `after_xy`.
+    /// The target lay in an impassable cell and was moved: `before_xy`, `after_xy`.
     TargetMoved = 2,
     /// A request to `robot` ran out of retries; `after`: 0 stop, 1 resume, 2 redirect.
     RequestExpired = 3,
-    /// `robot` is known now.
+    /// `robot` became known.
     NeighborFound = 4,
     /// `robot` was silent for too long.
     NeighborLost = 5,
-    /// The table was full and `robot` had to go.
+    /// The table was full and `robot` was dropped from it.
     NeighborEvicted = 6,
     /// `robot` has restarted.
     NeighborRebooted = 7,
-    /// Nobody is heard any more.
+    /// No robot is received any more.
     NobodyHeard = 8,
     /// Two robots have the number `robot`.
     DuplicateId = 9,
-    /// `robot` says of itself what is beyond `claims`; `after`: 0 its number, 1 radius, 2 speed, 3 place.
+    /// A beacon of `robot` exceeds the limits of `claims`; `after`: 0 number, 1 radius, 2 speed, 3
+    /// position.
     Overclaimed = 10,
-    /// The robot says nothing any more: its counters are used up, and a new key is needed.
+    /// The robot stopped sending: its counters are used up, and it needs a new key.
     Muted = 11,
 }
 
-/// What does not move and stands in the way.
+/// The shape of a static obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaShape {
-    /// An upright wall of no thickness from (`x_m`, `y_m`) to (`x2_m`, `y2_m`).
+    /// A vertical wall without thickness from (`x_m`, `y_m`) to (`x2_m`, `y2_m`).
     Wall = 0,
     /// A ball, in the plane a disc, around (`x_m`, `y_m`, `z_m`) with the radius `size_m`.
     Ball = 1,
-    /// All that is behind a plane: (`x_m`, `y_m`, `z_m`) is its normal, of length 1 and away from the obstacle, and the robot is
-    /// `size_m` in front of it.
+    /// A half-space: everything behind a plane. Its normal (`x_m`, `y_m`, `z_m`) has length 1 and
+    /// points away from the obstacle; the robot is `size_m` in front of it.
     Plane = 2,
 }
 
-/// Which terms of the alpha flock act.
+/// The active terms of the alpha flock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaLatticeTerms {
-    /// Only the others.
+    /// Only the other robots.
     Others = 1,
-    /// And the reference, with a pull that grows without bound.
+    /// Also the reference, with a pull that grows without bound.
     Reference = 2,
-    /// And obstacles; the pull of the reference is bounded.
+    /// Also obstacles; the pull of the reference is bounded.
     All = 3,
 }
 
-/// [`of`](StayaLaw::of) for enums that C names by number.
+/// [`of`](StayaLaw::of) for enums that C passes as numbers.
 macro_rules! numbered {
     ($($name:ident { $($variant:ident),* $(,)? })*) => {
         $(impl $name {
-            /// The one of this number.
+            /// The value with this number.
             ///
             /// # Errors
-            /// `STAYA_STATUS_CHOICE` when there is none.
+            /// `STAYA_STATUS_CHOICE` if there is none.
             pub fn of(number: u8) -> Checked<Self> {
                 let mut all = [$(Self::$variant),*].into_iter();
                 all.find(|known| *known as u8 == number).ok_or(StayaStatus::Choice)
@@ -226,13 +231,13 @@ impl From<StayaLatticeTerms> for Algorithm {
     }
 }
 
-/// What push-out makes of a step that leads too near.
+/// How push-out changes a step that leads too near.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaPushOutModel {
-    /// It slides along and slows down.
+    /// The step slides along the border and becomes shorter.
     Radial = 0,
-    /// It keeps its length and is turned.
+    /// The step keeps its length and is turned.
     Tangential = 1,
 }
 
@@ -274,7 +279,6 @@ impl From<Option<Wait>> for StayaWait {
     }
 }
 
-/// The number of a request's kind in an event.
 pub(crate) const fn request(kind: RequestKind) -> u8 {
     match kind {
         RequestKind::Stop => 0,
@@ -283,7 +287,6 @@ pub(crate) const fn request(kind: RequestKind) -> u8 {
     }
 }
 
-/// The number of a claim in an event.
 pub(crate) const fn claim(claim: Claim) -> u8 {
     match claim {
         Claim::Number => 0,

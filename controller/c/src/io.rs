@@ -1,4 +1,4 @@
-//! What a step is told and what it gives, as plain structures.
+//! Inputs and outputs of a step, as plain structures.
 
 use crate::choices::{self, StayaCommand, StayaEventKind, StayaLaw, StayaMode, StayaShape, StayaWait};
 use crate::memory::{plain, row};
@@ -16,18 +16,18 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::scalar::cast;
 use staya_controller::time::Duration;
 
-/// Bytes that one step can send.
+/// Maximum number of bytes that one step can send.
 pub const STAYA_OUTBOX: usize = 256;
-/// Events that one step can report.
+/// Maximum number of events that one step can report.
 pub const STAYA_EVENTS: usize = 8;
 
-/// Bytes of StayaOutputs, on every machine.
+/// Size of StayaOutputs in bytes, on every machine.
 pub const STAYA_OUTPUTS_SIZE: usize = 444;
 
 const _: () = assert!(STAYA_OUTBOX == OUTBOX && STAYA_EVENTS == EVENTS);
 const _: () = assert!(size_of::<StayaOutputs>() == STAYA_OUTPUTS_SIZE);
 
-/// Something that does not move, seen from the robot's own place, metres.
+/// A static obstacle, relative to the robot's position, metres.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StayaObstacle {
@@ -47,91 +47,96 @@ pub struct StayaObstacle {
     pub size_m: f32,
 }
 
-/// What a step is told. All zeros is a robot at the origin that stands, sees nothing and hears nobody.
+/// The input of a step. All zeros is a stationary robot at the origin that sees and receives
+/// nothing.
 ///
-/// Robots that go by velocities need `max_speed_mps`; those that cross land in cells `cell` and `window`, and by velocities also
-/// `in_cell_x_m`, `in_cell_y_m` and `cell_m`. The rest plays no part then.
+/// Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
+/// `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
+/// The other fields are then ignored.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaInputs {
-    /// Own place in the world: east, north, up from an origin that all share, millimetres.
+    /// The robot's position in the world: east, north, up from an origin that all robots share,
+    /// millimetres.
     pub position_mm: [i32; 3],
-    /// Own velocity in the world, m/s.
+    /// The robot's velocity in the world, m/s.
     pub velocity_mps: [f32; 3],
     /// The robot's clock, microseconds; it wraps after 71.6 minutes.
     pub now_us: u32,
-    /// How fast the body can go where it is, m/s. With 0 the robot is in STAYA_MODE_FAULT, and stands.
+    /// The body's highest possible speed in its present place, m/s. With 0 the robot is in
+    /// STAYA_MODE_FAULT, and stops.
     pub max_speed_mps: f32,
-    /// Own cell.
+    /// The robot's cell.
     pub cell: StayaCell,
     /// Time until it may leave its cell, microseconds; only for moves from cell to cell.
     pub busy_us: i32,
-    /// Where in its cell it is, metres from the cell's centre.
+    /// Its position in its cell, metres from the cell's centre.
     pub in_cell_x_m: f32,
     /// See `in_cell_x_m`.
     pub in_cell_y_m: f32,
     /// Side of a cell, metres.
     pub cell_m: f32,
-    /// South-west cell of what it sees of the land.
+    /// South-west cell of the visible land.
     pub window_origin: StayaCell,
     /// Cells from west to east.
     pub window_width: u16,
     /// Cells from south to north.
     pub window_height: u16,
-    /// How hard each cell is to cross, row by row from the south-west: 1 easy, 255 hard, 0 impassable; width * height bytes. Null: it
-    /// sees no land, and is in STAYA_MODE_FAULT.
+    /// How hard each cell is to cross, row by row from the south-west: 1 easy, 255 hard, 0
+    /// impassable; width * height bytes. Null: the robot sees no land, and is in STAYA_MODE_FAULT.
     pub window: *const u8,
-    /// What stands in the way, `obstacle_count` of them, at most 32 (16 if the library was built small).
+    /// Obstacles, `obstacle_count` of them, at most 32 (16 if the library was built small).
     pub obstacles: *const StayaObstacle,
-    /// How many of `obstacles` there are.
+    /// Length of `obstacles`.
     pub obstacle_count: usize,
-    /// What the radio delivered since the last step, `inbox_bytes` of it, in order: whole frames, damaged ones, those of others.
+    /// The bytes that the radio received since the last step, `inbox_bytes` of them, in order:
+    /// intact, damaged and foreign frames.
     pub inbox: *const u8,
-    /// How many bytes of `inbox` there are.
+    /// Length of `inbox`.
     pub inbox_bytes: usize,
 }
 
-/// Something that happened.
+/// An event.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StayaEvent {
-    /// Which robot it is about; 0 for none.
+    /// The robot concerned; 0 for none.
     pub robot: u32,
-    /// A cell before.
+    /// The previous cell.
     pub before_xy: StayaCell,
-    /// A cell now.
+    /// The present cell.
     pub after_xy: StayaCell,
-    /// StayaEventKind, which says what of the rest counts.
+    /// StayaEventKind, which defines the fields that are used.
     pub kind: u8,
-    /// A number before.
+    /// The previous number.
     pub before: u8,
-    /// A number now.
+    /// The present number.
     pub after: u8,
 }
 
-/// What a step gives.
+/// The output of a step.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaOutputs {
-    /// World velocity to go with until the next step, m/s; with STAYA_COMMAND_VELOCITY.
+    /// World velocity until the next step, m/s; with STAYA_COMMAND_VELOCITY.
     pub velocity_mps: [f32; 3],
-    /// When to call again if nothing arrives before: the robot's clock, microseconds.
+    /// When to call again unless bytes arrive before: the robot's clock, microseconds.
     pub call_again_us: u32,
-    /// Whom it follows; 0 for nobody.
+    /// The leader that it follows; 0 if there is none.
     pub leader: u32,
-    /// The cell that it is going to; with `has_target`.
+    /// The cell that it is heading for; with `has_target`.
     pub target: StayaCell,
-    /// Frames that were heard: sound, not seen before, of somebody else.
+    /// Frames accepted: intact, not received before, from another robot.
     pub received: u16,
-    /// Frames that were refused: damaged, repeated, not authentic.
+    /// Frames rejected: damaged, repeated, not authentic.
     pub rejected: u16,
     /// Of those: without a code.
     pub refused_unsigned: u16,
-    /// Of those: with a code of another key or of another content.
+    /// Of those: with a code that does not match the key or the content.
     pub refused_forged: u16,
-    /// Of those: recorded, repeated, or too far ahead.
+    /// Of those: replayed, or with a counter too far ahead.
     pub refused_replayed: u16,
-    /// Of those: of senders for whom there is no room.
+    /// Of those: from senders that do not fit into the table.
     pub refused_no_room: u16,
     /// Beacons with a number beyond `claims_last_id`.
     pub overclaimed_numbers: u16,
@@ -139,25 +144,25 @@ pub struct StayaOutputs {
     pub overclaimed_radii: u16,
     /// Beacons with too high a speed.
     pub overclaimed_speeds: u16,
-    /// Beacons of places where the robot cannot be yet.
+    /// Beacons with a position that the robot cannot have reached yet.
     pub overclaimed_places: u16,
-    /// Bytes of `outbox`.
+    /// Length of `outbox`.
     pub outbox_bytes: u16,
     /// StayaCommand.
     pub command: u8,
     /// Moves to try in this order (StayaDir), `move_count` of them; with STAYA_COMMAND_MOVE.
     pub moves: [u8; 8],
-    /// How many of `moves` there are.
+    /// Length of `moves`.
     pub move_count: u8,
-    /// What it is doing: StayaMode.
+    /// Its activity: StayaMode.
     pub mode: u8,
     /// What it waits for: StayaWait.
     pub wait: u8,
     /// Whether it has a goal, and so a `target`.
     pub has_target: u8,
-    /// How many of `events` there are.
+    /// Length of `events`.
     pub event_count: u8,
-    /// What happened; the oldest ones when there are more.
+    /// The events; the oldest ones if there are more.
     pub events: [StayaEvent; STAYA_EVENTS],
     /// Bytes for the radio, `outbox_bytes` of them.
     pub outbox: [u8; STAYA_OUTBOX],
@@ -165,12 +170,10 @@ pub struct StayaOutputs {
 
 plain!(StayaObstacle, StayaInputs, StayaEvent, StayaOutputs);
 
-/// Three numbers of C's.
 pub(crate) fn vector([x, y, z]: [f32; 3]) -> Vec3<Number> {
     Vec3::new(cast(x), cast(y), cast(z))
 }
 
-/// Three numbers for C.
 pub(crate) fn array(vector: Vec3<Number>) -> [f32; 3] {
     [cast(vector.x), cast(vector.y), cast(vector.z)]
 }
@@ -187,7 +190,6 @@ impl StayaObstacle {
     }
 }
 
-/// Obstacles in the library's own numbers.
 pub(crate) fn read_obstacles(from: &[StayaObstacle], to: &mut Vec<Obstacle<Number>, OBSTACLES>) -> Checked<()> {
     to.clear();
     for obstacle in from {
@@ -197,16 +199,17 @@ pub(crate) fn read_obstacles(from: &[StayaObstacle], to: &mut Vec<Obstacle<Numbe
 }
 
 impl StayaInputs {
-    /// What a robot with this law is told.
+    /// The inputs of a robot with this law.
     ///
     /// # Safety
-    /// The pointers are null or misaligned, or lead to as many as is said, which nobody writes to meanwhile.
+    /// Each pointer is null, misaligned, or valid for the given number of elements, which are not
+    /// modified during the call.
     pub(crate) unsafe fn inputs<'a>(
         &'a self,
         law: StayaLaw,
         obstacles: &'a mut Vec<Obstacle<Number>, OBSTACLES>,
     ) -> Checked<AnyInputs<'a, Number>> {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's contract.
         let (seen, inbox) = unsafe { (row(self.obstacles, self.obstacle_count)?, row(self.inbox, self.inbox_bytes)?) };
         read_obstacles(seen, obstacles)?;
         let plane = InPlane { max_speed_mps: cast(self.max_speed_mps), obstacles: obstacles.as_slice() };
@@ -215,7 +218,7 @@ impl StayaInputs {
                 AnySurroundings::InPlane(plane)
             }
             StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid => {
-                // SAFETY: the caller's promise.
+                // SAFETY: the caller's contract.
                 AnySurroundings::OnGrid(unsafe { self.grid(Duration::from_micros(self.busy_us))? })
             }
             StayaLaw::Route | StayaLaw::Formation => {
@@ -224,7 +227,7 @@ impl StayaInputs {
                 }
                 let offset_m = Vec2::new(cast(self.in_cell_x_m), cast(self.in_cell_y_m));
                 AnySurroundings::InCells(InCells {
-                    // SAFETY: the caller's promise.
+                    // SAFETY: the caller's contract.
                     grid: unsafe { self.grid(Duration::ZERO)? },
                     plane,
                     in_cell: InCell { offset_m, cell_m: cast(self.cell_m) },
@@ -245,7 +248,7 @@ impl StayaInputs {
         let window = if self.window.is_null() {
             None
         } else {
-            // SAFETY: the caller's promise.
+            // SAFETY: the caller's contract.
             let cells = unsafe { row(self.window, count)? };
             let window = Window::new(cells, self.window_origin.into(), self.window_width, self.window_height);
             Some(window.ok_or(StayaStatus::Shape)?)
@@ -276,7 +279,7 @@ impl StayaEvent {
 }
 
 impl StayaOutputs {
-    /// Writes what a step gave; what is not said stays 0.
+    /// Writes the output of a step; fields that do not apply remain 0.
     pub(crate) fn fill(&mut self, out: &Outputs<Number>) {
         match &out.command {
             Command::Hold => self.command = StayaCommand::Hold as u8,

@@ -1,6 +1,7 @@
-//! The guidance laws that the library was built with, as one type.
+//! The guidance laws in this build, as one type.
 //!
-//! In a digest a law is what is in it, so that an agent made through C has the digest of the same one in Rust that names its types.
+//! A digest contains only the law inside. Therefore an agent made through C has the same digest as
+//! the Rust agent with these types.
 
 use crate::Number;
 use crate::choices::StayaLaw;
@@ -20,17 +21,15 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::TemplateAssignment;
 
-/// Cells whose visits a robot remembers.
+/// Capacity of the visit memory, cells.
 #[cfg(feature = "grid")]
 const VISITS: usize = if cfg!(feature = "small") { 32 } else { staya_controller::agent::VISITS };
-/// Costs that it learns.
+/// Capacity of the memory for learned costs.
 #[cfg(feature = "grid")]
 const LEARNED: usize = if cfg!(feature = "small") { 0 } else { staya_controller::agent::LEARNED };
 
-/// A route across land.
 #[cfg(feature = "grid")]
 pub(crate) type Route = RouteGuidance<CELLS, VISITS, LEARNED>;
-/// A formation across land.
 #[cfg(feature = "grid")]
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE, LEARNED>;
 
@@ -62,7 +61,7 @@ pub enum Law {
     FormationOnGrid(Formation),
 }
 
-/// Does the same with whatever is inside.
+/// Applies the same code to any variant.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {
@@ -86,7 +85,6 @@ macro_rules! each {
 }
 
 impl Law {
-    /// What must be told of the surroundings.
     pub(crate) const fn kind(&self) -> StayaLaw {
         match self {
             Self::Waypoint(_) => StayaLaw::Waypoint,

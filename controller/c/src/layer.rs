@@ -1,4 +1,5 @@
-//! The safety layers that the library was built with, as one type. In a digest each is what is in it, as the laws are.
+//! The safety layers in this build, as one type. A digest contains only the layer inside, as for
+//! laws.
 
 use crate::{HALF_PLANES, Number};
 use serde::{Serialize, Serializer};
@@ -14,7 +15,7 @@ use staya_controller::orca::VoxelTable2k;
 use staya_controller::orca::{HalfPlane, HalfSpaces, MovingBall, Params, half_plane};
 use staya_controller::rand::Rng;
 
-/// Where half-planes come from.
+/// The source of half-planes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The formula.
@@ -59,7 +60,7 @@ pub enum Layer {
     PushOut(PushOutSafety<Number>),
 }
 
-/// Does the same with whatever is inside.
+/// Applies the same code to any variant.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {

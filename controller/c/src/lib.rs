@@ -1,13 +1,16 @@
-//! Staya's controller for firmware in C and C++: what `include/staya.h` declares.
+//! Staya's controller for firmware in C and C++, as declared in `include/staya.h`.
 //!
-//! An agent lives in the caller's memory ([`agent`]). It is made from a plain structure ([`setup`]), stepped with what the robot
-//! senses and hears, and gives a command and bytes to send ([`io`]). Behaviours are there by themselves, too ([`alone`]).
+//! An agent lives in the caller's memory ([`agent`]). It is created from a plain structure
+//! ([`setup`]) and stepped with sensor values and received bytes; each step returns a command and
+//! bytes to send ([`io`]). Behaviours are also available without an agent ([`alone`]).
 //!
-//! No function allocates, calls back or panics, and each takes null, misaligned and undersized memory: it gives a
-//! [`status::StayaStatus`]. What no library can check is left to the caller, and stands in the header's introduction.
+//! No function allocates, calls back or panics. Null, misaligned and undersized memory is rejected
+//! with a [`status::StayaStatus`]. The caller must ensure everything that a library cannot check;
+//! the header's introduction lists it.
 //!
-//! `cargo rustc` with the profile `firmware` makes the library; `docs/c.md` has the steps. Then the panic handler calls a function
-//! that exists nowhere, so that a program links only if no panic is reachable, as in `hil/firmware`.
+//! `cargo rustc` with the profile `firmware` builds the library; `docs/c.md` has the steps. In that
+//! build the panic handler calls a function that does not exist, so that a program links only if no
+//! panic is reachable, as in `hil/firmware`.
 #![cfg_attr(not(test), no_std)]
 #![cfg_attr(
     not(test),
@@ -20,7 +23,8 @@
     )
 )]
 
-// Where panics unwind, which is in tests and debug builds on a host, the standard library brings what they need.
+// If panics unwind (in tests and debug builds on a host), the standard library provides what they
+// need.
 #[cfg(all(not(test), not(panic = "abort")))]
 extern crate std;
 
@@ -41,18 +45,18 @@ mod tests;
 
 use core::ffi::{CStr, c_char};
 
-/// What the controller computes with.
+/// The controller's scalar type.
 #[cfg(not(feature = "fixed"))]
 pub type Number = f32;
-/// What the controller computes with.
+/// The controller's scalar type.
 #[cfg(feature = "fixed")]
 pub type Number = staya_controller::scalar::Q16;
 
-/// Neighbours that an agent knows.
+/// Maximum number of neighbours that an agent tracks.
 pub const NEIGHBORS: usize = if cfg!(feature = "small") { 8 } else { 16 };
-/// Half-planes (in space half-spaces) that ORCA reckons with.
+/// Maximum number of ORCA's half-planes (in space half-spaces).
 pub const HALF_PLANES: usize = if cfg!(feature = "small") { 16 } else { 32 };
-/// Obstacles that a step takes.
+/// Maximum number of obstacles in a step.
 pub const OBSTACLES: usize = if cfg!(feature = "small") { 16 } else { 32 };
 
 /// The library's version, such as "0.1.0".
@@ -65,7 +69,7 @@ pub const extern "C" fn staya_version() -> *const c_char {
     VERSION.as_ptr()
 }
 
-/// In an optimised build the linker shows that nobody calls it: see `hil/firmware`.
+/// In an optimised build the linker proves that this is never called: see `hil/firmware`.
 #[cfg(all(not(test), panic = "abort"))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
@@ -74,7 +78,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
         unsafe extern "C" {
             fn staya_panic_is_reachable() -> !;
         }
-        // SAFETY: it exists nowhere, so what calls it does not link.
+        // SAFETY: the function does not exist, so a program that calls it does not link.
         unsafe { staya_panic_is_reachable() }
     }
     #[cfg(debug_assertions)]

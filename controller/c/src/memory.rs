@@ -1,11 +1,12 @@
-//! Memory of the caller's: the only place that turns pointers into references, after all that can be checked is.
+//! Access to the caller's memory. Only this module turns pointers into references, after all
+//! possible checks.
 
 use crate::status::{Checked, StayaStatus};
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
 
-/// Types of which any bytes are a value, so that what C left there may be read: integers, floats, pointers, arrays and structures of
-/// these.
+/// Types for which any bytes are a valid value, so that memory written by C may be read: integers,
+/// floats, pointers, arrays and structures of these.
 ///
 /// # Safety
 /// No field may be a `bool`, an enum or a reference.
@@ -21,10 +22,10 @@ pub(crate) use plain;
 
 plain!(u8, u32, i32, f32, u64, usize);
 
-// SAFETY: null is a pointer; any other bytes are one, too, which is not followed.
+// SAFETY: any bytes are a valid raw pointer, including null; it is not dereferenced.
 unsafe impl<T> Plain for *mut T {}
 
-// SAFETY: an array of what any bytes are a value of is one, too.
+// SAFETY: any bytes are a valid array if they are valid for its elements.
 unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
 
 fn check<T>(pointer: *const T) -> Checked<()> {
@@ -37,17 +38,18 @@ fn check<T>(pointer: *const T) -> Checked<()> {
     }
 }
 
-/// What the caller lets us read.
+/// Reads a value of the caller.
 ///
 /// # Safety
-/// If it is neither null nor misaligned, there is a `T` that nobody writes to until the call is over.
+/// If the pointer is neither null nor misaligned, it points to a `T` that is not modified during
+/// the call.
 pub(crate) unsafe fn shared<'a, T: Plain>(pointer: *const T) -> Checked<&'a T> {
     check(pointer)?;
-    // SAFETY: neither null nor misaligned; the rest is the caller's promise. Any bytes are a `T`.
+    // SAFETY: neither null nor misaligned; the rest is the caller's contract. Any bytes are a `T`.
     Ok(unsafe { &*pointer })
 }
 
-/// The same for what may be left out.
+/// Like [`shared`], but null is permitted.
 ///
 /// # Safety
 /// As [`shared`].
@@ -55,14 +57,15 @@ pub(crate) unsafe fn optional<'a, T: Plain>(pointer: *const T) -> Checked<Option
     if pointer.is_null() {
         return Ok(None);
     }
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller's contract.
     unsafe { shared(pointer) }.map(Some)
 }
 
-/// So many of them in a row; null with 0 is none.
+/// Reads `count` consecutive values; null with 0 is empty.
 ///
 /// # Safety
-/// If it is neither null nor misaligned, there are `count` of them that nobody writes to until the call is over.
+/// If the pointer is neither null nor misaligned, it points to `count` values that are not modified
+/// during the call.
 pub(crate) unsafe fn row<'a, T: Plain>(first: *const T, count: usize) -> Checked<&'a [T]> {
     if count == 0 {
         return Ok(&[]);
@@ -71,38 +74,42 @@ pub(crate) unsafe fn row<'a, T: Plain>(first: *const T, count: usize) -> Checked
     if count.saturating_mul(size_of::<T>()) > isize::MAX.unsigned_abs() {
         return Err(StayaStatus::TooMany);
     }
-    // SAFETY: neither null nor misaligned, and not longer than memory can be; the rest is the caller's promise.
+    // SAFETY: neither null nor misaligned, and within the limits of memory; the rest is the
+    // caller's contract.
     Ok(unsafe { core::slice::from_raw_parts(first, count) })
 }
 
-/// Writes a whole answer, whatever was there.
+/// Writes a whole result, overwriting any previous bytes.
 ///
 /// # Safety
-/// If it is neither null nor misaligned, there is room for a `T` that nobody else uses until the call is over.
+/// If the pointer is neither null nor misaligned, it points to space for a `T` that is not used
+/// elsewhere during the call.
 pub(crate) unsafe fn write<T: Plain>(to: *mut T, value: T) -> Checked<()> {
     check(to)?;
-    // SAFETY: neither null nor misaligned; the rest is the caller's promise.
+    // SAFETY: neither null nor misaligned; the rest is the caller's contract.
     unsafe { to.write(value) };
     Ok(())
 }
 
-/// Room for an answer that is written piece by piece: all zeros.
+/// Zeroed space for a result that is written in pieces.
 ///
 /// # Safety
 /// As [`write`].
 pub(crate) unsafe fn zeroed<'a, T: Plain>(to: *mut T) -> Checked<&'a mut T> {
     check(to)?;
-    // SAFETY: neither null nor misaligned, and room for a `T` by the caller's promise, which is a `T` of zeros then.
+    // SAFETY: neither null nor misaligned, and space for a `T` by the caller's contract. Zeros are
+    // a valid `T`.
     unsafe {
         to.write_bytes(0, 1);
         Ok(&mut *to)
     }
 }
 
-/// Room for so many answers.
+/// Space for `count` results.
 ///
 /// # Safety
-/// If it is neither null nor misaligned, there is room for `count` of them that nobody else uses until the call is over.
+/// If the pointer is neither null nor misaligned, it points to space for `count` values that is not
+/// used elsewhere during the call.
 pub(crate) unsafe fn room<'a, T: Plain>(first: *mut T, count: usize) -> Checked<&'a mut [MaybeUninit<T>]> {
     if count == 0 {
         return Ok(&mut []);
@@ -111,59 +118,60 @@ pub(crate) unsafe fn room<'a, T: Plain>(first: *mut T, count: usize) -> Checked<
     if count.saturating_mul(size_of::<T>()) > isize::MAX.unsigned_abs() {
         return Err(StayaStatus::TooMany);
     }
-    // SAFETY: neither null nor misaligned, and not longer than memory can be; what is there need not be a `T` yet. The rest is the
-    // caller's promise.
+    // SAFETY: neither null nor misaligned, and within the limits of memory; the bytes need not be a
+    // `T` yet. The rest is the caller's contract.
     Ok(unsafe { core::slice::from_raw_parts_mut(first.cast(), count) })
 }
 
-/// Something that lives in the caller's memory and says so in its first word.
+/// A type that lives in the caller's memory and is marked by its first word.
 ///
 /// # Safety
 /// `repr(C)`, and its first field is a `u32`.
 pub(crate) unsafe trait Resident: Sized {
-    /// That word.
+    /// The mark.
     const MARK: u32;
 }
 
-/// Memory for a [`Resident`], checked; what was in it is none any more.
+/// Checks memory for a [`Resident`] and clears the mark of any previous one.
 ///
 /// # Safety
-/// If it is neither null nor misaligned, there are `bytes` of it that nobody else uses.
+/// If the pointer is neither null nor misaligned, it points to `bytes` bytes that are not used
+/// elsewhere.
 pub(crate) unsafe fn site<T: Resident>(memory: *mut c_void, bytes: usize) -> Checked<*mut T> {
     let place = memory.cast::<T>();
     check(place)?;
     if bytes < size_of::<T>() {
         return Err(StayaStatus::MemorySize);
     }
-    // SAFETY: aligned room for all of it, of which this is the first word.
+    // SAFETY: aligned space for the whole value, which begins with this word.
     unsafe { place.cast::<u32>().write(0) };
     Ok(place)
 }
 
 fn check_resident<T: Resident>(place: *const T) -> Checked<()> {
     check(place)?;
-    // SAFETY: neither null nor misaligned, and at least its first word is there by the caller's promise.
+    // SAFETY: neither null nor misaligned, and the first word is valid by the caller's contract.
     let mark = unsafe { place.cast::<u32>().read() };
     if mark == T::MARK { Ok(()) } else { Err(StayaStatus::NotThere) }
 }
 
-/// What was made there, to be used.
+/// Mutable access to a resident.
 ///
 /// # Safety
-/// If it is neither null nor misaligned, there is memory for a `T` with one in it, or with another first word, that nobody else uses
-/// until the call is over.
+/// If the pointer is neither null nor misaligned, it points to memory for a `T` that holds one, or
+/// has another first word, and is not used elsewhere during the call.
 pub(crate) unsafe fn resident_mut<'a, T: Resident>(place: *mut T) -> Checked<&'a mut T> {
     check_resident(place)?;
-    // SAFETY: its first word says that there is one; the rest is the caller's promise.
+    // SAFETY: the mark in its first word shows that it exists; the rest is the caller's contract.
     Ok(unsafe { &mut *place })
 }
 
-/// What was made there, to be looked at.
+/// Shared access to a resident.
 ///
 /// # Safety
-/// As [`resident_mut`], but that others may look at it, too.
+/// As [`resident_mut`], but other readers are permitted.
 pub(crate) unsafe fn resident<'a, T: Resident>(place: *const T) -> Checked<&'a T> {
     check_resident(place)?;
-    // SAFETY: its first word says that there is one; the rest is the caller's promise.
+    // SAFETY: the mark in its first word shows that it exists; the rest is the caller's contract.
     Ok(unsafe { &*place })
 }

@@ -1,4 +1,4 @@
-//! What can be tuned while a robot runs.
+//! Parameters that can be tuned while a robot runs.
 
 use crate::agent::StayaAgent;
 use crate::memory::{self, resident, resident_mut};
@@ -6,7 +6,8 @@ use crate::status::{Checked, StayaStatus, answer};
 use core::ffi::{CStr, c_char};
 use staya_controller::agent::Parameter;
 
-/// A number that may change while the robot runs: `staya_set_parameter`. `staya_parameter_name` and others tell its name, unit, range.
+/// A parameter that `staya_set_parameter` can change while the robot runs. `staya_parameter_name`,
+/// `staya_parameter_unit` and `staya_parameter_range` describe it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum StayaParameter {
@@ -14,9 +15,9 @@ pub enum StayaParameter {
     Radius = 0,
     /// Time between two beacons, s.
     BeaconPeriod = 1,
-    /// Speed that it likes to go, m/s.
+    /// Preferred speed, m/s.
     Speed = 2,
-    /// How near counts as being there, m.
+    /// Distance within which the goal counts as reached, m.
     Tolerance = 3,
     /// Time ahead without a collision with a robot, s.
     Horizon = 4,
@@ -24,15 +25,15 @@ pub enum StayaParameter {
     WallHorizon = 5,
     /// Own share of a correction.
     Share = 6,
-    /// Distance kept on top of the radii, m.
+    /// Distance kept in addition to the radii, m.
     Margin = 7,
-    /// How far to the right to lean when somebody is in the way, rad.
+    /// How far to turn to the right while a robot is in the way, rad.
     Lean = 8,
-    /// How long a gap is left to those whose turn it is, radii.
+    /// How long a gap is left to robots whose turn it is, radii.
     PatienceRadii = 9,
     /// Least distance of two robots' centres, m.
     MinDistance = 10,
-    /// How far neighbours count, m.
+    /// Distance up to which neighbours count, m.
     Neighborhood = 11,
     /// Pull of the goal (K1).
     GoalGain = 12,
@@ -50,51 +51,51 @@ pub enum StayaParameter {
     Attraction = 18,
     /// Bound of the repulsion (b), not less than a.
     Repulsion = 19,
-    /// Robots among each other, on places, 1/s^2.
+    /// Gain between robots, on positions, 1/s^2.
     AlphaPosition = 20,
-    /// Robots among each other, on velocities, 1/s.
+    /// Gain between robots, on velocities, 1/s.
     AlphaVelocity = 21,
-    /// Obstacles, on places, 1/s^2.
+    /// Gain of obstacles, on positions, 1/s^2.
     BetaPosition = 22,
-    /// Obstacles, on velocities, 1/s.
+    /// Gain of obstacles, on velocities, 1/s.
     BetaVelocity = 23,
-    /// The reference, on places, 1/s^2.
+    /// Gain of the reference, on positions, 1/s^2.
     GammaPosition = 24,
-    /// The reference, on velocities, 1/s.
+    /// Gain of the reference, on velocities, 1/s.
     GammaVelocity = 25,
-    /// Nearer than this a boid turns away, m.
+    /// Distance below which a boid turns away, m.
     Crowded = 26,
-    /// Up to this distance a neighbour counts, m.
+    /// Distance up to which a neighbour counts, m.
     Closest = 27,
     /// Largest turn towards the others in a step, rad.
     MaxTurn = 28,
-    /// Turn away from one that is too near in a step, rad.
+    /// Turn away from a neighbour that is too near in a step, rad.
     MaxTurnAway = 29,
     /// Weight of travel time.
     TimeGain = 30,
-    /// What a cell with another robot costs extra, ticks.
+    /// Additional cost of a cell with another robot, ticks.
     OthersGain = 31,
-    /// What a cell costs extra for each earlier visit, ticks.
+    /// Additional cost of a cell for each earlier visit, ticks.
     VisitsGain = 32,
     /// Price of a cell between the window and the target, ticks.
     WayGain = 33,
-    /// How far from its place a robot still counts as there, cells.
+    /// Distance from its place up to which a robot is found, cells.
     Eps = 34,
     /// Price of a cell off the own place, ticks.
     PlaceGain = 35,
-    /// How far somebody falls behind before the leader waits, cells.
+    /// How far a robot may fall behind before the leader waits, cells.
     HaltLag = 36,
-    /// How near he must be before the leader goes on, cells.
+    /// How near it must be before the leader continues, cells.
     ResumeLag = 37,
     /// How far ahead of the leader the others aim, cells.
     Lead = 38,
     /// Share of the others' land in the leader's price, /16.
     Footprint = 39,
-    /// How long they wait before each goes on for itself, decisions.
+    /// How long robots wait before each continues alone, decisions.
     Patience = 40,
 }
 
-/// Of each its names, in the order of their numbers.
+/// All parameters with their names, in the order of their numbers.
 const ALL: [(StayaParameter, Parameter, &CStr, &CStr); 41] = [
     (StayaParameter::Radius, Parameter::Radius, c"radius_m", c"m"),
     (StayaParameter::BeaconPeriod, Parameter::BeaconPeriod, c"beacon_period_s", c"s"),
@@ -139,13 +140,14 @@ const ALL: [(StayaParameter, Parameter, &CStr, &CStr); 41] = [
     (StayaParameter::Patience, Parameter::Patience, c"patience", c"decisions"),
 ];
 
-/// The parameter of a number, its name and its unit.
+/// The parameter with this number, its name and its unit.
 fn known(number: u32) -> Checked<(Parameter, &'static CStr, &'static CStr)> {
     let found = ALL.into_iter().find(|(known, ..)| *known as u32 == number);
     found.map(|(_, parameter, name, unit)| (parameter, name, unit)).ok_or(StayaStatus::Unknown)
 }
 
-/// The name of a parameter, such as "horizon_s"; null if there is no such number. From 0 up, all are told.
+/// The name of a parameter, such as "horizon_s"; null if the number does not exist. Numbers start
+/// at 0 without gaps.
 #[unsafe(no_mangle)]
 pub extern "C" fn staya_parameter_name(parameter: u32) -> *const c_char {
     match known(parameter) {
@@ -154,7 +156,7 @@ pub extern "C" fn staya_parameter_name(parameter: u32) -> *const c_char {
     }
 }
 
-/// The unit of a parameter, empty for a plain number; null if there is no such number.
+/// The unit of a parameter, empty for a plain number; null if the number does not exist.
 #[unsafe(no_mangle)]
 pub extern "C" fn staya_parameter_unit(parameter: u32) -> *const c_char {
     match known(parameter) {
@@ -163,7 +165,7 @@ pub extern "C" fn staya_parameter_unit(parameter: u32) -> *const c_char {
     }
 }
 
-/// The least and the greatest value that a parameter takes.
+/// Returns the least and the greatest value of a parameter.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -171,7 +173,7 @@ pub extern "C" fn staya_parameter_unit(parameter: u32) -> *const c_char {
 pub unsafe extern "C" fn staya_parameter_range(parameter: u32, least: *mut f32, greatest: *mut f32) -> StayaStatus {
     let ask = || {
         let [low, high] = known(parameter)?.0.range();
-        // SAFETY: the caller gives room for both, or what `write` refuses.
+        // SAFETY: valid space for both by the caller's contract, or `write` rejects it.
         unsafe {
             memory::write(least, low)?;
             memory::write(greatest, high)
@@ -180,7 +182,8 @@ pub unsafe extern "C" fn staya_parameter_range(parameter: u32, least: *mut f32, 
     answer(ask())
 }
 
-/// What a parameter (StayaParameter) is now. `STAYA_STATUS_PARAMETER` when this robot's law and layer have no such one.
+/// Returns the present value of a parameter (StayaParameter). `STAYA_STATUS_PARAMETER` if this
+/// robot's law and layer do not have it.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -188,17 +191,18 @@ pub unsafe extern "C" fn staya_parameter_range(parameter: u32, least: *mut f32, 
 pub unsafe extern "C" fn staya_get_parameter(agent: *const StayaAgent, parameter: u32, value: *mut f32) -> StayaStatus {
     let ask = || {
         let (parameter, ..) = known(parameter)?;
-        // SAFETY: the caller gives an agent, or what `resident` refuses.
+        // SAFETY: an agent by the caller's contract, or `resident` rejects it.
         let agent = unsafe { resident(agent)? };
         let known = agent.inside().parameter(parameter).ok_or(StayaStatus::Parameter)?;
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(value, known) }
     };
     answer(ask())
 }
 
-/// Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER` when this robot has no such one, the value is
-/// out of range or does not go with the other parameters; then nothing has changed.
+/// Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER` if this
+/// robot does not have it, or if the value is out of range or contradicts other parameters; then
+/// nothing changes.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -206,7 +210,8 @@ pub unsafe extern "C" fn staya_get_parameter(agent: *const StayaAgent, parameter
 pub unsafe extern "C" fn staya_set_parameter(agent: *mut StayaAgent, parameter: u32, value: f32) -> StayaStatus {
     let set = || {
         let (parameter, ..) = known(parameter)?;
-        // SAFETY: the caller gives an agent that nobody else uses, or what `resident_mut` refuses.
+        // SAFETY: an agent that is not used elsewhere, by the caller's contract, or `resident_mut`
+        // rejects it.
         let agent = unsafe { resident_mut(agent)? };
         let is_set = agent.inside_mut().set_parameter(parameter, value);
         is_set.then_some(()).ok_or(StayaStatus::Parameter)

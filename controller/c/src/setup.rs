@@ -1,6 +1,7 @@
-//! What a robot is to be, as one plain structure: `staya_setup_defaults` fills it, the caller writes what differs.
+//! The configuration of a robot, as one plain structure: `staya_setup_defaults` fills it, then the
+//! caller changes fields.
 
-// The structures are there in every build, so that the header is the same; what is made of them is not.
+// The structures exist in every build, so that the header is the same; the conversions do not.
 #[cfg_attr(not(feature = "push-out"), allow(unused_imports))]
 mod avoidance;
 #[cfg_attr(not(feature = "flocks"), allow(dead_code, unused_imports))]
@@ -34,49 +35,52 @@ use staya_controller::scalar::cast;
 use staya_controller::time::Duration;
 use staya_controller::wire::{Postcard, Retry};
 
-/// Bytes of a swarm's key.
+/// Length of a swarm's key in bytes.
 pub const STAYA_KEY: usize = 32;
 
-/// Bytes of a StayaSetup, on every machine.
+/// Size of a StayaSetup in bytes, on every machine.
 pub const STAYA_SETUP_SIZE: usize = 400;
 
 const _: () = assert!(size_of::<StayaSetup>() == STAYA_SETUP_SIZE);
 #[cfg(feature = "auth")]
 const _: () = assert!(STAYA_KEY == staya_controller::auth::KEY_LEN);
 
-/// All that makes a robot what it is before it has sensed anything. Fill it by `staya_setup_defaults`, then change what differs.
+/// The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields.
 ///
-/// What the chosen law and layer have no use for plays no part.
+/// Fields that the chosen law and layer do not use are ignored.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaSetup {
-    /// Written by `staya_setup_defaults`: header and library are of one version.
+    /// Written by `staya_setup_defaults`; shows that header and library have the same version.
     pub version: u32,
-    /// The robot's number, 1 or more, its own in the swarm (MAVLink: up to 254; with a key: below 2^21).
+    /// The robot's number, 1 or more, unique in the swarm (MAVLink: up to 254; with a key: below
+    /// 2^21).
     pub id: u32,
-    /// Seed of what it draws at random, together with its number.
+    /// Seed of its random decisions, together with its number.
     pub seed: u64,
-    /// Time from one step to the next, microseconds, which must then be kept; on the grid the time for a cell of impassability 1.
+    /// Time from one step to the next, microseconds, which the caller must keep; on the grid the
+    /// time for a cell of impassability 1.
     pub tick_us: i32,
     /// Time between two beacons, microseconds.
     pub beacon_period_us: i32,
-    /// How old news is when it arrives, microseconds: neighbours are taken to have gone on for so long.
+    /// Age of a beacon when it arrives, microseconds: neighbours are extrapolated by this time.
     pub latency_us: i32,
-    /// News older than this is stale, microseconds: a few beacon periods.
+    /// Beacons older than this are stale, microseconds: use a few beacon periods.
     pub stale_after_us: i32,
-    /// Who is silent for longer is lost, microseconds; at most half an hour.
+    /// A robot that is silent for longer is lost, microseconds; at most half an hour.
     pub lost_after_us: i32,
-    /// How long a lost one is remembered, microseconds, at most half an hour.
+    /// How long a lost robot is remembered, microseconds; at most half an hour.
     pub remember_us: i32,
-    /// How long a stop stands that is not renewed, microseconds.
+    /// How long a stop lasts unless it is renewed, microseconds.
     pub stop_valid_us: i32,
     /// Time between two attempts of a request, microseconds.
     pub retry_interval_us: i32,
-    /// Attempts of a request.
+    /// Number of attempts of a request.
     pub retry_attempts: u8,
-    /// Changes with each start (counted in lasting memory or drawn), or the others take a restarted robot for a recording.
+    /// Must change with each start (counted in persistent memory or random), or others take a
+    /// restarted robot for a replay.
     pub boot: u8,
-    /// The flock that it is of; robots of other flocks are only in its way.
+    /// The robot's flock; robots of other flocks are only obstacles.
     pub flock: u8,
     /// StayaLaw.
     pub law: u8,
@@ -86,21 +90,22 @@ pub struct StayaSetup {
     pub wire: u8,
     /// Radius of the ball around the body, metres.
     pub radius_m: f32,
-    /// Cruising speed, m/s; the body's own limit holds too.
+    /// Cruising speed, m/s; limited by that of the body.
     pub speed_mps: f32,
-    /// How near to its waypoint counts as being there, metres.
+    /// Distance within which its waypoint counts as reached, metres.
     pub tolerance_m: f32,
     /// How fast the body can change its velocity, m/s^2; FLT_MAX: at once.
     pub max_acceleration_mps2: f32,
-    /// How fast to go when all others are lost, m/s: 0 stands until somebody speaks; above 0 only for robots that may be alone.
+    /// Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0
+    /// only for robots that may be alone.
     pub alone_mps: f32,
-    /// Largest radius that others are believed to have, metres; FLT_MAX: any.
+    /// Largest radius accepted in a beacon, metres; FLT_MAX: any.
     pub claims_max_radius_m: f32,
-    /// Highest speed that they are believed to have, m/s; FLT_MAX: any, and places are not looked at.
+    /// Highest speed accepted in a beacon, m/s; FLT_MAX: any, and positions are not checked.
     pub claims_max_speed_mps: f32,
-    /// How far off two places of a robot may be besides, metres.
+    /// Additional tolerance between two positions of a robot, metres.
     pub claims_slack_m: f32,
-    /// For how long a robot that has jumped must say consistent places, microseconds.
+    /// How long a robot that has jumped must send consistent positions, microseconds.
     pub claims_settle_us: i32,
     /// The greatest number of any robot.
     pub claims_last_id: u32,
@@ -118,7 +123,8 @@ pub struct StayaSetup {
     pub route: StayaRoute,
     /// Formations.
     pub formation: StayaFormation,
-    /// With STAYA_WIRE_SEALED: how often the robot was started, counted in lasting memory from 0; below 2^20.
+    /// With STAYA_WIRE_SEALED: the robot's count of starts, kept in persistent memory from 0; below
+    /// 2^20.
     pub starts: u32,
     /// With STAYA_WIRE_SEALED: the swarm's secret. The agent keeps a copy.
     pub key: [u8; STAYA_KEY],
@@ -126,10 +132,10 @@ pub struct StayaSetup {
 
 plain!(StayaSetup);
 
-/// What header and library must agree on.
+/// The version that header and library must share.
 const VERSION: u32 = u32::from_be_bytes(*b"sty1");
 
-/// Numbers that must be above 0 and finite.
+/// Checks that all numbers are above 0 and finite.
 fn positive(numbers: &[f32]) -> Checked<()> {
     if numbers.iter().all(|number| *number > 0.0 && number.is_finite()) { Ok(()) } else { Err(StayaStatus::Number) }
 }
@@ -168,7 +174,7 @@ impl StayaSetup {
         laws::defaults(self);
     }
 
-    /// What does not change while the robot runs.
+    /// The fixed part of the configuration.
     pub(crate) fn config(&self) -> Checked<AgentConfig<Number>> {
         if self.version != VERSION {
             return Err(StayaStatus::Version);
@@ -209,7 +215,7 @@ impl StayaSetup {
         Ok(config.cast())
     }
 
-    /// The guidance law, just started.
+    /// The guidance law in its initial state.
     pub(crate) fn law(&self) -> Checked<Law> {
         let law = StayaLaw::of(self.law)?;
         if !matches!(law, StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid) {
@@ -239,7 +245,7 @@ impl StayaSetup {
         }
     }
 
-    /// The safety layer, just started.
+    /// The safety layer in its initial state.
     pub(crate) fn layer(&self) -> Checked<Layer> {
         let orca = |source| {
             positive(&[self.orca.horizon_s, self.orca.wall_horizon_s])?;
@@ -267,7 +273,6 @@ impl StayaSetup {
         }
     }
 
-    /// How it speaks.
     pub(crate) fn speech(&self) -> Checked<Speech> {
         match StayaWire::of(self.wire)? {
             StayaWire::Postcard => Ok(Speech::Postcard(Postcard)),
@@ -289,11 +294,11 @@ impl StayaSetup {
     }
 }
 
-/// Fills a setup for robot `id` with what robots can do with: straight to waypoints at 0.5 m/s behind ORCA, a beacon each step, no
-/// inertia, no latency. Lengths of the other laws follow from the radius.
+/// Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon
+/// each step, no inertia, no latency. Lengths of the other laws follow from the radius.
 ///
-/// `radius_m` is that of the ball around the body, metres; `tick_us` the time from one step to the next, microseconds. They are
-/// judged by `staya_init`.
+/// `radius_m` is that of the ball around the body, metres; `tick_us` the time from one step to the
+/// next, microseconds. `staya_init` checks them.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -304,6 +309,6 @@ pub unsafe extern "C" fn staya_setup_defaults(
     radius_m: f32,
     tick_us: i32,
 ) -> StayaStatus {
-    // SAFETY: the caller gives room for a setup, or what `zeroed` refuses.
+    // SAFETY: valid space for a setup by the caller's contract, or `zeroed` rejects it.
     answer(unsafe { zeroed(setup) }.map(|setup| setup.defaults(id, radius_m, tick_us)))
 }

@@ -1,4 +1,5 @@
-//! The wire formats that the library was built with, as one type. In a digest each is what is in it, as the laws are.
+//! The wire formats in this build, as one type. A digest contains only the format inside, as for
+//! laws.
 
 use heapless::Vec;
 use serde::{Serialize, Serializer};
@@ -8,7 +9,7 @@ use staya_controller::wire::{DecodeError, EncodeError, Frame, Header, KeyPhase, 
 #[cfg(feature = "mavlink")]
 use staya_mavlink::wire::Mavlink;
 
-/// Senders that a robot with a key remembers, so that nobody can repeat what they said; it hears no others.
+/// Number of senders that a robot with a key tracks against replays; it accepts no others.
 #[cfg(feature = "auth")]
 pub const PEERS: usize = if cfg!(feature = "small") { 16 } else { staya_controller::wire::PEERS };
 
@@ -27,7 +28,7 @@ pub enum Speech {
     Sealed(Sealed<PEERS>),
 }
 
-/// Does the same with whatever is inside.
+/// Applies the same code to any variant.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {

@@ -1,42 +1,44 @@
-//! What a function answers.
+//! The result of a function.
 
 use core::ffi::{CStr, c_char};
 
-/// What a function answers. Nothing has changed unless it is `STAYA_STATUS_OK`, but for `staya_init`, which then leaves no agent.
+/// The result of a function. Unless it is `STAYA_STATUS_OK` nothing has changed, except that
+/// `staya_init` then leaves no agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum StayaStatus {
-    /// It is done.
+    /// Success.
     Ok = 0,
-    /// A pointer that is needed is null, or is null with a length above 0.
+    /// A required pointer is null, or null with a length above 0.
     Null = 1,
-    /// A pointer is not aligned as its type asks; memory for agents and avoiders: by STAYA_ALIGN.
+    /// A pointer is not aligned as its type requires; memory for agents and avoiders: to
+    /// STAYA_ALIGN.
     Alignment = 2,
     /// The memory is too small: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE.
     MemorySize = 3,
-    /// There is no agent, or no avoider, in this memory: call `staya_init`, or `staya_orca_init`.
+    /// This memory does not hold an agent or avoider: call `staya_init` or `staya_orca_init`.
     NotThere = 4,
     /// The structure was not filled by `staya_setup_defaults` of this version of the header.
     Version = 5,
-    /// The robot's number is 0, which is nobody.
+    /// The robot's number is 0; numbers begin at 1.
     Nobody = 6,
     /// A number that must be above 0, or finite, is not.
     Number = 7,
-    /// A field that names one of several has another number.
+    /// A field that selects one of several choices has an invalid number.
     Choice = 8,
-    /// The library was built without it: see its features.
+    /// The library was built without this feature.
     NotBuilt = 9,
-    /// The guidance law has no use for this task.
+    /// The guidance law does not support this order.
     Task = 10,
     /// The radius of the search is above STAYA_MAX_RADIUS.
     Search = 11,
-    /// More of them than there is room for.
+    /// There are more elements than fit.
     TooMany = 12,
-    /// The window has no width or no height, or a graph or a template makes no sense.
+    /// The window has no width or no height, or a graph or a template is invalid.
     Shape = 13,
-    /// The robot has no such parameter, or the value is out of its range, or does not go with the others.
+    /// The robot does not have this parameter, or the value is out of range or contradicts others.
     Parameter = 14,
-    /// There is no such name or number.
+    /// The name or number does not exist.
     Unknown = 15,
 }
 
@@ -92,10 +94,10 @@ impl StayaStatus {
     }
 }
 
-/// What a function of the inside gives.
+/// The result of an internal function.
 pub(crate) type Checked<T> = Result<T, StayaStatus>;
 
-/// As C sees it.
+/// Converts a result for C.
 pub(crate) fn answer(result: Checked<()>) -> StayaStatus {
     match result {
         Ok(()) => StayaStatus::Ok,
@@ -109,7 +111,7 @@ pub extern "C" fn staya_status_name(status: i32) -> *const c_char {
     StayaStatus::of(status).map_or(c"(no status)", |known| known.texts().0).as_ptr()
 }
 
-/// What a status means and what to do about it, in a line. Never null.
+/// The meaning of a status and its remedy, in one line. Never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn staya_status_text(status: i32) -> *const c_char {
     StayaStatus::of(status).map_or(c"no status of this library", |known| known.texts().1).as_ptr()

@@ -1,4 +1,4 @@
-//! The library through its own functions, as C calls them.
+//! Tests of the library through its C functions.
 
 mod header;
 mod misuse;
@@ -11,19 +11,19 @@ use crate::status::StayaStatus;
 use core::mem::MaybeUninit;
 use core::ptr::null_mut;
 
-/// Memory as a C program sets it aside.
+/// Memory as a C program reserves it.
 #[repr(align(8))]
 struct Memory([u8; STAYA_AGENT_SIZE]);
 
 impl Memory {
-    /// With anything in it.
+    /// With arbitrary contents.
     fn new() -> Box<Self> {
         Box::new(Self([0xA5; STAYA_AGENT_SIZE]))
     }
 
     fn agent(&mut self, setup: &StayaSetup) -> Result<*mut StayaAgent, StayaStatus> {
         let mut agent = null_mut();
-        // SAFETY: all of it is there, and used by nobody else.
+        // SAFETY: valid memory, not used elsewhere.
         let status = unsafe { staya_init((&raw mut self.0).cast(), STAYA_AGENT_SIZE, setup, &mut agent) };
         assert_eq!(agent.is_null(), status != StayaStatus::Ok);
         if status == StayaStatus::Ok { Ok(agent) } else { Err(status) }
@@ -32,7 +32,7 @@ impl Memory {
 
 fn setup(id: u32) -> StayaSetup {
     let mut setup = MaybeUninit::uninit();
-    // SAFETY: there is room for one, and it is filled.
+    // SAFETY: valid space, which is filled.
     unsafe {
         assert_eq!(staya_setup_defaults(setup.as_mut_ptr(), id, 0.1, 50_000), StayaStatus::Ok);
         setup.assume_init()
@@ -40,7 +40,7 @@ fn setup(id: u32) -> StayaSetup {
 }
 
 fn nothing() -> (StayaInputs, StayaOutputs) {
-    // SAFETY: numbers and pointers, of all of which zeros are a value.
+    // SAFETY: numbers and pointers, for which zeros are valid.
     unsafe { (MaybeUninit::zeroed().assume_init(), MaybeUninit::zeroed().assume_init()) }
 }
 

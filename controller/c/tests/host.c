@@ -1,4 +1,4 @@
-/* The canned swarms on a host. */
+/* The test swarms on a host. */
 
 #include "platform.h"
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-/* What a program of these tests asks of the machine that it runs on. */
+/* The functions that these tests need from the machine. */
 
 #ifndef PLATFORM_H
 #define PLATFORM_H
@@ -9,10 +9,10 @@
 /* Prints `name f32 hash steps`. */
 void print_row(const char *name, uint64_t hash, uint32_t steps);
 
-/* Prints why, and ends the program as failed. */
+/* Prints the reason and ends the program as failed. */
 void fail(const char *why);
 
-/* The canned swarms; 0 when they came to their end. */
+/* Runs the test swarms; returns 0 when they are complete. */
 int run_swarms(void);
 
 #endif

@@ -1,10 +1,11 @@
-/* The canned swarms on an STM32F405 in QEMU: start-up without a vendor's library, output over semihosting. */
+/* The test swarms on an STM32F405 in QEMU: start-up without a vendor's library, output over
+   semihosting. */
 
 #include "platform.h"
 
 extern uint32_t stack_top, bss_start, bss_end, data_start, data_end, data_in_flash;
 
-/* Asks the emulator: Arm's semihosting. */
+/* Calls the emulator by Arm's semihosting. */
 static uint32_t ask(uint32_t operation, const void *argument)
 {
     register uint32_t r0 __asm__("r0") = operation;
@@ -71,7 +72,7 @@ void print_row(const char *name, uint64_t hash, uint32_t steps)
     print_number(steps);
 }
 
-/* What is written all over the memory of the stack; where it still stands, the stack has not been. */
+/* Fills the memory of the stack; where it is intact, the stack was never used. */
 #define UNTOUCHED 0xA55AA55Au
 
 static void print_deepest_stack(void)

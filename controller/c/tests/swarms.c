@@ -1,5 +1,6 @@
-/* The canned swarms of the plane and of space (hil/cases), driven through the C interface: the same numbers as in Rust, to the bit.
-   Prints `case f32 hash steps` for each, as tests/golden/cases.txt has it. The same file runs on a host and on a part. */
+/* The test swarms of the plane and of space (hil/cases), driven through the C interface. The
+   numbers must equal those of Rust, bit for bit. Prints `case f32 hash steps` for each, in the
+   format of tests/golden/cases.txt. The same file runs on a host and on a part. */
 
 #include "platform.h"
 #include "staya.h"
@@ -9,7 +10,7 @@
 #define SAID 144
 #define INBOX 576
 
-/* FNV-1a over all that a swarm does. */
+/* FNV-1a hash over all actions of a swarm. */
 static uint64_t hash;
 
 static void hash_bytes(const void *bytes, size_t count)
@@ -22,7 +23,7 @@ static void hash_bytes(const void *bytes, size_t count)
 
 static void hash_word(uint64_t word)
 {
-    hash_bytes(&word, sizeof word); /* all machines here are little-endian */
+    hash_bytes(&word, sizeof word); /* all supported machines are little-endian */
 }
 
 static void hash_outputs(const StayaOutputs *out)
@@ -41,7 +42,7 @@ static void hash_outputs(const StayaOutputs *out)
     hash_word(out->call_again_us);
 }
 
-/* Something in the world that does not move, millimetres. */
+/* A static obstacle in the world, millimetres. */
 typedef struct Solid {
     uint8_t shape;
     int32_t a[3];
@@ -89,7 +90,7 @@ static const Case CASES[] = {
     {"boids", STAYA_LAW_BOIDS, STAYA_SAFETY_NONE, 5, 0, 0, 400, 1.0f, CROWD, NULL, {{0}}},
 };
 
-/* A robot with its body, and what it says. */
+/* A robot with its body, and the bytes that it sends. */
 typedef struct Robot {
     StayaAgent *agent;
     int32_t position_mm[3];
@@ -116,7 +117,7 @@ static void set_up(const Case *scene, uint32_t id)
 {
     must(staya_setup_defaults(&setup, id, 0.15f, TICK_US));
     setup.seed = 11;
-    setup.latency_us = TICK_US; /* what others say was said a step ago */
+    setup.latency_us = TICK_US; /* beacons are one step old */
     setup.law = scene->law;
     setup.safety = scene->safety;
     setup.speed_mps = 0.5f;
@@ -211,7 +212,7 @@ static void append(uint8_t *to, size_t *used, size_t room, const uint8_t *from, 
     }
 }
 
-/* The radio: whole frames, which end with a zero byte, as many as there is room for. */
+/* The radio: as many whole frames as fit; each ends with a zero byte. */
 static void append_frames(uint8_t *to, size_t *used, size_t room, const uint8_t *from, size_t count)
 {
     size_t begin = 0;
@@ -258,7 +259,7 @@ static void step(const Case *scene, uint8_t own, uint32_t tick)
     }
 }
 
-/* All have decided, now all move. Whether all have arrived. */
+/* Moves all robots after all have decided. Returns whether all have arrived. */
 static int move(const Case *scene)
 {
     uint8_t arrived = 0;

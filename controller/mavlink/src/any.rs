@@ -1,4 +1,5 @@
-//! Any wire format, for hosts and for firmware that is told by its host what to speak. A firmware that knows names the format's type.
+//! A wire format chosen at run time, for hosts and for firmware whose host chooses the format.
+//! Firmware with a fixed format names its type instead.
 
 use crate::signed::Signed;
 use crate::signing::Signing;
@@ -13,10 +14,12 @@ use staya_controller::wire::{
     Wire,
 };
 
-/// A wire format that is known only when the program runs: open, or with a key if `S` and `G` are where [`Sealed`] and
-/// [`Signed`] are kept, such as boxes of them. Without these a robot pays for no key.
+/// A wire format chosen at run time. Formats with a key are available if `S` and `G` hold
+/// [`Sealed`] and [`Signed`], such as boxes of them; without these a robot carries no code for
+/// keys.
 ///
-/// In an agent's digest it is what is in it, so that agents of the same state have the same digest however they speak.
+/// An agent's digest contains only the format inside, so that agents in the same state have the
+/// same digest in any format.
 #[derive(Clone, Debug)]
 pub enum AnyWire<S = Keyless, G = Keyless> {
     /// The controller's own frames.
@@ -29,7 +32,7 @@ pub enum AnyWire<S = Keyless, G = Keyless> {
     Signed(G),
 }
 
-/// In place of a format with a key for who has none: there is no such value.
+/// Replaces a format with a key if keys are not used; it has no values.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub enum Keyless {}
 
@@ -47,7 +50,6 @@ impl DerefMut for Keyless {
     }
 }
 
-/// Does `$do` with the format that is in it.
 macro_rules! each {
     ($any:expr, $wire:ident => $do:expr) => {
         match $any {
@@ -60,7 +62,7 @@ macro_rules! each {
 }
 
 impl<S, G> AnyWire<S, G> {
-    /// The format of this name, open and without a past.
+    /// Creates the format of this name, without a key, in its initial state.
     #[must_use]
     pub const fn new(format: Format) -> Self {
         match format {
@@ -75,9 +77,9 @@ where
     S: From<Sealed<P>> + Deref<Target = Sealed<P>>,
     G: From<Signed<Q>> + Deref<Target = Signed<Q>>,
 {
-    /// The format of this name with a key. Postcard's takes the number of `starts`, by the rule of [`Sealed`];
-    /// MAVLink's the number of the `link` and the `timestamp` to begin with, by that of [`Signing`]. `None` from 2^20
-    /// starts on.
+    /// Creates the format of this name with a key. Postcard's uses the number of `starts`, by the
+    /// rule of [`Sealed`]; MAVLink's uses the `link` number and the initial `timestamp`, by that of
+    /// [`Signing`]. `None` from 2^20 starts on.
     #[must_use]
     pub fn keyed(format: Format, key: &Key, starts: u32, link: u8, timestamp: u64) -> Option<Self> {
         Some(match format {
@@ -87,9 +89,9 @@ where
     }
 }
 
-/// The number that an operator beside the robots has: no robot's, and one that the format has room for. With a key
-/// there may be two, on `link` 0 and 1, told apart if the format has room for that, so that each may count his frames
-/// for himself.
+/// The number of an operator, which differs from those of all robots and fits the format. With a
+/// key there may be two operators, on `link` 0 and 1. If the format has space, their numbers
+/// differ, so that each may count its own frames.
 #[must_use]
 pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
     match format {
@@ -99,7 +101,8 @@ pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
     }
 }
 
-/// The largest number of a robot. Those from 2^31 on are for [doubles](RobotId::double).
+/// The largest number of a robot. Numbers from 2^31 on are reserved for
+/// [duplicates](RobotId::double).
 #[must_use]
 pub const fn max_robot(format: Format, has_key: bool) -> RobotId {
     match format {

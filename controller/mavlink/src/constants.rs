@@ -1,6 +1,7 @@
 //! Numbers of the public MAVLink messages, by their standard names; only those that Staya uses.
 //!
-//! They are plain integers, not enums: an unknown value from somebody else must not cost the message.
+//! They are plain integers instead of enums: an unknown value from another system must not
+//! invalidate the message.
 
 #![expect(missing_docs, reason = "the names are the standard's")]
 
@@ -79,7 +80,7 @@ pub const MAV_CMD_GET_MESSAGE_INTERVAL: u16 = 510;
 pub const MAV_CMD_SET_MESSAGE_INTERVAL: u16 = 511;
 pub const MAV_CMD_REQUEST_MESSAGE: u16 = 512;
 pub const MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: u16 = 520;
-/// In parameter 2 of [`MAV_CMD_COMPONENT_ARM_DISARM`]: whatever speaks against it.
+/// In parameter 2 of [`MAV_CMD_COMPONENT_ARM_DISARM`]: forces the change despite any objections.
 pub const ARM_DISARM_FORCE: f32 = 21196.0;
 pub const MAV_DO_REPOSITION_FLAGS_CHANGE_MODE: u32 = 1;
 

@@ -3805,9 +3805,9 @@ pub struct STAYA_ACK_DATA {
     pub sequence: u16,
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///Who had asked.
+    ///System that sent the request.
     pub target_system: u8,
-    ///The asker's boot, as in its request.
+    ///Boot of that system, as in its request.
     pub request_boot: u8,
     ///The request's number.
     pub number: u8,
@@ -3880,7 +3880,7 @@ impl MessageData for STAYA_ACK_DATA {
         }
     }
 }
-///Where a robot is, where it goes, and in whose formation. Sent once a period.
+///Position, velocity, destination and formation of a robot. Sent once per period.
 ///
 ///ID: 9500000
 #[derive(Debug, Clone, PartialEq)]
@@ -3905,9 +3905,9 @@ pub struct STAYA_BEACON_DATA {
     pub cell_x: i16,
     ///Cell of the grid, north.
     pub cell_y: i16,
-    ///Cell that it heads for, east.
+    ///Cell that it is heading for, east.
     pub target_x: i16,
-    ///Cell that it heads for, north.
+    ///Cell that it is heading for, north.
     pub target_y: i16,
     ///Time until it may leave its cell.
     pub busy_ms: u16,
@@ -3917,11 +3917,11 @@ pub struct STAYA_BEACON_DATA {
     pub boot: u8,
     ///0: stays; 1 to 8: the neighbouring cells.
     pub heading: u8,
-    ///Whom it follows; 0: nobody.
+    ///System of its leader; 0: none.
     pub leader: u8,
     ///Its place in the formation, or the number of its flock.
     pub slot: u8,
-    ///0 idle, 1 forming, 2 cruise, 3 hold, 4 arrived, 5 fault, 6 passive (motors off, or somebody else steers).
+    ///0 idle, 1 forming, 2 cruise, 3 hold, 4 arrived, 5 fault, 6 passive (motors off, or steered externally).
     pub mode: u8,
 }
 impl STAYA_BEACON_DATA {
@@ -4029,7 +4029,7 @@ impl MessageData for STAYA_BEACON_DATA {
         }
     }
 }
-///A goal on the grid for a formation's leader and all behind it.
+///A goal on the grid for a formation's leader and all its followers.
 ///
 ///ID: 9500005
 #[derive(Debug, Clone, PartialEq)]
@@ -4042,7 +4042,7 @@ pub struct STAYA_GOAL_DATA {
     pub target_y: i16,
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///Whom it concerns; 0: all.
+    ///System addressed; 0: all.
     pub target_system: u8,
     ///A newer one replaces all before; wraps.
     pub version: u8,
@@ -4113,7 +4113,7 @@ impl MessageData for STAYA_GOAL_DATA {
         }
     }
 }
-///What a robot knows of a part of the land, 32 x 16 cells as 8 x 4 tiles, for all.
+///A part of a robot's map of the land, 32 x 16 cells as 8 x 4 tiles, for all.
 ///
 ///ID: 9500007
 #[derive(Debug, Clone, PartialEq)]
@@ -4197,7 +4197,7 @@ impl MessageData for STAYA_LAND_DATA {
         }
     }
 }
-///What a robot's own guidance law tells others of its kind, behind each beacon.
+///Data of a robot's guidance law for robots with the same law, sent after each beacon.
 ///
 ///ID: 9500008
 #[derive(Debug, Clone, PartialEq)]
@@ -4206,9 +4206,9 @@ pub struct STAYA_PAYLOAD_DATA {
     pub sequence: u16,
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///Bytes that count.
+    ///Number of bytes used.
     pub count: u8,
-    ///As the law has them; 0 behind those that count.
+    ///Encoded by the law; 0 after those used.
     pub bytes: [u8; 16],
 }
 impl STAYA_PAYLOAD_DATA {
@@ -4276,7 +4276,7 @@ impl MessageData for STAYA_PAYLOAD_DATA {
         }
     }
 }
-///A place to go to, one of several that move by themselves.
+///A waypoint, one of several that may move.
 ///
 ///ID: 9500006
 #[derive(Debug, Clone, PartialEq)]
@@ -4297,11 +4297,11 @@ pub struct STAYA_PLACE_DATA {
     pub sequence: u16,
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///Whom it concerns; 0: all.
+    ///System addressed; 0: all.
     pub target_system: u8,
     ///A newer one replaces all before; wraps.
     pub version: u8,
-    ///Which of the places, from 0.
+    ///Number of the waypoint, from 0.
     pub index: u8,
 }
 impl STAYA_PLACE_DATA {
@@ -4390,17 +4390,17 @@ impl MessageData for STAYA_PLACE_DATA {
 ///ID: 9500002
 #[derive(Debug, Clone, PartialEq)]
 pub struct STAYA_REQUEST_DATA {
-    ///How long it stands if it is not renewed.
+    ///How long it is valid if it is not renewed.
     pub valid_ms: u16,
     ///Counts the sender's Staya messages; wraps.
     pub sequence: u16,
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///Who is asked.
+    ///System that is asked.
     pub target_system: u8,
-    ///Whose matter it is.
+    ///System that made the request first.
     pub origin: u8,
-    ///Tells the sender's requests apart.
+    ///Distinguishes the sender's requests.
     pub number: u8,
     ///0 stop, 1 resume, 2 redirect.
     pub kind: u8,
@@ -4474,7 +4474,7 @@ impl MessageData for STAYA_REQUEST_DATA {
         }
     }
 }
-///One part of a robot's place in a formation: itself and its neighbours there.
+///One part of a robot's place in a formation: the place and its neighbours.
 ///
 ///ID: 9500004
 #[derive(Debug, Clone, PartialEq)]
@@ -4491,15 +4491,15 @@ pub struct STAYA_TEMPLATE_DATA {
     pub entry_y: [i16; 2],
     ///Changes with each start of the sender.
     pub boot: u8,
-    ///Whose place it is.
+    ///System that has this place.
     pub target_system: u8,
     ///A newer one replaces all before; wraps.
     pub version: u8,
     ///Number of this part, from 0.
     pub part: u8,
-    ///Parts in all.
+    ///Number of parts.
     pub parts: u8,
-    ///The place's number.
+    ///Number of the place.
     pub slot: u8,
     ///Neighbours in this part.
     pub count: u8,
@@ -5197,23 +5197,23 @@ pub enum MavMessage {
     ///
     ///ID: 9500003
     STAYA_ACK(STAYA_ACK_DATA),
-    ///Where a robot is, where it goes, and in whose formation. Sent once a period.
+    ///Position, velocity, destination and formation of a robot. Sent once per period.
     ///
     ///ID: 9500000
     STAYA_BEACON(STAYA_BEACON_DATA),
-    ///A goal on the grid for a formation's leader and all behind it.
+    ///A goal on the grid for a formation's leader and all its followers.
     ///
     ///ID: 9500005
     STAYA_GOAL(STAYA_GOAL_DATA),
-    ///What a robot knows of a part of the land, 32 x 16 cells as 8 x 4 tiles, for all.
+    ///A part of a robot's map of the land, 32 x 16 cells as 8 x 4 tiles, for all.
     ///
     ///ID: 9500007
     STAYA_LAND(STAYA_LAND_DATA),
-    ///What a robot's own guidance law tells others of its kind, behind each beacon.
+    ///Data of a robot's guidance law for robots with the same law, sent after each beacon.
     ///
     ///ID: 9500008
     STAYA_PAYLOAD(STAYA_PAYLOAD_DATA),
-    ///A place to go to, one of several that move by themselves.
+    ///A waypoint, one of several that may move.
     ///
     ///ID: 9500006
     STAYA_PLACE(STAYA_PLACE_DATA),
@@ -5221,7 +5221,7 @@ pub enum MavMessage {
     ///
     ///ID: 9500002
     STAYA_REQUEST(STAYA_REQUEST_DATA),
-    ///One part of a robot's place in a formation: itself and its neighbours there.
+    ///One part of a robot's place in a formation: the place and its neighbours.
     ///
     ///ID: 9500004
     STAYA_TEMPLATE(STAYA_TEMPLATE_DATA),

@@ -1,27 +1,26 @@
-//! MAVLink frames in bytes: finding them, looking into them, making them. Read [`scan`] first.
+//! MAVLink frames in bytes: finding, inspecting and encoding them. Start with [`scan`].
 //!
-//! `mavlink-core` reads frames from streams into buffers of its own; robots and bridges have the bytes already, must keep them as they are
-//! (signatures, logs), and must tell foreign messages from damage.
+//! `mavlink-core` reads frames from streams into its own buffers. Robots and bridges already have
+//! the bytes, must keep them unchanged (signatures, logs), and must distinguish foreign messages
+//! from damage.
 
 use crate::dialect::MavMessage;
 use crc::{CRC_16_MCRF4XX, Crc, Table};
 use heapless::Vec;
 use mavlink_core::{MavlinkVersion, Message, MessageData};
 
-/// Bytes of the longest frame: header, payload, checksum, signature.
+/// Length of the longest frame in bytes: header, payload, checksum, signature.
 pub const MAX_FRAME_LEN: usize = 10 + 255 + 2 + SIGNATURE_LEN;
-/// Bytes of a signature at the end of a frame.
+/// Length of a signature at the end of a frame in bytes.
 pub const SIGNATURE_LEN: usize = 13;
 
 const START_V1: u8 = 0xFE;
 const START_V2: u8 = 0xFD;
-/// Incompatibility flag: a signature follows the checksum.
 const SIGNED: u8 = 1;
 
-/// The checksum's; a table for all of the crate.
 pub(crate) static CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_MCRF4XX);
 
-/// Who sends a frame, and which of its frames it is.
+/// The sender of a frame and the frame's sequence number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sender {
@@ -33,7 +32,7 @@ pub struct Sender {
     pub sequence: u8,
 }
 
-/// There is no room for the frame; nothing was written.
+/// The frame does not fit; nothing was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Full;
@@ -46,7 +45,8 @@ impl core::fmt::Display for Full {
 
 impl core::error::Error for Full {}
 
-/// One whole frame, of MAVLink 1 or 2, whose length is right and whose checksum is right if the message is known.
+/// A whole frame of MAVLink 1 or 2 with a correct length, and with a correct checksum if the
+/// message is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawFrame<'a> {
     bytes: &'a [u8],
@@ -58,37 +58,39 @@ pub struct RawFrame<'a> {
     is_known: bool,
 }
 
-/// What [`scan`] finds.
+/// The result of [`scan`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scan<'a> {
-    /// A frame after so many bytes that belong to none.
+    /// A frame after bytes that belong to no frame.
     Frame {
-        /// Bytes before it.
+        /// Number of bytes before it.
         junk: usize,
         /// The frame.
         frame: RawFrame<'a>,
     },
-    /// No whole frame: so many bytes belong to none, and what follows them may be the beginning of one.
+    /// No whole frame.
     Nothing {
-        /// Bytes that no frame begins with.
+        /// Number of bytes with which no frame begins; the bytes behind them may be the beginning
+        /// of one.
         junk: usize,
     },
 }
 
-/// Why bytes are no frame.
 enum Fault {
     /// More bytes are needed.
     Short,
-    /// They are none.
+    /// They cannot become a frame.
     Bad,
 }
 
-/// Finds the first frame in `bytes`, whatever comes before it. With `is_whole` nothing follows the bytes (a datagram), without it more of the
-/// stream may follow.
+/// Finds the first frame in `bytes`, after any other bytes. With `is_whole` the bytes are complete
+/// (a datagram); without it more of the stream may follow.
 ///
-/// A message that the dialect does not have cannot be checked. It counts as one if a frame could begin behind it, or nothing is there.
+/// The checksum of a message that the dialect does not have cannot be verified. Such a message
+/// counts as a frame if it is the end of the bytes, or if another frame could begin behind it.
 ///
-/// Bounded work: O(n), and for each byte that begins a header that could be, one checksum of at most 280 bytes.
+/// Bounded work: O(n), and for each byte that could begin a header, one checksum of at most 280
+/// bytes.
 #[must_use]
 #[expect(clippy::arithmetic_side_effects, reason = "at most the length of `bytes`")]
 pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
@@ -103,8 +105,8 @@ pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
     Scan::Nothing { junk }
 }
 
-/// Takes the next frame off `rest`, and the bytes before it that belong to none; `None` when there is none any more, and `rest` is empty
-/// then. For bytes that no more will follow.
+/// Removes the next frame from `rest`, together with the bytes before it that belong to no frame.
+/// Returns `None` and empties `rest` when no frame is left. For bytes that are complete.
 ///
 /// Bounded work: that of [`scan`].
 #[expect(clippy::arithmetic_side_effects, reason = "both lie within `rest`")]
@@ -121,7 +123,6 @@ pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<RawFrame<'a>> {
     }
 }
 
-/// The frame at the beginning of `bytes`.
 fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
     let (frame, checked, payload, checksum) = match bytes {
         [START_V1, rest @ ..] => {
@@ -142,7 +143,7 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
         [START_V2, rest @ ..] => {
             let &[len, incompatible, _compatible, sequence, system, component, a, b, c] =
                 rest.first_chunk().ok_or(Fault::Short)?;
-            // Whoever does not know a flag must drop the frame.
+            // MAVLink requires that frames with unknown flags are dropped.
             if incompatible & !SIGNED != 0 {
                 return Err(Fault::Bad);
             }
@@ -172,7 +173,6 @@ fn parse(bytes: &[u8]) -> Result<RawFrame<'_>, Fault> {
     if checksum_of(checked.ok_or(Fault::Short)?, payload, extra) == checksum { Ok(frame) } else { Err(Fault::Bad) }
 }
 
-/// Payload, checksum and the frame's length.
 #[expect(clippy::arithmetic_side_effects, reason = "10, 255, 2 and 13 bytes at most")]
 fn body(bytes: &[u8], header: usize, len: u8, is_signed: bool) -> Result<(&[u8], u16, usize), Fault> {
     let end = header + usize::from(len);
@@ -187,9 +187,10 @@ fn body(bytes: &[u8], header: usize, len: u8, is_signed: bool) -> Result<(&[u8],
     Ok((payload, checksum, total))
 }
 
-/// What the checksum of a message covers besides its bytes; `None` for one that the dialect does not have.
+/// The byte that the checksum of a message covers in addition to its bytes; `None` if the dialect
+/// does not have the message.
 fn extra_crc(message_id: u32) -> Option<u8> {
-    // No known message has 0 (a test says so), which stands for unknown ones.
+    // No known message has 0 (verified by a test), which stands for unknown ones.
     Some(MavMessage::extra_crc(message_id)).filter(|extra| *extra != 0)
 }
 
@@ -202,31 +203,31 @@ fn checksum_of(header: &[u8], payload: &[u8], extra: u8) -> u16 {
 }
 
 impl<'a> RawFrame<'a> {
-    /// The frame that `bytes` are, no byte more or less.
+    /// The frame in `bytes`, if they are exactly one frame.
     #[must_use]
     pub fn new(bytes: &'a [u8]) -> Option<Self> {
         parse(bytes).ok().filter(|frame| frame.bytes.len() == bytes.len())
     }
 
-    /// All of it.
+    /// All bytes of the frame.
     #[must_use]
     pub const fn bytes(&self) -> &'a [u8] {
         self.bytes
     }
 
-    /// The payload as it is on the wire: MAVLink 2 leaves zeros at its end out.
+    /// The payload as transmitted: MAVLink 2 omits zeros at its end.
     #[must_use]
     pub const fn payload(&self) -> &'a [u8] {
         self.payload
     }
 
-    /// Who sends it.
+    /// The sender.
     #[must_use]
     pub const fn sender(&self) -> Sender {
         self.sender
     }
 
-    /// What kind of message it is.
+    /// The id of the message.
     #[must_use]
     pub const fn message_id(&self) -> u32 {
         self.message_id
@@ -238,7 +239,7 @@ impl<'a> RawFrame<'a> {
         self.version
     }
 
-    /// Whether the dialect has its message. Only then was the checksum compared.
+    /// Whether the dialect has its message. Only then the checksum was verified.
     #[must_use]
     pub const fn is_known(&self) -> bool {
         self.is_known
@@ -259,7 +260,7 @@ impl<'a> RawFrame<'a> {
         D::deser(self.mavlink_version(), self.payload).ok()
     }
 
-    /// The message; `None` for one that the dialect does not have.
+    /// The message; `None` if the dialect does not have it.
     #[must_use]
     pub fn message(&self) -> Option<MavMessage> {
         if !self.is_known {
@@ -273,10 +274,10 @@ impl<'a> RawFrame<'a> {
     }
 }
 
-/// Appends a MAVLink 2 frame without a signature and returns its length.
+/// Appends an unsigned MAVLink 2 frame and returns its length.
 ///
 /// # Errors
-/// [`Full`] when it does not fit.
+/// [`Full`] if it does not fit.
 ///
 /// Bounded work: O(payload).
 pub fn encode<D: MessageData, const N: usize>(sender: Sender, data: &D, out: &mut Vec<u8, N>) -> Result<usize, Full> {
@@ -288,7 +289,7 @@ pub fn encode<D: MessageData, const N: usize>(sender: Sender, data: &D, out: &mu
 /// [`encode`] for any message.
 ///
 /// # Errors
-/// [`Full`] when it does not fit.
+/// [`Full`] if it does not fit.
 pub fn encode_message<const N: usize>(
     sender: Sender,
     message: &MavMessage,

@@ -7,16 +7,18 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 use staya_controller::wire::{DecodeError, EncodeError, Frame, Header, Message, Wire};
 
-/// [`Mavlink`] with signatures: what it says is signed, and what is not signed with the key is not heard.
+/// [`Mavlink`] with signatures: its own frames are signed, and frames not signed with the key are
+/// rejected.
 ///
-/// It costs 13 bytes a frame. [`Signing`] says what timestamps a robot without a clock takes after a start, and what is accepted.
+/// It costs 13 bytes per frame. [`Signing`] defines the timestamps of a robot without a clock after
+/// a start, and the frames that are accepted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Signed<const N: usize = STREAMS> {
     signing: Signing<N>,
 }
 
 impl<const N: usize> Signed<N> {
-    /// Signs and judges with this.
+    /// Creates the format with this state.
     #[must_use]
     pub const fn new(signing: Signing<N>) -> Self {
         Self { signing }
@@ -28,7 +30,7 @@ impl<const N: usize> Signed<N> {
         &self.signing
     }
 
-    /// To tell it the time.
+    /// Mutable access, for setting the time.
     pub const fn signing_mut(&mut self) -> &mut Signing<N> {
         &mut self.signing
     }
@@ -39,7 +41,7 @@ impl<const N: usize> Wire for Signed<N> {
         BEACON_LEN + SIGNATURE_LEN
     }
 
-    /// Also [`EncodeError::Exhausted`] when no timestamp is left.
+    /// Also returns [`EncodeError::Exhausted`] if no timestamp is left.
     #[expect(clippy::arithmetic_side_effects, reason = "lengths within a frame")]
     fn encode<const M: usize>(
         &mut self,
@@ -63,7 +65,7 @@ impl<const N: usize> Wire for Signed<N> {
         Ok(len + SIGNATURE_LEN)
     }
 
-    /// Somebody else's messages are [`DecodeError::Foreign`], signed or not.
+    /// Messages of other systems are [`DecodeError::Foreign`], signed or not.
     fn decode(&mut self, bytes: &[u8]) -> Result<Frame, DecodeError> {
         let frame = Mavlink.decode(bytes)?;
         let raw = RawFrame::new(bytes).ok_or(DecodeError::Crc)?;

@@ -1,36 +1,34 @@
-//! MAVLink 2 signatures: who has the key is heard, everybody else is not. Read [`Signing`] first.
+//! MAVLink 2 signatures: frames without the key are rejected. Start with [`Signing`].
 //!
-//! The signature is the first 48 bits of SHA-256 over key, frame with checksum, link id and timestamp; 13 bytes with these two. Whoever
-//! guesses is right once in 2^48 tries. See "Message Signing" in MAVLink's guide; pymavlink and MAVProxy do the same.
+//! The signature is the first 48 bits of SHA-256 over key, frame with checksum, link id and
+//! timestamp; 13 bytes including the last two. A guess is right once in 2^48 tries. See "Message
+//! Signing" in MAVLink's guide; pymavlink and MAVProxy work the same way.
 
 use crate::frame::{CRC, RawFrame, SIGNATURE_LEN};
 use serde::{Deserialize, Serialize};
 use staya_controller::auth::{Freshness, Key, ReplayGuard, Sha256, is_same};
 
-/// Senders that a [`Signing`] of default capacity knows.
+/// Default number of senders that a [`Signing`] can track.
 pub const STREAMS: usize = 64;
-/// A minute of timestamps, which count tens of microseconds.
+/// A minute in timestamps, which count tens of microseconds.
 pub const MINUTE: u64 = 6_000_000;
-/// Thirty days of timestamps.
+/// Thirty days in timestamps.
 pub const MONTH: u64 = 30 * 24 * 60 * MINUTE;
-/// What begins with timestamp 0: the first second of 2015 (UTC), in seconds after that of 1970.
+/// The time of timestamp 0: the first second of 2015 (UTC), in seconds since 1970.
 pub const EPOCH_UNIX_S: u64 = 1_420_070_400;
 
-/// Timestamps have 48 bits.
 const LAST_TIMESTAMP: u64 = (1 << 48) - 1;
 const START_V2: u8 = 0xFD;
-/// Incompatibility flag: a signature follows the checksum.
 const SIGNED: u8 = 1;
-/// Bytes of a header before the payload.
 const HEADER: usize = 10;
 
 /// Why a frame was not signed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SignError {
-    /// It is no whole MAVLink 2 frame without a signature.
+    /// It is not a whole unsigned MAVLink 2 frame.
     NotAFrame,
-    /// No timestamp is left: 89 years are over, or somebody with the key claimed so.
+    /// No timestamp is left: 89 years are over, or a holder of the key claimed so.
     Exhausted,
 }
 
@@ -45,33 +43,33 @@ impl core::fmt::Display for SignError {
 
 impl core::error::Error for SignError {}
 
-/// What a frame is worth.
+/// The result of verifying a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Verdict {
-    /// Signed with the key, and not seen before.
+    /// Signed with the key, and not received before.
     Authentic,
-    /// Not signed: to be dropped.
+    /// Not signed: drop it.
     Unsigned,
-    /// Signed with another key, or changed on the way: to be dropped.
+    /// Signed with another key, or modified: drop it.
     Forged,
-    /// Signed with the key, but seen before or too old: to be dropped.
+    /// Signed with the key, but received before or too old: drop it.
     Replayed,
-    /// Signed with the key, but of a time too far ahead: to be dropped. See [`Signing::with_lead`].
+    /// Signed with the key, but too far ahead in time: drop it. See [`Signing::with_lead`].
     Ahead,
-    /// From a sender that is not known and for whom there is no room: to be dropped.
+    /// From an unknown sender while the table is full: drop it.
     NoRoom,
 }
 
 impl Verdict {
-    /// Whether the frame is to be heard.
+    /// Whether the frame may be processed.
     #[must_use]
     pub const fn is_accepted(self) -> bool {
         matches!(self, Self::Authentic)
     }
 }
 
-/// How many frames were what; counts stay at their end.
+/// Number of frames per verdict; each saturates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
@@ -90,7 +88,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Frames that were to be dropped.
+    /// Number of frames to drop.
     #[must_use]
     pub const fn refused(&self) -> u32 {
         let of_key = self.replayed.saturating_add(self.ahead).saturating_add(self.no_room);
@@ -110,47 +108,56 @@ impl Counts {
     }
 }
 
-/// Signs what one end of a link sends, and checks what it receives from up to `N` senders.
+/// Signs the frames that one end of a link sends, and verifies those it receives from up to `N`
+/// senders.
 ///
 /// # Timestamps
 ///
-/// Each signed frame has a timestamp, 10 us since 2015, greater than all before it of the same system, component and link id. It
-/// goes up by at least 1 per frame, and never falls behind what was accepted: so a swarm without clocks agrees on one.
+/// Each signed frame has a timestamp in units of 10 us since 2015, greater than all before it of
+/// the same system, component and link id. It increases by at least 1 per frame, and never falls
+/// behind an accepted one, so that a swarm without clocks agrees on a timestamp.
 ///
-/// - **With a clock:** give the time to [`Self::new`], and from time to time (once a second will do) to [`Self::advance_to`].
-/// - **Without:** the first timestamp comes with the key, as in MAVLink's SETUP_SIGNING. Store [`Self::timestamp`] in lasting memory at least once a
-///   minute, and start with what is stored plus [`MINUTE`]. A robot that starts with an older one is not heard (pymavlink, Staya and autopilots alike)
-///   until it has caught up, which it does with the first frame of somebody else that it accepts; robots that all forgot theirs hear each other, but
-///   not who still knows.
+/// - **With a clock:** pass the time to [`Self::new`], and from time to time (once a second
+///   suffices) to [`Self::advance_to`].
+/// - **Without a clock:** the first timestamp comes with the key, as in MAVLink's SETUP_SIGNING.
+///   Store [`Self::timestamp`] in persistent memory at least once a minute, and start with the
+///   stored one plus [`MINUTE`]. A robot that starts with an older one is rejected (by pymavlink,
+///   Staya and autopilots alike) until it has caught up, which happens with the first frame that it
+///   accepts. Robots that all lost their timestamp receive each other, but are rejected by those
+///   that still know it.
 ///
-/// # What is accepted
+/// # Accepted frames
 ///
-/// A frame with the right signature is fresh when its timestamp is greater than all of its stream (system, component, link id), or at most 31 behind
-/// and not seen before: a counter's frames may overtake each other, as with [`ReplayGuard`]; with a clock 31 are a third of a millisecond. A stream's
-/// first frame must not be more than [`MINUTE`] older than the newest timestamp known. So after a restart with a proper timestamp at
-/// most the last minute can be replayed, and only of who has not been heard since. A full table refuses new streams.
+/// A correctly signed frame is fresh if its timestamp is greater than all of its stream (system,
+/// component, link id), or at most 31 behind and not received before. So frames with counters may
+/// overtake each other, as with [`ReplayGuard`]; with a clock, 31 is a third of a millisecond. The
+/// first frame of a stream must not be more than [`MINUTE`] older than the newest known timestamp.
+/// So after a restart with a proper timestamp at most the last minute can be replayed, and only of
+/// senders that were not received since. A full table refuses new streams.
 ///
-/// # What is too far ahead
+/// # Timestamps too far ahead
 ///
-/// MAVLink's own rule has no bound upwards: whoever signs one frame with the last timestamp there is mutes all that hear it, since they have none
-/// left, and shuts its stream out; and whoever has recorded that frame does so again after each restart, without the key. So a frame is refused as
-/// [`Verdict::Ahead`], and leaves no trace, when it is more than [`MINUTE`] ahead of the clock, or, for who was never told the time, more than
-/// [`MONTH`] ahead of the own timestamp; [`Self::with_lead`] sets another bound. A robot without a clock that was off for longer than that, among others
-/// that have one, hears none of them until its owner tells it the time. To exhaust it takes a thousand frames, each a month ahead of the last, all signed
-/// with the key.
+/// MAVLink's own rule has no upper bound. A single frame with the last possible timestamp silences
+/// all receivers, since they have no timestamps left, and locks its stream out; a recording of it
+/// does so again after each restart, without the key. Therefore a frame is rejected as
+/// [`Verdict::Ahead`], without any effect, if it is more than [`MINUTE`] ahead of the clock, or, if
+/// the time was never set, more than [`MONTH`] ahead of the own timestamp; [`Self::with_lead`] sets
+/// another bound. A robot without a clock that was off for longer than that rejects all robots that
+/// have one, until its owner sets its time. To exhaust the timestamps takes a thousand frames, each
+/// a month ahead of the last, all signed with the key.
 ///
-/// Serde sees the whole state, the key included; digests do not count the key.
+/// Serde serializes the whole state, including the key; digests omit the key.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Signing<const N: usize = STREAMS> {
     #[serde(with = "staya_controller::digest::uncounted")]
     key: Key,
-    /// The key before or after it, while it changes.
+    /// The previous or next key during a key change.
     #[serde(with = "staya_controller::digest::uncounted")]
     also: Option<Key>,
     link: u8,
     /// Of the next frame.
     timestamp: u64,
-    /// What the clock showed last, if there is one.
+    /// The last known time, if there is a clock.
     clock: Option<u64>,
     lead: Option<u64>,
     streams: ReplayGuard<N>,
@@ -158,7 +165,7 @@ pub struct Signing<const N: usize = STREAMS> {
 }
 
 impl<const N: usize> Signing<N> {
-    /// With this key, as link number `link` of its system, from this timestamp on.
+    /// Creates a signer with this key, as link number `link` of its system, from this timestamp on.
     #[must_use]
     pub const fn new(key: Key, link: u8, timestamp: u64) -> Self {
         Self {
@@ -173,45 +180,48 @@ impl<const N: usize> Signing<N> {
         }
     }
 
-    /// The same, but frames may be so far ahead of the clock, or without one of the own timestamp: tens of microseconds, by default [`MINUTE`] and
-    /// [`MONTH`]. A shorter lead refuses who has another time; a longer one lets who has the key, or a recording of his frames, take more of the
-    /// timestamps that are left.
+    /// Sets how far frames may be ahead of the clock, or without one of the own timestamp: tens of
+    /// microseconds, by default [`MINUTE`] and [`MONTH`]. A shorter lead rejects robots with
+    /// another time; with a longer one, an attacker with the key or a recording can use up more of
+    /// the remaining timestamps.
     #[must_use]
     pub const fn with_lead(mut self, lead: u64) -> Self {
         self.lead = Some(lead);
         self
     }
 
-    /// From now on frames that are signed with this key are authentic too; one at most, besides that which signs.
+    /// Also accepts frames signed with this key, in addition to the one for sending; at most one
+    /// such key.
     pub fn hear(&mut self, key: Key) {
         self.also = Some(key);
     }
 
-    /// Signs with the key of [`Self::hear`] from now on, and goes on hearing the one before.
+    /// Signs with the key of [`Self::hear`] from now on, and still accepts the previous one.
     pub const fn speak(&mut self) {
         if let Some(also) = &mut self.also {
             core::mem::swap(also, &mut self.key);
         }
     }
 
-    /// Does not hear the key any more that it does not sign with.
+    /// Accepts only the key for sending from now on.
     pub fn forget(&mut self) {
         self.also = None;
     }
 
-    /// How many more frames can be signed at this timestamp. 0: [`SignError::Exhausted`].
+    /// How many more frames can be signed from the present timestamp. 0: [`SignError::Exhausted`].
     #[must_use]
     pub const fn left(&self) -> u64 {
         (LAST_TIMESTAMP + 1).saturating_sub(self.timestamp)
     }
 
-    /// The timestamp of the next frame: what to store.
+    /// The timestamp of the next frame, for storing it.
     #[must_use]
     pub const fn timestamp(&self) -> u64 {
         self.timestamp
     }
 
-    /// Says what time it is, for who has a clock; 0, the time of a clock that was never set, changes nothing. The timestamp never goes back.
+    /// Sets the time from a clock; 0, the time of a clock that was never set, has no effect. The
+    /// timestamp never decreases.
     pub const fn advance_to(&mut self, time: u64) {
         if time > 0 {
             self.clock = Some(time);
@@ -225,22 +235,22 @@ impl<const N: usize> Signing<N> {
         }
     }
 
-    /// The latest timestamp that is believed.
     fn latest(&self) -> u64 {
         let (base, lead) = self.clock.map_or((self.timestamp, MONTH), |clock| (clock, MINUTE));
         base.saturating_add(self.lead.unwrap_or(lead))
     }
 
-    /// How many frames were what so far.
+    /// Number of frames per verdict so far.
     #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Makes a signed frame of one that is not: changes its flags and checksum in place, and returns what must be appended to it.
+    /// Signs an unsigned frame: changes its flags and checksum in place, and returns the signature
+    /// to append to it.
     ///
     /// # Errors
-    /// See [`SignError`]; the frame is as it was.
+    /// See [`SignError`]; the frame is then unchanged.
     ///
     /// Bounded work: SHA-256 over at most 307 bytes.
     #[expect(clippy::arithmetic_side_effects, reason = "10, 255 and 2")]
@@ -265,9 +275,9 @@ impl<const N: usize> Signing<N> {
         Ok([self.link, a, b, c, d, e, f, p, q, r, s, t, u])
     }
 
-    /// Judges a frame, counts it, and remembers it if it is authentic.
+    /// Verifies a frame, counts it, and records it if it is authentic.
     ///
-    /// Bounded work: SHA-256 over at most 307 bytes, twice while the key changes, and O(N).
+    /// Bounded work: SHA-256 over at most 307 bytes, twice during a key change, and O(N).
     pub fn verify(&mut self, frame: &RawFrame<'_>) -> Verdict {
         let verdict = self.judge(frame);
         self.counts.count(verdict);
@@ -307,7 +317,6 @@ impl<const N: usize> Signing<N> {
     }
 }
 
-/// The value of a signature of these bytes.
 fn value_of(key: &Key, frame: &[u8], stamp: &[u8; 7]) -> [u8; 6] {
     let mut hash = Sha256::new();
     hash.update(key.as_bytes());
@@ -317,13 +326,13 @@ fn value_of(key: &Key, frame: &[u8], stamp: &[u8; 7]) -> [u8; 6] {
     [a, b, c, d, e, f]
 }
 
-/// How the checksum of a frame with `len` bytes of payload changes when its flag is set. A checksum is linear in the bits that it covers, so this needs
-/// neither them nor the message's definition.
+/// How the checksum of a frame with `len` bytes of payload changes when its flag is set. A checksum
+/// is linear in the bits that it covers, so this needs neither them nor the message's definition.
 #[expect(clippy::arithmetic_side_effects, reason = "10 less 3, 255 and 1")]
 fn flag_in_checksum(len: u8) -> u16 {
     let mut digest = CRC.digest_with_initial(0);
     digest.update(&[SIGNED]);
-    // The rest of the header, the payload, and what the definition adds.
+    // The rest of the header, the payload, and the extra byte of the definition.
     for _ in 0..HEADER - 3 + usize::from(len) + 1 {
         digest.update(&[0]);
     }

@@ -1,11 +1,15 @@
-//! The swarm's messages as MAVLink 2 frames: [`Mavlink`], a [`Wire`] like the controller's own postcard.
+//! The swarm's messages as MAVLink 2 frames: [`Mavlink`], a [`Wire`] like the controller's own
+//! postcard.
 //!
-//! Each of the controller's messages is one `STAYA_*` message of the dialect, with boot and sequence of its [`Header`] in the payload: MAVLink's own
-//! sequence of 8 bits tells too few frames apart to find repeated ones. A robot's number is its system: 1 to 254, and 255 a ground
-//! station. Its component is [`COMPONENT`].
+//! Each of the controller's messages is one `STAYA_*` message of the dialect, with boot and
+//! sequence of its [`Header`] in the payload: MAVLink's own 8-bit sequence is too short to detect
+//! repeated frames. A robot's number is its system: 1 to 254, and 255 for a ground station. Its
+//! component is [`COMPONENT`].
 //!
-//! Others may talk on the same band: what is MAVLink but no `STAYA_*` message is [`DecodeError::Foreign`], which a robot neither believes nor counts as
-//! damage. Everything else between frames comes out of [`Wire::next_frame`] as one piece, which [`Wire::decode`] refuses, so that it counts.
+//! Other systems may share the band. MAVLink messages that are not `STAYA_*` give
+//! [`DecodeError::Foreign`]; a robot ignores them and does not count them as damage.
+//! [`Wire::next_frame`] returns all other bytes between frames as one piece, which [`Wire::decode`]
+//! rejects, so that it is counted.
 
 use crate::dialect::{
     STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PAYLOAD_DATA, STAYA_PLACE_DATA,
@@ -25,17 +29,17 @@ use staya_controller::wire::{
     RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
 };
 
-/// The component that robots speak as: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
+/// The component of robots: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
 pub const COMPONENT: u8 = 191;
-/// The largest number of a robot: 255 is a ground station.
+/// The largest number of a robot; 255 is a ground station.
 pub const MAX_ROBOT: u8 = 254;
 /// Bytes of a frame around its payload.
 const AROUND: usize = 12;
 
-/// Bytes of a beacon's frame, at most.
+/// Maximum length of a beacon's frame in bytes.
 pub const BEACON_LEN: usize = AROUND + STAYA_BEACON_DATA::ENCODED_LEN;
 
-/// MAVLink 2 frames without signature. It keeps nothing; signatures of others are not looked at.
+/// Unsigned MAVLink 2 frames. It has no state, and ignores the signatures of others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Mavlink;
 
@@ -65,8 +69,8 @@ impl Wire for Mavlink {
     }
 }
 
-/// Takes the next frame off `rest`, or the bytes before it that belong to none; `None` when nothing is left. For bytes that no
-/// more will follow.
+/// Removes the next frame from `rest`, or the bytes before it that belong to no frame; `None` when
+/// nothing is left. For bytes that are complete.
 ///
 /// Bounded work: that of [`scan`].
 pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
@@ -79,11 +83,12 @@ pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     (!piece.is_empty()).then_some(piece)
 }
 
-/// Appends a message as one MAVLink 2 frame without a signature and returns its length.
+/// Appends a message as one unsigned MAVLink 2 frame and returns its length.
 ///
 /// # Errors
-/// [`EncodeError::NoSender`] when `header` names nobody, [`EncodeError::Robot`] when somebody's number is above 255,
-/// [`EncodeError::Full`] when the frame does not fit. Nothing is written then.
+/// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NOBODY`], [`EncodeError::Robot`]
+/// if a robot number is above 255, [`EncodeError::Full`] if the frame does not fit. Nothing is
+/// written in these cases.
 ///
 /// Bounded work: O(bytes of the frame).
 pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
@@ -93,7 +98,7 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
     let sender = Sender {
         system: system(header.sender)?,
         component: COMPONENT,
-        // Counts frames as MAVLink wants it.
+        // The frame count as MAVLink requires it.
         sequence: header.sequence as u8,
     };
     let Header { boot, sequence, .. } = header;
@@ -197,18 +202,18 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
             }
             frame::encode(sender, &data, out)
         }
-        // MAVLink's signatures have one key: see `Sealed` for robots with keys of their own.
+        // MAVLink's signatures have one key: see `Sealed` for robots with their own keys.
         Message::Key(_) | Message::KeyHeld(_) => return Err(EncodeError::Full),
     };
     written.map_err(|Full| EncodeError::Full)
 }
 
-/// Reads one MAVLink 2 frame; a signature is not looked at.
+/// Decodes one MAVLink 2 frame, ignoring any signature.
 ///
 /// # Errors
-/// [`DecodeError::Crc`] for bytes that are no sound frame, [`DecodeError::Foreign`] for one that is no `STAYA_*` message,
-/// [`DecodeError::NoSender`] for one of system 0, [`DecodeError::Body`] for a field without meaning (an unknown mode, more
-/// neighbours than a part holds, ...).
+/// [`DecodeError::Crc`] if the bytes are not an intact frame, [`DecodeError::Foreign`] if it is not
+/// a `STAYA_*` message, [`DecodeError::NoSender`] for system 0, [`DecodeError::Body`] for an
+/// invalid field (an unknown mode, more neighbours than a part holds, ...).
 ///
 /// Bounded work: O(bytes of the frame).
 pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
@@ -261,7 +266,6 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
     Ok(Frame { header, message, tag: None })
 }
 
-/// Boot, sequence and message.
 type Parts = Result<(u8, u16, Message), DecodeError>;
 
 fn body<D: MessageData>(raw: &RawFrame<'_>) -> Result<D, DecodeError> {
@@ -339,7 +343,7 @@ fn template(part: &TemplateAssignment, boot: u8, sequence: u16) -> Result<STAYA_
     Ok(data)
 }
 
-// A part of the controller's fits one message, and so does what a law tells.
+// A part of the controller's template fits one message, and so does the payload of a law.
 const _: () = assert!(MAX_PAYLOAD == STAYA_PAYLOAD_DATA::DEFAULT.bytes.len());
 const _: () = assert!(TEMPLATE_PART == STAYA_TEMPLATE_DATA::DEFAULT.entry_id.len());
 
@@ -367,7 +371,7 @@ fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
     Ok((data.boot, data.sequence, Message::Template(part)))
 }
 
-/// The system with a robot's number; nobody is 0.
+/// The system of a robot number; 0 for [`RobotId::NOBODY`].
 fn system(id: RobotId) -> Result<u8, EncodeError> {
     u8::try_from(id.0).map_err(|_| EncodeError::Robot(id))
 }
@@ -376,7 +380,7 @@ fn robot(system: u8) -> RobotId {
     RobotId(system.into())
 }
 
-/// 0: stays; 1 to 8: the move of that number less one.
+/// 0: stays; 1 to 8: the move of that number minus one.
 #[expect(clippy::arithmetic_side_effects, reason = "an index is at most 7")]
 const fn heading(dir: Dir) -> u8 {
     match dir {

@@ -1,4 +1,4 @@
-//! Where the robot is, reckoned from its wheels.
+//! The robot's position, computed from its wheels.
 
 use crate::drive::{Twist, wrap_angle};
 use staya_controller::agent::KinematicState;
@@ -6,7 +6,7 @@ use staya_controller::geom::{Position, Vec2};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Duration;
 
-/// An incremental encoder's counter of 16 bits that wraps, as timers have it.
+/// The wrapping 16-bit counter of an incremental encoder, as in timers.
 ///
 /// Read it before the wheel makes 32,767 ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,14 +14,15 @@ pub struct Encoder<S> {
     rim_m: S,
     ticks_per_turn: u16,
     last: Option<u16>,
-    /// Ticks since the wheel was at its first place, less than one turn.
+    /// Ticks since the wheel was at its initial angle, less than one turn.
     in_turn: i32,
     is_inverted: bool,
 }
 
 impl<S: Scalar> Encoder<S> {
-    /// On a wheel of `wheel_radius_m` with `ticks_per_turn` counts per turn of the wheel (edges counted, gear included); `None`
-    /// unless both are more than 0. `is_inverted`: it counts down when the robot goes ahead.
+    /// An encoder on a wheel of `wheel_radius_m` with `ticks_per_turn` counts per turn of the wheel
+    /// (all edges, including the gear); `None` unless both are more than 0. `is_inverted`: it
+    /// counts down when the robot moves ahead.
     #[must_use]
     pub fn new(wheel_radius_m: S, ticks_per_turn: u16, is_inverted: bool) -> Option<Self> {
         let sensible = wheel_radius_m > S::ZERO && ticks_per_turn > 0;
@@ -34,9 +35,10 @@ impl<S: Scalar> Encoder<S> {
         })
     }
 
-    /// How far the rim went since the last call, metres; 0 at the first one.
+    /// The distance that the rim travelled since the last call, metres; 0 in the first call.
     ///
-    /// The difference of two places on the rim: what is rounded in one call comes back in the next, and nothing adds up.
+    /// It is the difference of two positions on the rim, so rounding errors cancel in the next call
+    /// and do not accumulate.
     #[must_use]
     pub fn travelled(&mut self, count: u16) -> S {
         let last = self.last.replace(count).unwrap_or(count);
@@ -50,29 +52,30 @@ impl<S: Scalar> Encoder<S> {
         S::from_i32(turns) * self.rim_m + self.place(in_turn) - self.place(before)
     }
 
-    /// Along the rim, metres.
     fn place(&self, in_turn: i32) -> S {
         let part = S::from_i32(in_turn).checked_div(S::from_i32(self.ticks_per_turn.into()));
         part.unwrap_or(S::ZERO) * self.rim_m
     }
 }
 
-/// Place and heading of the robot's middle (of the axle, for two wheels), summed up from small motions.
+/// Position and heading of the robot's middle (of the axle, for two wheels), accumulated from small
+/// motions.
 ///
-/// It drifts: wheels slip, and each error of the heading sends all that follows the wrong way. A robot needs something that knows its place
-/// now and then (beacons, a camera, satellites): [`Self::correct`]. The sum itself loses less than a millimetre: what is less than
-/// one stays in hand.
+/// It drifts: wheels slip, and each error of the heading affects all later motion. A robot needs
+/// another source that gives its position from time to time (beacons, a camera, satellites):
+/// [`Self::correct`]. The sum itself loses less than a millimetre, since remainders below a
+/// millimetre are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Odometry<S> {
     position: Position,
-    /// What is less than a millimetre.
     rest_m: Vec2<S>,
     heading_rad: S,
     twist: Twist<S>,
 }
 
 impl<S: Scalar> Odometry<S> {
-    /// A robot that stands; `heading_rad` counter-clockwise from east; `None` when this is not finite.
+    /// Starts with a stationary robot; `heading_rad` counter-clockwise from east; `None` if it is
+    /// not finite.
     #[must_use]
     pub fn new(position: Position, heading_rad: S) -> Option<Self> {
         heading_rad.is_finite().then(|| Self {
@@ -83,10 +86,12 @@ impl<S: Scalar> Odometry<S> {
         })
     }
 
-    /// The body moved so far within `span`: `way` in metres and radians, for example
-    /// [`Kinematics::twist`](crate::drive::Kinematics::twist) of what the rims travelled. What is not a number is not added.
+    /// Adds the motion of the body within `span`: `way` in metres and radians, for example
+    /// [`Kinematics::twist`](crate::drive::Kinematics::twist) of the distances that the rims
+    /// travelled. A motion that is not a number is ignored.
     ///
-    /// The way counts along the heading in its middle (second-order Runge-Kutta): off by way * turn^2 / 24.
+    /// The motion counts along its middle heading (second-order Runge-Kutta); the error is way *
+    /// turn^2 / 24.
     pub fn advance(&mut self, way: &Twist<S>, span: Duration) {
         let mid = self.heading_rad + way.turn_radps * S::HALF;
         let (sin, cos) = mid.sin_cos();
@@ -110,11 +115,11 @@ impl<S: Scalar> Odometry<S> {
                 turn_radps: per_second(way.turn_radps)?,
             })
         };
-        // In no time nothing is known of the speed.
+        // A span of zero gives no speed.
         self.twist = twist().unwrap_or(self.twist);
     }
 
-    /// Somebody knows better.
+    /// Replaces position and heading by better ones.
     pub fn correct(&mut self, position: Position, heading_rad: S) {
         self.position = position;
         self.rest_m = Vec2::ZERO;
@@ -123,7 +128,7 @@ impl<S: Scalar> Odometry<S> {
         }
     }
 
-    /// Place and velocity of the robot's middle in the world.
+    /// Position and velocity of the robot's middle in the world.
     #[must_use]
     pub fn state(&self) -> KinematicState<S> {
         let (sin, cos) = self.heading_rad.sin_cos();
@@ -131,7 +136,7 @@ impl<S: Scalar> Odometry<S> {
         KinematicState { position: self.position, velocity_mps: velocity.extend(S::ZERO) }
     }
 
-    /// Counter-clockwise from east, on (-pi, pi].
+    /// The heading, counter-clockwise from east, in (-pi, pi].
     #[must_use]
     pub const fn heading_rad(&self) -> S {
         self.heading_rad
@@ -175,7 +180,8 @@ mod tests {
 
     #[test]
     fn fixed_point_ticks_do_not_drift() {
-        // A tick of 0.03 mm is two of the least numbers: rounded each for itself they would be off by a few percent.
+        // A tick of 0.03 mm is two of the least numbers: rounded individually, ticks would be off
+        // by a few percent.
         let mut encoder = Encoder::new(Q16::from_ratio(3, 100), 6000, false).unwrap();
         let mut sum = Encoder::travelled(&mut encoder, 0);
         let mut count = 0u16;
@@ -216,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_number_moves_nobody() {
+    fn a_motion_that_is_not_a_number_is_ignored() {
         let mut odometry = Odometry::new(Position::ORIGIN, 0.5f32).unwrap();
         odometry.advance(&way(0.1, 0.1), SPAN);
         let before = odometry;
@@ -237,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fix_replaces_what_was_reckoned() {
+    fn a_fix_replaces_the_computed_position() {
         let mut odometry = Odometry::new(Position::ORIGIN, 0.0f32).unwrap();
         odometry.advance(&way(0.0004, 0.3), SPAN);
         odometry.correct(Position::from_mm([9, 9, 9]), 7.0);
@@ -249,7 +255,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn there_and_back_is_home(ways in proptest::collection::vec((-0.05f64..0.05, -0.4f64..0.4), 1..60)) {
+        fn driving_there_and_back_returns_to_the_start(ways in proptest::collection::vec((-0.05f64..0.05, -0.4f64..0.4), 1..60)) {
             let two = Differential::new(0.2).unwrap();
             let mut odometry = Odometry::new(Position::ORIGIN, 0.3).unwrap();
             let there = ways.iter().map(|(f, t)| way::<f64>(*f, *t));

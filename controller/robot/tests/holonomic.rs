@@ -1,4 +1,5 @@
-//! A robot on three omni wheels, with the numbers of a part without an FPU, goes to its place while it spins: ticks in, duties out.
+//! A robot on three omni wheels with fixed-point numbers reaches its goal while it spins; encoder
+//! ticks are the input, PWM duties the output.
 
 use crate::common;
 use core::convert::Infallible;
@@ -26,7 +27,6 @@ const TICKS_PER_TURN: u16 = 1200;
 
 type Power = common::Channel<MAX_DUTY>;
 
-/// A direction pin.
 #[derive(Clone, Default)]
 struct Ahead(Rc<Cell<bool>>);
 
@@ -52,11 +52,9 @@ fn q(value: f64) -> Q16 {
 
 #[test]
 fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
-    // The world.
     let pins: [(Power, Ahead); 3] = Default::default();
     let wheels = Omni::<f64, 3>::new(0.3, ARM_M).unwrap();
     let (mut place, mut heading, mut ways) = (Vec2::new(0.0, 0.0), 1.0f64, [0.0f64; 3]);
-    // The robot.
     let limits = Limits { speed_mps: q(0.6), acceleration_mps2: q(2.0) };
     let mut mixer = Mixer::new(Omni::<Q16, 3>::new(q(0.3), q(ARM_M)).unwrap(), limits).unwrap();
     let linear = Calibration::linear(q(FULL_MPS));
@@ -93,7 +91,7 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
         let Ok(()) = motors.turn(&mixer.mix(&twist, TICK));
         now = now + TICK;
 
-        // The wheels do as the pins say.
+        // The wheels follow the pins.
         let speed = |(power, ahead): &(Power, Ahead)| {
             let sign = if ahead.0.get() { 1.0 } else { -1.0 };
             sign * FULL_MPS * f64::from(power.0.get()) / f64::from(MAX_DUTY)

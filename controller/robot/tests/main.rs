@@ -1,4 +1,4 @@
-//! Robots in small worlds, with the public interface of the crate alone.
+//! Robots in small worlds, using only the public interface of the crate.
 
 mod common;
 mod holonomic;

@@ -1,5 +1,6 @@
-//! Robots that have nothing but this crate between their hardware and the real agent: bytes of a bad UART, counters of encoders, ranges of a lidar
-//! in, PWM duties out. A small world of wheels, walls and a wire moves and hears them.
+//! Robots that use this crate between simulated hardware and the real agent. The inputs are bytes
+//! of a bad UART, encoder counters and lidar ranges; the outputs are PWM duties. A small world of
+//! wheels, walls and a wire simulates the rest.
 #![allow(
     clippy::indexing_slicing,
     clippy::unwrap_used,
@@ -57,14 +58,14 @@ const FRAME: GridFrame<f32> = GridFrame { origin_m: Vec2::new(0.0, 0.0), cell_m:
 
 type Channel = common::Channel<MAX_DUTY>;
 
-/// A UART: what came from the air, and what waits to go there.
+/// A UART: received bytes, and bytes to send.
 #[derive(Clone, Default)]
 struct Uart {
     heard: Rc<RefCell<VecDeque<u8>>>,
     said: Rc<RefCell<VecDeque<u8>>>,
 }
 
-/// Bytes that a UART sends in a moment: 57,600 baud.
+/// Bytes that a UART sends in one step of the world: 57,600 baud.
 const BYTES_PER_MOMENT: usize = 28;
 
 impl ErrorType for Uart {
@@ -107,12 +108,12 @@ impl WriteReady for Uart {
     }
 }
 
-/// What is true of a robot, whether it knows it or not.
+/// The true state of a robot.
 struct Body {
     axle: Vec2<f64>,
     heading: f64,
     rims: [f64; 2],
-    /// Rims' ways, metres.
+    /// Distances of the rims, metres.
     ways: [f64; 2],
     channels: [[Channel; 2]; 2],
     uart: Uart,
@@ -123,7 +124,7 @@ impl Body {
         Self { axle, heading, rims: [0.0; 2], ways: [0.0; 2], channels: Default::default(), uart: Uart::default() }
     }
 
-    /// The motors follow their duties with a lag of 40 ms; the right one is mounted the other way round.
+    /// The motors follow their duties with a lag of 40 ms; the right one is mounted inversely.
     fn roll(&mut self) {
         for (side, [ahead, back]) in self.channels.iter().enumerate() {
             let duty = f64::from(ahead.0.get()) - f64::from(back.0.get());
@@ -143,11 +144,10 @@ impl Body {
     fn counts(&self) -> [u16; 2] {
         let ticks =
             |way: f64| (way / (core::f64::consts::TAU * WHEEL_M) * f64::from(TICKS_PER_TURN)).floor() as i64 as u16;
-        // The right one counts down.
         [ticks(self.ways[0]), ticks(-self.ways[1])]
     }
 
-    /// What the lidar measures, with noise of a centimetre and one lost range in fifty.
+    /// The lidar's measurements, with noise of a centimetre and one lost range in fifty.
     fn ranges(&self, walls: &[[Vec2<f64>; 2]], others: &[Vec2<f64>], rng: &mut Rng) -> Vec<f32> {
         let beam = |number: usize| {
             let bearing = core::f64::consts::TAU * number as f64 / BEAMS as f64;
@@ -178,7 +178,7 @@ impl Body {
     }
 }
 
-/// How far ahead a ray meets a wall.
+/// Distance along a ray to a wall.
 fn crossing(from: Vec2<f64>, ahead: Vec2<f64>, [a, b]: [Vec2<f64>; 2]) -> Option<f64> {
     let (to, along) = (a - from, b - a);
     let across = ahead.det(along);
@@ -187,7 +187,6 @@ fn crossing(from: Vec2<f64>, ahead: Vec2<f64>, [a, b]: [Vec2<f64>; 2]) -> Option
     (range >= 0.0 && (0.0..=1.0).contains(&part)).then_some(range)
 }
 
-/// A robot's firmware.
 struct Firmware<G: Guidance<f32>> {
     agent: Agent<f32, G, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>>,
     workspace: G::Workspace,
@@ -281,7 +280,8 @@ where
     }
 }
 
-/// Carries what each one said to all others, and damages it: a flipped bit in a thousand bytes, and bytes out of nowhere.
+/// Delivers each robot's bytes to all others, with damage: one flipped bit per thousand bytes, and
+/// spurious bytes.
 fn carry(bodies: &[Body], rng: &mut Rng) {
     for (from, speaker) in bodies.iter().enumerate() {
         let said: Vec<u8> = speaker.uart.said.borrow_mut().drain(..).collect();
@@ -301,7 +301,8 @@ fn carry(bodies: &[Body], rng: &mut Rng) {
     }
 }
 
-/// Runs robots until all have arrived; the time that it took. After each moment the world is shown to `check`.
+/// Runs robots until all have arrived; returns the time. After each step of the world `check` is
+/// called.
 fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
     bodies: &mut [Body],
     robots: &mut [Firmware<G>],
@@ -309,7 +310,7 @@ fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
     mut check: impl FnMut(&[Body]),
 ) -> f64 {
     let mut rng = Rng::keyed(7, 0, 0, 0);
-    // The robots' clocks wrap on the way.
+    // The robots' clocks wrap during the run.
     let start = u32::MAX - 5_000_000;
     for moment in 0..24_000u32 {
         let now = Instant::from_micros(start.wrapping_add(moment * MOMENT_US));
@@ -337,8 +338,8 @@ fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
 }
 
 #[test]
-fn a_robot_finds_its_way_round_a_wall_that_it_knows_only_by_ranges() {
-    // From west to east of a wall 2.4 m long, with the only way round its north end.
+fn a_robot_gets_around_a_wall_known_only_from_ranges() {
+    // From west to east of a wall 2.4 m long; the only path leads around its north end.
     let v = Vec2::new;
     let walls = [
         [v(2.0, 0.0), v(2.0, 2.4)],
@@ -357,7 +358,7 @@ fn a_robot_finds_its_way_round_a_wall_that_it_knows_only_by_ranges() {
         let gaps = walls.iter().map(|wall| bodies[0].gap_to(wall));
         least = gaps.fold(least, f64::min);
     });
-    // The controller steers the point ahead; the wheels' reckoning may be off by some centimetres.
+    // The controller steers the point ahead; odometry may be off by some centimetres.
     let [body] = &bodies;
     let (sin, cos) = Scalar::sin_cos(body.heading);
     let point = body.axle + v(cos, sin) * f64::from(AHEAD_M);
@@ -369,7 +370,7 @@ fn a_robot_finds_its_way_round_a_wall_that_it_knows_only_by_ranges() {
 }
 
 #[test]
-fn two_robots_with_two_wheels_each_change_places_over_a_bad_wire() {
+fn two_differential_robots_swap_places_over_a_bad_wire() {
     let v = Vec2::new;
     let mut bodies = [Body::at(v(0.5, 1.0), 0.0), Body::at(v(3.5, 1.0), core::f64::consts::PI)];
     let guidance = |speed| WaypointGuidance::new(speed, 0.02);
@@ -394,13 +395,13 @@ fn two_robots_with_two_wheels_each_change_places_over_a_bad_wire() {
         assert!(heard.refused > 0, "the wire was bad");
         assert_eq!((heard.dropped, said.dropped), (0, 0));
     }
-    // Straight it would take 3 m at the speed that is left for going any way.
+    // The straight path of 3 m, at the speed that holds in any direction.
     assert!(time < 2.0 * 3.0 / f64::from(robots[0].max_speed_mps), "{time}");
 }
 
-/// The types that the README names are these.
+/// The types in the README equal these.
 #[test]
-fn the_default_agent_is_the_one_that_is_driven_here() {
+fn the_default_agent_equals_the_one_tested_here() {
     fn is_default(_: &OrcaAgent) {}
     let body = Body::at(Vec2::ZERO, 0.0);
     let guidance = |speed| WaypointGuidance::new(speed, 0.02);

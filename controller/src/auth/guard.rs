@@ -1,21 +1,22 @@
-//! Which authenticated frames are fresh, and which somebody recorded and sends again.
+//! Distinguishes fresh authenticated frames from replayed ones.
 //!
-//! The sliding window of IPsec (RFC 4303, section 3.4.3) per sender, over counters that never wrap and never start anew.
+//! Implements the sliding window of IPsec (RFC 4303, section 3.4.3) per sender, on counters that
+//! never wrap or restart.
 
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// How a frame stands to those of the same sender before it.
+/// The class of a frame, given the frames of the same sender before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Freshness {
-    /// Newer than everything before, or the sender's first one.
+    /// Newer than all frames before, or the first of its sender.
     New,
-    /// Not seen before, but a newer one came first.
+    /// Not received before, but a newer frame came first.
     Late,
-    /// Seen before, or so old that this is forgotten.
+    /// Received before, or so old that the guard no longer knows.
     Replayed,
-    /// From a sender that is not known and for whom there is no room.
+    /// From an unknown sender while the table is full.
     NoRoom,
 }
 
@@ -27,43 +28,44 @@ impl Freshness {
     }
 }
 
-/// What is remembered of one sender; 16 bytes.
+/// The state of one sender; 16 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 struct Peer {
     newest: u64,
-    /// Bit k: the frame `newest - k` was seen.
+    /// Bit k: the frame `newest - k` was received.
     seen: u32,
     sender: u32,
 }
 
 /// The newest counters of up to `N` senders; 16 bytes each.
 ///
-/// Only authenticated frames may come here, so that nobody without the key can fill it. A sender is never forgotten by
-/// itself: who is forgotten can be replayed. When all `N` are taken, frames of further senders are refused
-/// ([`Freshness::NoRoom`]), so `N` is at least the number of robots that have the key.
+/// Pass only authenticated frames, so that an attacker without the key cannot fill the table. A
+/// sender is never evicted, since its frames could then be replayed. When the table is full, frames
+/// of further senders are refused ([`Freshness::NoRoom`]), so `N` must be at least the number of
+/// robots that have the key.
 ///
-/// # What survives a restart of the receiver
+/// # Restart of the receiver
 ///
-/// Nothing by itself. Then each sender's first frame is believed, also a recorded one, and an attacker can replay a
-/// whole recording in order, from the restart until the true sender is heard: every frame of it that is older is refused from then on. Who
-/// wants to close this gap stores [`Self::export`] in lasting memory, from time to time or when the power goes, and gives it back with
-/// [`Self::import`]; or raises [`Self::set_floor`] above what was recorded on earlier days.
+/// By default no state survives. Then the first frame of each sender is accepted, even a recorded
+/// one, and an attacker can replay a whole recording in order, from the restart until the true
+/// sender is received; from then on all older frames are refused. To close this gap, store
+/// [`Self::export`] in persistent memory, from time to time or at power-off, and restore it with
+/// [`Self::import`]; or raise [`Self::set_floor`] above the counters recorded on earlier days.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ReplayGuard<const N: usize> {
-    /// By sender, rising.
     peers: Vec<Peer, N>,
-    /// Unknown senders begin here or later.
+    /// The least counter accepted from unknown senders.
     floor: u64,
 }
 
 impl<const N: usize> ReplayGuard<N> {
-    /// One that knows nobody.
+    /// Creates a guard without known senders.
     #[must_use]
     pub const fn new() -> Self {
         Self { peers: Vec::new(), floor: 0 }
     }
 
-    /// Judges an authenticated frame and remembers it. O(log N), for a new sender O(N).
+    /// Classifies an authenticated frame and records it. O(log N), for a new sender O(N).
     pub fn admit(&mut self, sender: u32, counter: u64) -> Freshness {
         let at = match self.find(sender) {
             Ok(at) => at,
@@ -89,12 +91,13 @@ impl<const N: usize> ReplayGuard<N> {
         }
     }
 
-    /// Each known sender with its newest counter, by sender: what to store.
+    /// Each known sender with its newest counter, in the order of senders, for storing them.
     pub fn export(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
         self.peers.iter().map(|peer| (peer.sender, peer.newest))
     }
 
-    /// Takes back what [`Self::export`] gave: nothing of `sender` up to `counter` is fresh any more. Returns whether there was room.
+    /// Restores an entry of [`Self::export`]: frames of `sender` up to `counter` are not fresh.
+    /// Returns whether there was space.
     pub fn import(&mut self, sender: u32, counter: u64) -> bool {
         match self.find(sender) {
             Err(_) => self.insert(sender, counter, u32::MAX).is_fresh(),
@@ -109,18 +112,18 @@ impl<const N: usize> ReplayGuard<N> {
         }
     }
 
-    /// Refuses frames of unknown senders whose counter is smaller.
+    /// Refuses frames of unknown senders with a smaller counter.
     pub const fn set_floor(&mut self, floor: u64) {
         self.floor = floor;
     }
 
-    /// What [`Self::set_floor`] set; 0 before.
+    /// The value of [`Self::set_floor`]; initially 0.
     #[must_use]
     pub const fn floor(&self) -> u64 {
         self.floor
     }
 
-    /// A sender's newest counter, accepted or imported; `None` for one who is not known. O(log N).
+    /// A sender's newest counter, accepted or imported; `None` for an unknown sender. O(log N).
     #[must_use]
     pub fn newest(&self, sender: u32) -> Option<u64> {
         let at = self.find(sender).ok()?;

@@ -4,7 +4,8 @@ use super::sha256::BLOCK;
 use super::{Key, Sha256};
 use core::fmt;
 
-/// Makes codes with one key; 64 bytes. The two blocks that depend on the key alone are hashed once.
+/// Computes codes with one key; 64 bytes. The two blocks that depend on the key alone are hashed
+/// once.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Mac {
     inner: [u32; 8],
@@ -12,13 +13,14 @@ pub struct Mac {
 }
 
 impl Mac {
-    /// For this key. Two blocks of SHA-256.
+    /// Prepares a key. Two blocks of SHA-256.
     #[must_use]
     pub fn new(key: &Key) -> Self {
         Self { inner: keyed(key, 0x36), outer: keyed(key, 0x5C) }
     }
 
-    /// The code of a message, given in parts. Two blocks of SHA-256 up to 55 bytes, and one for each 64 more.
+    /// The code of a message, given in parts. Two blocks of SHA-256 up to 55 bytes, and one for
+    /// each 64 more.
     #[must_use]
     pub fn of(&self, message: &[&[u8]]) -> [u8; 32] {
         let mut inner = Sha256::from_state(self.inner, 1);
@@ -37,7 +39,7 @@ impl fmt::Debug for Mac {
     }
 }
 
-/// The state after the block of the key, each byte combined with `pad`.
+/// The hash state after the key's block, with each byte xor `pad`.
 fn keyed(key: &Key, pad: u8) -> [u32; 8] {
     let mut block = [pad; BLOCK];
     for (byte, secret) in block.iter_mut().zip(key.as_bytes()) {

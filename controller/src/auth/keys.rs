@@ -1,62 +1,66 @@
-//! Keys that are made of others: each robot's own, the swarm's of each generation, and how a new one is sent.
+//! Derived keys: each robot's own key, the swarm's key of each generation, and the encryption of a
+//! new key for sending.
 //!
 //! ```text
 //! own key of robot i      = HMAC(master, "staya robot"  i:u32)
 //! seed of generation g    = HMAC(master, "staya swarm"  g:u16), its first 16 bytes
 //! the swarm's key of g    = HMAC(seed 0^16, "staya key" g:u16)
-//! sent to robot i         = V, seed xor HMAC(own, "staya mask" g V)    V = HMAC(own, "staya wrap" g seed), 16 bytes of each
+//! sent to robot i         = V, seed xor HMAC(own, "staya mask" g V)
+//! V                       = HMAC(own, "staya wrap" g seed)       (16 bytes of each)
 //! ```
 //!
-//! Integers are little-endian. What is sent is encrypted and authenticated by V, as a synthetic initialisation vector (RFC 5297, section 2.6, with HMAC in
-//! place of CMAC and AES, so that parts link one primitive): who does not have the robot's own key can neither read it nor make one, and the same
-//! seed sent twice is the same bytes. Who takes a robot has its own key and the swarm's key of that time, and nothing of the master, of other robots'
-//! own keys, or of a generation that was not sent to that robot.
+//! Integers are little-endian. A sent seed is encrypted and authenticated by V, a synthetic
+//! initialisation vector (RFC 5297, section 2.6, with HMAC instead of CMAC and AES, so that
+//! firmware links one primitive). Without the robot's own key an attacker can neither read nor
+//! forge it; the same seed sent twice gives the same bytes. An attacker that captures a robot gets
+//! its own key and the swarm's key of that time, but not the master, the own keys of other robots,
+//! or a generation that was not sent to that robot.
 
 use super::{KEY_LEN, Key, Mac, is_same};
 use crate::robot::RobotId;
 use core::fmt;
 
-/// Bytes of a [`Seed`].
+/// Length of a [`Seed`] in bytes.
 pub const SEED_LEN: usize = 16;
-/// Bytes of a seed on its way.
+/// Length of an encrypted seed in bytes.
 pub const WRAPPED_LEN: usize = 2 * SEED_LEN;
 
-/// What only the operator has: every other key is made of it.
+/// The operator's secret, from which all other keys are derived.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct Master(Mac);
 
 impl Master {
-    /// Of this secret. Two blocks of SHA-256.
+    /// Derives the master from a secret. Two blocks of SHA-256.
     #[must_use]
     pub fn new(secret: &Key) -> Self {
         Self(Mac::new(secret))
     }
 
-    /// The own key of a robot: what it shares with its operator, and with nobody else. Two blocks of SHA-256.
+    /// The own key of a robot, which it shares only with its operator. Two blocks of SHA-256.
     #[must_use]
     pub fn own_key(&self, robot: RobotId) -> Key {
         Key::new(self.0.of(&[b"staya robot", &robot.0.to_le_bytes()]))
     }
 
-    /// What the swarm's key of a generation is made of. Two blocks of SHA-256.
+    /// The seed of the swarm's key of a generation. Two blocks of SHA-256.
     #[must_use]
     pub fn seed(&self, generation: u16) -> Seed {
         Seed(first(self.0.of(&[b"staya swarm", &generation.to_le_bytes()])))
     }
 }
 
-/// What the swarm's key of one generation is made of; 128 bits that nobody guesses.
+/// The secret from which the swarm's key of one generation is derived; 128 random bits.
 #[derive(Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Seed([u8; SEED_LEN]);
 
 impl Seed {
-    /// Of these bytes: what was stored.
+    /// Restores a stored seed.
     #[must_use]
     pub const fn new(bytes: [u8; SEED_LEN]) -> Self {
         Self(bytes)
     }
 
-    /// The secret itself: to be stored.
+    /// The secret bytes, for storing them.
     #[must_use]
     pub const fn as_bytes(&self) -> &[u8; SEED_LEN] {
         &self.0
@@ -72,7 +76,7 @@ impl Seed {
         Key::new(Mac::new(&Key::new(secret)).of(&[b"staya key", &generation.to_le_bytes()]))
     }
 
-    /// As it is sent to the robot with this own key. Four blocks of SHA-256.
+    /// Encrypts the seed for the robot with this own key. Four blocks of SHA-256.
     #[must_use]
     pub fn wrap(&self, own: &Mac, generation: u16) -> [u8; WRAPPED_LEN] {
         let check = check(own, generation, self);
@@ -83,7 +87,8 @@ impl Seed {
         wrapped
     }
 
-    /// What was sent; `None` if it was not made with this own key for this generation. Four blocks of SHA-256.
+    /// Decrypts a received seed; `None` if it was not encrypted with this own key for this
+    /// generation. Four blocks of SHA-256.
     #[must_use]
     pub fn unwrap(own: &Mac, generation: u16, wrapped: &[u8; WRAPPED_LEN]) -> Option<Self> {
         let (check_sent, hidden) = wrapped.split_first_chunk::<SEED_LEN>()?;

@@ -1,7 +1,9 @@
-//! Who may speak: a key that the whole swarm shares, codes made with it, and what is remembered against replays.
+//! Authentication: a key that the whole swarm shares, codes made with it, and protection against
+//! replays.
 //!
-//! Built on RustCrypto's SHA-256 compression function. Padding and HMAC are written here, in a few lines that visibly never
-//! panic, so that the linker's proof of that does not hang on what the optimiser makes of the buffers of `digest` and `hmac`.
+//! Uses RustCrypto's SHA-256 compression function. Padding and HMAC are implemented here, in a few
+//! lines that visibly never panic, so that the linker's proof does not depend on how the optimiser
+//! treats the buffers of `digest` and `hmac`.
 
 mod guard;
 mod hmac;
@@ -16,22 +18,23 @@ pub use sha256::Sha256;
 use core::fmt;
 use core::hint::black_box;
 
-/// Bytes of a [`Key`].
+/// Length of a [`Key`] in bytes.
 pub const KEY_LEN: usize = 32;
 
-/// A secret of 32 bytes. It comes from configuration; it is never printed, logged or part of a digest of state. Serde
-/// writes it, so the saved state of a robot is as secret as its key.
+/// A secret of 32 bytes from the configuration. It is never printed, logged or part of a digest of
+/// state. Serde serializes it, so the saved state of a robot is as secret as its key.
 #[derive(Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Key([u8; KEY_LEN]);
 
 impl Key {
-    /// The key of these bytes.
+    /// Wraps key bytes.
     #[must_use]
     pub const fn new(bytes: [u8; KEY_LEN]) -> Self {
         Self(bytes)
     }
 
-    /// The key of a passphrase: its SHA-256, as ground stations make it (MAVProxy's `signing setup`, Mission Planner). O(length).
+    /// The key of a passphrase: its SHA-256, as in ground stations (MAVProxy's `signing setup`,
+    /// Mission Planner). O(length).
     #[must_use]
     pub fn of_passphrase(passphrase: &[u8]) -> Self {
         let mut hash = Sha256::new();
@@ -39,7 +42,7 @@ impl Key {
         Self(hash.finish())
     }
 
-    /// The secret itself.
+    /// The secret bytes.
     #[must_use]
     pub const fn as_bytes(&self) -> &[u8; KEY_LEN] {
         &self.0
@@ -52,7 +55,7 @@ impl fmt::Debug for Key {
     }
 }
 
-/// Whether two codes are the same, in a time that does not tell where they differ.
+/// Compares two codes in constant time.
 #[must_use]
 pub fn is_same<const N: usize>(a: &[u8; N], b: &[u8; N]) -> bool {
     let differences = a.iter().zip(b).fold(0, |sum, (a, b)| sum | (a ^ b));

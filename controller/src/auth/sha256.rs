@@ -2,54 +2,51 @@
 
 use sha2::block_api::compress256;
 
-/// Bytes that are compressed at a time.
 pub(super) const BLOCK: usize = 64;
 
 /// FIPS 180-4, section 5.3.3.
 const START: [u32; 8] =
     [0x6A09_E667, 0xBB67_AE85, 0x3C6E_F372, 0xA54F_F53A, 0x510E_527F, 0x9B05_688C, 0x1F83_D9AB, 0x5BE0_CD19];
 
-/// A hash in the making; 104 bytes.
+/// A hash in progress; 104 bytes.
 #[derive(Clone)]
 pub struct Sha256 {
     state: [u32; 8],
     block: [u8; BLOCK],
-    /// Bytes so far.
     len: u64,
 }
 
 impl Sha256 {
-    /// Of nothing so far.
+    /// Creates a hash of no bytes.
     #[must_use]
     pub const fn new() -> Self {
         Self::from_state(START, 0)
     }
 
-    /// Goes on after `blocks` whole blocks that led to `state`.
+    /// Continues after `blocks` whole blocks that led to `state`.
     #[expect(clippy::arithmetic_side_effects, reason = "called with 0 and 1")]
     pub(super) const fn from_state(state: [u32; 8], blocks: u64) -> Self {
         Self { state, block: [0; BLOCK], len: blocks * BLOCK as u64 }
     }
 
-    /// What [`Self::from_state`] wants; only at a whole number of blocks.
+    /// The state for [`Self::from_state`]; only valid after a whole number of blocks.
     pub(super) const fn state(&self) -> [u32; 8] {
         self.state
     }
 
-    /// Takes more bytes in. O(their number).
+    /// Adds bytes. O(their number).
     pub fn update(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.push(*byte);
         }
     }
 
-    /// The hash of everything taken in.
+    /// The hash of all bytes added.
     #[must_use]
     #[expect(clippy::arithmetic_side_effects, reason = "64 less 8")]
     pub fn finish(mut self) -> [u8; 32] {
         let bits = self.len.wrapping_mul(8).to_be_bytes();
         self.push(0x80);
-        // At most 63 zeros.
         while self.at() != BLOCK - bits.len() {
             self.push(0);
         }
@@ -61,7 +58,6 @@ impl Sha256 {
         hash
     }
 
-    /// Where in the block the next byte goes.
     const fn at(&self) -> usize {
         self.len as usize & (BLOCK - 1)
     }

@@ -16,9 +16,10 @@ fn sha256(message: &[u8]) -> String {
     hex(&hash.finish())
 }
 
-/// FIPS 180-4's examples, and the lengths at which the padding takes another block (checked by Python's `hashlib`).
+/// FIPS 180-4's examples, and the lengths at which the padding takes another block (checked by
+/// Python's `hashlib`).
 #[test]
-fn hashes_are_those_of_the_standard() {
+fn hashes_match_the_standard() {
     assert_eq!(sha256(b""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
     assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     assert_eq!(
@@ -38,7 +39,7 @@ fn hashes_are_those_of_the_standard() {
 
 /// RFC 4231, section 4: those whose key has at most 32 bytes (shorter ones are filled with zeros).
 #[test]
-fn codes_are_those_of_the_rfc() {
+fn codes_match_the_rfc() {
     let key = |bytes: &[u8]| {
         let mut key = [0; KEY_LEN];
         key[..bytes.len()].copy_from_slice(bytes);
@@ -69,7 +70,7 @@ fn a_key_is_not_printed() {
 }
 
 #[test]
-fn codes_differ_in_any_byte() {
+fn codes_are_compared_in_every_byte() {
     let code = [7_u8; 6];
     assert!(is_same(&code, &code));
     for at in 0..6 {
@@ -85,7 +86,7 @@ fn late_frames_are_fresh_once_and_within_the_window() {
     assert_eq!(guard.admit(1, 100), Freshness::New);
     assert_eq!(guard.admit(1, 100), Freshness::Replayed);
     assert_eq!(guard.admit(1, 131), Freshness::New);
-    // 131 - 31 was seen, 131 - 32 is forgotten.
+    // 131 - 31 was received, 131 - 32 is forgotten.
     assert_eq!(guard.admit(1, 100), Freshness::Replayed);
     assert_eq!(guard.admit(1, 99), Freshness::Replayed);
     assert_eq!(guard.admit(1, 101), Freshness::Late);
@@ -96,7 +97,7 @@ fn late_frames_are_fresh_once_and_within_the_window() {
 }
 
 #[test]
-fn a_full_guard_refuses_strangers_and_forgets_nobody() {
+fn a_full_guard_refuses_new_senders_and_keeps_the_known_ones() {
     let mut guard = ReplayGuard::<3>::new();
     for sender in [9, 2, 5] {
         assert_eq!(guard.admit(sender, 10), Freshness::New);
@@ -111,7 +112,7 @@ fn a_full_guard_refuses_strangers_and_forgets_nobody() {
 }
 
 #[test]
-fn what_was_exported_is_not_fresh_after_the_import() {
+fn exported_counters_are_not_fresh_after_import() {
     let mut before = ReplayGuard::<3>::new();
     for (sender, counter) in [(4, 7), (1, 1 << 40), (4, 5)] {
         assert!(before.admit(sender, counter).is_fresh());
@@ -124,13 +125,13 @@ fn what_was_exported_is_not_fresh_after_the_import() {
     assert_eq!(after.admit(4, 7), Freshness::Replayed);
     assert_eq!(after.admit(4, 8), Freshness::New);
     assert_eq!(after.admit(1, 1 << 40), Freshness::Replayed);
-    // A store that is older than what is known takes nothing back.
+    // Importing an older counter changes nothing.
     assert!(after.import(4, 2));
     assert_eq!(after.admit(4, 8), Freshness::Replayed);
 }
 
 #[test]
-fn unknown_senders_begin_at_the_floor() {
+fn counters_of_unknown_senders_start_at_the_floor() {
     let mut guard = ReplayGuard::<3>::new();
     guard.set_floor(50);
     assert_eq!(guard.admit(1, 49), Freshness::Replayed);
@@ -140,9 +141,10 @@ fn unknown_senders_begin_at_the_floor() {
 }
 
 proptest! {
-    /// Whatever comes in whatever order: no frame of a sender is fresh twice, and what is not behind the window is fresh once.
+    /// For any frames in any order: no frame of a sender is fresh twice, and each frame not behind
+    /// the window is fresh once.
     #[test]
-    fn nothing_is_fresh_twice(frames in vec((0_u32..6, 0_u64..80), 0..300)) {
+    fn no_frame_is_fresh_twice(frames in vec((0_u32..6, 0_u64..80), 0..300)) {
         let mut guard = ReplayGuard::<4>::new();
         let mut seen = HashSet::new();
         let mut newest = std::collections::HashMap::<u32, u64>::new();

@@ -1,5 +1,5 @@
-//! The scalar functions of the alpha flock (Olfati-Saber 2006, sections II and VII), in the paper's units, where
-//! neighbours in a lattice are [`SPACING`] apart.
+//! The scalar functions of the alpha flock (Olfati-Saber 2006, sections II and VII), in the paper's
+//! units, where neighbours in a lattice are [`SPACING`] apart.
 
 use crate::scalar::Scalar;
 
@@ -12,8 +12,8 @@ pub fn epsilon<S: Scalar>() -> S {
     S::from_ratio(1, 10)
 }
 
-/// A length in the sigma norm: sigma = (sqrt(1 + e z^2) - 1) / e, and its slope n = z / sqrt(1 + e z^2), which is
-/// the length of n_ij.
+/// A length in the sigma norm: sigma = (sqrt(1 + e z^2) - 1) / e, and its slope n = z / sqrt(1 + e
+/// z^2), which is the length of n_ij.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SigmaNorm<S> {
@@ -27,7 +27,7 @@ pub struct SigmaNorm<S> {
 #[must_use]
 pub fn sigma_norm<S: Scalar>(squared: S) -> SigmaNorm<S> {
     let root = (S::ONE + epsilon::<S>() * squared).sqrt();
-    // The same number as (root - 1) / e, without the cancellation.
+    // Equal to (root - 1) / e, without the cancellation.
     let sigma = squared.checked_div(root + S::ONE).unwrap_or(S::MAX);
     let slope = S::ONE.checked_div(root).unwrap_or(S::ZERO);
     SigmaNorm { sigma, slope }
@@ -39,12 +39,12 @@ pub fn bump<S: Scalar>(z: S, h: S) -> S {
     if z < h {
         return S::ONE;
     }
-    // Also for NaN.
+    // False for NaN.
     let is_within = z <= S::ONE;
     if !is_within {
         return S::ZERO;
     }
-    // h = 1: there is nothing to fall along.
+    // With h = 1 the function does not fall.
     let along = (z - h).checked_div(S::ONE - h).unwrap_or(S::ONE);
     let (_, cos) = (S::PI * along).sin_cos();
     (S::ONE + cos) * S::HALF
@@ -61,8 +61,8 @@ pub fn sigma_1<S: Scalar>(z: S) -> S {
     if z < S::ZERO { -magnitude } else { magnitude }
 }
 
-/// The uneven sigmoid phi(z) = ((a + b) sigma_1(z + c) + (a - b)) / 2 with c = |a - b| / sqrt(4 a b), which makes
-/// phi(0) = 0. `c` is [`sigmoid_shift`].
+/// The uneven sigmoid phi(z) = ((a + b) sigma_1(z + c) + (a - b)) / 2 with c = |a - b| / sqrt(4 a
+/// b), which makes phi(0) = 0. `c` is [`sigmoid_shift`].
 #[must_use]
 pub fn phi<S: Scalar>(z: S, a: S, b: S, c: S) -> S {
     ((a + b) * sigma_1(z + c) + (a - b)) * S::HALF
@@ -76,13 +76,14 @@ pub fn sigmoid_shift<S: Scalar>(a: S, b: S) -> Option<S> {
     is_sound.then(|| (b - a).checked_div(S::TWO * a.sqrt() * b.sqrt())).flatten()
 }
 
-/// What robots do to each other: phi_alpha(z) = rho_h(z / r_alpha) phi(z - d_alpha). Negative: apart.
+/// The interaction of robots: phi_alpha(z) = rho_h(z / r_alpha) phi(z - d_alpha). Negative:
+/// repulsion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhiAlpha<S> {
     /// ||r||_sigma of the interaction range.
     pub r_alpha: S,
-    /// ||d||_sigma of the lattice's spacing: where it is 0.
+    /// ||d||_sigma of the lattice's spacing, at which it is 0.
     pub d_alpha: S,
     /// a of [`phi`]: strength of attraction.
     pub a: S,
@@ -99,7 +100,8 @@ impl<S: Scalar> PhiAlpha<S> {
         S::from_ratio(1, 5)
     }
 
-    /// a_ij = rho_h(z / r_alpha): how much `z` (in the sigma norm) makes a neighbour.
+    /// a_ij = rho_h(z / r_alpha): to which degree a robot at distance `z` (in the sigma norm) is a
+    /// neighbour.
     #[must_use]
     pub fn adjacency(&self, z: S) -> S {
         let ratio = z.checked_div(self.r_alpha).unwrap_or(S::MAX);
@@ -113,7 +115,8 @@ impl<S: Scalar> PhiAlpha<S> {
     }
 }
 
-/// What obstacles do: phi_beta(z) = rho_h(z / d_beta) (sigma_1(z - d_beta) - 1), from -2 to 0.
+/// The effect of obstacles: phi_beta(z) = rho_h(z / d_beta) (sigma_1(z - d_beta) - 1), from -2 to
+/// 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhiBeta<S> {

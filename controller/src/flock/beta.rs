@@ -1,14 +1,16 @@
-//! Beta-agents: what an obstacle puts in a robot's way (Olfati-Saber 2006, section VII, lemma 4).
+//! Beta-agents: the effect of an obstacle on a robot (Olfati-Saber 2006, section VII, lemma 4).
 
 use crate::geom::{Vec2, Vec3};
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
 
-/// The virtual robot on an obstacle's border nearest to a robot, seen from there.
+/// The virtual robot at the point of an obstacle's border nearest to a robot, relative to the
+/// robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BetaAgent<S> {
-    /// Unit vector out of the obstacle at the beta-agent: q^ - q is this times minus [`Self::distance_m`].
+    /// Unit vector out of the obstacle at the beta-agent: q^ - q is this times minus
+    /// [`Self::distance_m`].
     pub normal: Vec3<S>,
     /// How far the robot's centre is in front of the border, metres; negative inside.
     pub distance_m: S,
@@ -19,16 +21,16 @@ pub struct BetaAgent<S> {
 /// The beta-agent of `obstacle` for a robot with this velocity.
 ///
 /// - A plane: P = I - a a', p^ = P p.
-/// - A ball of radius R at distance D: p^ = mu P p with mu = R / D. Inside of it mu would grow without bound; it is
-///   held at 1. At its very centre the way out is the one by which the robot came, east if it stands.
-/// - A wall: beside it as a plane on the robot's side, beyond its end as a ball of radius 0. On the
-///   wall itself the way out is to its left.
+/// - A ball of radius R at distance D: p^ = mu P p with mu = R / D. Inside the ball mu would grow
+///   without bound, so it is limited to 1. At its exact centre the exit is backwards, or east for a
+///   stationary robot.
+/// - A wall: beside it like a plane on the robot's side, beyond its end like a ball of radius 0. On
+///   the wall itself the exit is to its left.
 ///
-/// `None` when the obstacle is not finite, a normal is zero or a radius negative. Constant work.
+/// `None` if the obstacle is not finite, a normal is zero or a radius negative. Constant work.
 #[must_use]
 pub fn beta_agent<S: Scalar>(obstacle: &Obstacle<S>, own_velocity_mps: Vec3<S>) -> Option<BetaAgent<S>> {
     let v = own_velocity_mps;
-    // P p.
     let along = |normal: Vec3<S>| v - normal * v.dot(normal);
     let east = Vec3::new(S::ONE, S::ZERO, S::ZERO);
     match *obstacle {

@@ -1,19 +1,24 @@
 //! Boids on a torus: constant speed, only the heading changes.
 //!
-//! Source: V. A. Starovoitova 2018 (STA), sections 2.1 and 2.4 and the listing of class `Boid`. Per step a boid that has a
-//! neighbour nearer than `crowded` turns away from that neighbour's heading; otherwise it turns to the mean heading of its
-//! neighbours and then to their middle. Read [`BoidsParams::steer`].
+//! Source: V. A. Starovoitova 2018 (STA), sections 2.1 and 2.4 and the listing of class `Boid`. In
+//! each step a boid with a neighbour nearer than `crowded` turns away from that neighbour's
+//! heading. Otherwise it turns to the mean heading of its neighbours and then to their middle. Read
+//! [`BoidsParams::steer`] first.
 //!
-//! **Defects of the listing, put right here:**
-//! - The mean heading summed angles, so that the mean of +179 and -179 degrees was 0; it also summed the own heading without
-//!   counting it. Here it is the direction of the sum of the neighbours' velocities, which is the mean on
-//!   the circle since all have one speed.
-//! - `cohere` turned away from the middle (own place minus middle). Here it turns to it.
-//! - Distances and the middle ignored the torus. Here offsets are the shortest ones, [`Torus::shortest`](crate::geom::Torus::shortest).
-//! - Two boids with the very same heading both turned left and stayed as near as they were. Here each turns away from the
-//!   side that the other is on, or, in one place, from the way that [`tie`] says.
+//! **Defects of the listing that are corrected here:**
 //!
-//! **Cost.** Headings are unit vectors: no sine, cosine or arc tangent in a step, two roots a boid, none a neighbour.
+//! - The mean heading summed angles, so that the mean of +179 and -179 degrees was 0; it also
+//!   summed the own heading without counting it. Here it is the direction of the sum of the
+//!   neighbours' velocities, which is the mean on the circle since all have one speed.
+//! - `cohere` turned away from the middle (own position minus middle). Here it turns towards it.
+//! - Distances and the middle ignored the torus. Here offsets are the shortest ones,
+//!   [`Torus::shortest`](crate::geom::Torus::shortest).
+//! - Two boids with exactly the same heading both turned left and remained as near as they were.
+//!   Here each turns away from the side of the other, or, in one place, in the direction that
+//!   [`tie`] gives.
+//!
+//! **Cost.** Headings are unit vectors: a step needs no sine, cosine or arc tangent, two roots per
+//! boid, and none per neighbour.
 
 use crate::geom::Vec2;
 use crate::neighbor::{Nearby, tie};
@@ -21,7 +26,7 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// A largest turn, as what rotates by it.
+/// The largest turn, prepared as a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Turn<S> {
     cos: S,
@@ -31,7 +36,7 @@ struct Turn<S> {
 }
 
 impl<S: Scalar> Turn<S> {
-    /// Nonsense turns nothing; half a turn reaches everywhere.
+    /// Invalid angles give no turn; half a turn reaches every direction.
     fn new(angle: S) -> Self {
         let angle = if angle > S::ZERO { angle.min(S::PI) } else { S::ZERO };
         let (sin, cos) = angle.sin_cos();
@@ -46,10 +51,11 @@ impl<S: Scalar> Turn<S> {
         heading.rotate(self.cos, -self.sin)
     }
 
-    /// `heading` turned to `target`, by this angle at most. Straight back: to the left, as in the listing.
+    /// `heading` turned towards `target` by at most this angle. Straight back: to the left, as in
+    /// the listing.
     fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
         let (det, dot) = (heading.det(target), heading.dot(target));
-        // Small angles are told by the sine, which is precise where the cosine is flat.
+        // Small angles are compared by the sine, which is precise where the cosine is flat.
         let is_near = if self.is_wide { dot >= self.cos } else { dot > S::ZERO && det.abs() <= self.sin };
         if is_near {
             target
@@ -61,7 +67,7 @@ impl<S: Scalar> Turn<S> {
     }
 }
 
-/// Parameters of boids, made by [`BoidsParams::new`], which computes what a step would compute again and again.
+/// Parameters of boids. [`BoidsParams::new`] precomputes values that each step needs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoidsParams<S> {
@@ -69,20 +75,23 @@ pub struct BoidsParams<S> {
     closest: u64,
     turn: Turn<S>,
     turn_away: Turn<S>,
-    /// What they were made of; says nothing more than the others.
+    /// The values given to `new`; redundant with the other fields.
     #[serde(with = "crate::digest::uncounted")]
     values: [S; 4],
 }
 
 impl<S: Scalar> BoidsParams<S> {
-    /// - `crowded_m`: nearer than this, a boid turns away from its nearest neighbour; the paper's value is 30. The
-    ///   larger, the looser the flock; above `closest_m` nobody aligns any more.
-    /// - `closest_m`: up to this distance a neighbour counts (150).
-    /// - `max_turn`: largest turn to the mean heading and again to the middle in a step, radians (0.05): a step turns by twice
-    ///   as much at most. The larger, the quicker and the more nervous.
+    /// - `crowded_m`: a boid turns away from a nearest neighbour closer than this; the paper's
+    ///   value is 30. The larger, the looser the flock; above `closest_m` boids do not align any
+    ///   more.
+    /// - `closest_m`: neighbours count up to this distance (150).
+    /// - `max_turn`: largest turn to the mean heading, and again to the middle, in a step, radians
+    ///   (0.05), so that a step turns by at most twice as much. The larger, the quicker and the
+    ///   more nervous.
     /// - `max_turn_away`: turn away from a neighbour that is too near, radians (0.02).
     ///
-    /// Distances that are not above 0 count nobody, angles that are not above 0 turn nothing, and those above half a turn are half a turn.
+    /// With distances that are not above 0 no neighbour counts. Angles that are not above 0 give no
+    /// turn, and those above half a turn count as half a turn.
     #[must_use]
     pub fn new(crowded_m: S, closest_m: S, max_turn: S, max_turn_away: S) -> Self {
         let key = |distance: S| {
@@ -98,7 +107,7 @@ impl<S: Scalar> BoidsParams<S> {
         }
     }
 
-    /// What [`BoidsParams::new`] was given.
+    /// The values given to [`BoidsParams::new`].
     #[must_use]
     pub const fn values(&self) -> [S; 4] {
         self.values
@@ -112,9 +121,10 @@ impl<S: Scalar> BoidsParams<S> {
 
     /// The heading of boid `own` one step later; headings are unit vectors.
     ///
-    /// `nearby` holds offsets that are shortest on the torus, in any order; heights and radii play no part. A neighbour that stands
-    /// has no heading but counts for the middle. One whose place or velocity is not a number does not count. The
-    /// answer is a unit vector (to rounding; errors do not add up over steps), whatever comes in. O(nearby).
+    /// `nearby` holds offsets that are shortest on the torus, in any order; heights and radii are
+    /// ignored. A stationary neighbour has no heading but counts for the middle. A neighbour whose
+    /// position or velocity is not a number is ignored. The result is a unit vector for any input
+    /// (within rounding; errors do not accumulate over steps). O(nearby).
     #[must_use]
     #[inline(never)]
     pub fn steer(&self, own: RobotId, heading: Vec2<S>, nearby: &[Nearby<S>]) -> Vec2<S> {
@@ -143,12 +153,11 @@ impl<S: Scalar> BoidsParams<S> {
                 self.towards(aligned, offsets)
             }
         };
-        // One step of Newton's method towards length 1.
         let three_halves = S::ONE + S::HALF;
         next * (three_halves - S::HALF * next.norm_squared())
     }
 
-    /// [`Self::steer`] with the heading as an angle on (-pi, pi], radians.
+    /// [`Self::steer`] with the heading as an angle in (-pi, pi], radians.
     #[must_use]
     pub fn turn(&self, own: RobotId, heading: S, nearby: &[Nearby<S>]) -> S {
         let (sin, cos) = if heading.is_finite() { heading.sin_cos() } else { (S::ZERO, S::ONE) };
@@ -158,23 +167,24 @@ impl<S: Scalar> BoidsParams<S> {
     }
 
     fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
-        // Opposite neighbours cancel: there is nothing to turn to.
+        // Opposite neighbours cancel and give no direction.
         target.normalized().map_or(heading, |target| self.turn.towards(heading, target))
     }
 
-    /// Away from the heading of `other`: to the right when it flies to the left of the own heading.
+    /// Turns away from the heading of `other`: to the right if that points to the left of the own
+    /// heading.
     fn separate(&self, own: RobotId, heading: Vec2<S>, other: &Nearby<S>) -> Vec2<S> {
         let flies = other.velocity_mps.xy();
         let is_parallel = heading.det(flies) == S::ZERO;
         let is_left = if !is_parallel {
             heading.det(flies) > S::ZERO
         } else if heading.dot(flies) < S::ZERO {
-            // Head on: a difference of +pi, so both turn right and pass.
+            // Head-on: a difference of +pi, so both turn right and pass.
             true
         } else {
             let place = other.offset_m.xy();
             let place = if place == Vec2::ZERO { tie(other.id, own) } else { place };
-            // Straight ahead and straight behind turn opposite ways too.
+            // Straight ahead and straight behind also turn to opposite sides.
             let side = heading.det(place);
             side > S::ZERO || (side == S::ZERO && heading.dot(place) > S::ZERO)
         };
@@ -182,7 +192,7 @@ impl<S: Scalar> BoidsParams<S> {
     }
 }
 
-/// East for what cannot be a heading; else a vector of length about 1.
+/// East for an invalid heading; otherwise a vector of length about 1.
 fn sound_heading<S: Scalar>(heading: Vec2<S>) -> Vec2<S> {
     let off = heading.norm_squared() - S::ONE;
     if off.abs() < S::HALF * S::HALF {

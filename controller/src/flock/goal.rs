@@ -1,14 +1,18 @@
-//! The goal flock: robots go to goals together, each drawn to the middle of its neighbours and kept off the nearest.
+//! The goal flock: robots move to goals together, each attracted to the middle of its neighbours
+//! and repelled by the nearest.
 //!
-//! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous flock of robots",
-//! section 2 (the first stage of a motion). Read [`wish`]: r1 to the goal, r2 to the middle of the neighbours, r3 away
-//! from those too near. The second stage, collisions, is a safety layer of its own.
+//! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous
+//! flock of robots", section 2 (the first stage of a motion). Read [`wish`] first: r1 points to the
+//! goal, r2 to the middle of the neighbours, r3 away from neighbours that are too near. The second
+//! stage, collisions, is a separate safety layer.
 //!
-//! **What differs from the paper:**
-//! - Nearer than half the least distance the paper has no repulsion. Here it is that of half the least distance; robots in one
-//!   place go apart by [`tie`].
-//! - On its last step to the goal a robot does not go past it, or it would swing around it for ever.
-//! - All is in space; in the plane z stays 0.
+//! **Differences to the paper:**
+//!
+//! - Closer than half the least distance the paper has no repulsion. Here it is that at half the
+//!   least distance; robots in one place separate by [`tie`].
+//! - On its last step to the goal a robot does not pass it, or it would oscillate around it
+//!   forever.
+//! - All computations are in space; in the plane z remains 0.
 
 use crate::body::Body;
 use crate::geom::{Position, Vec3};
@@ -19,28 +23,32 @@ use crate::scalar::{Scalar, cast};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of the goal flock. Only the ratios of the three gains matter once their sum is longer than 1. Any
-/// of them may be 0, or negative: away from the goal, away from the neighbours, towards the nearest.
+/// Parameters of the goal flock. Only the ratios of the three gains matter once their sum is longer
+/// than 1. Any of them may be 0, or negative: away from the goal, away from the neighbours, towards
+/// the nearest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalParams<S> {
-    /// Pull of the goal (K1). Far above [`Self::center_gain`]: each for itself, the group is lost.
+    /// Pull of the goal (K1). Far above [`Self::center_gain`] each robot moves on its own, and the
+    /// group is lost.
     pub goal_gain: S,
-    /// Pull of the middle of the neighbours (K2). Far above [`Self::goal_gain`]: nobody arrives.
+    /// Pull of the middle of the neighbours (K2). Far above [`Self::goal_gain`] no robot arrives.
     pub center_gain: S,
-    /// Push of each neighbour that is too near (K3), from 0 at twice the least distance to 2.25 of it at half. Too small:
-    /// robots touch and block each other.
+    /// Push of each neighbour that is too near (K3), from 0 at twice the least distance to 2.25
+    /// times this at half of it. If it is too small, robots touch and block each other.
     pub repulsion_gain: S,
-    /// How far neighbours are seen (R_nbh), metres; at least twice [`Self::min_distance_m`].
+    /// Distance up to which neighbours are considered (R_nbh), metres; at least twice
+    /// [`Self::min_distance_m`].
     pub neighborhood_m: S,
-    /// Least distance of two robots' centres (R_MinDist), metres; more than 0 and at least two radii.
+    /// Least distance of two robots' centres (R_MinDist), metres; more than 0 and at least two
+    /// radii.
     pub min_distance_m: S,
-    /// Speed (V_Max), m/s; more than 0. The body's own limit holds too.
+    /// Speed (V_Max), m/s; more than 0. The body's own limit also applies.
     pub speed_mps: S,
 }
 
 impl<S: Scalar> GoalParams<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> GoalParams<T> {
         GoalParams {
@@ -79,11 +87,12 @@ impl<S: Scalar> GoalParams<S> {
     }
 }
 
-/// The velocity that the robot at `own` wishes for, m/s: V_Max times r1 + r2 + r3 cut to length 1.
+/// The preferred velocity of the robot at `own`, m/s: V_Max times r1 + r2 + r3 shortened to length
+/// 1.
 ///
-/// Without a goal r1 is zero. `nearby` need not be in order. A neighbour whose place is not a
-/// number does not count; the answer is finite and at most as long as V_Max whatever comes in. O(nearby): each costs a
-/// root.
+/// Without a goal r1 is zero. `nearby` may be in any order. A neighbour whose position is not a
+/// number is ignored; the result is finite and at most as long as V_Max for any input. O(nearby),
+/// with one root per neighbour.
 #[must_use]
 #[inline(never)]
 pub fn wish<S: Scalar>(
@@ -107,7 +116,7 @@ pub fn wish<S: Scalar>(
     (r1 + r2 + r3).clamp_norm(S::ONE) * speed
 }
 
-/// r1 = K1 unit(goal - x), eq. 2; on the last step no longer than what is left.
+/// r1 = K1 unit(goal - x), eq. 2; on the last step limited to the remaining distance.
 fn to_goal<S: Scalar>(gain: S, way_m: Vec3<S>, step_m: S) -> Vec3<S> {
     let distance = way_m.norm();
     let left = if distance < step_m { distance.checked_div(step_m).unwrap_or(S::ONE) } else { S::MAX };
@@ -124,7 +133,7 @@ fn among_neighbors<S: Scalar>(params: &GoalParams<S>, own: RobotId, nearby: &[Ne
         if !is_seen || other.id == own {
             continue;
         }
-        // The direction of the mean is that of the sum.
+        // The mean has the direction of the sum.
         if !other.is_stranger {
             sum += other.offset_m;
         }
@@ -137,56 +146,57 @@ fn among_neighbors<S: Scalar>(params: &GoalParams<S>, own: RobotId, nearby: &[Ne
     (r2, r3)
 }
 
-/// f = K3 (2 - d / R_MinDist)^2 for R_MinDist / 2 <= d <= 2 R_MinDist (eqs. 6 and 7); 0 beyond, constant
-/// below.
+/// f = K3 (2 - d / R_MinDist)^2 for R_MinDist / 2 <= d <= 2 R_MinDist (eqs. 6 and 7); 0 beyond,
+/// constant below.
 fn repulsion<S: Scalar>(params: &GoalParams<S>, distance_m: S) -> S {
     let ratio = distance_m.checked_div(params.min_distance_m);
     let lack = S::TWO - ratio.unwrap_or(S::TWO).clamp(S::HALF, S::TWO);
     params.repulsion_gain * lack * lack
 }
 
-/// Where a robot with goals is on its way.
+/// The present destination of a robot with goals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Stage {
-    /// To the middle of all goals.
+    /// The middle of all goals.
     #[default]
     Gather,
-    /// To the goal with this index.
+    /// The goal with this index.
     Goal(usize),
 }
 
-/// Answer of [`Goals::push`]: all places are taken.
+/// Error of [`Goals::push`]: the list is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Full;
 
-/// Up to `N` goals of a robot: first it goes to the middle of all; there it draws one of them (eq. 3).
+/// Up to `N` goals of a robot. It first moves to the middle of all; there it chooses one of them at
+/// random (eq. 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Goals<const N: usize> {
     places: Vec<Position, N>,
     stage: Stage,
-    /// How often it has started anew: each time it draws anew.
+    /// Number of restarts; each gives a new random choice.
     round: u32,
 }
 
 impl<const N: usize> Goals<N> {
     const PURPOSE: u32 = 0x676F_616C; // "goal"
 
-    /// No goals yet.
+    /// Creates an empty list.
     #[must_use]
     pub const fn new() -> Self {
         Self { places: Vec::new(), stage: Stage::Gather, round: 0 }
     }
 
-    /// One more goal. [`Full`] when there are `N`; nothing changes then.
+    /// Adds a goal. [`Full`] if there are `N` already; then nothing changes.
     pub fn push(&mut self, goal: Position) -> Result<(), Full> {
         self.places.push(goal).map_err(|_| Full)
     }
 
-    /// Moves a goal, also during a run: the middle moves along, and who has drawn it goes to the new place. Whether there is such a
-    /// goal.
+    /// Moves a goal, also during a run: the middle moves along, and a robot that has chosen the
+    /// goal moves to its new position. Returns whether the goal exists.
     #[must_use]
     pub fn set_goal(&mut self, index: usize, goal: Position) -> bool {
         self.places.get_mut(index).map(|place| *place = goal).is_some()
@@ -198,13 +208,13 @@ impl<const N: usize> Goals<N> {
         &self.places
     }
 
-    /// Where the robot is on its way.
+    /// The robot's present destination.
     #[must_use]
     pub const fn stage(&self) -> Stage {
         self.stage
     }
 
-    /// Back to the middle first; the next draw is another one.
+    /// Returns to the middle first; the next choice is independent of the last.
     pub const fn restart(&mut self) {
         self.stage = Stage::Gather;
         self.round = self.round.wrapping_add(1);
@@ -226,7 +236,7 @@ impl<const N: usize> Goals<N> {
         Some(Position::from_mm([x?, y?, z?]))
     }
 
-    /// Where to go now; `None` without goals.
+    /// The position of the present destination; `None` without goals.
     #[must_use]
     pub fn current(&self) -> Option<Position> {
         match self.stage {
@@ -235,15 +245,15 @@ impl<const N: usize> Goals<N> {
         }
     }
 
-    /// Whether the robot at `own` is within `arrival_m` of where it is to go. A crowd needs room: choose about
-    /// the neighbourhood, or only the first ones ever reach the middle.
+    /// Whether the robot at `own` is within `arrival_m` of its destination. A crowd needs space:
+    /// choose about the neighbourhood, or only the first robots ever reach the middle.
     #[must_use]
     pub fn has_arrived<S: Scalar>(&self, own: Position, arrival_m: S) -> bool {
         self.current().is_some_and(|goal| goal.since::<S>(own).norm() <= arrival_m)
     }
 
-    /// Draws a goal if the robot at `own` has come within `arrival_m` of the middle: uniform over the goals, a function of
-    /// seed, robot and round. The index drawn, if one was.
+    /// Chooses a goal if the robot at `own` is within `arrival_m` of the middle: uniform over the
+    /// goals, a function of seed, robot and round. Returns the index chosen, if any.
     pub fn update<S: Scalar>(&mut self, own: Position, arrival_m: S, seed: u64, robot: RobotId) -> Option<usize> {
         if self.stage != Stage::Gather || !self.has_arrived(own, arrival_m) {
             return None;

@@ -1,40 +1,46 @@
-//! The alpha flock: robots that settle at equal distances, follow a reference and go round obstacles.
+//! The alpha flock: robots that settle at equal distances, follow a reference and avoid obstacles.
 //!
-//! Source: R. Olfati-Saber 2006, "Flocking for multi-agent dynamic systems: algorithms and theory", IEEE TAC 51(3),
-//! algorithms 1 to 3. Read section VII there beside [`acceleration`]; the functions are in [`super::action`], the
-//! beta-agents in [`super::beta`].
+//! Source: R. Olfati-Saber 2006, "Flocking for multi-agent dynamic systems: algorithms and theory",
+//! IEEE TAC 51(3), algorithms 1 to 3. Read section VII there beside [`acceleration`]; the functions
+//! are in [`super::action`], the beta-agents in [`super::beta`].
 //!
-//! **Any size.** The law is not scale-free: its constants (e, sigma_1) are made for a spacing of 7. So it is computed
-//! in units of d / 7 metres and its acceleration scaled back. Time is not scaled: a gain c1 is a stiffness in
-//! 1/s^2, so at any size a flock takes as many seconds to settle and needs as short a step, which the electronics of a robot
-//! decide and not its length. Speeds and accelerations hence scale with d: at d = 0.5 m a robot closes up at
-//! 1/14 of the paper's speed, and what the paper does at 5 units/s is 0.36 m/s.
+//! **Any size.** The law is not scale-free: its constants (e, sigma_1) are made for a spacing of 7.
+//! So it is computed in units of d / 7 metres and its acceleration scaled back. Time is not scaled:
+//! a gain c1 is a stiffness in 1/s^2. At any size a flock takes as many seconds to settle and needs
+//! as short a step, which depends on a robot's electronics and not on its length. Therefore speeds
+//! and accelerations scale with d: at d = 0.5 m a robot approaches at 1/14 of the paper's speed,
+//! and 5 units/s in the paper are 0.36 m/s.
 //!
-//! **What differs from the paper:**
-//! - n_ij vanishes where two robots are in one place, so they would stay together. Here they go apart by
-//!   [`tie`], as hard as if they were one unit (d / 7) apart.
-//! - Inside an obstacle the paper's force points inwards: who is in stays in. Here who is inside, or
-//!   exactly on the border, is pushed out along the normal, as hard as one unit in front of the
-//!   border, however deep. A wall has no inside: who has crossed it is pushed on.
-//! - What is not a number contributes nothing.
-//! - The paper has one flock. Robots of another one ([`Nearby::is_stranger`]) push as those of the own flock do, but neither
-//!   pull nor pass on their velocity; and the more of them are near and in the way, the more the pull of the reference
-//!   turns to the right. So flocks that meet keep to the right of each other; without the turn two lattices of the same
-//!   spacing catch in each other like combs, and stand.
+//! **Differences to the paper:**
 //!
-//! - In a gap for one robot two that come to it side by side stand for ever: each is pushed at the other by all behind it. With
-//!   [`Algorithm::ThreeInTurn`] who is nearer to the reference goes first: the pull of the reference and the velocity that it
-//!   asks for fade for whoever comes nearer than d to one of those, from all at d to nothing at 0.8 d, as long as the reference is
-//!   ahead; and who goes first is not held back by those behind. So a crowd before a gap stands in a queue and does not press.
+//! - n_ij vanishes where two robots are in one place, so they would stay together. Here they
+//!   separate by [`tie`], as strongly as if they were one unit (d / 7) apart.
+//! - Inside an obstacle the paper's force points inwards, so that a robot stays in. Here a robot
+//!   inside, or exactly on the border, is pushed out along the normal, as strongly as one unit in
+//!   front of the border, at any depth. A wall has no inside: a robot that has crossed it is pushed
+//!   further.
+//! - Values that are not a number contribute nothing.
+//! - The paper has one flock. Robots of another flock ([`Nearby::is_stranger`]) push like those of
+//!   the own flock, but neither pull nor pass on their velocity. The more of them are near and in
+//!   the way, the more the pull of the reference turns to the right, so that flocks that meet keep
+//!   to the right of each other. Without the turn, two lattices of the same spacing interlock like
+//!   combs and stop.
+//! - In a gap for one robot, two robots that arrive side by side stop forever, since all robots
+//!   behind push them at each other. With [`Algorithm::ThreeInTurn`] the robot nearer to the
+//!   reference goes first: if another robot is nearer to the reference and closer than d, the pull
+//!   of the reference and the velocity that it demands fade, from full at d to zero at 0.8 d, as
+//!   long as the reference is ahead. The robot that goes first is not held back by those behind. So
+//!   a crowd before a gap waits in a queue and does not push.
 //!
-//! **Old news.** The paper's robots see each other at once. By radio they act on what a neighbour was a delay and up to
-//! a period of its beacons ago, and a stiff lattice then swings itself apart: at a delay of 0.1 s gains of (10, 6.3)
-//! leave pieces that never settle. [`LatticeParams::stable_for`] softens them as far as that asks;
-//! [`LatticeParams::oldest_news_s`] says what given gains bear.
+//! **Delayed beacons.** The paper's robots see each other instantly. By radio, the known state of a
+//! neighbour is as old as the delay plus up to a beacon period, and then a stiff lattice oscillates
+//! until it breaks: at a delay of 0.1 s gains of (10, 6.3) leave pieces that never settle.
+//! [`LatticeParams::stable_for`] reduces the gains as far as required;
+//! [`LatticeParams::oldest_news_s`] returns the age that given gains tolerate.
 //!
-//! **What it does not promise.** Repulsion is bounded and vanishes at contact: robots that close at more than about 2 d per
-//! second go through each other. It knows points, not bodies: choose d well above two radii, 0.6 d above one, and
-//! put a safety layer behind it.
+//! **Limits.** Repulsion is bounded and vanishes at contact: robots that approach at more than
+//! about 2 d per second pass through each other. The law knows points, not bodies: choose d well
+//! above two radii, 0.6 d above one, and add a safety layer.
 
 use super::action::{PhiAlpha, PhiBeta, SPACING, SigmaNorm, sigma_1, sigma_norm, sigmoid_shift};
 use super::beta::beta_agent;
@@ -46,22 +52,23 @@ use crate::obstacle::Obstacle;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
 
-/// Which terms act.
+/// The active terms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Algorithm {
-    /// Only the others: the group breaks up unless it starts as one.
+    /// Only the other robots: the group breaks up unless it starts as one.
     One,
-    /// And the reference, with a pull that grows with distance without bound.
+    /// Also the reference, with a pull that grows with distance without bound.
     Two,
-    /// And obstacles; the pull of the reference is bounded.
+    /// Also obstacles; the pull of the reference is bounded.
     #[default]
     Three,
-    /// As three, and nobody presses on who is nearer to the reference. Not in the paper: see the head of this module.
+    /// Like [`Algorithm::Three`], but no robot pushes a robot that is nearer to the reference. Not
+    /// in the paper: see the description of this module.
     ThreeInTurn,
 }
 
-/// The two gains of one kind of agent.
+/// The two gains of one type of agent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Gain<S> {
@@ -72,13 +79,13 @@ pub struct Gain<S> {
 }
 
 impl<S: Scalar> Gain<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> Gain<T> {
         Gain { position: cast(self.position), velocity: cast(self.velocity) }
     }
 
-    /// 1 and 1: algorithm 1 as it stands in the paper.
+    /// 1 and 1: algorithm 1 as in the paper.
     #[must_use]
     pub fn one() -> Self {
         Self { position: S::ONE, velocity: S::ONE }
@@ -100,35 +107,37 @@ impl<S: Scalar> Gain<S> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LatticeParams<S> {
-    /// Which terms act.
+    /// The active terms.
     pub algorithm: Algorithm,
-    /// Distance of neighbours in the lattice (d), metres; from 0.01 to 100. More than two radii plus what
-    /// a robot goes in half a second.
+    /// Distance of neighbours in the lattice (d), metres; from 0.01 to 100. More than two radii
+    /// plus the distance that a robot covers in half a second.
     pub spacing_m: S,
-    /// Range of interaction over spacing (r / d); above 1, at most 4. The larger, the easier a group forms and
-    /// the more the lattice is squeezed by its second neighbours, which are at sqrt 3: stay below.
+    /// Range of interaction over spacing (r / d); above 1, at most 4. The larger, the more easily a
+    /// group forms, and the more second neighbours, at sqrt 3, compress the lattice: stay below
+    /// that.
     pub range_ratio: S,
-    /// Distance kept from obstacles over spacing (d' / d); above 0, at most 4. The larger, the wider the
-    /// passage that robots still take.
+    /// Distance kept from obstacles over spacing (d' / d); above 0, at most 4. The larger, the
+    /// wider the narrowest passage that robots still take.
     pub obstacle_ratio: S,
     /// Attraction (a of phi), and repulsion (b of phi): 0 < a <= b. The bounds of phi_alpha.
     pub attraction: S,
     /// See [`Self::attraction`].
     pub repulsion: S,
-    /// Robots among each other (c_alpha). Higher: a stiffer and evener lattice, and a shorter step is needed: (10, 6.3)
-    /// holds up to steps of 0.05 s, (50, 14) up to 0.03 s; (10, 6.3) at 0.2 s and (100, 20) at 0.03 s
-    /// fly apart.
+    /// Gains between robots (c_alpha). Higher gains give a stiffer and more even lattice, and need
+    /// a shorter step: (10, 6.3) works up to steps of 0.05 s, (50, 14) up to 0.03 s; (10, 6.3) at
+    /// 0.2 s and (100, 20) at 0.03 s break apart.
     pub alpha: Gain<S>,
-    /// Obstacles (c_beta). Well above the others, or those behind push those in front: with (5, 50, 2) 150 robots in a
-    /// narrow passage go through each other.
+    /// Gains of obstacles (c_beta). Well above the others, or robots behind push those in front:
+    /// with (5, 50, 2) 150 robots in a narrow passage pass through each other.
     pub beta: Gain<S>,
-    /// The reference (c_gamma). Higher: quicker to gather and follow, and the lattice is squeezed: in algorithm 2, whose pull
-    /// grows with the flock's size, 150 robots need c_alpha above 40 c_gamma for a mean squared deviation of 0.005 d^2.
+    /// Gains of the reference (c_gamma). Higher gains gather and follow faster, and compress the
+    /// lattice: in algorithm 2, whose pull grows with the flock's size, 150 robots need c_alpha
+    /// above 40 c_gamma for a mean squared deviation of 0.005 d^2.
     pub gamma: Gain<S>,
 }
 
 impl<S: Scalar> LatticeParams<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> LatticeParams<T> {
         LatticeParams {
@@ -144,8 +153,8 @@ impl<S: Scalar> LatticeParams<S> {
         }
     }
 
-    /// Algorithm 3 with the paper's ratios and gains of 10, 200 and 2 on positions, with critical damping: with these, 150
-    /// robots pass the paper's two obstacle courses unharmed.
+    /// Algorithm 3 with the paper's ratios and gains of 10, 200 and 2 on positions, with critical
+    /// damping: with these, 150 robots pass the paper's two obstacle courses without contact.
     #[must_use]
     pub fn new(spacing_m: S) -> Self {
         Self {
@@ -167,19 +176,22 @@ impl<S: Scalar> LatticeParams<S> {
         Law::new(self).is_some()
     }
 
-    /// The same flock, gathered and following as its gains ask as long as they bear what robots know of each other:
-    /// news that take `delay_s` and come `rate_hz` times a second (beacons a second times the share that arrives). If
-    /// they do not bear it, robots and reference pull less in the same proportion (c_alpha, c_gamma), as much damped as
-    /// before; obstacles, which a robot sees for itself, push as ever.
+    /// Reduces the gains to those that are stable with beacons that are `delay_s` old and come
+    /// `rate_hz` times per second (beacons per second times the share that arrives).
     ///
-    /// A delay that is not at least 0 counts as 0, a rate that is not above 0 as the slowest there is. Constant work.
+    /// If the present gains are stable, they are unchanged. Otherwise the pulls of robots and
+    /// reference (c_alpha, c_gamma) decrease in the same proportion, with the same damping ratio;
+    /// those of obstacles, which a robot senses itself, are unchanged.
+    ///
+    /// A delay that is not at least 0 counts as 0, a rate that is not above 0 as the slowest
+    /// possible. Constant work.
     #[must_use]
     pub fn stable_for(mut self, delay_s: S, rate_hz: S) -> Self {
         let period = S::ONE.checked_div(rate_hz.max(S::ZERO)).unwrap_or(S::MAX);
         let news_s = delay_s.max(S::ZERO) + period;
         let bearable = self.oldest_news_s();
         if news_s > bearable {
-            // sqrt(c1) falls as news grow older, and c2 = 2 sqrt(c1) with it.
+            // sqrt(c1) decreases with the age of beacons, and c2 = 2 sqrt(c1) with it.
             let softer = bearable.checked_div(news_s).unwrap_or(S::ZERO);
             for gain in [&mut self.alpha, &mut self.gamma] {
                 gain.position = gain.position * softer * softer;
@@ -189,45 +201,48 @@ impl<S: Scalar> LatticeParams<S> {
         self
     }
 
-    /// The age of news that these gains bear, seconds: a neighbour's delay plus the time between two of its beacons.
-    /// The largest number if nothing pulls.
+    /// The age of a neighbour's state that these gains tolerate, seconds: its delay plus the time
+    /// between two beacons. The largest number if nothing pulls.
     ///
-    /// sqrt(c_alpha) is the rate at which the lattice answers, and news may be a fifth of its inverse old. The fifth is
-    /// measured, not the paper's (`a_flock_stands_late_and_lost_news_with_the_gains_for_them_and_shakes_without` in the
-    /// tests): robots at delays of 0 to 0.25 s and steps of 0.04 to 0.2 s settle with it, and shake from 0.47 on.
+    /// sqrt(c_alpha) is the rate at which the lattice responds, and the state may be a fifth of its
+    /// inverse old. The fifth is measured, not the paper's (see the tests of this module): robots
+    /// at delays of 0 to 0.25 s and steps of 0.04 to 0.2 s settle with it, and oscillate from 0.47
+    /// on.
     #[must_use]
     pub fn oldest_news_s(&self) -> S {
         let answer = self.alpha.position.max(S::ZERO).sqrt() * S::from_i32(5);
         S::ONE.checked_div(answer).unwrap_or(S::MAX)
     }
 
-    /// Range of interaction r, metres: neighbours farther away count nothing.
+    /// Range of interaction r, metres: neighbours farther away are ignored.
     #[must_use]
     pub fn range_m(&self) -> S {
         self.spacing_m * self.range_ratio
     }
 }
 
-/// Where the flock should be (the gamma-agent), as a robot sees it.
+/// The point that the flock follows (the gamma-agent), as a robot sees it.
 ///
-/// A static one has the same place and velocity for ever, and its velocity need not be zero: the paper's obstacle
-/// courses pull the flock past a fixed point. A moving one is where its velocity has taken it. [`ReferenceMotion`] tells them.
+/// A static one keeps its position and velocity forever, and its velocity need not be zero: the
+/// paper's obstacle courses pull the flock past a fixed point. A moving one follows its velocity.
+/// See [`ReferenceMotion`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference<S> {
-    /// Its place minus the own one (q_r - q), metres.
+    /// Its position minus the own one (q_r - q), metres.
     pub offset_m: Vec3<S>,
     /// Its velocity (p_r), m/s.
     pub velocity_mps: Vec3<S>,
 }
 
-/// What robot `body` should do to its velocity, m/s^2 (u of the paper): u_alpha + u_beta + u_gamma.
+/// The acceleration of robot `body`, m/s^2 (u of the paper): u_alpha + u_beta + u_gamma.
 ///
-/// In the plane (all z zero) the answer has z = 0. `nearby` need not be in order, and radii play no part. The answer is
-/// finite whatever comes in, and not bounded by what the body can do: see [`Body::reach`]. Zero for
-/// parameters that are not sound.
+/// In the plane (all z zero) the result has z = 0. `nearby` may be in any order, and radii are
+/// ignored. The result is finite for any input, and not limited to what the body can do: see
+/// [`Body::reach`]. Zero for invalid parameters.
 ///
-/// O(nearby + obstacles): each costs two roots and a cosine, a neighbour a third root in [`Algorithm::ThreeInTurn`].
+/// O(nearby + obstacles): each takes two roots and a cosine, a neighbour a third root in
+/// [`Algorithm::ThreeInTurn`].
 #[must_use]
 #[inline(never)]
 pub fn acceleration<S: Scalar>(
@@ -278,9 +293,7 @@ struct Law<'a, S> {
     /// Units per metre, 7 / d, and metres per unit.
     units: S,
     metres: S,
-    /// r^2.
     range_squared: S,
-    /// d'.
     obstacle_distance: S,
     phi_alpha: PhiAlpha<S>,
     phi_beta: PhiBeta<S>,
@@ -320,8 +333,8 @@ impl<'a, S: Scalar> Law<'a, S> {
         })
     }
 
-    /// c1 phi_alpha(||q_j - q_i||_sigma) n_ij + c2 a_ij (p_j - p_i) of one neighbour j, m/s^2. One that `is_after` does not
-    /// hold back.
+    /// c1 phi_alpha(||q_j - q_i||_sigma) n_ij + c2 a_ij (p_j - p_i) of one neighbour j, m/s^2. A
+    /// neighbour that `is_after` does not hold back.
     fn alpha(&self, body: &Body<S>, other: &Nearby<S>, is_after: bool) -> Vec3<S> {
         let offset = other.offset_m * self.units;
         let squared = offset.norm_squared();
@@ -333,7 +346,7 @@ impl<'a, S: Scalar> Law<'a, S> {
         let SigmaNorm { sigma, slope } = sigma_norm(squared);
         let adjacency = self.phi_alpha.adjacency(sigma);
         let n_ij = if other.offset_m == Vec3::ZERO {
-            // The other one, a unit away: it goes the other way.
+            // As if the other robot were one unit away, in the direction in which it separates.
             tie(other.id, body.id).extend(S::ZERO) * sigma_norm(S::ONE).slope
         } else {
             offset * slope
@@ -364,7 +377,7 @@ impl<'a, S: Scalar> Law<'a, S> {
         let outside = if is_inside { S::ZERO } else { distance };
         let SigmaNorm { sigma, slope } = sigma_norm(outside * outside);
         let adjacency = self.phi_beta.adjacency(sigma);
-        // The length of n^; inside as one unit in front of the border.
+        // The length of n^; inside like one unit in front of the border.
         let length = if is_inside { sigma_norm(S::ONE).slope } else { outside * slope };
         // phi_beta is negative, and n^ is against the normal.
         let push = -(self.params.beta.position * self.phi_beta.at(sigma, adjacency)) * length;
@@ -372,7 +385,8 @@ impl<'a, S: Scalar> Law<'a, S> {
         agent.normal * (push * self.metres) + drag(gain, agent.velocity_mps - known_velocity)
     }
 
-    /// How much a stranger is in the `way` (of length 1) to the reference, from 0 to 1: 0 from three spacings on, and beside it.
+    /// How much a stranger is in the `way` (of length 1) to the reference, from 0 to 1; 0 from
+    /// three spacings on, and beside the way.
     fn turn(&self, way: Vec3<S>, other: &Nearby<S>) -> S {
         let reach_m = self.params.spacing_m * S::from_i32(3);
         let distance = other.offset_m.norm();
@@ -383,18 +397,20 @@ impl<'a, S: Scalar> Law<'a, S> {
         if is_in_the_way { nearness * ahead } else { S::ZERO }
     }
 
-    /// How much of the reference counts, from 0 to 1, for one that goes in its turn: 1 unless somebody of the flock is nearer to
-    /// the reference, by the number if as near, and nearer than d.
+    /// The share of the reference that counts, from 0 to 1, with [`Algorithm::ThreeInTurn`]: 1
+    /// unless a robot of the flock is nearer to the reference (or as near, with a smaller number),
+    /// and closer than d.
     fn share(&self, body: &Body<S>, nearby: &[Nearby<S>], reference: &Reference<S>) -> S {
         nearby.iter().filter(|other| goes_first(other, body, reference)).fold(S::ONE, |share, other| {
             let spacings = other.offset_m.norm().checked_div(self.params.spacing_m).unwrap_or(S::ONE);
-            // All at d, nothing at 0.8 d: with d / 2 pairs stood at 0.9 d and jammed.
+            // Full at d, zero at 0.8 d: with zero at d / 2, pairs stopped at 0.9 d and jammed.
             share.min((spacings * S::from_i32(5) - S::from_i32(4)).max(S::ZERO))
         })
     }
 
-    /// -c1 sigma_1(q - q_r) - c2 (p - p_r), in algorithm 2 without sigma_1; m/s^2. The pull is turned to the right, by `turn` of a
-    /// quarter turn, as it were. Of the pull and of p_r, `share` counts.
+    /// -c1 sigma_1(q - q_r) - c2 (p - p_r), in algorithm 2 without sigma_1; m/s^2. The pull is
+    /// turned to the right by about `turn` of a quarter turn. The pull and p_r are scaled by
+    /// `share`.
     fn gamma(&self, body: &Body<S>, reference: &Reference<S>, turn: S, share: S) -> Vec3<S> {
         let Gain { position, velocity } = self.params.gamma;
         let mut way = reference.offset_m;
@@ -415,14 +431,15 @@ impl<'a, S: Scalar> Law<'a, S> {
     }
 }
 
-/// Whether one of the flock is nearer to the reference than the own body, or as near with a lower number.
+/// Whether a robot of the flock is nearer to the reference than the own body, or as near with a
+/// smaller number.
 fn goes_first<S: Scalar>(other: &Nearby<S>, body: &Body<S>, reference: &Reference<S>) -> bool {
     let (way, other_way) = (reference.offset_m, reference.offset_m - other.offset_m);
     let is_nearer = (other_way.length_key(), other.id) < (way.length_key(), body.id);
     is_nearer && !other.is_stranger && other.id != body.id
 }
 
-/// A velocity term; zero when a velocity is not known.
+/// A velocity term; zero if a velocity is not known.
 fn drag<S: Scalar>(gain: S, relative_mps: Vec3<S>) -> Vec3<S> {
     let term = relative_mps * gain;
     if term.is_finite() { term } else { Vec3::ZERO }

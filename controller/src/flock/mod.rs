@@ -1,10 +1,13 @@
-//! Three flocks: what a robot wishes, given who is near by. Each is pure; none knows of the others.
+//! Three flocks: the preferred motion of a robot, given its neighbours. Each is pure and
+//! independent of the others.
 //!
-//! - [`lattice`]: equal distances, a reference to follow, obstacles (Olfati-Saber 2006); gives an acceleration.
-//! - [`goal`]: goals, the middle of the neighbours, repulsion (Pavlovsky and Pavlovsky); gives a velocity.
-//! - [`boids`]: headings on a torus (Starovoitova 2018); gives a heading.
+//! - [`lattice`]: equal distances, a reference to follow, obstacles (Olfati-Saber 2006); returns an
+//!   acceleration.
+//! - [`goal`]: goals, the middle of the neighbours, repulsion (Pavlovsky and Pavlovsky); returns a
+//!   velocity.
+//! - [`boids`]: headings on a torus (Starovoitova 2018); returns a heading.
 //!
-//! None of them promises that robots do not touch: put a safety layer behind.
+//! None of them guarantees that robots do not touch: add a safety layer.
 
 pub mod action;
 pub mod beta;

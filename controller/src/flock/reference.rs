@@ -1,29 +1,32 @@
-//! What becomes of the place that an alpha flock follows (the gamma-agent; Olfati-Saber 2006, eq. 25).
+//! The motion of the point that an alpha flock follows (the gamma-agent; Olfati-Saber 2006, eq.
+//! 25).
 
 use crate::geom::Vec3;
 use crate::scalar::{Scalar, cast};
 use serde::{Deserialize, Serialize};
 
-/// How a reference goes on.
+/// How a reference moves.
 ///
-/// The paper's obstacle courses have a static one with a velocity. Who passes it is hardly drawn back: the parts of a flock that
-/// obstacles have split go on side by side and behind each other at one speed for ever. Resting, they come to one place.
+/// The paper's obstacle courses have a static one with a velocity. It hardly pulls back a robot
+/// that has passed it, so the parts of a flock that obstacles have split move side by side and
+/// behind each other at one speed forever. A resting reference gathers them in one place.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReferenceMotion<S> {
-    /// It stays, and its velocity is wanted for ever all the same (a static gamma-agent).
+    /// It stays, and its velocity is demanded forever (a static gamma-agent).
     Static,
-    /// It goes where its velocity takes it (a dynamic gamma-agent).
+    /// It moves with its velocity (a dynamic gamma-agent).
     Dynamic,
-    /// Not in the paper: it stays, and the velocity that is wanted falls evenly to nothing over this way behind it, metres. So the
-    /// flock comes to rest within that way, and whoever comes later joins it there. Longer: farther behind the
-    /// reference and later. Shorter than the flock's own radius: part of it rests before the reference. What is not
-    /// above 0 rests at the reference.
+    /// Not in the paper: it stays, and the velocity that it demands decreases linearly to zero over
+    /// this distance behind it, metres. So the flock comes to rest within that distance, and later
+    /// robots join it there. With a longer distance it rests farther behind the reference and
+    /// later. With one shorter than the flock's own radius, part of it rests before the reference.
+    /// A distance that is not above 0 rests at the reference.
     Resting(S),
 }
 
 impl<S: Scalar> ReferenceMotion<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(self) -> ReferenceMotion<T> {
         match self {
@@ -33,8 +36,8 @@ impl<S: Scalar> ReferenceMotion<S> {
         }
     }
 
-    /// The velocity that a robot should have, m/s, given its way to the reference, metres, and the reference's velocity.
-    /// Constant work.
+    /// The velocity that a robot should have, m/s, given its vector to the reference, metres, and
+    /// the reference's velocity. Constant work.
     #[must_use]
     pub fn wanted(self, offset_m: Vec3<S>, velocity_mps: Vec3<S>) -> Vec3<S> {
         let (Self::Resting(within_m), Some(ahead)) = (self, velocity_mps.normalized()) else {
@@ -45,7 +48,7 @@ impl<S: Scalar> ReferenceMotion<S> {
         if is_before {
             return velocity_mps;
         }
-        // Zero also for what has no quotient.
+        // Zero also if the quotient is undefined.
         let left = (within_m - behind_m).max(S::ZERO).checked_div(within_m).unwrap_or(S::ZERO);
         velocity_mps * left
     }

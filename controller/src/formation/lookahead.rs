@@ -1,30 +1,34 @@
-//! How followers tell the place that they head for from where the top leader is: what differs between two laws.
+//! How followers derive the place to head for from the top leader's position. Two laws differ here.
 //!
-//! With [`Course`] a follower looks ahead, as those do who steer along a path (R. C. Coulter, "Implementation of the pure pursuit path
-//! tracking algorithm", CMU-RI-TR-92-01, 1992): it plans its way to where its place will be some moves later, and prices its moves by
-//! where it should be soon. So it goes around bad land in time and not when it is already late, and the leader waits less.
-//! [`NextMove`] knows no more than the move that the leader announced.
+//! With [`Course`] a follower looks ahead, as in steering along a path (R. C. Coulter,
+//! "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01, 1992). It plans
+//! its route to where its place will be some moves later, and prices its moves by where it should
+//! be soon. So it avoids bad land in time, and the leader waits less. [`NextMove`] uses only the
+//! move that the leader announced.
 
 use super::{Anchor, FormationParams, aim, lag};
 use crate::grid::{Cell, Dir, Norm, UNIT};
 use crate::robot::RobotId;
 use serde::{Deserialize, Serialize};
 
-/// The course on which followers take their leader to be.
+/// The course that followers assume for their leader.
 pub trait Steering {
-    /// Takes note of where the top leader was last heard, or of oneself without any; to be called at each decision.
+    /// Records the last known position of the top leader, or the own one without a leader. Call it
+    /// at each decision.
     fn note(&mut self, leader: (RobotId, Cell));
 
-    /// The cell to plan the way to, and the place by which moves are priced; `goal` is where one's place will be in the end.
+    /// The cell to plan the route to, and the place by which moves are priced; `goal` is the final
+    /// place of this robot.
     #[must_use]
     fn aims(&self, params: &FormationParams, anchor: &Anchor, goal: Cell) -> [Cell; 2];
 
-    /// How far `off` (actual minus desired, cells) is behind, [`UNIT`]s; `heading` is the leader's next move.
+    /// How far `off` (actual minus desired, cells) is behind, [`UNIT`]s; `heading` is the leader's
+    /// next move.
     #[must_use]
     fn lag(&self, off: Cell, heading: Dir) -> u32;
 }
 
-/// By the move that the leader announced: [`aim`], [`lag`]. O(1).
+/// Uses the move that the leader announced: [`aim`], [`lag`]. O(1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NextMove;
 
@@ -40,7 +44,8 @@ impl Steering for NextMove {
     }
 }
 
-/// By the course that the leader has held over its last moves, each of them half as much as the next one. All is O(1).
+/// Uses the leader's course over its recent moves, each weighted half as much as the next one. All
+/// functions are O(1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Course {
     leader: Option<(RobotId, Cell)>,
@@ -51,27 +56,28 @@ pub struct Course {
 
 /// A cell in a mean move.
 const ONE: i32 = 1024;
-/// Mean moves that are shorter are no course.
+/// Shorter mean moves do not define a course.
 const LEAST: i32 = 100;
-/// Cells ahead of its place to which a follower plans its way. More saves time and costs error; chosen on seed 1 of `staya experiment
-/// formation`.
+/// How far ahead of its place a follower plans its route, cells. A larger value saves time and
+/// costs accuracy; chosen on seed 1 of `staya experiment formation`.
 const AHEAD: u8 = 4;
-/// More cells at once leave nothing of the course before.
+/// A move of this many cells replaces the previous course completely.
 const MOST: u32 = 16;
 
 impl Course {
-    /// None yet.
+    /// Creates an undefined course.
     #[must_use]
     pub const fn new() -> Self {
         Self { leader: None, x: 0, y: 0 }
     }
 
-    /// Its length; `None`: it is too short to tell a direction.
+    /// Its length; `None` if it is too short to define a direction.
     fn length(self) -> Option<i32> {
         Some(length(self.x, self.y)).filter(|&length| length >= LEAST)
     }
 
-    /// `cells` cells along it and half as much towards `to_go`, where the leader will turn sooner or later; to the nearest cell.
+    /// The point `cells` cells along the course and half as far towards `to_go`, where the leader
+    /// will turn eventually; rounded to the nearest cell.
     fn ahead(self, cells: u8, to_go: Cell) -> Option<Cell> {
         let own = self.length()?;
         let [gx, gy] = [to_go.x, to_go.y].map(i32::from);
@@ -80,13 +86,12 @@ impl Course {
         let x = unit(self.x, own) + (unit(gx, rest) >> 1);
         let y = unit(self.y, own) + (unit(gy, rest) >> 1);
         let all = length(x, y);
-        // Rounded to nearest, also below 0.
+        // Rounds to nearest, also for negative values.
         let along = |part: i32| (2 * i32::from(cells) * part + all).checked_div_euclid(2 * all);
         Some(Cell::new(along(x)? as i16, along(y)? as i16))
     }
 }
 
-/// Of a vector, rounded down.
 fn length(x: i32, y: i32) -> i32 {
     (x.unsigned_abs().pow(2) + y.unsigned_abs().pow(2)).isqrt().cast_signed()
 }
@@ -140,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_course_the_next_move_tells() {
+    fn without_a_course_the_next_move_decides() {
         let params = FormationParams::default();
         for cells in [&[][..], &[(5, 5)], &[(5, 5), (5, 5)]] {
             let course = course(cells);
@@ -150,16 +155,16 @@ mod tests {
     }
 
     #[test]
-    fn who_follows_plans_farther_than_it_prices() {
+    fn a_follower_plans_farther_than_it_prices() {
         let params = FormationParams { lead: 1, ..FormationParams::default() };
         let east = course(&[(0, 0), (1, 0), (2, 0), (3, 0)]);
         assert_eq!(east.aims(&params, &anchor(), Cell::new(90, 20)), [Cell::new(21, 20), Cell::new(18, 20)]);
         let south_west = course(&[(0, 0), (-1, -1), (-2, -2)]);
         let goal = Cell::new(-13, -10);
         assert_eq!(south_west.aims(&params, &anchor(), goal), [Cell::new(14, 17), Cell::new(16, 19)]);
-        // The goal draws it aside, less than the course does.
+        // The goal draws it aside, but less than the course does.
         assert_eq!(east.aims(&params, &anchor(), Cell::new(17, 90)), [Cell::new(21, 22), Cell::new(18, 20)]);
-        // At the goal the course alone is left.
+        // At the goal only the course counts.
         assert_eq!(east.aims(&params, &anchor(), Cell::new(17, 20)), [Cell::new(21, 20), Cell::new(18, 20)]);
     }
 
@@ -167,17 +172,17 @@ mod tests {
     fn a_single_move_aside_turns_the_course_by_less_than_itself() {
         let turned = course(&[(0, 0), (1, 0), (2, 0), (3, 0), (4, 0), (4, 1)]);
         assert_eq!(turned.ahead(4, Cell::default()), Some(Cell::new(3, 3)));
-        // What was heard late says the same of as many cells.
+        // Late updates give the same course as one update per cell.
         let late = course(&[(0, 0), (4, 0), (4, 1)]);
         assert_eq!(late, turned);
-        // A lost leader's cell is nobody's move.
+        // A change of leader does not count as a move.
         let mut other = turned;
         other.note((RobotId(2), Cell::new(50, 50)));
         assert_eq!((other.x, other.y), (turned.x, turned.y));
     }
 
     #[test]
-    fn lag_is_along_the_course_or_half_of_what_is_off() {
+    fn lag_is_along_the_course_or_half_of_the_offset() {
         let east = course(&[(0, 0), (4, 0), (8, 0), (12, 0)]);
         assert_eq!(east.lag(Cell::new(-3, 0), Dir::North), 3 * UNIT);
         assert_eq!(east.lag(Cell::new(3, 0), Dir::North), 3 * UNIT / 2);
@@ -185,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn the_farthest_cells_there_are_stay_in_range() {
+    fn extreme_cells_stay_in_range() {
         let far = i16::MAX;
         let across = course(&[(-far, -far), (far, far), (-far, far)]);
         let off = Cell::new(-far, -far);

@@ -1,16 +1,16 @@
-//! How well a formation is kept (KUZ section 6): what a robot can say of its neighbours, and what
-//! an observer can say of all.
+//! Measures of formation quality (KUZ section 6): one that a robot computes from its neighbours,
+//! and one that an observer computes for all robots.
 
 use super::Found;
 use crate::grid::{Cell, Norm};
 
-/// The graph distance with its parts.
+/// The graph distance and its parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GraphDistance {
-    /// Wanted neighbours that are missing (m0).
+    /// Missing neighbours (m0).
     pub less: u32,
-    /// Robots that stand where somebody else should (m1).
+    /// Robots that stand in the place of another (m1).
     pub more: u32,
     /// Sum over the common vertices of |actual - desired|, [`UNIT`](crate::grid::UNIT)s.
     pub offsets: u32,
@@ -27,7 +27,7 @@ impl GraphDistance {
     }
 }
 
-/// The graph distance between the template and what a robot in `cell` found.
+/// The graph distance between the template and the neighbours that a robot in `cell` found.
 #[must_use]
 pub fn graph_distance<const F: usize>(cell: Cell, found: &Found<F>) -> GraphDistance {
     let offsets = found.members.iter().fold(0_u32, |sum, member| {
@@ -39,8 +39,9 @@ pub fn graph_distance<const F: usize>(cell: Cell, found: &Found<F>) -> GraphDist
 
 /// The formation error dPhi: a sum over ticks of distances between desired and actual cells.
 ///
-/// For whoever knows every cell, such as a ground station that hears all beacons: no robot can say of
-/// itself where the whole formation should be. In integers, so that every observer says the same.
+/// For an observer that knows every cell, such as a ground station that receives all beacons; a
+/// robot does not know where the whole formation should be. It uses integers, so that all observers
+/// get the same value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FormationError {
@@ -49,7 +50,7 @@ pub struct FormationError {
 }
 
 impl FormationError {
-    /// Nothing measured yet.
+    /// Creates an empty sum.
     #[must_use]
     pub const fn new() -> Self {
         Self { sum: 0, count: 0 }

@@ -1,4 +1,4 @@
-//! Who of the template is there (KUZ algorithm 5), and whom to follow (algorithm 6).
+//! Finds the neighbours of the template (KUZ algorithm 5) and the one to follow (algorithm 6).
 
 use crate::grid::{Cell, Dir};
 use crate::robot::{Mode, RobotId};
@@ -9,17 +9,17 @@ use heapless::Vec;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Seen {
-    /// Who it is.
+    /// Its number.
     pub id: RobotId,
-    /// The cell where it was when last heard of.
+    /// Its last known cell.
     pub cell: Cell,
-    /// The cell where it will be when one's own next move is over.
+    /// Its predicted cell at the end of the own next move.
     pub predicted: Cell,
-    /// The move that it wants next.
+    /// The move that it wants to make next.
     pub heading: Dir,
-    /// Whom it follows.
+    /// Its leader.
     pub leader: RobotId,
-    /// What it is doing.
+    /// Its current activity.
     pub mode: Mode,
 }
 
@@ -29,32 +29,34 @@ pub struct Seen {
 pub struct Member {
     /// The robot.
     pub seen: Seen,
-    /// Where it should be, relative to oneself.
+    /// Its place relative to this robot.
     pub offset: Cell,
     /// Geodesic distance in the formation's graph.
     pub hops: u8,
 }
 
-/// What became of a template's entries.
+/// The result of looking for a template's entries.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Found<const F: usize> {
-    /// Who is there, in the order of the template.
+    /// The robots found, in the order of the template.
     pub members: Vec<Member, F>,
-    /// Entries for which nobody was found: m0 of the graph distance.
+    /// Entries for which no robot was found: m0 of the graph distance.
     pub less: u8,
-    /// Robots at places where somebody else should be: m1 of the graph distance.
+    /// Robots that stand in the place of another: m1 of the graph distance.
     pub more: u8,
-    /// The first robot that `more` counts; nobody when it is 0.
+    /// The first robot that `more` counts; [`RobotId::NOBODY`] if `more` is 0.
     pub surplus: RobotId,
 }
 
-/// Looks for each neighbour of the template within `eps` cells (Chebyshev) of its place, seen from a
-/// robot in `cell` (KUZ algorithm 5): the wanted one, or for an entry without a number the nearest
-/// (then the smallest number) of those that the template does not name. A place that its robot
-/// misses and that another member of no entry stands on counts in `more`. O(F * robots).
+/// Looks for each neighbour of the template within `eps` cells (Chebyshev) of its place, seen from
+/// a robot in `cell` (KUZ algorithm 5).
 ///
-/// `robots` is asked several times and must give the same robots in the order of their numbers.
+/// An entry with a number takes that robot; an entry without a number takes the nearest robot (then
+/// the smallest number) that the template does not name. A place that its robot misses and that
+/// another robot, not a member of any entry, stands on counts in `more`. O(F * robots).
+///
+/// `robots` is called several times and must return the same robots in the order of their numbers.
 #[must_use]
 #[inline(never)]
 pub fn find_neighbors<const F: usize>(
@@ -79,7 +81,6 @@ pub fn find_neighbors<const F: usize>(
         };
         match seen {
             Some(seen) => {
-                // As many places as entries.
                 let _ = found.members.push(Member { seen, offset: entry.offset, hops: entry.hops });
             }
             None => {
@@ -97,11 +98,12 @@ pub fn find_neighbors<const F: usize>(
     found
 }
 
-/// The neighbour to follow (KUZ algorithm 6): the smallest number below one's own among the direct neighbours in the
-/// graph; without any, among all that were found; nobody: the robot leads.
+/// The neighbour to follow (KUZ algorithm 6): the smallest number below the own one among the
+/// direct neighbours in the graph, or without any, among all that were found. [`RobotId::NOBODY`]:
+/// the robot leads.
 ///
-/// The paper looks at direct neighbours only. When one of those dies, the robots behind it would lead themselves
-/// beside the rest of their formation.
+/// The paper considers direct neighbours only. If one of those died, the robots behind it would
+/// become leaders beside the rest of their formation.
 #[must_use]
 pub fn find_leader(own: RobotId, members: &[Member]) -> RobotId {
     let smaller = members.iter().filter(|member| member.seen.id < own);

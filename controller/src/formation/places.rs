@@ -1,40 +1,45 @@
-//! Keeping a formation in the plane: a place is a point that moves with the top leader, and robots follow it.
+//! Formation keeping in the plane: a place is a point that moves with the top leader, and robots
+//! follow it.
 //!
-//! The law is proportional control with feed-forward of the leader's velocity, as in any text on leader and follower
-//! formations (J. P. Desai, J. Ostrowski and V. Kumar 1998); the top leader goes no faster than the slowest follows.
-//! All gains come from one time, in which the body can get going ([`Drive`]): no gain is larger than
-//! its reciprocal, so that a body that lags behind its commands by up to as long comes to its place without
-//! swinging about it. News of others are old by the radio's delay, but these loops close over the own body.
+//! The law is proportional control with feed-forward of the leader's velocity, as in standard
+//! leader-follower control (J. P. Desai, J. Ostrowski and V. Kumar 1998). The top leader is no
+//! faster than the slowest robot follows. All gains follow from one time, in which the body reaches
+//! its highest speed ([`Drive`]). No gain exceeds the reciprocal of that time, so that a body that
+//! lags behind its commands by up to that time reaches its place without oscillating. States of
+//! other robots are delayed by the radio, but these loops close over the own body.
 
 use crate::body::Body;
 use crate::geom::Vec2;
 use crate::grid::{Cell, Window};
 use crate::scalar::Scalar;
 
-/// Steps in which a body without inertia gets going all the same: news of it take a step or more.
+/// Steps that a body without inertia is assumed to need to reach its speed, since states of other
+/// robots are a step or more old.
 const STEPS: i32 = 10;
-/// What the top leader leaves to the others for corrections, thousandths of the highest speed. More brings them back to
-/// their places sooner and makes every journey longer by as much.
+/// Speed that the top leader leaves to the others for corrections, thousandths of the highest
+/// speed. A larger value returns them to their places sooner and makes every journey longer by as
+/// much.
 const RESERVE: i32 = 100;
-/// How near to its goal a robot has come to rest, thousandths of its radius; twice as far off it goes there again.
+/// Distance from the goal within which a robot comes to rest, thousandths of its radius; beyond
+/// twice this distance it sets off again.
 const AT_REST: i32 = 250;
 
-/// What a body can do, as the law needs it.
+/// The capabilities of a body, as the law needs them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drive<S> {
     max_speed_mps: S,
     radius_m: S,
-    /// Half of it: what the gentle half of the law goes by.
+    /// Half of the highest speed, used by the gentle half of the law.
     half_mps: S,
     step_s: S,
-    /// 1/T, where T is the time to get to the highest speed, or some steps if that is longer, 1/s.
+    /// 1/T, where T is the time to reach the highest speed, or some steps if that is longer, 1/s.
     rate: S,
     halt_m: S,
 }
 
 impl<S: Scalar> Drive<S> {
-    /// Of a body at the highest speed that it can have where it is.
+    /// For a body at the highest speed that it can have in its present place.
     #[must_use]
     pub fn new(body: &Body<S>) -> Self {
         let Body { max_speed_mps, max_acceleration_mps2, radius_m, step_s, .. } = *body;
@@ -46,34 +51,38 @@ impl<S: Scalar> Drive<S> {
         Self { max_speed_mps, radius_m, half_mps, step_s, rate, halt_m }
     }
 
-    /// The lag at which a leader stands, metres: the own radius, and half of the way in which a body gets going. Half
-    /// of it is too far from a place to count as being there.
+    /// The lag at which a leader stops, metres: the own radius plus half of the distance in which a
+    /// body reaches its speed. A robot within half of this value counts as being in its place.
     #[must_use]
     pub const fn halt_m(&self) -> S {
         self.halt_m
     }
 
-    /// How near counts as being at the goal, metres, if the robot was there before or not.
+    /// The distance that counts as being at the goal, metres, depending on whether the robot was
+    /// there before.
     #[must_use]
     pub fn tolerance_m(&self, was_there: bool) -> S {
         self.radius_m * S::from_milli(if was_there { 2 * AT_REST } else { AT_REST })
     }
 
-    /// The velocity towards a place `way_m` off that moves at `place_mps`. At most the highest speed.
+    /// The velocity towards a place `way_m` away that moves at `place_mps`. At most the highest
+    /// speed.
     #[must_use]
     pub fn follow(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> Vec2<S> {
         let correction_mps = scaled(way_m, self.rate).clamp_norm(self.max_speed_mps);
         (place_mps + correction_mps).clamp_norm(self.max_speed_mps)
     }
 
-    /// Whether a robot is so far behind a place `way_m` off that goes on at `place_mps` that its leader should stand.
+    /// Whether a robot is so far behind a place `way_m` away that moves at `place_mps` that its
+    /// leader should stop.
     #[must_use]
     pub fn is_far_behind(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> bool {
         dot(way_m, place_mps) > self.max_speed_mps * self.halt_m
     }
 
-    /// The top leader's speed, m/s: with a reserve for the others, slower in proportion to how far the last of them is
-    /// behind, and so that it comes to rest `left_m` ahead with half of the braking that a body has.
+    /// The top leader's speed, m/s. It leaves a reserve for the others, decreases in proportion to
+    /// the lag of the last robot, and lets the leader come to rest `left_m` ahead with half of its
+    /// braking.
     #[must_use]
     pub fn leads_at(&self, lag_m: S, left_m: S) -> S {
         let reserved = self.max_speed_mps * S::from_milli(1000 - RESERVE);
@@ -81,8 +90,8 @@ impl<S: Scalar> Drive<S> {
         let speed = (reserved * room_m).checked_div(self.halt_m).unwrap_or(S::ZERO);
         let half = self.half_mps;
         let near = left_m * self.rate;
-        // v^2 = (V/2)^2 + 2 (V/2T) (d - VT/2), as a slope that ends where the proportional law begins.
-        // What is no distance is no way to go.
+        // v^2 = (V/2)^2 + 2 (V/2T) (d - VT/2), as a slope that ends where the proportional law
+        // begins. An invalid distance counts as 0.
         let before_goal = if near > half {
             ((near + near - half) * half).sqrt()
         } else if near > S::ZERO {
@@ -93,8 +102,8 @@ impl<S: Scalar> Drive<S> {
         speed.min(before_goal)
     }
 
-    /// The velocity nearest to `wish_mps` that a leader takes after `before_mps`: it gets going and turns half as
-    /// quickly as it could, and brakes as quickly, since others learn of it late.
+    /// The velocity nearest to `wish_mps` that a leader takes after `before_mps`. It accelerates
+    /// and turns half as fast as it could, and brakes as fast, since the others learn of it late.
     #[must_use]
     pub fn gently(&self, before_mps: Vec2<S>, wish_mps: Vec2<S>) -> Vec2<S> {
         let change = wish_mps - before_mps;
@@ -104,28 +113,28 @@ impl<S: Scalar> Drive<S> {
     }
 }
 
-// Each once for all of this law: inlined, products of fixed-point numbers are long.
+// Not inlined: products of fixed-point numbers are long.
 
 #[inline(never)]
 fn dot<S: Scalar>(a: Vec2<S>, b: Vec2<S>) -> S {
     a.dot(b)
 }
 
-/// `v * s`.
 #[inline(never)]
 pub(crate) fn scaled<S: Scalar>(v: Vec2<S>, s: S) -> Vec2<S> {
     v * s
 }
 
-/// How far `off_m` (actual minus desired) is behind for a formation that goes in direction `ahead`, metres: who is
-/// ahead or aside loses nothing when the others go on.
+/// How far `off_m` (actual minus desired) is behind for a formation that moves in direction
+/// `ahead`, metres. A robot ahead or aside loses nothing if the formation continues.
 #[must_use]
 pub fn behind<S: Scalar>(off_m: Vec2<S>, ahead: Vec2<S>) -> S {
     (-dot(off_m, ahead)).max(S::ZERO)
 }
 
-/// Whether all cells under the straight way `way_m` are as `is_good` wants them, as far as the window shows them: of a
-/// robot `offset_m` off the middle of its `cell`. Looks at a point each half cell, O(width + height) of them.
+/// Whether all cells under the straight path `way_m` satisfy `is_good`, as far as the window shows
+/// them; for a robot `offset_m` off the middle of its `cell`. Checks one point per half cell,
+/// O(width + height) points.
 #[must_use]
 #[inline(never)]
 pub fn is_straight<S: Scalar>(
@@ -134,7 +143,7 @@ pub fn is_straight<S: Scalar>(
     way_m: Vec2<S>,
     is_good: &dyn Fn(Cell) -> bool,
 ) -> bool {
-    /// A cell is 2^6 parts; half of it 2^5.
+    /// A cell has 2^6 parts, half of it 2^5.
     const PARTS: u32 = 6;
     let Some(per_m) = S::from_i32(1 << PARTS).checked_div(cell_m) else { return false };
     let parts = |length_m: Vec2<S>| {

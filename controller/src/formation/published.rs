@@ -1,11 +1,11 @@
-//! Keeping a formation as the paper has it: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2, 5, 6 and 7.
+//! Formation keeping as published: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2, 5, 6 and 7.
 //!
-//! Here is what the paper decides by; who does what with it is
-//! [`PublishedFormation`](crate::agent::PublishedFormation). Algorithm 5 is [`find_neighbors`](super::find_neighbors),
-//! `def` is
-//! [`def`](super::def); Staya's own law has them too. The misprints are resolved as the [module](super) says: `less`
-//! once, the leader the smallest
-//! number, sums that restart for each direction and hold each neighbour's offset.
+//! This module holds the criteria of the paper;
+//! [`PublishedFormation`](crate::agent::PublishedFormation) applies them. Algorithm 5 is
+//! [`find_neighbors`](super::find_neighbors), `def` is [`def`](super::def); Staya's own law uses
+//! both too. The misprints are resolved as described in [`super`]: `less` is counted once, the
+//! leader is the smallest number, and sums restart for each direction and hold each neighbour's
+//! offset.
 
 use super::{Found, Member, Prediction, deviation};
 use crate::cost::{EXCLUDED, Gain, Weights};
@@ -16,15 +16,18 @@ use crate::template::TemplateEntry;
 use serde::{Deserialize, Serialize};
 
 named! {
-    /// A law by which robots keep a formation.
+    /// The available laws of formation keeping.
     #[derive(Default)]
     pub enum FormationLaw {
-        /// Staya's: the top leader chooses the way for all and waits for those behind; see [`crate::formation`].
+        /// Staya's: the top leader chooses the route for all and waits for robots behind; see
+        /// [`crate::formation`].
         #[default]
         Staya = "staya",
-        /// The paper's: each robot weighs its own shortest way against all neighbours found; see [`PublishedParams`].
+        /// The paper's: each robot weighs its own shortest route against all neighbours found; see
+        /// [`PublishedParams`].
         Paper = "paper",
-        /// Staya's, with followers who plan their way to where their places will be; see [`Course`](super::Course).
+        /// Staya's, with followers that plan their routes to the future positions of their places;
+        /// see [`Course`](super::Course).
         Lookahead = "lookahead",
     }
 }
@@ -33,28 +36,31 @@ named! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PublishedParams {
-    /// How far from its place a neighbour may be and still counts as found, cells (eps of algorithm 5). The paper: the
-    /// larger, the smaller the error.
+    /// How far from its place a neighbour may be and still counts as found, cells (eps of algorithm
+    /// 5). According to the paper, a larger value gives a smaller error.
     pub eps: u8,
-    /// Price of a cell of deviation from one neighbour, ticks (the coefficient of the scalarisation; the paper adds
-    /// both, so 1).
+    /// Price of a cell of deviation from one neighbour, ticks (the coefficient of the
+    /// scalarisation; the paper adds both, so 1).
     pub gain: Gain,
-    /// Sum of deviations from all neighbours found from which the formation is lost (`>> r0`), [`UNIT`]s.
+    /// Sum of deviations from all neighbours found at which the formation is lost (`>> r0`),
+    /// [`UNIT`]s.
     pub halt: u16,
-    /// Sum down to which it must have come to be kept again (about r0), [`UNIT`]s; at most `halt`.
+    /// Sum down to which it must fall for the formation to be kept again (about r0), [`UNIT`]s; at
+    /// most `halt`.
     pub resume: u16,
-    /// How many may be missing and too many, together, before others are asked to choose another direction (item 6).
+    /// Number of missing and surplus robots together above which others are asked to choose another
+    /// direction (item 6).
     pub crowd: u8,
-    /// How others are foreseen.
+    /// How robots predict the positions of others.
     pub prediction: Prediction,
 }
 
 impl Default for PublishedParams {
-    /// The paper leaves all of them open but the gain and the prediction. eps of 10 cells as ours; r0 such that all
-    /// arrive on most landscapes: a sum
-    /// of 30 cells (10 for each of the three neighbours that a robot in the middle of figure 5 has) until 9 again.
-    /// From 9 until 3 errors are
-    /// the paper's, and most runs jam (`staya experiment formation --paper-halt 9 --paper-resume 3`).
+    /// The paper specifies only gain and prediction. eps is 10 cells, as in Staya's law. r0 is
+    /// chosen so that all arrive on most landscapes: from a sum of 30 cells (10 for each of the
+    /// three neighbours of a robot in the middle of figure 5) down to 9. From 9 down to 3 the
+    /// errors are the paper's, and most runs jam (`staya experiment formation --paper-halt 9
+    /// --paper-resume 3`).
     fn default() -> Self {
         Self {
             eps: 10,
@@ -67,46 +73,48 @@ impl Default for PublishedParams {
     }
 }
 
-/// The sum over all neighbours found of how far a robot in `cell` is off its place beside where they will be, [`UNIT`]s
-/// (the inner sum of algorithm 7). O(members).
+/// How far a robot in `cell` is off the places given by the predicted positions of its neighbours,
+/// summed over all neighbours found, [`UNIT`]s (the inner sum of algorithm 7). O(members).
 #[must_use]
 pub fn sum_of_deviations(cell: Cell, members: &[Member]) -> u32 {
     let each = members.iter().map(|member| deviation(cell, member.seen.predicted, member.offset));
     each.fold(0, u32::saturating_add)
 }
 
-/// What each move costs the formation (algorithm 7): `gain` times the [sum](sum_of_deviations) that it leads to.
-/// O(members).
+/// What each move costs the formation (algorithm 7): `gain` times the [sum](sum_of_deviations) that
+/// it leads to. O(members).
 #[must_use]
 pub fn sums(gain: Gain, cell: Cell, members: &[Member]) -> Weights {
-    // A long way off is no wall.
+    // A great distance must not act as a wall.
     let price = |dir: Dir| gain.of(sum_of_deviations(cell + dir.offset(), members)).min(EXCLUDED - 1);
     Weights::new(Dir::MOVES.map(price))
 }
 
-/// The neighbour to follow (algorithm 6): the smallest number below one's own among all found; nobody: the robot leads.
+/// The neighbour to follow (algorithm 6): the smallest number below the own one among all found.
+/// [`RobotId::NOBODY`]: the robot leads.
 ///
-/// With templates of geodesic radius 1 this gives figure 5: 2 and 4 follow 1, 3 and 5 follow 2, 6 follows 3.
+/// With templates of geodesic radius 1 this gives figure 5: 2 and 4 follow 1, 3 and 5 follow 2, 6
+/// follows 3.
 #[must_use]
 pub fn smallest_below(own: RobotId, members: &[Member]) -> RobotId {
     let smaller = members.iter().map(|member| member.seen.id).filter(|&id| id < own);
     smaller.min().unwrap_or(RobotId::NOBODY)
 }
 
-/// What the sum of deviations says of a formation: hysteresis around r0 (algorithm 2).
+/// The state of a formation by its sum of deviations, with hysteresis around r0 (algorithm 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kept {
     /// About r0 or less: lines 14 and 21.
     Well,
-    /// In between: whatever was decided stands.
+    /// In between: the previous decision stands.
     Fairly,
     /// Much more than r0: lines 10 and 17.
     Lost,
 }
 
 impl PublishedParams {
-    /// What a sum of deviations, [`UNIT`]s, says.
+    /// Classifies a sum of deviations, [`UNIT`]s.
     #[must_use]
     pub fn judge(&self, sum: u32) -> Kept {
         match sum {
@@ -116,17 +124,17 @@ impl PublishedParams {
         }
     }
 
-    /// Whether too many are missing or too many (line 24).
+    /// Whether too many robots are missing or surplus (line 24).
     #[must_use]
     pub const fn is_crowded<const F: usize>(&self, found: &Found<F>) -> bool {
         found.less.saturating_add(found.more) > self.crowd
     }
 }
 
-/// What each move of another robot would cost the formation in its own eyes, as far as oneself knows it: the sum over
-/// those of `entries` that `cell_of` knows, and oneself in `own`, from where they are now (`predict` of algorithm 5
-/// runs algorithm 7 in the
-/// other's place, with no prediction inside it). O(entries).
+/// What each move of another robot would cost the formation from that robot's view, as far as this
+/// robot knows it: the sum over the `entries` that `cell_of` knows, and this robot in `own`, from
+/// their present positions. `predict` of algorithm 5 runs algorithm 7 in the other robot's place,
+/// without a nested prediction. O(entries).
 #[must_use]
 pub fn sums_of_other(
     gain: Gain,
@@ -194,14 +202,15 @@ mod tests {
         assert_eq!(found.members.len(), 3);
         assert_eq!(sum_of_deviations(PLACES[4], &found.members), UNIT);
         let sums = sums(Gain::ONE, PLACES[4], &found.members);
-        // One step east: right by robot 2, a cell off by the two others; west: 2 + 1 + 1.
+        // One step east: in place by robot 2, a cell off by the two others; west: 2 + 1 + 1.
         assert_eq!(sums.get(Dir::East), Gain::ONE.of(2 * UNIT));
         assert_eq!(sums.get(Dir::West), Gain::ONE.of(4 * UNIT));
     }
 
     #[test]
-    fn in_the_others_place_one_counts_oneself_and_those_whom_one_knows() {
-        // Robot 1 thinks for robot 2, who has fallen back by a cell; 3 and 5 are behind it in their places.
+    fn a_prediction_counts_the_own_robot_and_the_known_ones() {
+        // Robot 1 predicts for robot 2, which has fallen back by a cell; 3 and 5 are behind it in
+        // their places.
         let found = found(0, 3, |other| if other == 1 { Cell::new(-1, 0) } else { Cell::default() });
         let template = Template::<8>::from_graph(&PLACES, &EDGES, 0, 3).unwrap();
         let other = found.members.iter().find(|member| member.seen.id == RobotId(2)).unwrap();

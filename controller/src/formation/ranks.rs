@@ -1,4 +1,4 @@
-//! Closing ranks: who takes the place of a robot that has died.
+//! Closing ranks: replacing a robot that has died.
 
 use crate::grid::Cell;
 use crate::list;
@@ -6,49 +6,52 @@ use crate::robot::RobotId;
 use crate::template::{Template, TemplateEntry};
 use serde::{Deserialize, Serialize};
 
-/// The place that a robot holds in its formation, if that is not its own any more.
+/// The place that a robot holds in its formation, if it is not its own.
 ///
-/// The rule is a file's: when the place in front falls empty, step into it; whoever stands behind does the same with the place
-/// that this leaves. In front is the nearest place with a smaller number. Places fall empty when the beacons of their
-/// holders ([`slot`](crate::wire::Beacon::slot)) fall silent for so long that these are lost. When two hold one place, the
-/// smaller number keeps it and the other goes back to its own, so that a robot that comes back finds its own place
-/// free again, and who follows whom is settled after a few beacons.
+/// The rule is that of a file: when the place in front becomes empty, the robot steps into it, and
+/// the robot behind does the same with the vacated place. In front is the nearest place with a
+/// smaller number. A place is empty when the beacons of its holder
+/// ([`slot`](crate::wire::Beacon::slot)) have been silent for so long that the holder is lost. If
+/// two robots hold one place, the smaller number keeps it and the other returns to its own. So a
+/// robot that comes back finds its own place free, and the order is settled after a few beacons.
 ///
-/// Holds where robots are numbered on by their places, from any number: robot k + i has place i. Each finds k by its own number and
-/// place; who hears a neighbour in a place that it could not have come to so keeps its own. Several formations hence need no
-/// word for which of them one is in: a template names its members. The paper (A. V. Kuznetsov 2017) has no such rule: there
-/// the place of a missing robot stays empty.
+/// Applies if robots are numbered consecutively by their places, from any number: robot k + i has
+/// place i. Each robot computes k from its own number and place. A robot that receives a neighbour
+/// in a place that it could not have reached this way keeps its own. Therefore several formations
+/// need no identifier: a template names its members. The paper (A. V. Kuznetsov 2017) has no such
+/// rule; there the place of a missing robot remains empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ranks {
-    /// The place held instead of one's own, and how far that is off, cells.
+    /// The place held instead of the own one, and its distance, cells.
     taken: Option<(u8, Cell)>,
-    /// The place in front, when somebody was heard to hold it.
+    /// The place in front, if its holder was received before.
     front: Option<u8>,
 }
 
 impl Ranks {
-    /// In one's own place.
+    /// Creates the state of a robot in its own place.
     #[must_use]
     pub const fn new() -> Self {
         Self { taken: None, front: None }
     }
 
-    /// From one's own place to the one that is held.
+    /// From the own place to the one that is held.
     #[must_use]
     pub fn shift(&self) -> Cell {
         self.taken.map_or(Cell::default(), |(_, shift)| shift)
     }
 
-    /// Number of the place that is held by the robot with this template.
+    /// Number of the place held by the robot with this template.
     #[must_use]
     pub fn slot<const F: usize>(&self, template: &Template<F>) -> u8 {
         self.taken.map_or(template.slot, |(slot, _)| slot)
     }
 
-    /// Steps into the place in front if that has fallen empty, or back for a smaller number. O(F * robots).
+    /// Steps into the place in front if that has become empty, or back if a smaller number holds
+    /// the place. O(F * robots).
     ///
-    /// `holders` are the robots heard, each with the number of the place that its beacon says.
+    /// `holders` are the robots received, each with the place number in its beacon.
     pub fn close<const F: usize>(
         &mut self,
         own: RobotId,
@@ -81,7 +84,8 @@ impl Ranks {
         }
     }
 
-    /// The template as seen from the place that is held, with those who hold the others' places now. O(F * robots).
+    /// The template as seen from the place that is held, with the current holders of the other
+    /// places. O(F * robots).
     #[must_use]
     pub fn view<const F: usize>(
         &self,
@@ -106,15 +110,16 @@ impl Ranks {
             };
             Some(TemplateEntry { offset, id, ..*entry })
         });
-        // Who stands now where oneself belongs.
+        // The robot that now holds this robot's own place.
         let behind = self.taken.and_then(|_| holder(template.slot));
         let behind = behind.map(|id| TemplateEntry { offset: Cell::default() - shift, id, hops: 1 });
         Template { slot: held, offset: template.offset + shift, entries: list::collect(others.chain(behind)) }
     }
 }
 
-/// The number of the robot that has the first place, if robots are numbered on by their places. Those of the template
-/// then hold their own or, having stepped forward, smaller ones. O(F * robots).
+/// The number of the robot that owns the first place, if robots are numbered consecutively by their
+/// places. The robots of the template then hold their own places or, having stepped forward,
+/// smaller ones. O(F * robots).
 fn first_of<const F: usize>(
     own: RobotId,
     template: &Template<F>,
@@ -126,7 +131,7 @@ fn first_of<const F: usize>(
     (!holders.any(is_below)).then_some(first)
 }
 
-/// The place that belongs to a robot where `first` has the first.
+/// The place that belongs to a robot if `first` owns the first place.
 fn place_of(id: RobotId, first: u32) -> Option<u8> {
     u8::try_from(id.0.checked_sub(first)?).ok()
 }
@@ -143,7 +148,8 @@ mod tests {
         Template::from_graph(&places, &edges, own, 3).unwrap()
     }
 
-    /// Six robots that hear each other, each with its ranks and number; `is_alive` says who does.
+    /// Six robots that receive each other, each with its ranks and number; `is_alive` tells which
+    /// are alive.
     struct File {
         ranks: [Ranks; 6],
         is_alive: [bool; 6],
@@ -171,7 +177,7 @@ mod tests {
             core::array::from_fn(|own| self.is_alive[own].then(|| self.ranks[own].slot(&self.template(own))))
         }
 
-        /// All decide by what was said before.
+        /// All decide by the previous beacons.
         fn tick(&mut self) {
             let slots = self.slots();
             for own in (0..6).filter(|&own| self.is_alive[own]) {
@@ -189,12 +195,12 @@ mod tests {
     }
 
     #[test]
-    fn without_a_death_everybody_keeps_its_place() {
+    fn without_a_death_all_robots_keep_their_places() {
         assert_eq!(File::new().ticks(20), [0, 1, 2, 3, 4, 5].map(Some));
     }
 
     #[test]
-    fn those_behind_any_dead_move_up_and_no_two_hold_one_place() {
+    fn robots_behind_a_dead_one_move_up_and_no_two_hold_one_place() {
         for dead in 0..6 {
             for second in 0..6 {
                 let mut file = File::new();
@@ -207,7 +213,7 @@ mod tests {
                 let living = if dead == second { 5 } else { 4 };
                 let unique = held.windows(2).all(|pair| pair[0] < pair[1]);
                 assert!(unique && held.len() == living, "{dead} {second}: {held:?}");
-                // The top is never empty, and no place at the front: at most a corner at the back.
+                // Neither the top nor any other front place is empty: at most a corner at the back.
                 assert!(held[0] == 0 && held[1] <= 2, "{dead} {second}: {held:?}");
             }
         }
@@ -227,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn where_numbers_are_no_places_nobody_takes_a_place_that_is_held_and_sees_who_is_where() {
+    fn with_other_numbering_no_robot_takes_a_held_place() {
         for numbers in [[1, 2, 4, 5, 6, 7], [3, 5, 8, 9, 10, 12], [1, 3, 4, 5, 6, 7], [6, 5, 4, 3, 2, 1]] {
             for dead in 0..6 {
                 for second in 0..6 {
@@ -240,7 +246,6 @@ mod tests {
                     let mut held: Vec<u8> = slots.into_iter().flatten().collect();
                     held.sort_unstable();
                     assert!(held.windows(2).all(|pair| pair[0] < pair[1]), "{numbers:?} {dead} {second}: {slots:?}");
-                    // Nobody is seen in two places.
                     for own in (0..6).filter(|&own| file.is_alive[own]) {
                         let others = (0..6).filter(|&other| other != own);
                         let heard = others.filter_map(|other| Some((RobotId(numbers[other]), slots[other]?)));
@@ -256,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn who_comes_back_finds_its_place() {
+    fn a_returning_robot_finds_its_place() {
         for dead in 0..6 {
             let mut file = File::new();
             file.ticks(3);
@@ -278,7 +283,7 @@ mod tests {
         let mut seen: Vec<_> = view.entries.iter().map(|entry| (entry.id.0, entry.offset.x, entry.offset.y)).collect();
         seen.sort_unstable();
         assert_eq!(seen, [(1, -3, 0), (3, -3, -3), (5, -3, -6), (6, 0, -3)]);
-        // And robot 1 sees robot 4 beside it, not behind.
+        // Robot 1 sees robot 4 beside it, not behind.
         let view = Ranks::new().view(RobotId(1), &template(0), holders.into_iter().skip(1));
         let beside = view.entries.iter().find(|entry| entry.id == RobotId(4)).unwrap();
         assert_eq!(beside.offset, Cell::new(3, 0));

@@ -1,4 +1,4 @@
-//! What a move costs the formation, and when to wait (KUZ algorithms 2 and 7).
+//! The cost of a move for the formation, and when to wait (KUZ algorithms 2 and 7).
 
 use super::{FormationParams, Member};
 use crate::cost::{Cost, EXCLUDED, Weights};
@@ -6,20 +6,20 @@ use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT, Window};
 use crate::template::TemplateEntry;
 use serde::{Deserialize, Serialize};
 
-/// Somebody beside whom one has a place.
+/// A robot relative to which this robot has a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Anchor {
-    /// Where that robot will be.
+    /// Its predicted cell.
     pub predicted: Cell,
-    /// Where oneself should be, relative to it.
+    /// The place of this robot, relative to it.
     pub offset: Cell,
-    /// The move that it wants next.
+    /// The move that it wants to make next.
     pub heading: Dir,
 }
 
 impl Anchor {
-    /// One's own place.
+    /// The place of this robot.
     #[must_use]
     pub fn place(&self) -> Cell {
         self.predicted + self.offset
@@ -34,16 +34,17 @@ pub fn aim(anchor: &Anchor, lead: u8) -> Cell {
     anchor.place() + Cell::new(step.x * ahead, step.y * ahead)
 }
 
-/// How far a robot in `cell` is off its place beside a neighbour in `other`, both as last heard,
-/// [`UNIT`]s.
+/// How far a robot in `cell` is off its place beside a neighbour in `other`, both at their last
+/// known positions, [`UNIT`]s.
 #[must_use]
 pub fn deviation(cell: Cell, other: Cell, offset: Cell) -> u32 {
     (cell + offset).distance(other, Norm::Euclidean)
 }
 
-/// What each move costs the formation (KUZ algorithm 7): gain times the distance that it would leave
-/// between oneself and one's place, half by the top leader and half by the direct neighbours found
-/// (all by one kind if the other is missing; nothing if both are).
+/// What each move costs the formation (KUZ algorithm 7): gain times the distance that it would
+/// leave to the own place. Half of it is the place given by the top leader, half the mean of those
+/// given by the direct neighbours found. If one kind is missing, the other counts in full; if both
+/// are, the cost is zero.
 ///
 /// The paper sums over all neighbours; the mean keeps the scale independent of their number.
 #[must_use]
@@ -60,13 +61,13 @@ pub fn distances(params: &FormationParams, cell: Cell, top: Option<Cell>, member
             (Some(only), None) | (None, Some(only)) => only,
             (None, None) => 0,
         };
-        // A long way off is no wall.
+        // A great distance must not act as a wall.
         params.gain.of(length).min(EXCLUDED - 1)
     };
     Weights::new(Dir::MOVES.map(price))
 }
 
-/// Whether to stand rather than move: near enough to the place, and the move leads away from it.
+/// Whether to stay rather than move: near enough to the place, and the move leads away from it.
 #[must_use]
 pub fn should_stay(cell: Cell, place: Cell, first: Dir) -> bool {
     const NEAR: u32 = UNIT + (UNIT >> 1);
@@ -76,8 +77,8 @@ pub fn should_stay(cell: Cell, place: Cell, first: Dir) -> bool {
 }
 
 /// How far `off` (actual minus desired, cells) is behind for a formation that heads in direction
-/// `heading`, [`UNIT`]s: its component against the heading, though at least half of its length; all
-/// of its length when there is no heading.
+/// `heading`, [`UNIT`]s: its component against the heading, but at least half of its length; its
+/// whole length if there is no heading.
 #[must_use]
 pub fn lag(off: Cell, heading: Dir) -> u32 {
     let length = Cell::default().distance(off, Norm::Euclidean);
@@ -92,8 +93,8 @@ pub fn lag(off: Cell, heading: Dir) -> u32 {
     }
 }
 
-/// The direction in which the others are off (KUZ section 7, `def`): of the sum over the members
-/// of actual minus desired, rounded to one of the eight moves; `Stay` when it is 0.
+/// The direction in which the others are displaced (KUZ section 7, `def`): the sum over the members
+/// of actual minus desired, rounded to one of the eight moves; `Stay` if it is 0.
 #[must_use]
 pub fn def(cell: Cell, members: &[Member]) -> Dir {
     let (x, y) = members.iter().fold((0_i32, 0_i32), |(x, y), member| {
@@ -117,44 +118,48 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Not waiting.
+    /// Creates a leader that does not wait.
     #[must_use]
     pub const fn new() -> Self {
         Self { waits: false }
     }
 
-    /// Takes note of the largest lag, [`UNIT`]s, and tells whether to wait: from more than
-    /// `halt_lag` until at most `resume_lag`.
+    /// Updates the state with the largest lag, [`UNIT`]s, and returns whether to wait: from more
+    /// than `halt_lag` down to `resume_lag`.
     pub fn update(&mut self, params: &FormationParams, lag: u32) -> bool {
         let limit = if self.waits { params.resume_lag.min(params.halt_lag) } else { params.halt_lag };
         self.waits = lag > u32::from(limit);
         self.waits
     }
 
-    /// Whether it waits.
+    /// Whether the leader waits.
     #[must_use]
     pub const fn waits(&self) -> bool {
         self.waits
     }
 }
 
-/// What land under the others' places counts in the price of a cell for their leader.
+/// How the land under the others' places counts in their leader's price of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Footprint {
-    /// The mean over them counts so many sixteenths, the leader's own cell the rest: those who are slowed down fall
-    /// behind and come after.
+    /// Their mean counts this many sixteenths, the leader's own cell the rest: robots that are
+    /// slowed down fall behind and catch up later.
     Mean(u8),
-    /// The dearest cell of all, the leader's own included: nobody falls behind, all go at the pace of the slowest.
+    /// The dearest cell of all, including the leader's, counts: no robot falls behind, and all move
+    /// at the pace of the slowest.
     Dearest,
 }
 
-/// Writes into `out` what the land within `radius` cells of `center` costs the whole formation when its
-/// top leader stands there: the leader's own cell and those of the others' places that the window shows and that are
-/// passable, as `footprint` says. Walls stay walls; where no
-/// place is in sight the own cell counts alone. O(cells * entries).
+/// Writes to `out` the price, for the whole formation, of each cell within `radius` of `center`
+/// with the top leader in that cell.
 ///
-/// `None`: `out` is too short for (2 radius + 1)^2 cells, or for as many of them as the window shows.
+/// The price combines the leader's own cell and those of the others' places that the window shows
+/// and that are passable, as `footprint` defines. Walls remain walls; if no place is in sight, only
+/// the own cell counts. O(cells * entries).
+///
+/// `None`: `out` is too short for (2 radius + 1)^2 cells, or for as many of them as the window
+/// shows.
 #[must_use]
 pub fn blended<'a>(
     window: &Window<'_>,

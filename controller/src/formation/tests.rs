@@ -19,7 +19,6 @@ fn seen(id: u32, x: i16, y: i16) -> Seen {
     Seen { id: RobotId(id), cell, predicted: cell, heading: Dir::Stay, leader: RobotId::NOBODY, mode: Mode::Cruise }
 }
 
-/// Everybody in place, robot 1 at `top`.
 fn in_place(top: Cell) -> Vec<Seen> {
     (1..).zip(PLACES).map(|(id, place)| seen(id, top.x + place.x, top.y + place.y)).collect()
 }
@@ -36,7 +35,7 @@ fn leaders_of_figure_5_are_those_of_the_paper() {
     let leaders: Vec<u32> =
         (1..=6).map(|id| find_leader(RobotId(id), &found(id as usize, 1, 2, &robots).members).0).collect();
     assert_eq!(leaders, [0, 1, 2, 1, 2, 3]);
-    // Farther neighbours of a larger radius become leaders only when no nearer one is there.
+    // With a larger radius, farther neighbours become leaders only if there is no nearer one.
     let leader_without = |dead: &[u32]| {
         let living: Vec<Seen> = robots.iter().copied().filter(|seen| !dead.contains(&seen.id.0)).collect();
         find_leader(RobotId(6), &found(6, 3, 2, &living).members).0
@@ -46,7 +45,7 @@ fn leaders_of_figure_5_are_those_of_the_paper() {
 }
 
 #[test]
-fn templates_hold_everybody_within_the_geodesic_radius() {
+fn templates_hold_all_robots_within_the_geodesic_radius() {
     let ids = |robot, rho| -> Vec<(u32, u8)> {
         let template = template(robot, rho);
         template.entries.iter().map(|e| (e.id.0, e.hops)).collect()
@@ -60,7 +59,7 @@ fn templates_hold_everybody_within_the_geodesic_radius() {
 }
 
 #[test]
-fn graphs_that_make_no_sense_are_refused() {
+fn invalid_graphs_are_refused() {
     let of = |edges: &[(u16, u16)], own| Template::<1>::from_graph(&PLACES, edges, own, 1);
     assert_eq!(of(&EDGES, 6), Err(TemplateError::NoSuchPlace));
     assert_eq!(of(&[(0, 6)], 0), Err(TemplateError::BadEdge));
@@ -85,7 +84,7 @@ fn straying_beyond_eps_counts_as_missing_and_a_stranger_in_the_place_as_surplus(
 }
 
 #[test]
-fn a_place_for_anyone_takes_the_nearest_that_nobody_named() {
+fn a_place_without_a_number_takes_the_nearest_unnamed_robot() {
     let entry = |x, id| TemplateEntry { offset: Cell::new(x, 0), id: RobotId(id), hops: 1 };
     let anyone = Template::<3> {
         slot: 0,
@@ -108,7 +107,7 @@ fn costs_restart_for_each_direction_and_point_to_the_place() {
     let found = found(2, 1, 5, &robots);
     let price = distances(&params, Cell::new(5, 10), None, &found.members);
     assert_eq!(price.best(), Some(Dir::East));
-    // One cell off its place by everybody: one tick at a gain of 1.
+    // One cell off its place by all neighbours: one tick at a gain of 1.
     assert_eq!(price.get(Dir::East), crate::cost::TICK);
     let by_top = distances(&params, Cell::new(5, 10), Some(Cell::new(7, 10)), &[]);
     assert_eq!(by_top.get(Dir::East), crate::cost::TICK);
@@ -124,7 +123,7 @@ fn places_out_of_reach_close_no_move() {
 }
 
 #[test]
-fn lag_counts_what_is_behind_in_full_and_the_rest_by_half() {
+fn lag_counts_the_distance_behind_in_full_and_the_rest_by_half() {
     let at = |x, y| Cell::new(x, y);
     assert_eq!(lag(at(-4, 0), Dir::East), 280);
     assert_eq!(lag(at(4, 0), Dir::East), 140);
@@ -145,7 +144,7 @@ fn waiting_has_hysteresis() {
 }
 
 #[test]
-fn def_points_to_where_the_others_are_off_to() {
+fn def_points_in_the_direction_of_the_others_displacement() {
     let cell = Cell::new(10, 10);
     let with = |x: i16, y: i16| {
         let mut robots = in_place(cell);
@@ -161,8 +160,8 @@ fn def_points_to_where_the_others_are_off_to() {
 }
 
 #[test]
-fn land_is_priced_for_all_who_would_cross_it() {
-    // Columns of impassability 1, 1, 9, 9; somebody two cells to the east; a wall at the end.
+fn land_is_priced_for_all_robots_that_would_cross_it() {
+    // Columns of impassability 1, 1, 9, 9; a robot two cells to the east; a wall at the end.
     let cells = [1, 1, 9, BLOCKED];
     let window = Window::new(&cells, Cell::new(20, 5), 4, 1).unwrap();
     let entry = TemplateEntry { offset: Cell::new(2, 0), id: RobotId(2), hops: 1 };
@@ -170,20 +169,20 @@ fn land_is_priced_for_all_who_would_cross_it() {
     let mut price =
         |footprint| blended(&window, (Cell::new(20, 5), 3), &[entry], footprint, &mut out).unwrap().cells().to_vec();
     assert_eq!(price(Footprint::Mean(0)), cells);
-    // West cell: half of 1 and 9. Second: the wall behind counts not. Walls stay.
+    // West cell: half of 1 and 9. Second: the wall behind does not count. Walls remain.
     assert_eq!(price(Footprint::Mean(8)), [5, 1, 9, BLOCKED]);
     assert_eq!(price(Footprint::Mean(16)), [9, 1, 9, BLOCKED]);
     assert_eq!(price(Footprint::Dearest), [9, 1, 9, BLOCKED]);
     let around = (Cell::new(20, 5), 1);
     assert!(blended(&window, around, &[entry], Footprint::Dearest, &mut [0; 1]).is_none());
-    // A larger window than the search needs: only its part is priced, all of it is looked at.
+    // A window larger than the search needs: only the needed part is priced, all of it is read.
     let mut near = [0; 2];
     let near = blended(&window, around, &[entry], Footprint::Mean(16), &mut near).unwrap();
     assert_eq!((near.origin(), near.cells()), (Cell::new(20, 5), &[9, 1][..]));
 }
 
 #[test]
-fn a_robot_near_its_place_stands_rather_than_leave_it() {
+fn a_robot_near_its_place_stays_rather_than_leave_it() {
     let place = Cell::new(3, 3);
     assert!(should_stay(Cell::new(3, 3), place, Dir::East));
     assert!(!should_stay(Cell::new(2, 3), place, Dir::East));
@@ -225,7 +224,7 @@ proptest! {
         }
     }
 
-    /// Who stands where does not depend on where the map has its origin.
+    /// Results do not depend on the origin of the map.
     #[test]
     fn everything_is_relative(
         shift in (-500_i16..500, -500_i16..500),
@@ -273,7 +272,7 @@ mod in_plane {
     use crate::robot::RobotId;
     use proptest::prelude::*;
 
-    /// One metre, 2 m/s, 1 m/s^2 in steps of a tenth of a second: two seconds to get going.
+    /// One metre, 2 m/s, 1 m/s^2 in steps of a tenth of a second: two seconds to reach full speed.
     fn body() -> Body<f32> {
         Body {
             id: RobotId(1),
@@ -286,11 +285,11 @@ mod in_plane {
     }
 
     #[test]
-    fn in_place_a_follower_goes_as_its_leader_does() {
+    fn in_its_place_a_follower_has_its_leaders_velocity() {
         let drive = Drive::new(&body());
         let leader = Vec2::new(1.2, -0.7);
         assert_eq!(drive.follow(Vec2::ZERO, leader), leader);
-        // A metre behind, half a metre a second faster; never above its speed.
+        // A metre behind: half a metre per second faster, but never above its speed.
         assert_eq!(drive.follow(Vec2::new(1.0, 0.0), Vec2::new(1.0, 0.0)), Vec2::new(1.5, 0.0));
         assert!((drive.follow(Vec2::new(90.0, 9.0), leader).norm() - 2.0).abs() < 1e-5);
         assert_eq!(drive.follow(Vec2::new(f32::NAN, 0.0), Vec2::ZERO), Vec2::ZERO);
@@ -304,13 +303,13 @@ mod in_plane {
         assert!((drive.leads_at(1.5, 90.0) - 0.9).abs() < 1e-6);
         assert_eq!((drive.leads_at(3.0, 90.0), drive.leads_at(9.0, 90.0)), (0.0, 0.0));
         assert_eq!((drive.leads_at(0.0, 0.0), drive.leads_at(0.0, 1.0)), (0.0, 0.5));
-        // Without inertia ten steps take the place of the time to get going.
+        // Without inertia ten steps replace the time to reach full speed.
         let drive = Drive::new(&Body { max_acceleration_mps2: f32::MAX, ..body() });
         assert_eq!(drive.halt_m(), 2.0);
     }
 
     #[test]
-    fn who_is_ahead_or_aside_is_not_behind() {
+    fn a_robot_ahead_or_aside_is_not_behind() {
         let north = Vec2::new(0.0, 1.0);
         assert_eq!(behind(Vec2::new(0.0, -3.0), north), 3.0);
         assert_eq!(behind(Vec2::new(9.0, 0.0), north), 0.0);
@@ -323,7 +322,8 @@ mod in_plane {
 
     #[test]
     fn a_wall_on_the_straight_way_closes_it_and_one_out_of_sight_does_not() {
-        // One row of five cells of 2 m, a wall in the fourth; the robot in the second, half a metre east of its middle.
+        // One row of five cells of 2 m, a wall in the fourth; the robot in the second, half a metre
+        // east of its middle.
         let cells = [1, 1, 1, BLOCKED, 1];
         let window = Window::new(&cells, Cell::new(10, 7), 5, 1).unwrap();
         let here = (Cell::new(11, 7), Vec2::new(0.5_f32, 0.0), 2.0);
@@ -337,8 +337,8 @@ mod in_plane {
         assert!(!is_straight(&window, nonsense, Vec2::new(1.0, 0.0), &|_| true));
     }
 
-    /// How far a body that lags ends up from its place beside a leader that does not, and that starts, goes and stops, and
-    /// how far beyond it, when news are so many steps old.
+    /// The final error and the overshoot of a body with lag beside a leader without lag that
+    /// starts, moves and stops, with beacons that are `delay` steps old.
     fn follows(lag_s: f32, delay: usize) -> (f32, f32) {
         let (body, step_s) = (body(), 0.1);
         let mut leader = (Vec2::new(0.0, 0.0), Vec2::ZERO);
@@ -366,7 +366,7 @@ mod in_plane {
     }
 
     #[test]
-    fn a_body_that_lags_comes_to_its_place_without_swinging_about_it() {
+    fn a_body_with_lag_reaches_its_place_without_oscillating() {
         for delay in 0..=4 {
             for lag_s in [0.1, 0.5, 1.0] {
                 let (worst, overshoot) = follows(lag_s, delay);

@@ -4,32 +4,35 @@ use super::{Position, Vec2};
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// A plane without edges: who leaves on one side comes in on the other.
+/// A plane without edges: a robot that leaves on one side enters on the other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Torus<S> {
-    /// Size along x and y, metres. What is not above 0 does not wrap.
+    /// Size along x and y, metres. An axis whose size is not above 0 does not wrap.
     pub size_m: [S; 2],
 }
 
 impl<S: Scalar> Torus<S> {
-    /// The place on [0, size) along both axes, metres; 0 for what is not a number or 2^31 turns away.
+    /// The position in [0, size) along both axes, metres; 0 if it is not a number or 2^31 turns
+    /// away.
     #[must_use]
     pub fn wrap(&self, place_m: Vec2<S>) -> Vec2<S> {
         let [width, height] = self.size_m;
         Vec2::new(wrap(place_m.x, width), wrap(place_m.y, height))
     }
 
-    /// The shortest of all ways that differ from `offset_m` by whole turns around the torus: each component on
-    /// [-size/2, size/2]. An exact half keeps its sign, so that two robots see each other in opposite directions.
+    /// The shortest of all vectors that differ from `offset_m` by whole turns around the torus:
+    /// each component is in [-size/2, size/2]. An exact half keeps its sign, so that two robots see
+    /// each other in opposite directions.
     #[must_use]
     pub fn shortest(&self, offset_m: Vec2<S>) -> Vec2<S> {
         let [width, height] = self.size_m;
         Vec2::new(shortest(offset_m.x, width), shortest(offset_m.y, height))
     }
 
-    /// Of the images of `place`, which differ from it by whole turns around the torus, the one nearest to `own`: at most half a
-    /// turn away along each axis. Exact for sizes in whole millimetres; heights stay. Constant work.
+    /// Of the images of `place`, which differ from it by whole turns around the torus, the one
+    /// nearest to `own`: at most half a turn away along each axis. Exact for sizes in whole
+    /// millimetres; heights are unchanged. Constant work.
     #[must_use]
     pub fn image(&self, place: Position, own: Position) -> Position {
         let ([x, y, z], [own_x, own_y, _]) = (place.mm, own.mm);
@@ -41,7 +44,8 @@ impl<S: Scalar> Torus<S> {
                 return mm;
             };
             let back = ahead.wrapping_sub(size_mm);
-            // An exact half keeps its sign, so that two robots see each other in opposite directions.
+            // An exact half keeps its sign, so that two robots see each other in opposite
+            // directions.
             let is_behind = ahead > size_mm >> 1 || ahead.wrapping_add(back) == 0 && mm < own;
             own.wrapping_add(if is_behind { back } else { ahead })
         };
@@ -55,7 +59,7 @@ fn wrap<S: Scalar>(x: S, size: S) -> S {
         return x;
     }
     let wrapped = x - size * turns(x, size);
-    // Rounding may put what lies just below 0 onto the far edge.
+    // Rounding may move a value just below 0 onto the far edge.
     if wrapped >= S::ZERO && wrapped < size { wrapped } else { S::ZERO }
 }
 
@@ -65,7 +69,7 @@ fn shortest<S: Scalar>(x: S, size: S) -> S {
     if !wraps || x.abs() <= half {
         return x;
     }
-    // Once around is the rule: both places are on the torus.
+    // One turn is the usual case: both positions are on the torus.
     let near = if x > S::ZERO { x - size } else { x + size };
     if near.abs() <= half {
         return near;
@@ -74,7 +78,7 @@ fn shortest<S: Scalar>(x: S, size: S) -> S {
     if from_edge > half { from_edge - size } else { from_edge }
 }
 
-/// Whole turns in `x`, rounded down; 0 when they cannot be counted.
+/// Whole turns in `x`, rounded down; 0 if they cannot be counted.
 fn turns<S: Scalar>(x: S, size: S) -> S {
     let turns = x.checked_div(size).and_then(S::floor_to_i32);
     turns.map_or(S::ZERO, S::from_i32)

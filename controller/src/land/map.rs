@@ -1,4 +1,4 @@
-//! What one robot knows of the land around it.
+//! One robot's map of the land around it.
 
 use super::tile::{AGES, LandPatch, PATCH_HEIGHT, PATCH_TILES, PATCH_WIDTH, Tile};
 use super::tile_of;
@@ -7,52 +7,51 @@ use crate::list::Seldom;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Ages for which what the robot saw itself beats what it is told.
+/// Ages up to which the robot's own observations override messages.
 const OWN_STANDS: u8 = AGES >> 2;
-/// log2 of a patch's sides.
 const PATCH_BITS: [u32; 2] = [PATCH_WIDTH.trailing_zeros(), PATCH_HEIGHT.trailing_zeros()];
 
-/// How a map is kept.
+/// Parameters of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MapParams {
-    /// What was seen longer ago is forgotten; 16 times the step of ages. Shorter follows land that changes and loses liars' words sooner;
-    /// longer keeps what was seen at the start of a long way. More than 0, at most 35 minutes.
+    /// Observations older than this are forgotten; 16 times the step of ages. A shorter time adapts
+    /// faster to changing land and drops false reports sooner; a longer one keeps what was seen at
+    /// the start of a long path. More than 0, at most 35 minutes.
     pub forget_after: Duration,
 }
 
 impl Default for MapParams {
-    /// 10 minutes.
     fn default() -> Self {
         Self { forget_after: Duration::from_millis(600_000) }
     }
 }
 
-/// A tile, and where it is from.
+/// A tile and its origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Known {
     pub(super) tile: Tile,
-    /// The robot saw it itself.
     is_own: bool,
-    /// The robot saw it itself and has not told it yet.
+    /// The robot saw it itself and has not sent it yet.
     is_news: bool,
 }
 
-/// A square of `T` tiles that moves with the robot: `T` is 0 (none), 256, 1024 or 4096, for 64, 128 or 256 cells along each side, of which
-/// at least three eighths lie ahead wherever the robot is in its patch.
+/// A square of `T` tiles that moves with the robot. `T` is 0 (none), 256, 1024 or 4096, for 64, 128
+/// or 256 cells along each side. At least three eighths of a side lie ahead, wherever the robot is
+/// in its patch.
 ///
-/// Memory: 3 bytes a tile. What leaves the square is forgotten. On a host nothing is held before the first tile is known.
+/// Memory: 3 bytes per tile. Tiles that leave the square are forgotten. On a host no memory is used
+/// before the first tile is known.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LandMap<const T: usize> {
-    /// By their places modulo the side; all or none.
+    /// Indexed by position modulo the side; all or none.
     tiles: Seldom<Known, T>,
     /// The south-west tile, a patch's corner.
     origin: Cell,
-    /// When the tiles last became older.
     aged_at: Option<Instant>,
-    /// The patch that is to be told again next.
+    /// The next patch to be repeated.
     next: u16,
-    /// Whose turn it is: what is new, or what was told before.
+    /// Whether the next message repeats an old patch or sends a new one.
     repeats: bool,
 }
 
@@ -63,28 +62,25 @@ impl<const T: usize> Default for LandMap<T> {
 }
 
 impl<const T: usize> LandMap<T> {
-    /// log2 of the tiles along each side.
     pub(super) const BITS: u32 = {
         let bits = T.trailing_zeros() >> 1;
         assert!(T == 0 || T == 256 || T == 1024 || T == 4096, "a map has 0, 256, 1024 or 4096 tiles");
         if T == 0 { 0 } else { bits }
     };
-    /// Tiles along each side.
     const SIDE: i16 = if T == 0 { 0 } else { 1 << Self::BITS };
 
-    /// Nothing known yet.
+    /// Creates a map without known tiles.
     #[must_use]
     pub const fn new() -> Self {
         Self { tiles: Seldom::new(), origin: Cell::new(0, 0), aged_at: None, next: 0, repeats: false }
     }
 
-    /// What is known of a tile, by its place in tiles.
+    /// The tile at this position (in tiles).
     #[must_use]
     pub fn get(&self, at: Cell) -> Tile {
         self.index(at).and_then(|index| self.tiles.get(index)).map_or(Tile::UNKNOWN, |known| known.tile)
     }
 
-    /// The south-west tile of the square.
     pub(super) const fn origin(&self) -> Cell {
         self.origin
     }
@@ -95,7 +91,6 @@ impl<const T: usize> LandMap<T> {
         self.tiles.is_empty()
     }
 
-    /// Index of a tile of the square.
     fn index(&self, at: Cell) -> Option<usize> {
         let inside = |at: i16, origin: i16| (0..i32::from(Self::SIDE)).contains(&(i32::from(at) - i32::from(origin)));
         let mask = Self::SIDE.saturating_sub(1);
@@ -109,7 +104,8 @@ impl<const T: usize> LandMap<T> {
         self.tiles.get_mut(index)
     }
 
-    /// Moves the square so that the robot in `cell` is in the middle of it. O(T) when it crosses the middle of a patch.
+    /// Moves the square so that the robot in `cell` is in its middle. O(T) when the robot crosses
+    /// the middle of a patch.
     fn center(&mut self, cell: Cell) {
         while T > 0 && self.tiles.push(Known::default()).is_ok() {}
         let at = tile_of(cell);
@@ -123,7 +119,7 @@ impl<const T: usize> LandMap<T> {
         if self.origin == before {
             return;
         }
-        // What is now where nothing was, or something else.
+        // Positions that were outside the old square are unknown.
         for place in self.places(self.origin) {
             let was_inside =
                 |at: i16, origin: i16| i32::from(at) - i32::from(origin) < i32::from(Self::SIDE) && at >= origin;
@@ -135,17 +131,16 @@ impl<const T: usize> LandMap<T> {
         }
     }
 
-    /// The places of a square.
     fn places(&self, origin: Cell) -> impl Iterator<Item = Cell> + use<T> {
         (0..Self::SIDE).flat_map(move |y| (0..Self::SIDE).map(move |x| origin + Cell::new(x, y)))
     }
 
-    /// Lets the tiles grow older, and forgets the oldest; to be called now and then. O(T) when they do.
+    /// Ages the tiles, and forgets the oldest; call it regularly. O(T) when tiles age.
     pub fn age(&mut self, params: &MapParams, now: Instant) {
         let step = Duration::from_micros(params.forget_after.as_micros() >> 4);
         let since = self.aged_at.map(|at| now.since(at));
         match since {
-            // A clock that went back, or half round: a new beginning.
+            // The clock went back, or wrapped halfway: start over.
             Some(since) if since >= Duration::ZERO => {
                 let due = since.as_micros().checked_div(step.as_micros()).unwrap_or(0).min(AGES.into());
                 if due <= 0 {
@@ -165,7 +160,7 @@ impl<const T: usize> LandMap<T> {
         self.aged_at = Some(now);
     }
 
-    /// Takes in what the robot in `cell` sees. O(cells of the window).
+    /// Adds what the robot in `cell` sees. O(cells of the window).
     pub fn see(&mut self, window: &Window<'_>, cell: Cell) {
         self.center(cell);
         let origin = self.origin;
@@ -183,8 +178,8 @@ impl<const T: usize> LandMap<T> {
         }
     }
 
-    /// Takes in what somebody says. What lies outside of the square is dropped; what the robot saw itself not long ago stands;
-    /// of the rest the newer tile stays. O([`PATCH_TILES`]).
+    /// Adds a received patch. Tiles outside the square are dropped, and recent own observations are
+    /// kept; of all other tiles the newer one is kept. O([`PATCH_TILES`]).
     pub fn hear(&mut self, patch: &LandPatch) {
         for (at, tile) in patch.iter() {
             let Some(known) = self.get_mut(at) else { continue };
@@ -198,8 +193,9 @@ impl<const T: usize> LandMap<T> {
         }
     }
 
-    /// What to tell next: the patch with the most news, and in every second packet one that was told before, in turn, for
-    /// those who have missed it. `None` when nothing is known. O(T).
+    /// Returns the patch to send next: the one with the most unsent observations, and in every
+    /// second message one that was sent before, in turn, for robots that have missed it. `None` if
+    /// no tile is known. O(T).
     pub fn say(&mut self) -> Option<LandPatch> {
         self.repeats = !self.repeats;
         let news = self.corners().map(|corner| (corner, self.count(corner, |known| known.is_news)));
@@ -228,7 +224,6 @@ impl<const T: usize> LandMap<T> {
         Some(patch)
     }
 
-    /// The south-west tiles of the patches.
     fn corners(&self) -> impl Iterator<Item = Cell> + Clone + use<T> {
         let (origin, [x_bits, y_bits]) = (self.origin, PATCH_BITS);
         let rows = 0..Self::SIDE >> y_bits;

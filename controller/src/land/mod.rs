@@ -1,13 +1,16 @@
-//! Land beyond the window: what robots have seen of it, as coarse tiles that fit packets, and what a way across it costs.
+//! Land beyond the window: coarse tiles of what robots have seen, small enough for messages, and
+//! the cost of a path across them.
 //!
-//! A [`Tile`] is what [`TILE`] x [`TILE`] cells cost on average, in a byte together with its age. [`LandMap`] keeps a square
-//! of tiles around the robot: what it saw itself ([`LandMap::see`]) and what others told ([`LandMap::hear`]), a
-//! [`LandPatch`] of 32 tiles per packet ([`LandMap::say`]). [`Outlook`] is the cheapest way on from each tile, by which
-//! [`crate::route`] prices the exits of its window.
+//! A [`Tile`] stores the average cost of [`TILE`] x [`TILE`] cells and its age in one byte.
+//! [`LandMap`] keeps a square of tiles around the robot: its own observations ([`LandMap::see`])
+//! and those received ([`LandMap::hear`]) as a [`LandPatch`] of 32 tiles per message
+//! ([`LandMap::say`]). [`Outlook`] is the cheapest path onwards from each tile; [`crate::route`]
+//! uses it to price the exits of its window.
 //!
-//! Merging is by age: newer wins, and of equally new tiles the dearer one, so that neither the order nor the repetition of
-//! packets changes what comes out. What the robot saw itself beats what it is told for a quarter of the time that tiles live. What is told
-//! is never a wall but a high price, and it ages out: whoever lies makes detours, and cannot wall anybody in.
+//! Merging is by age: the newer tile wins, and of equally new ones the dearer, so that neither the
+//! order nor the repetition of messages changes the result. The robot's own observations override
+//! messages for a quarter of the lifetime of tiles. A message never adds a wall but only a high
+//! price, and it expires: a false report causes detours, but cannot wall a robot in.
 
 mod map;
 mod outlook;
@@ -22,7 +25,7 @@ pub use tile::{AGES, LandPatch, PATCH_HEIGHT, PATCH_TILES, PATCH_WIDTH, TILE, Ti
 
 use crate::grid::Cell;
 
-/// The tile that a cell lies in, in tiles.
+/// The tile that contains a cell, in tiles.
 #[must_use]
 pub const fn tile_of(cell: Cell) -> Cell {
     Cell::new(cell.x >> tile::TILE_BITS, cell.y >> tile::TILE_BITS)

@@ -1,4 +1,4 @@
-//! The cheapest way on across the tiles.
+//! The cheapest path onwards across the tiles.
 
 use super::{LandMap, TILE, Tile, tile_of};
 use crate::cost::{Cost, Gain};
@@ -7,50 +7,50 @@ use core::fmt::Debug;
 
 /// Sixteenths of a surplus that count.
 ///
-/// Chosen on seed 1 of `staya experiment route --share` (six robots anywhere, 40 landscapes): dT 14.1, 14.8, 12.2, 14.3 % at 70, 100, 130,
-/// 160 obstacles; with 8, 14.7, 16.2, 12.3, 13.9 %; with 16, 15.6, 15.4, 12.3, 15.2 %.
+/// Chosen on seed 1 of `staya experiment route --share` (six robots anywhere, 40 landscapes): dT
+/// 14.1, 14.8, 12.2, 14.3 % at 70, 100, 130, 160 obstacles; with 8, 14.7, 16.2, 12.3, 13.9 %; with
+/// 16, 15.6, 15.4, 12.3, 15.2 %.
 const BELIEVED_16: i64 = 10;
-/// Half the side of a tile, cells.
 const HALF_TILE: u32 = TILE.unsigned_abs() as u32 >> 1;
-/// Rounds of two sweeps each after which costs are taken as they are: a way that turns back more often is priced too high.
+/// Rounds of two sweeps each after which the search ends: a path that turns back more often is
+/// priced too high.
 const ROUNDS: u8 = 12;
 
-/// What counts of the parameters of a route.
+/// The route parameters that matter here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Gains {
     /// Weight of travel time.
     pub a0: Gain,
-    /// Ticks per cell of land that nobody knows.
+    /// Ticks per cell of unknown land.
     pub a3: Gain,
     /// Length of a diagonal move.
     pub norm: Norm,
 }
 
-/// Knows something of the land beyond the window.
+/// A source of knowledge about the land beyond the window.
 pub trait FarLand: Debug {
-    /// Shows `to` the way to the cell `target` as the tiles have it; does nothing when none is known.
+    /// Calls `to` with the path to the cell `target` across the tiles; does nothing if no tile is
+    /// known.
     ///
-    /// Bounded work: O(T) for a map of `T` tiles; 6 bytes a tile on the stack.
+    /// Bounded work: O(T) for a map of `T` tiles; 6 bytes per tile on the stack.
     fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&Outlook<'_>));
 }
 
-/// What the way to the target costs from each tile, beside what it would cost if nothing were known.
+/// The cost of the path to the target from each tile, compared to its cost if no tile were known.
 #[derive(Clone, Copy, Debug)]
 pub struct Outlook<'a> {
     costs: &'a [Cost],
     /// South-west tile.
     origin: Cell,
-    /// log2 of the tiles along each side.
     bits: u32,
-    /// The tile of the target.
     target: Cell,
     gains: Gains,
 }
 
 impl Outlook<'_> {
-    /// What the way from `cell` to the target costs more (or less, below 0) than across land that nobody knows; between the
-    /// centres of four tiles in proportion. Where nothing is known it is 0.
+    /// How much more (or less, below 0) the path from `cell` to the target costs than across
+    /// unknown land; interpolated between the centres of four tiles. 0 where no tile is known.
     #[must_use]
     pub fn surplus(&self, cell: Cell) -> i64 {
         // In eighths of a tile, from the centre of the first one.
@@ -69,12 +69,11 @@ impl Outlook<'_> {
             + at(1, 0) * east * (8 - north)
             + at(0, 1) * (8 - east) * north
             + at(1, 1) * east * north;
-        // Tiles are means, and the best way through is better.
+        // Tiles are means, and the best path through them is cheaper.
         (sum * BELIEVED_16) >> 10
     }
 }
 
-/// Cost from tile to tile where nothing is known.
 fn unknown(gains: &Gains, from: Cell, to: Cell) -> Cost {
     let (dx, dy) = (from.x.abs_diff(to.x), from.y.abs_diff(to.y));
     let (longer, shorter) = (u32::from(dx.max(dy)), u32::from(dx.min(dy)));
@@ -85,7 +84,7 @@ fn unknown(gains: &Gains, from: Cell, to: Cell) -> Cost {
     gains.a3.of(tiles.saturating_mul(TILE.unsigned_abs().into()))
 }
 
-/// Scratch memory of a search, by rows from the south-west tile.
+/// Scratch memory of a search, row by row from the south-west tile.
 struct Search<const T: usize> {
     /// Price of a cell's length in the tile, as a [`Gain`] in sixteenths.
     price: [u16; T],
@@ -93,7 +92,8 @@ struct Search<const T: usize> {
 }
 
 impl<const T: usize> Search<T> {
-    /// Offers the tile `at` the way over its neighbours on one side; whether it is better.
+    /// Updates the tile `at` with paths over its neighbours on one side; returns whether it
+    /// improved.
     fn relax(&mut self, at: usize, (x, y): (i32, i32), sides: [(i32, i32); 4], norm: Norm) -> bool {
         let bits = LandMap::<T>::BITS;
         let inside = 0..1_i32 << bits;
@@ -108,7 +108,7 @@ impl<const T: usize> Search<T> {
             let (Some(&price), Some(&cost)) = (self.price.get(beside), self.cost.get(beside)) else { continue };
             let is_diagonal = dx != 0 && dy != 0 && norm == Norm::Euclidean;
             let length = if is_diagonal { DIAGONAL } else { UNIT };
-            // Half of the way in each of both.
+            // Half of the path lies in each tile.
             let step = (u32::from(own) + u32::from(price)).saturating_mul(length * HALF_TILE);
             best = best.min(cost.saturating_add(step));
         }
@@ -118,7 +118,6 @@ impl<const T: usize> Search<T> {
         best < before
     }
 
-    /// There and back over all tiles until nothing changes.
     fn sweep(&mut self, norm: Norm) {
         const BEFORE: [(i32, i32); 4] = [(-1, 0), (-1, -1), (0, -1), (1, -1)];
         const BEHIND: [(i32, i32); 4] = [(1, 0), (1, 1), (0, 1), (-1, 1)];
@@ -140,8 +139,8 @@ impl<const T: usize> Search<T> {
 }
 
 impl<const T: usize> LandMap<T> {
-    /// The price of a tile: what is known, or for one beside known ones a mean of theirs and of what unknown land is taken to cost, as
-    /// land changes little by little.
+    /// The price of a tile. An unknown tile beside known ones gets a mean of their prices and the
+    /// assumed price of unknown land, as land changes gradually.
     fn price(&self, gains: &Gains, at: Cell) -> u16 {
         let known =
             |tile: Tile| tile.ticks_16().map(|ticks| (u32::from(gains.a0.sixteenths()) * u32::from(ticks)) >> 4);

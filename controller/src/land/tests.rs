@@ -14,7 +14,7 @@ fn at(x: i16, y: i16) -> Cell {
     Cell::new(x, y)
 }
 
-/// A map that has seen `side` x `side` cells of `u` from `corner` on.
+/// Shows the map `side` x `side` cells of impassability `u` from `corner` on.
 fn seeing(map: &mut Map, robot: Cell, corner: Cell, side: u16, u: u8) {
     let cells = vec![u; usize::from(side) * usize::from(side)];
     map.see(&Window::new(&cells, corner, side, side).unwrap(), robot);
@@ -50,7 +50,7 @@ fn a_tile_grows_older_until_it_is_forgotten() {
 }
 
 #[test]
-fn a_map_forgets_with_time_and_bears_a_clock_that_wraps() {
+fn a_map_forgets_with_time_and_tolerates_a_wrapping_clock() {
     let mut map = Map::new();
     let params = MapParams { forget_after: Duration::from_millis(16_000) };
     let mut now = Instant::from_micros(u32::MAX - 5_000_000);
@@ -66,40 +66,39 @@ fn a_map_forgets_with_time_and_bears_a_clock_that_wraps() {
 }
 
 #[test]
-fn what_leaves_the_square_is_forgotten_and_the_rest_stays() {
+fn tiles_outside_the_square_are_forgotten_and_the_rest_stay() {
     let mut map = Map::new();
     seeing(&mut map, at(0, 0), at(-20, -20), 40, 3);
     seeing(&mut map, at(60, 0), at(58, 0), 4, 7);
     assert_eq!(map.get(at(4, 0)).ticks_16(), Some(48));
     assert_eq!(map.get(at(-5, 0)), Tile::UNKNOWN);
-    // The same places modulo the side.
     assert_eq!(map.get(at(4 - 32, 0)), Tile::UNKNOWN);
     seeing(&mut map, at(i16::MAX, i16::MIN), at(i16::MAX - 3, i16::MIN), 4, 2);
     assert_eq!(map.get(at(4, 0)), Tile::UNKNOWN);
 }
 
 #[test]
-fn news_goes_first_and_all_is_told_again_in_turn() {
+fn new_tiles_are_sent_first_and_all_are_repeated_in_turn() {
     let mut map = Map::new();
     assert_eq!(map.say(), None);
     seeing(&mut map, at(16, 8), at(0, 0), 40, 3);
     let mut other = Map::new();
     seeing(&mut other, at(16, 8), at(100, 100), 4, 3);
-    // Two patches wide and three high, or more: each second packet is news.
+    // At least two patches wide and three high: every second message carries new tiles.
     for _ in 0..24 {
         other.hear(&map.say().unwrap());
     }
     let known =
         |map: &Map| (0..10).flat_map(|y| (0..10).map(move |x| at(x, y))).filter(|&t| map.get(t).is_known()).count();
     assert_eq!((known(&map), known(&other)), (100, 100));
-    // News of one tile is told in one of the next two packets, wherever it lies.
+    // A new tile is sent in one of the next two messages, wherever it lies.
     seeing(&mut map, at(16, 8), at(36, 36), 4, 9);
     let told = [map.say().unwrap(), map.say().unwrap()];
     assert!(
         told.iter()
             .any(|patch| patch.iter().any(|(place, tile)| place == at(9, 9) && tile.ticks_16() == Some(144 - 16)))
     );
-    // Who hears nothing of that gets it all the same.
+    // A robot that missed these messages receives everything by repetition.
     let mut late = Map::new();
     seeing(&mut late, at(16, 8), at(100, 100), 4, 3);
     for _ in 0..24 {
@@ -109,7 +108,7 @@ fn news_goes_first_and_all_is_told_again_in_turn() {
 }
 
 #[test]
-fn what_is_seen_beats_what_is_told_until_it_is_old() {
+fn own_observations_override_messages_until_they_are_old() {
     let mut map = Map::new();
     let params = MapParams { forget_after: Duration::from_millis(16_000) };
     map.age(&params, Instant::from_micros(0));
@@ -121,13 +120,12 @@ fn what_is_seen_beats_what_is_told_until_it_is_old() {
     map.age(&params, Instant::from_micros(4_000_000));
     map.hear(&lie);
     assert_eq!(map.get(at(0, 0)).ticks_16(), Some(512));
-    // And a look is enough.
     seeing(&mut map, at(2, 2), at(0, 0), 8, 2);
     assert_eq!([map.get(at(0, 0)), map.get(at(1, 0))].map(Tile::ticks_16), [Some(32); 2]);
 }
 
 #[test]
-fn a_map_of_nothing_works() {
+fn a_map_of_capacity_zero_works() {
     let mut map = LandMap::<0>::new();
     let cells = [1; 16];
     map.see(&Window::new(&cells, at(0, 0), 4, 4).unwrap(), at(0, 0));
@@ -137,7 +135,6 @@ fn a_map_of_nothing_works() {
     map.look(&GAINS, at(9, 9), &mut |_| panic!("it knows nothing"));
 }
 
-/// What the way from `cell` to `target` costs more.
 fn surplus(map: &Map, cell: Cell, target: Cell) -> Option<i64> {
     let mut surplus = None;
     map.look(&GAINS, target, &mut |outlook| surplus = Some(outlook.surplus(cell)));
@@ -157,7 +154,7 @@ fn a_hill_on_the_way_costs_and_a_valley_saves() {
     let over = surplus(&map, at(-2, 2), at(42, 2)).unwrap();
     let ticks = over as f64 / f64::from(crate::cost::TICK);
     assert!((30.0..70.0).contains(&ticks), "{ticks}");
-    // Behind it, and to where it is not between, the way is free.
+    // Behind it, and to targets on this side, the path is free.
     assert_eq!(surplus(&map, at(40, 2), at(56, 2)), Some(0));
     let mut valley = Map::new();
     for x in 0..10 {
@@ -167,7 +164,7 @@ fn a_hill_on_the_way_costs_and_a_valley_saves() {
 }
 
 #[test]
-fn targets_anywhere_and_extreme_gains_give_numbers() {
+fn any_target_and_extreme_gains_give_finite_costs() {
     let mut map = Map::new();
     seeing(&mut map, at(0, 0), at(-20, -20), 40, 255);
     for target in [at(i16::MIN, i16::MAX), at(i16::MAX, i16::MAX), at(0, 0), at(-1, 500)] {
@@ -184,7 +181,7 @@ proptest! {
     #[test]
     fn merging_is_commutative_associative_and_idempotent(a: u8, b: u8, c: u8) {
         let [a, b, c] = [a, b, c].map(|byte| LandPatch::from_bytes(at(0, 0), [byte; PATCH_TILES]).tiles[0]);
-        // A tile that is unknown may carry any age; that is no difference.
+        // An unknown tile may have any age; that is not a difference.
         let same = |a: Tile, b: Tile| a == b || !a.is_known() && !b.is_known();
         prop_assert!(same(a.merged(b), b.merged(a)));
         prop_assert!(same(a.merged(b).merged(c), a.merged(b.merged(c))));
@@ -213,7 +210,7 @@ proptest! {
     }
 
     #[test]
-    fn a_patch_of_any_bytes_comes_back_and_moves_no_map_beyond_its_bounds(x: i16, y: i16, bytes in tiles()) {
+    fn a_patch_of_any_bytes_round_trips_and_stays_within_the_map(x: i16, y: i16, bytes in tiles()) {
         let patch = LandPatch::from_bytes(at(x, y), bytes);
         prop_assert_eq!(patch.bytes(), bytes);
         let mut map = Map::new();

@@ -1,4 +1,4 @@
-//! A tile in a byte, and 32 of them as a message.
+//! A tile in one byte, and 32 of them as a message.
 
 use crate::fixint;
 use crate::grid::{BLOCKED, Cell, Window};
@@ -7,29 +7,29 @@ use serde::{Deserialize, Serialize};
 pub(super) const TILE_BITS: u32 = 2;
 /// Cells along each side of a tile.
 pub const TILE: i16 = 1 << TILE_BITS;
-/// Cells of a tile.
 const CELLS: u32 = 1 << (2 * TILE_BITS);
-/// Of so many cells seen a tile is known.
+/// Number of visible cells from which a tile is known.
 const ENOUGH: u32 = CELLS >> 1;
-/// Ages that a tile can have; one older is forgotten.
+/// Number of ages of a tile; beyond the last one it is forgotten.
 pub const AGES: u8 = 16;
 
-/// Prices that a tile can have, in sixteenths of a tick per cell; number 0 is a tile that nobody knows.
+/// The prices that a tile can have, in sixteenths of a tick per cell; number 0 is an unknown tile.
 const PRICES: [u16; 16] = [0, 16, 24, 32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 176, 256, 512];
-/// What a cell of wall adds to the mean, ticks: a tile of walls has the highest price.
+/// The contribution of a wall cell to the mean, ticks: a tile of walls has the highest price.
 const WALL_TICKS: u32 = 32;
 
-/// What a tile costs, and how old that news is. As a byte: the number of the price in the low four bits, the age above them.
+/// The price and the age of a tile. As a byte: the number of the price in the low four bits, the
+/// age above them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
 pub struct Tile(u8);
 
 impl Tile {
-    /// Nobody has seen it.
+    /// An unknown tile.
     pub const UNKNOWN: Self = Self(0);
 
-    /// A tile of the price next to `ticks_16` sixteenths of a tick per cell, just seen.
+    /// A tile just seen, with the price nearest to `ticks_16` sixteenths of a tick per cell.
     #[must_use]
     pub fn new(ticks_16: u16) -> Self {
         let known = PRICES.iter().zip(0_u8..).skip(1);
@@ -37,7 +37,8 @@ impl Tile {
         Self(nearest.map_or(0, |(_, number)| number))
     }
 
-    /// What the window shows of the tile `at`; `None` when it shows too little. O(cells of a tile).
+    /// The tile `at` as seen in the window; `None` if too little of it is visible. O(cells of a
+    /// tile).
     #[must_use]
     pub fn seen(window: &Window<'_>, at: Cell) -> Option<Self> {
         let south_west = Cell::new(at.x << TILE_BITS, at.y << TILE_BITS);
@@ -51,30 +52,29 @@ impl Tile {
         Some(Self::new(mean as u16))
     }
 
-    /// Sixteenths of a tick per cell; `None` when it is unknown.
+    /// Its price, sixteenths of a tick per cell; `None` if it is unknown.
     #[must_use]
     pub fn ticks_16(self) -> Option<u16> {
         PRICES.get(usize::from(self.level())).copied().filter(|_| self.is_known())
     }
 
-    /// Whether anything is known of it.
+    /// Whether the tile is known.
     #[must_use]
     pub const fn is_known(self) -> bool {
         self.level() != 0
     }
 
-    /// How old it is, 0..[`AGES`].
+    /// Its age, 0..[`AGES`].
     #[must_use]
     pub const fn age(self) -> u8 {
         self.0 >> 4
     }
 
-    /// The number of its price.
     pub(super) const fn level(self) -> u8 {
         self.0 & 0xF
     }
 
-    /// The same, by one age older; unknown when it was of the last one.
+    /// The tile one age older; unknown if it had the last age.
     #[must_use]
     pub const fn older(self) -> Self {
         match self.0.checked_add(1 << 4) {
@@ -83,7 +83,7 @@ impl Tile {
         }
     }
 
-    /// Which of two says more: what is known, what is newer, what is dearer. The order of the two does not matter.
+    /// The better of two tiles: known before unknown, then newer, then dearer. Commutative.
     #[must_use]
     pub fn merged(self, other: Self) -> Self {
         let worth = |tile: Self| (tile.is_known(), AGES.saturating_sub(tile.age()), tile.level());
@@ -98,8 +98,8 @@ pub const PATCH_HEIGHT: i16 = 4;
 /// Tiles of a patch.
 pub const PATCH_TILES: usize = PATCH_WIDTH as usize * PATCH_HEIGHT as usize;
 
-/// A part of what a robot knows of the land, for everybody: 32 x 16 cells. It is as right or wrong as its sender's word; see
-/// [`LandMap::hear`](super::LandMap::hear) for what it can do.
+/// A piece of a robot's map for all robots: 32 x 16 cells. It is as reliable as its sender; see
+/// [`LandMap::hear`](super::LandMap::hear) for its effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LandPatch {
@@ -111,7 +111,7 @@ pub struct LandPatch {
 }
 
 impl LandPatch {
-    /// Its tiles with their places, in tiles. A place beyond the range of coordinates wraps.
+    /// The tiles with their positions, in tiles. A position beyond the range of coordinates wraps.
     pub fn iter(&self) -> impl Iterator<Item = (Cell, Tile)> + '_ {
         let places = (0..PATCH_HEIGHT).flat_map(|y| (0..PATCH_WIDTH).map(move |x| Cell::new(x, y)));
         places.zip(self.tiles).map(|(place, tile)| (self.corner + place, tile))
@@ -123,7 +123,7 @@ impl LandPatch {
         self.tiles.map(|Tile(byte)| byte)
     }
 
-    /// What [`LandPatch::bytes`] gave; any bytes are tiles.
+    /// The inverse of [`LandPatch::bytes`]; any bytes are valid tiles.
     #[must_use]
     pub fn from_bytes(corner: Cell, bytes: [u8; PATCH_TILES]) -> Self {
         Self { corner, tiles: bytes.map(Tile) }

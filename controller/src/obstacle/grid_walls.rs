@@ -1,4 +1,4 @@
-//! The grid's blocked cells as walls.
+//! Converts the grid's blocked cells to walls.
 
 use super::Obstacle;
 use crate::geom::Vec2;
@@ -15,19 +15,22 @@ struct Wall<S> {
     ends_m: [Vec2<S>; 2],
 }
 
-/// The sides of blocked cells that face passable ones, as walls relative to the robot at `place_m` (in the world), the
-/// nearest first (of two at one distance the one that runs north, then the one farther west or south). Sides in one
-/// line are one wall. Walls beyond `reach_m` are left out, and those that lead there may end there; when there are more
-/// than `K`, the farthest are left out too.
+/// The sides of blocked cells that face passable ones, as walls relative to the robot at `place_m`
+/// (in the world), nearest first. Of two at one distance the one that runs north comes first, then
+/// the one farther west or south. Sides in one line are one wall. Walls beyond `reach_m` are
+/// omitted, and those that lead there may end there; if there are more than `K`, the farthest are
+/// omitted too.
 ///
-/// Beyond the window nothing is assumed: what is not known is no wall. Choose a reach of at least the own radius
-/// plus the way of one horizon at full speed, and a window that holds it.
+/// Unknown land beyond the window has no walls. Choose a reach of at least the own radius plus the
+/// distance of one horizon at full speed, and a window that contains it.
 ///
-/// A capacity too small for all walls in reach costs foresight, not safety, as long as the walls that can be touched in
-/// one step of control are among the `K` nearest: eight are enough for a body and a step smaller than a cell.
+/// A capacity too small for all walls in reach reduces foresight but not safety, as long as the
+/// walls that can be touched in one control step are among the `K` nearest: eight suffice for a
+/// body and a step smaller than a cell.
 ///
-/// Empty when an input is not finite or the robot is off the grid. Bounded work: two looks at each cell of the window
-/// within reach (at most 255 cells each way), and for each wall found one insertion into a list of `K`.
+/// Empty if an input is not finite or the robot is off the grid. Bounded work: two reads of each
+/// cell of the window within reach (at most 255 cells each way), and for each wall found one
+/// insertion into a list of `K`.
 #[must_use]
 pub fn grid_walls<S: Scalar, const K: usize>(
     window: &Window<'_>,
@@ -40,7 +43,6 @@ pub fn grid_walls<S: Scalar, const K: usize>(
     list::collect(walls.iter().map(|wall| Obstacle::Wall(wall.ends_m)))
 }
 
-/// The nearest walls found so far.
 struct Walls<S, const K: usize> {
     /// South-west corner of the robot's own cell relative to the robot, metres.
     corner_m: Vec2<S>,
@@ -71,7 +73,8 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         if width == 0 || height == 0 {
             return Some(walls);
         }
-        // West sides of cells from south to north, then south sides from west to east. All of them are in the window.
+        // West sides of cells from south to north, then south sides from west to east. All of them
+        // are in the window.
         let (cells, row) = (window.cells(), usize::from(window.width()));
         for x in first.x.saturating_add(1)..=last.x {
             let begin = window.index(Cell::new(x, first.y))?;
@@ -84,7 +87,7 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         Some(walls)
     }
 
-    /// Adds what is one wall along a line of the grid; `corner` is the corner before a side.
+    /// Adds the walls along one line of the grid; `corner` is the corner before a side.
     fn join(&mut self, (first, last): (i16, i16), sides: impl Iterator<Item = bool>, corner: impl Fn(i16) -> Cell) {
         let mut begin = None;
         for (at, is_side) in (first..=last).zip(sides) {
@@ -102,7 +105,6 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         }
     }
 
-    /// Adds the wall between two corners of the grid if it is near enough.
     fn add(&mut self, from: Cell, to: Cell) {
         let ends_m = [from, to].map(|corner| {
             let steps = |to: i16, from: i16| S::from_i32(i32::from(to) - i32::from(from));
@@ -110,7 +112,6 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
             self.corner_m + way * self.cell_m
         });
         let [a, b] = ends_m;
-        // Along an axis: the nearest point needs no projection.
         let foot = Vec2::new(S::ZERO.clamp(a.x, b.x), S::ZERO.clamp(a.y, b.y));
         let is_near = foot.norm() <= self.reach_m;
         if !(foot.is_finite() && is_near) {
@@ -122,13 +123,13 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         for farther in self.nearest.iter_mut().skip(place) {
             core::mem::swap(farther, &mut wall);
         }
-        // In a full list the farthest has no place.
+        // A full list drops the farthest.
         let _ = self.nearest.push(wall);
     }
 }
 
-/// Whether the sides of cells towards the cells `back` places before them part what is blocked from what is passable: of
-/// the cell at `begin`, then of the one `step` places on, and so on.
+/// Whether the sides of cells towards the cells `back` places before them separate blocked from
+/// passable cells: for the cell at `begin`, then for the one `step` places on, and so on.
 fn sides(cells: &[u8], begin: usize, step: usize, back: usize) -> impl Iterator<Item = bool> {
     let is_blocked = |at: usize| cells.get(at).map(|&cell| cell == BLOCKED);
     let mut at = begin;
@@ -149,7 +150,8 @@ mod tests {
 
     const FRAME: GridFrame<f64> = GridFrame { origin_m: Vec2::new(100.0, -50.0), cell_m: 2.0 };
 
-    /// A window from rows of `#` and `.`, the northernmost first, with its south-west cell at (10, 20).
+    /// A window from rows of `#` and `.`, the northernmost first, with its south-west cell at (10,
+    /// 20).
     fn cells(rows: &[&str]) -> List<u8> {
         let rows = rows.iter().rev();
         rows.flat_map(|row| row.bytes().map(|b| if b == b'#' { BLOCKED } else { 1 })).collect()
@@ -160,7 +162,7 @@ mod tests {
         Window::new(cells, Cell::new(10, 20), width, height).unwrap()
     }
 
-    /// Walls in units of cells from the window's south-west corner, for a robot at such a place.
+    /// Walls in units of cells from the window's south-west corner, for a robot at this position.
     fn seen<const K: usize>(rows: &[&str], at: (f64, f64), reach: f64) -> List<[f64; 4]> {
         let bytes = cells(rows);
         let corner = FRAME.origin_m + Vec2::new(10.0, 20.0) * FRAME.cell_m;
@@ -195,7 +197,6 @@ mod tests {
         let walls = [[0.0, 1.0, 6.0, 1.0], [0.0, 2.0, 6.0, 2.0]];
         assert_eq!(seen::<8>(&rows, (2.5, 1.25), 9.0), walls);
         assert_eq!(seen::<8>(&rows, (2.5, 1.75), 9.0), [walls[1], walls[0]]);
-        // In reach of neither, and of one only.
         assert!(seen::<8>(&rows, (2.5, 1.25), 0.2).is_empty());
         assert_eq!(seen::<8>(&rows, (2.5, 1.25), 0.3), [walls[0]].map(|[_, y, _, w]| [1.0, y, 4.0, w]));
     }
@@ -204,7 +205,6 @@ mod tests {
     fn beyond_the_window_nothing_is_assumed() {
         assert!(seen::<8>(&["...", "...", "..."], (1.5, 1.5), 9.0).is_empty());
         assert!(seen::<8>(&["###", "###", "###"], (1.5, 1.5), 9.0).is_empty());
-        // Far outside the window, and off the grid.
         assert!(seen::<8>(&[".#", "#."], (400.0, 1.0), 9.0).is_empty());
         assert!(seen::<8>(&[".#", "#."], (1e9, 1.0), 9.0).is_empty());
         let empty = Window::new(&[], Cell::new(10, 20), 0, 0).unwrap();
@@ -213,10 +213,11 @@ mod tests {
     }
 
     #[test]
-    fn in_full_capacity_the_farthest_are_left_out() {
+    fn at_full_capacity_the_farthest_are_omitted() {
         let rows = [".#.#.", "#.#.#", ".#.#.", "#.#.#", ".#.#."];
         let all = seen::<64>(&rows, (2.4, 2.45), 9.0);
-        // Each of four lines each way is one wall: across a corner of the board blocked and passable change sides.
+        // Each of four lines each way is one wall: across a corner of the board blocked and
+        // passable change sides.
         assert_eq!(all.len(), 8);
         assert_eq!(seen::<5>(&rows, (2.4, 2.45), 9.0), all[..5]);
         assert_eq!(seen::<8>(&rows, (2.4, 2.45), 9.0), all);
@@ -225,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_gives_no_walls() {
+    fn invalid_input_gives_no_walls() {
         let rows = [".#", "#."];
         let bytes = cells(&rows);
         let window = window(&bytes, &rows);
@@ -243,7 +244,6 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// In other scalars the walls are the same.
         #[test]
         fn f32_and_q16_see_the_same_walls(x in 2.0_f64..10.0, y in 2.0_f64..10.0, seed: u64) {
             let mut rng = Rng::new(seed);
@@ -265,7 +265,7 @@ mod tests {
             for others in [walls::<f32>(&window, x, y), walls::<Q16>(&window, x, y)] {
                 prop_assert_eq!(exact.len(), others.len());
                 for wall in &exact {
-                    // Two that are nearly equally far may change places.
+                    // Two that are nearly equally far may be swapped.
                     let is_same = |other: &[f64; 4]| {
                         wall.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-3)
                     };

@@ -1,4 +1,4 @@
-//! What stands in the way and does not move, as a robot sees it: relative to its own place.
+//! Static obstacles as a robot sees them: relative to its own position.
 
 mod grid_walls;
 
@@ -7,11 +7,13 @@ pub use grid_walls::grid_walls;
 use crate::geom::{Vec2, Vec3};
 use crate::scalar::Scalar;
 
-/// An obstacle relative to the robot's centre, metres, so that 1000 km from the origin changes nothing.
+/// An obstacle relative to the robot's centre, metres, so that the distance from the world's origin
+/// does not matter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Obstacle<S> {
-    /// An upright wall of no thickness between two points; polygons, convex or not, are several walls.
+    /// A vertical wall without thickness between two points; polygons, convex or not, are several
+    /// walls.
     Wall([Vec2<S>; 2]),
     /// A solid ball, in the plane a disc.
     Ball {
@@ -30,9 +32,9 @@ pub enum Obstacle<S> {
 }
 
 impl<S: Scalar> Obstacle<S> {
-    /// The obstacle's point nearest to the robot's centre (the centre itself inside of a ball or a
-    /// half-space), and how far it is away: negative inside. `None` for one that is not finite, and at the centre of a
-    /// ball.
+    /// The obstacle's point nearest to the robot's centre (the centre itself inside a ball or a
+    /// half-space), and its distance, negative inside. `None` for an obstacle that is not finite,
+    /// and at the centre of a ball.
     #[must_use]
     pub fn nearest_point(&self) -> Option<(Vec3<S>, S)> {
         match *self {

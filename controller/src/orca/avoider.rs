@@ -1,8 +1,10 @@
-//! One step of ORCA for one robot, in the plane or in space: what RVO2's `Agent::computeNewVelocity` does.
+//! One step of ORCA for one robot, in the plane or in space, like RVO2's
+//! `Agent::computeNewVelocity`.
 //!
-//! [`Avoider::velocity`] gathers what the nearest obstacles and robots forbid, lets the rule against
-//! [deadlocks](super::deadlock) bend the wish where ORCA alone would stand still for ever, and
-//! [solves](super::linear_program) within what the body can reach.
+//! [`Avoider::velocity`] collects the constraints of the nearest obstacles and robots, lets the
+//! rule against [deadlocks](super::deadlock) bend the preferred velocity where ORCA alone would
+//! stand still forever, and [solves](super::linear_program) within the velocities that the body can
+//! reach.
 
 use super::dimension::{Dimension, HalfPlane, HalfSpace, MovingBall, Situation};
 use super::linear_program::{Solution, solve};
@@ -25,12 +27,13 @@ mod space;
 #[cfg(test)]
 mod tests;
 
-/// Where robots avoid each other, and how it is found out what a moving neighbour forbids.
+/// The space in which robots avoid each other, and the method that computes the constraint of a
+/// moving neighbour.
 pub trait HalfSpaces<S: Scalar> {
     /// Velocities: [`Vec2`] in the plane, [`Vec3`] in space.
     type Velocity: Dimension<Scalar = S>;
 
-    /// What `ball` forbids a robot with `own_velocity_mps`; `None` when an input makes no sense.
+    /// The constraint of `ball` on a robot with `own_velocity_mps`; `None` if an input is invalid.
     fn half_space(
         &self,
         own_velocity_mps: Self::Velocity,
@@ -39,7 +42,7 @@ pub trait HalfSpaces<S: Scalar> {
     ) -> Option<HalfSpace<Self::Velocity>>;
 }
 
-/// In the plane, exactly by [`half_plane`].
+/// The plane, with exact half-planes ([`half_plane`]).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Analytic;
@@ -57,24 +60,23 @@ impl<S: Scalar> HalfSpaces<S> for Analytic {
     }
 }
 
-/// In space, exactly by [`half_space`].
+/// Space, with exact half-spaces ([`half_space`]).
 ///
-/// While somebody is in the way, robots lean by 25 degrees to the right and, by their numbers, somewhat up or down;
-/// [`DeadlockParams`](super::DeadlockParams) plays no part. Walls are upright and have no top: only the horizontal
-/// velocity counts.
+/// While a robot is in the way, robots turn by 25 degrees to the right and, depending on their
+/// numbers, somewhat up or down; [`DeadlockParams`](super::DeadlockParams) has no effect. Walls are
+/// vertical and have no top: only the horizontal velocity counts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InSpace<S> {
-    /// How many times as far as beside each other robots keep apart above and below each other, the same for all; 1 or
-    /// more (less counts as 1): a ball, or an ellipsoid that is so many times higher than wide. Rotors blow downwards: what
-    /// flies through the stream of another one sinks. For a
-    /// small quadrotor 2.5 (W. Hönig et al. 2018) and up. More
-    /// closes gaps between layers; less lets robots fall onto each other.
+    /// Ratio of vertical to horizontal distance that robots keep from each other, the same for all;
+    /// 1 or more (less counts as 1). 1 is a ball, more an ellipsoid that is higher than wide by
+    /// this factor. Rotors blow downwards, and a robot that flies through the stream of another
+    /// sinks. Use 2.5 (W. Hönig et al. 2018) or more for small quadrotors. A larger value closes
+    /// gaps between layers; a smaller one lets robots fall onto each other.
     pub downwash: S,
 }
 
 impl<S: Scalar> Default for InSpace<S> {
-    /// Balls.
     fn default() -> Self {
         Self { downwash: S::ONE }
     }
@@ -90,12 +92,12 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
         params: &Params<S>,
     ) -> Option<HalfSpace<Vec3<S>>> {
         let high = self.downwash;
-        // Not a number is no downwash either.
         let is_higher = high > S::ONE;
         if !is_higher {
             return half_space(own_velocity_mps, ball, params);
         }
-        // In a space that is lower by so much, the ellipsoid is a ball. Half-spaces stay half-spaces on the way back.
+        // In a space scaled down by this factor the ellipsoid is a ball. Half-spaces remain
+        // half-spaces on the way back.
         let lowered = |v: Vec3<S>| Some(Vec3::new(v.x, v.y, v.z.checked_div(high)?));
         let ball = MovingBall { offset_m: lowered(ball.offset_m)?, velocity_mps: lowered(ball.velocity_mps)?, ..*ball };
         let HalfSpace { point, normal } = half_space(lowered(own_velocity_mps)?, &ball, params)?;
@@ -105,11 +107,12 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
     }
 }
 
-/// Collision avoidance of one robot; at most `K` constraints count. `P` says where: [`Analytic`] or a
-/// [`VoxelTable2k`](super::VoxelTable2k) in the plane, [`InSpace`] in space.
+/// Collision avoidance of one robot, with at most `K` constraints. `P` selects the space and the
+/// method: [`Analytic`] or [`VoxelTable2k`](super::VoxelTable2k) in the plane, [`InSpace`] in
+/// space.
 ///
-/// Bytes: those of [`AvoidParams`] and the few of the rule against deadlocks; 16 K bytes of stack (`f32`; in space 24
-/// K), three times that when no velocity is permitted.
+/// Memory: [`AvoidParams`] and a few bytes for the rule against deadlocks; 16 K bytes of stack
+/// (`f32`; in space 24 K), three times that if no velocity is permitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound(
     deserialize = "P: serde::Deserialize<'de>, <P::Velocity as Dimension>::Memory: serde::Deserialize<'de>"
@@ -121,7 +124,7 @@ pub struct Avoider<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
 }
 
 impl<S: Scalar, const K: usize> Avoider<S, K> {
-    /// An avoider in the plane with exact half-planes.
+    /// Creates an avoider in the plane with exact half-planes.
     #[must_use]
     pub const fn new(params: AvoidParams<S>) -> Self {
         Self::with_source(params, Analytic)
@@ -129,7 +132,7 @@ impl<S: Scalar, const K: usize> Avoider<S, K> {
 }
 
 impl<S: Scalar, const K: usize> Avoider<S, K, InSpace<S>> {
-    /// An avoider in space, among balls.
+    /// Creates an avoider in space, with robots as balls.
     #[must_use]
     pub const fn in_space(params: AvoidParams<S>) -> Self {
         Self::with_source(params, InSpace { downwash: S::ONE })
@@ -137,7 +140,7 @@ impl<S: Scalar, const K: usize> Avoider<S, K, InSpace<S>> {
 }
 
 impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
-    /// An avoider whose constraints of moving neighbours come from `source`.
+    /// Creates an avoider that gets the constraints of moving neighbours from `source`.
     #[must_use]
     pub const fn with_source(params: AvoidParams<S>, source: P) -> Self {
         Self { params, source, memory: P::Velocity::FRESH }
@@ -149,29 +152,30 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         &self.params
     }
 
-    /// The parameters, to be changed between two steps.
+    /// Mutable access to the parameters, which may change between two steps.
     pub const fn params_mut(&mut self) -> &mut AvoidParams<S> {
         &mut self.params
     }
 
-    /// Whether the robot was told in the last step to wait for others who go first through a gap.
+    /// Whether the robot had to wait in the last step for robots that go first through a gap.
     #[must_use]
     pub fn waits_for_turn(&self) -> bool {
         P::Velocity::waits_for_turn(&self.memory)
     }
 
-    /// The velocity to take until the next step: the nearest to `wish_mps`, bent by the rule against deadlocks, that
-    /// robots and obstacles permit; where they permit none, the one that violates them least, obstacles
-    /// first. Call it once each [`Body::step_s`].
+    /// The velocity to take until the next step. Call it once per [`Body::step_s`].
     ///
-    /// `goal_m` is the way to the goal, if there is one: near it nobody swerves. `nearby` is nearest first. Obstacles
-    /// count before robots, the nearest first (of equally near ones the earlier in the slice), though robots get up to
-    /// half of the `K` places.
+    /// It is the permitted velocity nearest to `wish_mps` as bent by the rule against deadlocks. If
+    /// robots and obstacles permit none, it is the one that violates them least, obstacles first.
     ///
-    /// A body with inertia gets the best of the velocities that it can [reach](Body::reach) within the step, so that it
-    /// may violate a constraint which came up faster than it can brake: choose horizons longer than
-    /// speed / acceleration. What is not finite counts as absent (wish: as zero). Work: as [`solve`], at most
-    /// twice, and O(obstacles x K + `nearby`).
+    /// `goal_m` is the vector to the goal, if there is one; near the goal robots do not turn aside.
+    /// `nearby` is sorted, nearest first. Obstacles count before robots, the nearest first (of
+    /// equally near ones the earlier in the slice), but robots get up to half of the `K` places.
+    ///
+    /// A body with inertia gets the best of the velocities that it can [reach](Body::reach) within
+    /// the step. It may violate a constraint that appeared faster than it can brake, so choose
+    /// horizons longer than speed / acceleration. Values that are not finite count as absent (a
+    /// wish: as zero). Work: that of [`solve`], at most twice, and O(obstacles x K + `nearby`).
     #[must_use]
     pub fn velocity(
         &mut self,
@@ -196,7 +200,8 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         reachable::<P::Velocity, K>(body, &mut constraints, hard, wish)
     }
 
-    /// What [`Avoider::velocity`] reckons with for the same arguments: what obstacles forbid (they are so many), then robots.
+    /// The constraints that [`Avoider::velocity`] uses for the same arguments: first those of
+    /// obstacles, whose number is returned, then those of robots.
     #[must_use]
     pub fn half_spaces(
         &self,
@@ -209,7 +214,6 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         (hard, constraints)
     }
 
-    /// What obstacles (their number is the answer), then robots forbid.
     fn constraints(
         &self,
         body: &Body<S>,
@@ -217,7 +221,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         obstacles: &[Obstacle<S>],
         constraints: &mut Vec<HalfSpace<P::Velocity>, K>,
     ) -> usize {
-        // Half for each; what one leaves is the other's.
+        // Half for each kind; either may use what the other leaves.
         let room = K.saturating_sub(nearby.len().min(K >> 1));
         nearest_obstacles(&self.params, body, obstacles, room, constraints);
         let hard = constraints.len();
@@ -225,7 +229,8 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         hard
     }
 
-    /// What robots forbid, as many as there is room for. Not inlined, so that its stack is free again for the solver.
+    /// Adds constraints of robots as far as there is space. Not inlined, so that the solver can
+    /// reuse its stack.
     #[inline(never)]
     fn robots(&self, body: &Body<S>, nearby: &[Nearby<S>], constraints: &mut Vec<HalfSpace<P::Velocity>, K>) {
         let own = own_velocity(body);
@@ -251,14 +256,14 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
     }
 }
 
-/// The own velocity; zero when it is not finite.
+/// The own velocity; zero if it is not finite.
 fn own_velocity<V: Dimension>(body: &Body<V::Scalar>) -> V {
     let own = V::from(body.velocity_mps);
     if own.is_finite() { own } else { V::ZERO }
 }
 
-/// What the at most `room` nearest obstacles forbid, nearest first, into `constraints`, which are empty. Not inlined,
-/// so that its stack is free again for the solver.
+/// Writes the constraints of the at most `room` nearest obstacles, nearest first, into the empty
+/// `constraints`. Not inlined, so that the solver can reuse its stack.
 #[inline(never)]
 fn nearest_obstacles<V: Dimension, const K: usize>(
     params: &AvoidParams<V::Scalar>,
@@ -268,10 +273,10 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     constraints: &mut Vec<HalfSpace<V>, K>,
 ) {
     let own = own_velocity(body);
-    // Beside the constraints, not with them: pairs would need both lists twice on the stack.
+    // A separate list: pairs would need both lists twice on the stack.
     let mut distances = Vec::<V::Scalar, K>::new();
     for obstacle in obstacles {
-        // Nothing is nearer than a ball in whose very centre the robot is.
+        // A ball whose centre the robot is exactly in is nearest of all.
         let nearest_point = obstacle.nearest_point();
         let distance = nearest_point.map_or(-V::Scalar::MAX, |(_, distance)| distance);
         let Some(constraint) = static_obstacle(params, body, own, obstacle) else {
@@ -288,7 +293,7 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
         if distances.push(distance).is_err() || constraints.push(constraint).is_err() {
             continue;
         }
-        // Both lists in step, by pattern: `swap` would leave a panic in the firmware.
+        // Moves both lists in step by slice patterns; `swap` would leave a panic in the firmware.
         let mut at = distances.len().saturating_sub(1);
         while let Some(before) = at.checked_sub(1)
             && let Some([nearer, farther]) = distances.get_mut(before..=at)
@@ -302,7 +307,6 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     }
 }
 
-/// What an obstacle forbids: it does nothing to avoid, so the whole correction is the robot's.
 fn static_obstacle<V: Dimension>(
     params: &AvoidParams<V::Scalar>,
     body: &Body<V::Scalar>,
@@ -322,14 +326,14 @@ fn static_obstacle<V: Dimension>(
                 offset_m: center_m.into(),
                 velocity_mps: V::ZERO,
                 radii_m: body.radius_m + radius_m + params.margin_m,
-                // Out of its very centre: up, in the plane east.
+                // Out of its exact centre: up, in the plane east.
                 tie: Vec3::new(zero, zero, V::Scalar::ONE).into(),
             };
             let params = Params { horizon_s, separation_s: body.step_s, share: V::Scalar::ONE };
             V::half_space(own, &ball, &params)
         }
         Obstacle::Plane { normal, distance_m } => {
-            // What it cuts out of where robots are: a floor cuts nothing out of the plane.
+            // The part within the robots' space: a floor has no effect in the plane.
             let normal = V::from(normal);
             let length = normal.norm();
             let normal = normal.normalized()?;
@@ -343,8 +347,9 @@ fn static_obstacle<V: Dimension>(
 
 /// The best velocity that the body can have after one step.
 ///
-/// With inertia these are a disc (ball) around its velocity: the same problem with that as origin; what comes out too
-/// fast is [shortened](Body::reach). Moves `constraints` to that origin.
+/// With inertia the reachable velocities are a disc (ball) around its velocity, so this is the same
+/// problem with that origin; a result that is too fast is [shortened](Body::reach). Moves
+/// `constraints` to that origin.
 fn reachable<V: Dimension, const K: usize>(
     body: &Body<V::Scalar>,
     constraints: &mut [HalfSpace<V>],

@@ -1,4 +1,5 @@
-//! What ORCA is made of in any dimension (half-spaces and balls), and all in which the plane differs from space.
+//! The elements of ORCA in any dimension (half-spaces and balls), and everything in which the plane
+//! differs from space.
 
 use super::{AvoidParams, Params};
 use crate::body::Body;
@@ -10,11 +11,11 @@ use crate::scalar::Scalar;
 use core::fmt::Debug;
 use serde::Serialize;
 
-/// Velocities v with (v - point) . normal >= 0 are permitted.
+/// Permits the velocities v with (v - point) . normal >= 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct HalfSpace<V> {
-    /// A point of its border, m/s.
+    /// A point of the border, m/s.
     pub point: V,
     /// Unit vector into the permitted side.
     pub normal: V,
@@ -24,7 +25,7 @@ pub struct HalfSpace<V> {
 pub type HalfPlane<S> = HalfSpace<Vec2<S>>;
 
 impl<V: Vector> HalfSpace<V> {
-    /// How far `velocity` lies on the forbidden side, m/s; negative on the permitted one.
+    /// How far `velocity` lies on the forbidden side, m/s; negative on the permitted side.
     #[must_use]
     #[inline]
     pub fn penetration(&self, velocity: V) -> V::Scalar {
@@ -33,72 +34,73 @@ impl<V: Vector> HalfSpace<V> {
 }
 
 impl<S: Scalar> HalfPlane<S> {
-    /// Unit vector along the border, the permitted side to its left.
+    /// Unit vector along the border, with the permitted side to its left.
     #[must_use]
     pub fn direction(&self) -> Vec2<S> {
         Vec2::new(self.normal.y, -self.normal.x)
     }
 }
 
-/// A moving ball, in the plane a disc, to keep the own centre out of.
+/// A moving ball, in the plane a disc, that the robot's centre must stay out of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MovingBall<V: Vector> {
-    /// Its centre minus the own one, metres.
+    /// Its centre minus the robot's, metres.
     pub offset_m: V,
     /// Its velocity, m/s.
     pub velocity_mps: V,
     /// Sum of both radii, metres; more than 0.
     pub radii_m: V::Scalar,
-    /// Which way to go when both are in the same place with the same velocity: any vector, the
-    /// opposite one on the other robot. East when zero.
+    /// The direction to take if both are in the same place with the same velocity: any vector,
+    /// which must be opposite on the other robot. East if zero.
     pub tie: V,
 }
 
-/// What a linear program optimises: the point nearest to a goal, or the farthest in a direction.
+/// The objective of a linear program: the point nearest to a goal, or the farthest in a direction.
 #[derive(Clone, Copy)]
 pub enum Aim<V> {
     Near(V),
     Along(V),
 }
 
-/// What the rule against deadlocks sees.
+/// The input of the rule against deadlocks.
 pub struct Situation<'a, V: Vector> {
     pub(super) body: &'a Body<V::Scalar>,
-    /// Finite, within the speed limit.
+    /// Preferred velocity, finite and within the speed limit.
     pub(super) wish: V,
-    /// The way to the goal, finite.
+    /// Vector to the goal, finite.
     pub(super) goal: Option<V>,
     pub(super) nearby: &'a [Nearby<V::Scalar>],
     pub(super) obstacles: &'a [Obstacle<V::Scalar>],
 }
 
-/// Velocities in the plane ([`Vec2`]) or in space ([`Vec3`]): the geometry of one constraint, linear programming on
-/// one border, and the way out of deadlocks. All else is the same in both.
+/// Velocities in the plane ([`Vec2`]) or in space ([`Vec3`]): the geometry of one constraint,
+/// linear programming on one border, and the rule against deadlocks. All other code is the same for
+/// both.
 pub trait Dimension: Vector + From<Vec3<<Self as Vector>::Scalar>> {
-    /// What the rule against deadlocks remembers from step to step.
+    /// State of the rule against deadlocks between steps.
     type Memory: Clone + Debug + PartialEq + Serialize;
-    /// Nothing to remember yet.
+    /// The initial state.
     const FRESH: Self::Memory;
 
-    /// What becomes of obstacles that together leave nothing: whether all they forbid, and what robots forbid, is
-    /// violated as little as possible. Otherwise the nearest ones are obeyed as far as they go, and what comes after
-    /// them counts no more (as in RVO2).
+    /// What to do if the obstacles together forbid every velocity. If true, the constraints of
+    /// obstacles and robots are all violated as little as possible. If false, the nearest obstacles
+    /// are obeyed as far as possible, and later constraints are ignored (as in RVO2).
     const SHARES_CONTRADICTIONS: bool;
 
-    /// The vector in space; in the plane one that is so high.
+    /// Converts to a vector in space; a vector in the plane gets this height.
     fn at_height(self, height: Self::Scalar) -> Vec3<Self::Scalar>;
 
-    /// The velocities that avoid `ball` for the time horizon, if it does its share (ORCA section 4). `None` when an
-    /// input makes no sense.
+    /// The velocities that avoid `ball` for the time horizon, provided that the neighbour does its
+    /// share (ORCA section 4). `None` if an input is invalid.
     fn half_space(
         own_velocity_mps: Self,
         ball: &MovingBall<Self>,
         params: &Params<Self::Scalar>,
     ) -> Option<HalfSpace<Self>>;
 
-    /// The best velocity no faster than `speed` on the border of `constraint` that those `before` it permit; `None`
-    /// when there is none.
+    /// The best velocity no faster than `speed` on the border of `constraint` that those `before`
+    /// it permit; `None` if there is none.
     fn best_on_border(
         constraint: &HalfSpace<Self>,
         before: &[HalfSpace<Self>],
@@ -106,7 +108,7 @@ pub trait Dimension: Vector + From<Vec3<<Self as Vector>::Scalar>> {
         aim: Aim<Self>,
     ) -> Option<Self>;
 
-    /// The wish to give to ORCA so that nobody waits for ever.
+    /// The preferred velocity to pass to ORCA so that no robot waits forever.
     fn break_deadlock(
         memory: &mut Self::Memory,
         params: &AvoidParams<Self::Scalar>,
@@ -118,8 +120,8 @@ pub trait Dimension: Vector + From<Vec3<<Self as Vector>::Scalar>> {
     fn waits_for_turn(memory: &Self::Memory) -> bool;
 }
 
-/// From `w`, relative to the ball's centre, to the ball's border: length of the change and outward
-/// normal; `otherwise` is the normal at the centre.
+/// The change from `w`, relative to the ball's centre, to the ball's border: its length and the
+/// outward normal; `otherwise` is the normal at the centre.
 pub(super) fn leave_ball<V: Vector>(w: V, radius: V::Scalar, otherwise: V) -> (V::Scalar, V) {
     let normal = w.normalized().unwrap_or(otherwise);
     (radius - w.norm(), normal)

@@ -1,5 +1,5 @@
-//! The accuracy of ORCA's half-planes with `Fast32`, which takes a fifth fewer instructions on a Cortex-M4F
-//! (`docs/firmware.md`).
+//! The accuracy of ORCA's half-planes with `Fast32`, which takes a fifth fewer instructions on a
+//! Cortex-M4F (`docs/firmware.md`).
 
 use super::{MovingBall, Params, half_plane};
 use crate::geom::Vec2;
@@ -41,7 +41,6 @@ fn half_planes_by_fast32_are_off_by_hundredths_of_a_degree_and_millimetres_a_sec
         let exact = asked::<f64>(own, offset, velocity, radii);
         let fast = asked::<Fast32>(own, offset, velocity, radii);
         let turned = (fast[0] - exact[0]).abs();
-        // Where two borders are equally near either is right.
         let turned = turned.min(360.0 - turned);
         let off = [if turned > 10.0 { 0.0 } else { turned }, (fast[1] - exact[1]).abs()];
         for (at, off) in off.into_iter().enumerate() {

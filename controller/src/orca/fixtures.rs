@@ -1,4 +1,5 @@
-//! What the tests of ORCA share: robots of 0.15 m at up to 0.5 m/s that decide 20 times a second.
+//! Shared by ORCA's tests: robots of radius 0.15 m and speed up to 0.5 m/s that decide 20 times per
+//! second.
 
 use super::{HalfSpace, MovingBall, Params};
 use crate::body::Body;
@@ -20,12 +21,13 @@ pub fn params<S: Scalar>(horizon_s: f64, share: f64) -> Params<S> {
     Params { horizon_s: scalar(horizon_s), separation_s: scalar(STEP_S), share: scalar(share) }
 }
 
-/// A neighbour that has no preference when it is in the same place.
+/// A neighbour without a preferred direction if it is in the same place.
 pub fn ball<V: Vector>(offset_m: V, velocity_mps: V, radii_m: V::Scalar) -> MovingBall<V> {
     MovingBall { offset_m, velocity_mps, radii_m, tie: V::ZERO }
 }
 
-/// How far a velocity is on the wrong side of the constraint that it violates most; 0 when it violates none.
+/// How far a velocity lies on the wrong side of the constraint that it violates most; 0 if it
+/// violates none.
 pub fn worst<V: Vector<Scalar = f64>>(constraints: &[HalfSpace<V>], at: V) -> f64 {
     let depths = constraints.iter().map(|one| one.penetration(at));
     depths.fold(0.0, f64::max)
@@ -56,13 +58,13 @@ pub fn robot<S: Scalar, const D: usize>(id: u32, offset_m: [f64; D], velocity_mp
     }
 }
 
-/// In the plane with two components.
+/// Two components give a vector in the plane.
 pub fn vector<S: Scalar, const D: usize>(components: [f64; D]) -> Vec3<S> {
     let at = |axis: usize| scalar(components.get(axis).copied().unwrap_or(0.0));
     Vec3::new(at(0), at(1), at(2))
 }
 
-/// The generator of a robot in a step.
+/// The random generator of a robot in a step.
 pub fn rng_of(robot: u32, tick: u32) -> Rng {
     Rng::keyed(1, 5, robot, tick)
 }

@@ -1,6 +1,8 @@
-//! What is left (ORCA section 5): incremental linear programming (de Berg et al., "Computational geometry", section
-//! 4.4) in the plane and in space. In RVO2 [`optimum`] is `linearProgram2`, [`least_penetration`] `linearProgram3`; in
-//! RVO2-3D they are `linearProgram3` and `linearProgram4`. What is below them, on one border, is
+//! Finds the best permitted velocity (ORCA section 5) by incremental linear programming (de Berg et
+//! al., "Computational geometry", section 4.4), in the plane and in space.
+//!
+//! In RVO2 [`optimum`] is `linearProgram2` and [`least_penetration`] is `linearProgram3`; in
+//! RVO2-3D they are `linearProgram3` and `linearProgram4`. The step below, on one border, is
 //! [`Dimension::best_on_border`].
 
 use super::dimension::{Aim, Dimension, HalfSpace};
@@ -12,29 +14,30 @@ use heapless::Vec;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Solution<V: Vector> {
-    /// The velocity, m/s: within the speed limit.
+    /// The velocity, m/s; within the speed limit.
     pub velocity_mps: V,
-    /// How far it lies on the forbidden side of the constraint that it violates most, m/s; 0 when it
+    /// How far it lies on the forbidden side of the constraint that it violates most, m/s; 0 if it
     /// violates none.
     pub penetration_mps: V::Scalar,
 }
 
 impl<V: Dimension> Solution<V> {
-    /// A velocity, and what it violates.
     pub(super) fn of(velocity_mps: V, constraints: &[HalfSpace<V>]) -> Self {
         let depths = constraints.iter().map(|one| one.penetration(velocity_mps));
         Self { velocity_mps, penetration_mps: depths.fold(V::Scalar::ZERO, V::Scalar::max) }
     }
 }
 
-/// The velocity nearest to `preferred_mps` that all constraints permit and that is no faster than
-/// `max_speed_mps`; if there is none, the one that violates the `hard` first constraints (static
-/// obstacles) not at all if possible, and the others as little as possible. If the hard ones alone leave nothing:
-/// see [`Dimension::SHARES_CONTRADICTIONS`].
+/// The velocity nearest to `preferred_mps` that all constraints permit and that does not exceed
+/// `max_speed_mps`.
 ///
-/// Result within rounding of the best; a preferred velocity that is not finite counts as zero. At most `N`
-/// constraints count. Work in the plane: O(n) for most, O(n^2) in the worst case, n^3 when there is no solution; in
-/// space O(n), O(n^3) and n^4.
+/// If there is none, the result violates the first `hard` constraints (static obstacles) not at all
+/// if possible, and the others as little as possible. If the hard constraints alone forbid every
+/// velocity, see [`Dimension::SHARES_CONTRADICTIONS`].
+///
+/// The result is within rounding of the best; a preferred velocity that is not finite counts as
+/// zero. At most `N` constraints count. Work in the plane: O(n) in most cases, O(n^2) in the worst
+/// case, O(n^3) without a solution; in space O(n), O(n^3) and O(n^4).
 #[must_use]
 pub fn solve<V: Dimension, const N: usize>(
     constraints: &[HalfSpace<V>],
@@ -55,8 +58,8 @@ pub fn solve<V: Dimension, const N: usize>(
     }
 }
 
-/// The best velocity that all constraints and the speed permit, or the best for those before the first one that
-/// leaves nothing, with that one's index.
+/// The best velocity that all constraints and the speed permit. If there is none, the best for the
+/// constraints before the first one that leaves no velocity, with the index of that one.
 fn optimum<V: Dimension>(constraints: &[HalfSpace<V>], speed: V::Scalar, aim: Aim<V>) -> (V, Option<usize>) {
     let mut best = match aim {
         Aim::Near(goal) => goal.clamp_norm(speed),
@@ -74,8 +77,8 @@ fn optimum<V: Dimension>(constraints: &[HalfSpace<V>], speed: V::Scalar, aim: Ai
     (best, None)
 }
 
-/// The velocity of least penetration: from the constraint `from` on, each one that is violated more than
-/// those before is moved back together with them until a velocity is left.
+/// The velocity of least penetration. From the constraint `from` on, each constraint that is
+/// violated more than those before is moved back together with them until a velocity is permitted.
 fn least_penetration<V: Dimension, const N: usize>(
     constraints: &[HalfSpace<V>],
     hard: usize,
@@ -89,16 +92,17 @@ fn least_penetration<V: Dimension, const N: usize>(
         if constraint.penetration(best) <= depth {
             continue;
         }
-        // Velocities that violate this one no more than another lie on one side of their bisector.
+        // Velocities that violate this constraint no more than another lie on one side of their
+        // bisector.
         let mut bisectors = Vec::<HalfSpace<V>, N>::new();
         for (other_index, other) in constraints.iter().enumerate().take(index) {
             let bisector = if other_index < hard { Some(*other) } else { bisector(constraint, other) };
             if let Some(bisector) = bisector {
-                // As many places as constraints.
                 let _ = bisectors.push(bisector);
             }
         }
-        // A failure here is one of rounding, or hard constraints contradict each other: what was found before stays.
+        // A failure is due to rounding or to contradictory hard constraints: keep the previous
+        // result.
         if let (better, None) = optimum(&bisectors, speed, Aim::Along(constraint.normal)) {
             best = better;
         }
@@ -107,7 +111,7 @@ fn least_penetration<V: Dimension, const N: usize>(
     best
 }
 
-/// The velocities that violate `other` no more than `one`; `None` when that is everything.
+/// The velocities that violate `other` no more than `one`; `None` if that holds for all.
 fn bisector<V: Dimension>(one: &HalfSpace<V>, other: &HalfSpace<V>) -> Option<HalfSpace<V>> {
     // penetration_one(v) >= penetration_other(v)  <=>  v . (n_o - n) >= c_o - c with c = point . n.
     let difference = other.normal - one.normal;

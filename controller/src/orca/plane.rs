@@ -1,5 +1,5 @@
-//! ORCA in the plane: the half-plane that one neighbour leaves (ORCA section 4; Tolok et al., the functional voxel
-//! model, FVM, eqs. 6 to 13), and linear programming on one border (RVO2's `linearProgram1`).
+//! ORCA in the plane: the half-plane of one neighbour (ORCA section 4; Tolok et al., the functional
+//! voxel model, FVM, eqs. 6 to 13), and linear programming on one border (RVO2's `linearProgram1`).
 
 use super::deadlock::{Patience, RightOfWay, lean};
 use super::dimension::{Aim, Dimension, HalfPlane, HalfSpace, MovingBall, Situation, leave_ball};
@@ -31,7 +31,8 @@ impl<S: Scalar> Dimension for Vec2<S> {
         best_on_line(constraint, before, speed, aim)
     }
 
-    /// In narrow places robots take turns; elsewhere they pass each other on the right, and who is stuck backs off.
+    /// In narrow places robots take turns. Elsewhere they pass each other on the right, and a robot
+    /// that is stuck backs off.
     #[inline(never)] // Its stack is free again for the solver.
     fn break_deadlock(
         memory: &mut Self::Memory,
@@ -46,7 +47,8 @@ impl<S: Scalar> Dimension for Vec2<S> {
         let patience = params.deadlock.patience_radii;
         let at_gap = right_of_way.wish(situation, goal, patience, rng);
         let wish = at_gap.unwrap_or_else(|| lean(params, situation, goal));
-        // Where one waits for one's turn, others see to it that it comes.
+        // A robot that waits for its turn must not back off; the other robots ensure that its turn
+        // comes.
         if right_of_way.takes_turns() { wish } else { stuck.wish(situation, wish, patience, rng) }
     }
 
@@ -55,13 +57,14 @@ impl<S: Scalar> Dimension for Vec2<S> {
     }
 }
 
-/// The velocities that avoid a disc for the time horizon, if it does its share.
+/// The velocities that avoid a disc for the time horizon, provided that the neighbour does its
+/// share.
 ///
-/// The truncated velocity obstacle VO of relative velocities is a cone with its tip cut off by the disc of
-/// radius r / tau around p / tau. The least change u brings the relative velocity to its border; the
-/// half-plane lies at the own velocity plus the own share of u.
+/// The truncated velocity obstacle VO of relative velocities is a cone whose tip is cut off by the
+/// disc of radius r / tau around p / tau. The least change u moves the relative velocity to its
+/// border. The border of the half-plane passes through the own velocity plus the own share of u.
 ///
-/// `None` when an input is not finite, or r or a time is not above 0. Constant work.
+/// `None` if an input is not finite, or r or a time is not above 0. Constant work.
 #[must_use]
 #[inline]
 pub fn half_plane<S: Scalar>(
@@ -76,7 +79,7 @@ pub fn half_plane<S: Scalar>(
     }
     let squared = p.norm_squared();
     let is_plain = squared > r * r && squared > tiny() && squared < S::MAX;
-    // What is not finite comes out as such, and is refused at the end.
+    // Values that are not finite propagate, and are rejected at the end.
     let (u, normal) = if S::IS_FLOATING && is_plain {
         let rate = S::ONE.checked_div(params.horizon_s)?;
         leave_cone(v, p, squared, r, rate)?
@@ -84,11 +87,11 @@ pub fn half_plane<S: Scalar>(
         return None;
     } else {
         match p.normalized() {
-            // Floating numbers are plain here, but for what rounding makes touch.
+            // With floating-point numbers, only discs that touch within rounding reach this branch.
             Some(ahead) if !S::IS_FLOATING && p.norm() > r => leave_cone_by_angle(v, p, ahead, r, params.horizon_s)?,
             _ => {
-                // Overlapping: apart again after the separation time, straight away from each other if
-                // nothing else says where to.
+                // Overlapping: separate within the separation time; directly away from each other
+                // if no other direction follows.
                 let tip = Vec2::new(p.x.checked_div(params.separation_s)?, p.y.checked_div(params.separation_s)?);
                 let away = (-p).normalized().or_else(|| tie.normalized());
                 let away = away.unwrap_or(Vec2::new(S::ONE, S::ZERO));
@@ -100,21 +103,23 @@ pub fn half_plane<S: Scalar>(
     point.is_finite().then_some(HalfPlane { point, normal })
 }
 
-/// From the relative velocity `v` to the border of the cone to `p` (its squared length given) with its tip cut off
-/// at `rate` times `p`: length of the change and outward normal.
+/// The change from the relative velocity `v` to the border of the cone around `p` (with its squared
+/// length) whose tip is cut off at `rate` times `p`: its length and the outward normal.
 ///
-/// One root and one reciprocal, and choices instead of branches: whether the disc or a leg is nearer, and which leg, no
-/// branch predictor can know. Squares must be as precise as lengths.
+/// Takes one root and one reciprocal. It selects values instead of branching, since a branch
+/// predictor cannot know whether the disc or a leg is nearer, or which leg. Squares must be as
+/// precise as lengths.
 #[inline(always)]
 fn leave_cone<S: Scalar>(v: Vec2<S>, p: Vec2<S>, squared: S, r: S, rate: S) -> Option<(S, Vec2<S>)> {
     let w = v - p * rate;
     let (w_squared, towards) = (w.norm_squared(), w.dot(p));
-    // Project on cut-off disc: w points back by more than the angle to the legs.
+    // Project on the cut-off disc: w points back by more than the angle to the legs.
     let is_back = (towards < S::ZERO) & (towards * towards > r * r * w_squared);
     let is_disc = is_back & (w_squared > tiny());
     let choose = |disc: S, leg: S| if is_disc { disc } else { leg };
     let root = choose(w_squared, squared - r * r).sqrt();
-    // Project on left leg or on right leg: the tangent is p turned by the angle with this sine and cosine.
+    // Project on the left or the right leg: the tangent is p turned by the angle with this sine and
+    // cosine.
     let signed = if p.det(w) > S::ZERO { root } else { -root };
     let across = Vec2::new(choose(w.x, -(p.y * signed + p.x * r)), choose(w.y, p.x * signed - p.y * r));
     let scale = S::ONE.checked_div(choose(root, squared))?;
@@ -122,13 +127,13 @@ fn leave_cone<S: Scalar>(v: Vec2<S>, p: Vec2<S>, squared: S, r: S, rate: S) -> O
     Some((choose(r * rate - root, -(v.dot(normal))), normal))
 }
 
-/// A square so small that lengths below its root (f32: 1e-14) have no direction.
+/// A square so small that vectors shorter than its root (f32: 1e-14) have no direction.
 fn tiny<S: Scalar>() -> S {
     let squared = S::EPSILON * S::EPSILON;
     squared * squared
 }
 
-/// The same for numbers whose squares lose precision: by unit vectors and angles.
+/// Like [`leave_cone`], by unit vectors and angles, for numbers whose squares lose precision.
 fn leave_cone_by_angle<S: Scalar>(v: Vec2<S>, p: Vec2<S>, ahead: Vec2<S>, r: S, horizon_s: S) -> Option<(S, Vec2<S>)> {
     let tip = Vec2::new(p.x.checked_div(horizon_s)?, p.y.checked_div(horizon_s)?);
     let w = v - tip;
@@ -141,7 +146,8 @@ fn leave_cone_by_angle<S: Scalar>(v: Vec2<S>, p: Vec2<S>, ahead: Vec2<S>, r: S, 
     Some((-(v.dot(normal)), normal))
 }
 
-/// The best velocity on the border of a half-plane that those before it and the speed disc permit.
+/// The best velocity on the border of a half-plane that the half-planes before it and the speed
+/// disc permit.
 fn best_on_line<S: Scalar>(
     plane: &HalfPlane<S>,
     before: &[HalfPlane<S>],
@@ -149,7 +155,7 @@ fn best_on_line<S: Scalar>(
     aim: Aim<Vec2<S>>,
 ) -> Option<Vec2<S>> {
     let direction = plane.direction();
-    // The border's point nearest to the origin, and half of the chord that the disc cuts out.
+    // The point of the border nearest to the origin, and half of the chord that the disc cuts out.
     let distance = plane.point.dot(plane.normal);
     let foot = plane.normal * distance;
     if distance.abs() > speed {
@@ -157,7 +163,8 @@ fn best_on_line<S: Scalar>(
     }
     let half_chord = ((speed - distance) * (speed + distance)).sqrt();
     let (mut low, mut high) = (-half_chord, half_chord);
-    // Choices instead of branches: which side a plane cuts off, no predictor can know.
+    // Selects values instead of branching: a branch predictor cannot know which side a plane cuts
+    // off.
     let mut is_shut = false;
     for other in before {
         let slope = direction.dot(other.normal);
@@ -165,8 +172,8 @@ fn best_on_line<S: Scalar>(
         let crossing = gap.checked_div(slope);
         let t = crossing.unwrap_or(S::ZERO);
         let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON * S::from_i32(64));
-        // Parallel: all of the border is permitted, or nothing. What rounding leaves between two copies of one
-        // half-plane (walls that share a corner) is not nothing.
+        // Parallel: the whole border is permitted, or none of it. Rounding between two copies of
+        // one half-plane (walls that share a corner) must not exclude it.
         is_shut |= !is_crossed & (gap > rounding(speed, other));
         let rises = slope > S::ZERO;
         low = if is_crossed & rises & (t > low) { t } else { low };
@@ -183,7 +190,6 @@ fn best_on_line<S: Scalar>(
     Some(foot + direction * t)
 }
 
-/// How far off a penetration may be by rounding.
 fn rounding<S: Scalar>(speed: S, plane: &HalfPlane<S>) -> S {
     let scale = speed + plane.point.x.abs() + plane.point.y.abs();
     S::EPSILON * S::from_i32(16) * scale.max(S::ONE)

@@ -1,10 +1,11 @@
-//! ORCA in space, for robots that fly: the half-space that one neighbour leaves (ORCA section 4, whose geometry holds
-//! in any dimension), and linear programming on one border (RVO2-3D's `linearProgram2`, on a line `linearProgram1`).
+//! ORCA in space, for flying robots: the half-space of one neighbour (ORCA section 4, whose
+//! geometry holds in any dimension), and linear programming on one border (RVO2-3D's
+//! `linearProgram2`, on a line `linearProgram1`).
 //!
-//! Where all robots, velocities and the preference lie in one horizontal plane, so does the result, and it is that of
-//! the plane. What differs from RVO2-3D is what differs in the plane (see [`super`]), and that two robots that fly
-//! exactly at each other turn right, or if one is above the other, to opposite sides, where the reference
-//! has no direction.
+//! If all robots, velocities and the preferred velocity lie in one horizontal plane, the result
+//! lies in it too and equals that of the plane. The differences to RVO2-3D are those listed in
+//! [`super`], and one more: robots that fly exactly at each other turn right, or to opposite sides
+//! if one is above the other. The reference has no direction in this case.
 
 use super::deadlock::spread;
 use super::dimension::{Aim, Dimension, HalfSpace, MovingBall, Situation, leave_ball};
@@ -45,7 +46,7 @@ impl<S: Scalar> Dimension for Vec3<S> {
         situation: &Situation<'_, Self>,
         _: &mut Rng,
     ) -> Self {
-        // A flock goes to no place of its own, and would be pulled apart.
+        // A flock has no goal of its own; the rule would pull it apart.
         match situation.goal {
             Some(_) => spread(params.horizon_s, situation),
             None => situation.wish,
@@ -57,10 +58,10 @@ impl<S: Scalar> Dimension for Vec3<S> {
     }
 }
 
-/// The velocities that avoid a ball for the time horizon, if it does its share: as [`half_plane`](super::half_plane),
-/// with a ball for the disc.
+/// The velocities that avoid a ball for the time horizon, provided that the neighbour does its
+/// share: like [`half_plane`](super::half_plane), with a ball instead of the disc.
 ///
-/// `None` when an input is not finite, or r or a time is not above 0. Constant work.
+/// `None` if an input is not finite, or r or a time is not above 0. Constant work.
 #[must_use]
 pub fn half_space<S: Scalar>(
     own_velocity_mps: Vec3<S>,
@@ -77,13 +78,12 @@ pub fn half_space<S: Scalar>(
     let (u, normal) = match p.normalized() {
         Some(ahead) if distance > r => {
             let w = v - divided(p, params.horizon_s)?;
-            // The cone's sides leave the line of centres at the angle with this sine.
+            // The angle between the sides of the cone and the line of centres has this sine.
             let sin = r.checked_div(distance)?;
             if w.dot(ahead) < -(sin * w.norm()) {
-                // Nearest to the cut-off ball.
                 leave_ball(w, r.checked_div(params.horizon_s)?, -ahead)
             } else {
-                // Nearest to the cone's side, on the own side of its axis: what follows happens in
+                // Nearest to the side of the cone, on the own side of its axis. The rest happens in
                 // the plane of axis and velocity.
                 let cos = (S::ONE - sin * sin).sqrt();
                 let side = (w - ahead * w.dot(ahead)).normalized();
@@ -92,7 +92,6 @@ pub fn half_space<S: Scalar>(
             }
         }
         _ => {
-            // Overlapping: apart again after the separation time.
             let away = (-p).normalized().or_else(|| tie.normalized());
             let away = away.unwrap_or(Vec3::new(S::ONE, S::ZERO, S::ZERO));
             let w = v - divided(p, params.separation_s)?;
@@ -107,7 +106,7 @@ fn divided<S: Scalar>(v: Vec3<S>, by: S) -> Option<Vec3<S>> {
     Some(Vec3::new(v.x.checked_div(by)?, v.y.checked_div(by)?, v.z.checked_div(by)?))
 }
 
-/// A unit vector square to `ahead`; that of `-ahead` is the opposite one. To the right where there is a right.
+/// A unit vector perpendicular to `ahead`, opposite for `-ahead`; to the right if that is defined.
 fn right_of<S: Scalar>(ahead: Vec3<S>) -> Vec3<S> {
     let right = Vec3::new(ahead.y, -ahead.x, S::ZERO);
     let east = if ahead.z > S::ZERO { S::ONE } else { -S::ONE };
@@ -115,15 +114,13 @@ fn right_of<S: Scalar>(ahead: Vec3<S>) -> Vec3<S> {
     right.normalized().unwrap_or(otherwise)
 }
 
-/// A line in space.
 struct Line<S> {
-    /// Its point nearest to the origin.
     foot: Vec3<S>,
-    /// Unit vector.
     direction: Vec3<S>,
 }
 
-/// The best velocity on the border of `space`, a plane, that the half-spaces before it and the speed ball permit.
+/// The best velocity on the border of `space`, a plane, that the half-spaces before it and the
+/// speed ball permit.
 fn best_on_plane<S: Scalar>(
     space: &HalfSpace<Vec3<S>>,
     before: &[HalfSpace<Vec3<S>>],
@@ -136,8 +133,9 @@ fn best_on_plane<S: Scalar>(
     let mut best = foot
         + match aim {
             Aim::Near(goal) => in_border(goal - foot).clamp_norm(radius),
-            // Square to the border everything on it is equally good. Where little of the way is left in it, rounding
-            // has turned that out of the border: put back.
+            // If the direction is perpendicular to the border, all points of the border are equally
+            // good. If little of the direction remains in the border, rounding has turned it out of
+            // the border; project it back.
             Aim::Along(way) => in_border(in_border(way).normalized().unwrap_or(Vec3::ZERO)) * radius,
         };
     for (index, other) in before.iter().enumerate() {
@@ -170,7 +168,6 @@ fn best_on_line<S: Scalar>(
                     high = high.min(t);
                 }
             }
-            // Parallel: all of the line is permitted, or nothing.
             _ if gap > S::ZERO => return None,
             _ => {}
         }
@@ -186,27 +183,26 @@ fn best_on_line<S: Scalar>(
     Some(line.foot + line.direction * t)
 }
 
-/// The border's point nearest to the origin.
+/// The point of the border nearest to the origin.
 fn foot<S: Scalar>(space: &HalfSpace<Vec3<S>>) -> Vec3<S> {
     space.normal * space.point.dot(space.normal)
 }
 
-/// Half the width of what the speed ball cuts out of a line or plane whose point nearest to the origin is
-/// `foot`; `None` when it is out of reach.
+/// Half the width that the speed ball cuts out of a line or plane whose point nearest to the origin
+/// is `foot`; `None` if it is out of reach.
 fn half_width<S: Scalar>(foot: Vec3<S>, speed: S) -> Option<S> {
     let distance = foot.norm();
     (distance <= speed).then(|| ((speed - distance) * (speed + distance)).sqrt())
 }
 
-/// Where two borders meet; `None` when they are parallel.
 fn intersection<S: Scalar>(space: &HalfSpace<Vec3<S>>, other: &HalfSpace<Vec3<S>>) -> Option<Line<S>> {
     let cross = space.normal.cross(other.normal);
-    // Nearly parallel borders meet along a line whose direction is rounding.
+    // The intersection of nearly parallel borders has a direction that is mere rounding.
     if cross.norm_squared() <= S::EPSILON {
         return None;
     }
     let direction = cross.normalized()?;
-    // On the one border, square to the line, until the other one.
+    // Within the first border, perpendicular to the line, to the second border.
     let across = direction.cross(space.normal);
     let foot = foot(space);
     let t = other.penetration(foot).checked_div(across.dot(other.normal))?;

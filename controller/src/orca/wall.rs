@@ -1,28 +1,29 @@
-//! What a static obstacle forbids (ORCA section 5.4): a wall is a segment; polygons are several.
+//! The constraint of a static obstacle (ORCA section 5.4). A wall is a segment; a polygon consists
+//! of several.
 
 use super::dimension::HalfPlane;
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
 
-/// The nearest point of a piece of the velocity obstacle's border, and its distance.
+/// The nearest point on a part of the velocity obstacle's border, and its distance.
 struct Nearest<S> {
     distance: S,
     plane: HalfPlane<S>,
 }
 
-/// The velocities that keep a robot of `radius_m` off the wall from `ends_m[0]` to `ends_m[1]` (relative to
-/// the robot's centre, metres) for `horizon_s` seconds. A wall does nothing to avoid, so the whole
-/// correction is the robot's.
+/// The velocities that keep a robot of `radius_m` off a wall for `horizon_s` seconds. The wall runs
+/// from `ends_m[0]` to `ends_m[1]`, relative to the robot's centre, metres. A wall does nothing to
+/// avoid, so the whole correction is the robot's.
 ///
-/// The wall widened by the robot is a capsule C; the velocities that meet it within the horizon are K = {c / t : c in
-/// C, 0 < t <= horizon}, a convex set bounded by two tangents from the origin and the near side of C / horizon. The
-/// half-plane touches K where it is nearest to the own velocity, hence forbids all of K. A robot
-/// that touches or overlaps the wall may not come nearer.
+/// The wall widened by the robot is a capsule C. The velocities that meet it within the horizon are
+/// K = {c / t : c in C, 0 < t <= horizon}, a convex set bounded by two tangents from the origin and
+/// the near side of C / horizon. The half-plane touches K at the point nearest to the own velocity
+/// and hence forbids all of K. A robot that touches or overlaps the wall may not come nearer.
 ///
-/// What differs from RVO2: segments are taken one by one and not as chains of vertices. At a convex
-/// corner both segments forbid what the corner does; concave corners need no special case.
+/// Difference to RVO2: segments are processed one by one instead of as chains of vertices. At a
+/// convex corner both segments forbid what the corner would; concave corners need no special case.
 ///
-/// `None` when an input is not finite, or radius or horizon is not above 0. Constant work.
+/// `None` if an input is not finite, or radius or horizon is not above 0. Constant work.
 #[must_use]
 pub fn wall<S: Scalar>(
     own_velocity_mps: Vec2<S>,
@@ -38,7 +39,7 @@ pub fn wall<S: Scalar>(
     }
     let foot = nearest_on_segment(Vec2::ZERO, a, b);
     if foot.norm() <= radius_m {
-        // Touching. In the wall's middle line: across it, to its left.
+        // Touching. On the wall's centre line: perpendicular to it, to its left.
         let normal = (-foot).normalized().or_else(|| (b - a).perp().normalized());
         let normal = normal.unwrap_or(Vec2::new(S::ONE, S::ZERO));
         return Some(HalfPlane { point: Vec2::ZERO, normal });
@@ -58,7 +59,6 @@ pub fn wall<S: Scalar>(
     pieces.into_iter().flatten().min_by(|one, other| one.distance.order(other.distance)).map(|nearest| nearest.plane)
 }
 
-/// The point of a segment nearest to `at`.
 fn nearest_on_segment<S: Scalar>(at: Vec2<S>, a: Vec2<S>, b: Vec2<S>) -> Vec2<S> {
     let along = b - a;
     let length = along.norm();
@@ -68,8 +68,8 @@ fn nearest_on_segment<S: Scalar>(at: Vec2<S>, a: Vec2<S>, b: Vec2<S>) -> Vec2<S>
     }
 }
 
-/// A point of the capsule's border with its outward normal; `None` when it is not on the near side, where
-/// the normal points back towards the origin.
+/// A point of the capsule's border with its outward normal; `None` unless it is on the near side,
+/// where the normal points back towards the origin.
 fn near_side<S: Scalar>(v: Vec2<S>, point: Vec2<S>, normal: Vec2<S>) -> Option<Nearest<S>> {
     let is_near = normal.dot(point) <= S::ZERO;
     is_near.then(|| Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } })
@@ -77,9 +77,9 @@ fn near_side<S: Scalar>(v: Vec2<S>, point: Vec2<S>, normal: Vec2<S>) -> Option<N
 
 /// The half-circle around `end` of the segment from `other` to `end`.
 fn cap<S: Scalar>(v: Vec2<S>, end: Vec2<S>, other: Vec2<S>, reach: S) -> Option<Nearest<S>> {
-    // In the very end: out on the robot's side.
+    // Exactly at the end: out on the robot's side.
     let normal = (v - end).normalized().or_else(|| (-end).normalized())?;
-    // Both caps may claim what rounding leaves between cap and side.
+    // Both caps may claim the rounding gap between cap and side.
     let is_beyond = normal.dot(end - other) >= -(S::EPSILON * reach);
     is_beyond.then(|| near_side(v, end + normal * reach, normal)).flatten()
 }
@@ -94,7 +94,7 @@ fn side<S: Scalar>(v: Vec2<S>, left: Vec2<S>, right: Vec2<S>, reach: S) -> Optio
     is_beside.then(|| near_side(v, right + along * t + normal * reach, normal)).flatten()
 }
 
-/// One of the two tangents from the origin to the capsule, beyond where it leaves the capsule's near side.
+/// One of the two tangents from the origin to the capsule, beyond the near side of the capsule.
 fn leg<S: Scalar>(v: Vec2<S>, [left, right]: [Vec2<S>; 2], radius: S, rate: S, is_left: bool) -> Option<Nearest<S>> {
     // The outermost tangent of the two end discs: seen from outside, one disc may hide the other.
     let tangent = |end: Vec2<S>| {

@@ -1,23 +1,30 @@
-//! Push-out: a step that would end too near to something is pushed out, or turned aside.
+//! Push-out: a step that would end too near to a robot or obstacle is pushed out, or turned aside.
 //!
-//! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous flock of robots",
-//! section 3 (the second stage of a motion). Read [`push_out`], then [`zone`] for what one obstacle does.
+//! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous
+//! flock of robots", section 3 (the second stage of a motion). Read [`push_out`] first, then
+//! [`zone`] for the effect of one obstacle.
 //!
-//! It is quick and simple, and a robot that is alone with obstacles never comes too near. Among robots it promises
-//! less than reciprocal avoidance: each sees where the others are and not where they are going, so two that
-//! close in may come as near as one step of the other below the least distance, and crowds may block each other.
+//! It is fast and simple, and a robot alone with obstacles never comes too near. Among robots it
+//! guarantees less than reciprocal avoidance: each robot considers the positions of the others but
+//! not their velocities. Two robots that approach each other may come nearer than the least
+//! distance by one step of the other robot, and crowds may block each other.
 //!
-//! **What differs from the paper:**
-//! - Robots and obstacles have bodies: the least distance is at least the sum of two radii, from an obstacle the own
-//!   radius.
-//! - The whole step counts and not only its end, so that no fast robot jumps through a small obstacle. Model 1 pushes
-//!   out the deepest point of the step, but not to where the border is hidden behind itself.
-//! - The paper steps sideways when position, new position and centre are on one line; here also when they
-//!   nearly are, since a push back along the line leaves nothing of the step there either.
-//! - Robots that are too near already are pushed out no faster than they can go. Those in one place go apart by
-//!   [`tie`](crate::neighbor::tie).
-//! - How several are evaded at once is lost with the paper's figure 8; see [`Evasion::Multiple`].
-//! - Walls and half-spaces, and all in space; in the plane z stays 0.
+//! **Differences to the paper:**
+//!
+//! - Robots and obstacles have bodies: the least distance is at least the sum of two radii, from an
+//!   obstacle the own radius.
+//! - The whole step counts instead of its end, so that a fast robot cannot jump through a small
+//!   obstacle. Model 1 pushes out the deepest point of the step, but not to a part of the border
+//!   that is hidden behind the zone.
+//! - The paper steps sideways if position, new position and centre are on one line. Here a robot
+//!   also does so if they nearly are, since a push back along the line leaves nothing of the step
+//!   there either.
+//! - Robots that are already too near are pushed out no faster than they can move. Those in one
+//!   place separate by [`tie`](crate::neighbor::tie).
+//! - The paper's rule for evading several robots at once is lost with its figure 8; see
+//!   [`Evasion::Multiple`].
+//! - Walls and half-spaces are supported, and all computations are in space; in the plane z remains
+//!   0.
 
 pub mod zone;
 
@@ -34,27 +41,28 @@ use serde::{Deserialize, Serialize};
 use zone::{Path, Side, Zone};
 
 named! {
-    /// What becomes of a step that leads too near.
+    /// How a step that leads too near is changed.
     #[derive(Default)]
     pub enum Model {
-        /// Model 1: it ends where the radius through it leaves the zone; straight at the centre: sideways, as
-        /// long. It slides along and slows down there.
+        /// Model 1: it ends where the radius through its end leaves the zone; straight at the
+        /// centre: sideways with the same length. The robot slides along the zone and slows down.
         #[default]
         Radial = "radial",
-        /// Model 2: it keeps its length and is turned by the smaller angle to the border of the zone. It keeps
-        /// its speed.
+        /// Model 2: it keeps its length and is turned by the smaller angle to the border of the
+        /// zone. The robot keeps its speed.
         Tangential = "tangential",
     }
 }
 
 named! {
-    /// How many robots are evaded at once. Obstacles all are.
+    /// How many robots are evaded at once. All obstacles are always evaded.
     #[derive(Default)]
     pub enum Evasion {
-        /// The nearest of those in the way only: the evading step may lead too near to another one.
+        /// Only the nearest of those in the way: the evading step may lead too near to another
+        /// robot.
         Single = "single",
-        /// All. Of the evading steps around each, to either side, it is the one nearest to the wish that is clear
-        /// of all. If there is none the robot stands.
+        /// All. Of the evading steps around each, to either side, the robot takes the one nearest
+        /// to its wish that is clear of all. If there is none it stops.
         #[default]
         Multiple = "multiple",
     }
@@ -64,44 +72,47 @@ named! {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PushOutParams<S> {
-    /// What becomes of a step that leads too near.
+    /// How a step that leads too near is changed.
     pub model: Model,
     /// How many robots are evaded at once.
     pub evasion: Evasion,
-    /// Least distance (R_MinDist) of two robots' centres, and of a centre from an obstacle's border, metres; more
-    /// than 0. Never less than bodies need. A step's length more keeps robots apart that both
-    /// move.
+    /// Least distance (R_MinDist) of two robots' centres, and of a centre from an obstacle's
+    /// border, metres; more than 0. Never less than bodies need. One step's length more keeps
+    /// robots apart if both move.
     pub min_distance_m: S,
 }
 
 impl<S: Scalar> PushOutParams<S> {
-    /// The same in another kind of number.
+    /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> PushOutParams<T> {
         PushOutParams { model: self.model, evasion: self.evasion, min_distance_m: cast(self.min_distance_m) }
     }
 
-    /// Model 1 for all who are in the way.
+    /// Model 1 for all robots in the way.
     #[must_use]
     pub fn new(min_distance_m: S) -> Self {
         Self { model: Model::Radial, evasion: Evasion::Multiple, min_distance_m }
     }
 }
 
-/// How deep a step may lead into a zone without being in the way, millimetres: places are not known better.
+/// How deep a step may lead into a zone without counting as in the way, millimetres: the precision
+/// of positions.
 const TOLERANCE_MM: i32 = 1;
 
-/// The velocity nearest to `wish_mps` by the rules of the model, m/s, for the next [`Body::step_s`].
+/// The velocity nearest to `wish_mps` by the rules of the model, m/s, for the next
+/// [`Body::step_s`].
 ///
-/// A step that is in nobody's way is the wish, cut to the body's speed. If all evading steps lead too near to
-/// something the robot stands; if it is too near already, it takes the one that is least so.
+/// A step that does not come too near to anything is the wish, limited to the body's speed. If all
+/// evading steps lead too near to something the robot stops. If it is too near already, it takes
+/// the least deep one.
 ///
-/// `nearby` need not be in order. What is not a number counts as absent (wish: as zero); the answer is finite
-/// and not faster than the body. Zero when the time step or the least distance is not above 0. Does not look at the
-/// body's acceleration.
+/// `nearby` may be in any order. Values that are not a number count as absent (a wish: as zero);
+/// the result is finite and not faster than the body. Zero if the time step or the least distance
+/// is not above 0. Ignores the body's acceleration.
 ///
-/// O(n) when nothing is in the way, else O(n^2), with model 1 of those in the way times all; n = `nearby` +
-/// `obstacles`.
+/// O(n) if nothing is in the way, otherwise O(n^2), with model 1 the number of those in the way
+/// times all; n = `nearby` + `obstacles`.
 #[inline(never)]
 #[must_use]
 pub fn push_out<S: Scalar>(
@@ -129,7 +140,7 @@ pub fn push_out<S: Scalar>(
     Vec3::new(rate(evading.x), rate(evading.y), rate(evading.z)).clamp_norm(body.max_speed_mps)
 }
 
-/// All that a step may lead too near to.
+/// All zones that a step may lead into.
 struct Scene<'a, S> {
     params: &'a PushOutParams<S>,
     body: &'a Body<S>,
@@ -146,8 +157,8 @@ impl<'a, S: Scalar> Scene<'a, S> {
         obstacles.chain(robots.filter_map(move |other| Zone::of_robot(other, body, least)))
     }
 
-    /// How deep the step leads into a zone, beyond the tolerance; 0 if it does not. Where it is deeper than `limit`, it says
-    /// only that.
+    /// How deep the step leads into a zone, beyond the tolerance; 0 if it does not. A depth above
+    /// `limit` is only known to exceed it.
     fn depth(&self, step: Vec3<S>, limit: S) -> S {
         let (path, limit) = (Path::new(step), limit.max(S::from_milli(TOLERANCE_MM)));
         let mut deepest = S::ZERO;
@@ -160,7 +171,8 @@ impl<'a, S: Scalar> Scene<'a, S> {
         if deepest > S::from_milli(TOLERANCE_MM) { deepest } else { S::ZERO }
     }
 
-    /// The nearest robot that the step leads too near to, alone; nobody if there is none. Ties by number.
+    /// The nearest robot that the step leads too near to, as a slice of one; empty if there is
+    /// none. Ties by number.
     fn nearest_in_the_way(&self, step: Vec3<S>) -> &'a [Nearby<S>] {
         let tolerance = S::from_milli(TOLERANCE_MM);
         let in_the_way = self.nearby.chunks(1).filter(|one| {
@@ -171,21 +183,16 @@ impl<'a, S: Scalar> Scene<'a, S> {
         in_the_way.min_by_key(key).unwrap_or(&[])
     }
 
-    /// The evading step.
     fn evade(&self, step: Vec3<S>) -> Vec3<S> {
         let model = self.params.model;
         let longest = self.body.max_speed_mps * self.body.step_s;
-        let mut best = Best {
-            // Standing, for want of anything better.
-            depth: self.depth(Vec3::ZERO, S::MAX),
-            change: u64::MAX,
-            step: Vec3::ZERO,
-        };
-        // Whether model 1 has tried to step sideways: that is the same step for all zones, for upright ones another one.
+        let mut best = Best { depth: self.depth(Vec3::ZERO, S::MAX), change: u64::MAX, step: Vec3::ZERO };
+        // Whether model 1 has tried to step sideways, which is the same step for all zones;
+        // vertical zones have another one.
         let (mut has_sidestepped, mut has_sidestepped_upright) = (false, false);
         for zone in self.zones(step) {
-            // Model 1 pushes out of what the step leads into; model 2 may pass between two, along the border of
-            // one that is not in the way.
+            // Model 1 pushes out of zones that the step leads into; model 2 may pass between two
+            // zones, along the border of one that is not in the way.
             let matters = match model {
                 Model::Radial => zone.depth(step) > S::ZERO,
                 Model::Tangential => zone.depth(Vec3::ZERO) > -longest,
@@ -213,7 +220,7 @@ impl<'a, S: Scalar> Scene<'a, S> {
                 if let Some((_, other)) = deepest
                     && let Some(again) = other.evade(evading, model, Side::Rule)
                 {
-                    // Pushed out of one and into another one: out of that too.
+                    // Pushed out of one zone and into another: push out of that too.
                     let again = again.clamp_norm(longest);
                     best.consider(again, step, |limit| self.depth(again, limit));
                 }
@@ -222,7 +229,8 @@ impl<'a, S: Scalar> Scene<'a, S> {
         best.step
     }
 
-    /// What the step leads into deepest, beyond the tolerance, and how deep; the first of equals.
+    /// The zone that the step leads into deepest, beyond the tolerance, and its depth; the first of
+    /// equals.
     fn deepest(&self, step: Vec3<S>) -> Option<(S, Zone<S>)> {
         let path = Path::new(step);
         let mut deepest = None;
@@ -238,7 +246,8 @@ impl<'a, S: Scalar> Scene<'a, S> {
     }
 }
 
-/// The best evading step so far: the least deep one, then the one nearest to the wish, then the first.
+/// The best evading step so far: the least deep one, then the one nearest to the wish, then the
+/// first.
 struct Best<S> {
     depth: S,
     change: u64,
@@ -246,7 +255,8 @@ struct Best<S> {
 }
 
 impl<S: Scalar> Best<S> {
-    /// `depth` says how deep the evading step is, at least where it is not deeper than the limit that it is told.
+    /// `depth` returns the depth of the evading step; beyond the limit given to it, it need not be
+    /// exact.
     fn consider(&mut self, evading: Vec3<S>, wish: Vec3<S>, depth: impl FnOnce(S) -> S) {
         let change = (evading - wish).length_key();
         if self.depth <= S::ZERO && change >= self.change {

@@ -26,7 +26,7 @@ fn params(model: Model, evasion: Evasion) -> PushOutParams<f64> {
     PushOutParams { model, evasion, min_distance_m: 2.0 }
 }
 
-/// A point that goes up to 100 m in a step of 1 s, so that velocities are steps.
+/// A point that moves up to 100 m in a step of 1 s, so that velocities are steps.
 fn body<S: Scalar>() -> Body<S> {
     Body {
         id: RobotId(1),
@@ -64,7 +64,7 @@ fn assert_close(got: V, expected: V) {
 }
 
 #[test]
-fn what_is_in_nobodys_way_is_the_wish() {
+fn a_step_clear_of_everything_is_the_wish() {
     let around = [ball(v(10.0, 0.0), 3.0), ball(v(0.0, 9.0), 3.0)];
     let robots = [robot(2, v(-3.0, 0.0))];
     for model in MODELS {
@@ -109,14 +109,14 @@ fn model_2_turns_the_step_to_the_border_by_the_smaller_angle() {
     assert_close(stepped(Model::Tangential, v(6.0, 1.0), &[], &around), v(5.6, height));
     assert_close(stepped(Model::Tangential, v(6.0, -1.0), &[], &around), v(5.6, -height));
     assert_close(stepped(Model::Tangential, v(37f64.sqrt(), 0.0), &[], &around), v(5.6, height));
-    // Longer than the way to the tangent point: along the tangent, with sine 1/2.
+    // Longer than the distance to the tangent point: along the tangent, with sine 1/2.
     let got = stepped(Model::Tangential, v(20.0, 0.1), &[], &around);
     let length = v(20.0, 0.1).norm();
     assert_close(got, v(length * 0.75f64.sqrt(), length * 0.5));
 }
 
 #[test]
-fn planes_and_walls_are_slid_along() {
+fn robots_slide_along_planes_and_walls() {
     let plane = Obstacle::Plane { normal: v(0.0, -1.0), distance_m: 3.0 };
     let wall = Obstacle::Wall([Vec2::new(-9.0, 3.0), Vec2::new(9.0, 3.0)]);
     for obstacle in [plane, wall] {
@@ -129,7 +129,7 @@ fn planes_and_walls_are_slid_along() {
     assert_eq!(got, v(12.0, 0.5), "farther than 2 m");
     let got = stepped(Model::Radial, v(10.0, 3.0), &[], &[wall]);
     assert!((got - v(9.0, 3.0)).norm() > 1.999 && got.y < 3.0, "{got:?}");
-    // However fast, nobody jumps through a wall, and heights stay free along it.
+    // At any speed a wall cannot be jumped, and heights along it are unrestricted.
     for model in MODELS {
         for x in [-6.0, -1.0, 0.0, 2.0] {
             let got = stepped(model, V::new(x, 90.0, 7.0), &[], &[wall]);
@@ -153,17 +153,17 @@ fn bodies_may_need_more_than_the_least_distance() {
 }
 
 #[test]
-fn whoever_is_too_near_is_pushed_out_as_fast_as_it_can_go() {
+fn a_robot_too_near_is_pushed_out_at_its_speed() {
     let slow = Body { velocity_mps: v(0.1, 0.0), max_speed_mps: 0.5, ..body() };
     let p = |model| params(model, Evasion::Multiple);
     let other = [robot(2, v(1.0, 0.0))];
-    // Model 1 also moves one that wishes to stand, model 2 keeps its length of 0.
+    // Model 1 also moves a robot that wants to stay; model 2 keeps its length of 0.
     assert_close(push_out(&p(Model::Radial), &slow, V::ZERO, &other, &[]), v(-0.5, 0.0));
     assert_eq!(push_out(&p(Model::Tangential), &slow, V::ZERO, &other, &[]), V::ZERO);
     for model in MODELS {
         let got = push_out(&p(model), &slow, v(0.3, 0.1), &other, &[]);
         assert!(got.x < 0.0, "{model:?} {got:?}");
-        // Inside an obstacle, and in its very centre.
+        // Inside an obstacle, and in its exact centre.
         for center in [v(1.0, 0.0), V::ZERO] {
             let got = push_out(&p(model), &slow, v(0.4, 0.0), &[], &[ball(center, 3.0)]);
             assert!(got.x < -0.3, "{model:?} {got:?}");
@@ -172,7 +172,7 @@ fn whoever_is_too_near_is_pushed_out_as_fast_as_it_can_go() {
 }
 
 #[test]
-fn robots_in_one_place_go_opposite_ways() {
+fn robots_in_one_place_separate_in_opposite_directions() {
     for model in MODELS {
         let step = |own: u32, other: u32| {
             let own = Body { id: RobotId(own), ..body() };
@@ -187,8 +187,8 @@ fn robots_in_one_place_go_opposite_ways() {
 }
 
 #[test]
-fn single_evasion_sees_the_nearest_and_multiple_all() {
-    // Two abreast: whoever evades the first to the left runs into the second.
+fn single_evasion_evades_the_nearest_and_multiple_all() {
+    // Two side by side: a robot that evades the first to the left runs into the second.
     let robots = [robot(2, v(4.0, -0.2)), robot(3, v(4.0, 2.5))];
     let wish = v(3.5, 0.0);
     for model in MODELS {
@@ -208,7 +208,7 @@ fn single_evasion_sees_the_nearest_and_multiple_all() {
 }
 
 #[test]
-fn whoever_is_shut_in_stands() {
+fn an_enclosed_robot_stops() {
     // Twelve robots around, 3 m away: no step of 2 m is clear.
     let ring: Vec<_> = (0..12)
         .map(|k| {
@@ -224,7 +224,7 @@ fn whoever_is_shut_in_stands() {
 }
 
 #[test]
-fn senseless_input_counts_as_absent() {
+fn invalid_input_counts_as_absent() {
     for model in MODELS {
         let p = params(model, Evasion::Multiple);
         for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
@@ -257,7 +257,7 @@ fn senseless_input_counts_as_absent() {
     }
 }
 
-/// Robots walk to their goals with `model`; the least distance of two, and all that arrive.
+/// Robots move to their goals with `model`; returns the least distance of two, and how many arrive.
 fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32) -> (f64, usize) {
     let (speed, step_s) = (1.0, 0.1);
     let own = |i: usize| Body { id: RobotId(i as u32 + 1), max_speed_mps: speed, step_s, ..body() };
@@ -289,7 +289,7 @@ fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32)
 }
 
 #[test]
-fn lone_robots_go_round_obstacles_straight_ahead_and_in_rows() {
+fn single_robots_get_around_obstacles() {
     for model in MODELS {
         for y in [0.0, 0.3, -2.0] {
             let obstacles = [(v(10.0, 0.0), 3.0), (v(22.0, 1.0), 4.0), (v(22.0, -12.0), 3.0)];
@@ -307,7 +307,7 @@ fn pairs_pass_each_other_and_keep_the_distance_to_a_step() {
             let mut robots = [(v(0.0, 0.0), v(20.0, 0.0)), (v(20.0, y), v(0.0, y))];
             let (least, arrived) = walk(model, &mut robots, &[], 600);
             assert_eq!(arrived, 2, "{model:?} {y} {robots:?}");
-            // Each goes up to 0.1 m in a step.
+            // Each moves up to 0.1 m in a step.
             assert!(least > 1.89, "{model:?} {y} {least}");
         }
     }
@@ -319,7 +319,7 @@ fn places(height: f64) -> impl Strategy<Value = Vec<V>> {
     proptest::collection::vec(place, 0..8)
 }
 
-/// Depth of a step in zones of 2 m around places, taken at 200 points of it.
+/// Depth of a step in zones of 2 m around positions, taken at 200 points of it.
 fn trespass(step: V, places: &[V]) -> f64 {
     let points = (0..=200).map(|k| step * (f64::from(k) / 200.0));
     let depths = points.flat_map(|at| places.iter().map(move |place| 2.0 - (*place - at).norm()));
@@ -339,7 +339,7 @@ proptest! {
 
     /// In every number type, in the plane and in space.
     #[test]
-    fn whoever_is_clear_stays_clear(
+    fn a_robot_that_is_clear_stays_clear(
         flat in places(0.0), deep in places(0.6),
         wish in [-4.0..4.0_f64, -4.0..4.0, -4.0..4.0],
     ) {
@@ -367,7 +367,7 @@ proptest! {
     }
 
     #[test]
-    fn turning_the_world_and_the_order_change_nothing_else(
+    fn the_result_turns_with_the_world_and_ignores_order(
         places in places(0.0), wish in [-4.0..4.0_f64, -4.0..4.0], angle in -3.1..3.1_f64,
     ) {
         let (sin, cos) = Scalar::sin_cos(angle);
@@ -377,7 +377,7 @@ proptest! {
         for model in MODELS {
             let plain = answer::<f64>(model, wish, &places);
             let got = answer::<f64>(model, turn(wish), &turned);
-            // Of two ways that are equally far from the wish, rounding chooses.
+            // Of two steps equally far from the wish, rounding chooses.
             let way = |got: V, wish: V| (got - wish).norm();
             let is_as_good = (way(got, turn(wish)) - way(plain, wish)).abs() < 1e-6;
             let is_same = (got - turn(plain)).norm() < 1e-6;
@@ -391,7 +391,7 @@ proptest! {
     }
 
     #[test]
-    fn the_answer_is_finite_and_no_faster_than_the_body_whatever_the_bits(bits: [u32; 12]) {
+    fn the_result_is_finite_and_within_the_speed_for_any_bits(bits: [u32; 12]) {
         let f = bits.map(f32::from_bits);
         let at = |i: usize| Vec3::new(f[i], f[i + 1], f[i + 2]);
         let other = Nearby { offset_m: at(0), radius_m: f[3], ..robot(2, V::ZERO) };

@@ -1,4 +1,4 @@
-//! What one robot or obstacle keeps free around itself, and the steps around it.
+//! The zone that one robot or obstacle keeps free around itself, and the steps around it.
 
 use super::{Model, TOLERANCE_MM};
 use crate::body::Body;
@@ -8,19 +8,19 @@ use crate::obstacle::Obstacle;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 
-/// Which way around.
+/// The side on which to pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Side {
-    /// By the rule of the model: where the step goes already.
+    /// By the rule of the model: the side that the step already favours.
     Rule,
-    /// The other way around: the larger angle, or sideways to the left.
+    /// The other side: the larger angle, or sideways to the left.
     Left,
     /// Sideways to the right; model 1 only.
     Right,
 }
 
-/// In the order in which they are tried.
+/// In the order of trying.
 pub const SIDES: [Side; 3] = [Side::Rule, Side::Left, Side::Right];
 
 /// Shape of a zone, relative to the robot's centre, metres.
@@ -29,26 +29,23 @@ enum Shape<S> {
     /// Around a robot, a ball or the end of a wall.
     Ball { center: Vec3<S>, radius: S, otherwise: Otherwise<S> },
     /// Behind a plane: a half-space or the side of a wall.
-    Half {
-        normal: Vec3<S>,
-        /// How far the robot is in front of it.
-        room: S,
-    },
+    Half { normal: Vec3<S>, room: S },
 }
 
-/// The way out of the very centre of a ball. That of a pair of robots takes a sine, and is hardly ever asked for.
+/// The exit from the exact centre of a ball. That of a pair of robots takes a sine, and is rarely
+/// needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Otherwise<S> {
     /// This unit vector.
     Way(Vec3<S>),
-    /// Backwards, or east for who stands.
+    /// Backwards, or east if the robot stands still.
     Back(Vec3<S>),
     /// The [`tie`] of the own robot and the other one.
     Tie(RobotId, RobotId),
 }
 
 impl<S: Scalar> Otherwise<S> {
-    /// The unit vector. Not inlined: it is asked for in few places, and far from each of them.
+    /// The unit vector. Not inlined: it has few and distant callers.
     #[inline(never)]
     fn way(self) -> Vec3<S> {
         match self {
@@ -62,16 +59,16 @@ impl<S: Scalar> Otherwise<S> {
     }
 }
 
-/// A place that a robot's centre should not come into.
+/// A region that a robot's centre should stay out of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Zone<S> {
     shape: Shape<S>,
-    /// Of all heights, as walls are: only the horizontal part of a step matters.
+    /// Vertical at all heights, like walls: only the horizontal part of a step matters.
     pub(super) is_upright: bool,
 }
 
-/// A step, whose direction and length are found once for all zones.
+/// A step with its direction and length, computed once for all zones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path<S> {
     step: Vec3<S>,
@@ -86,7 +83,8 @@ impl<S: Scalar> Path<S> {
 }
 
 impl<S: Scalar> Zone<S> {
-    /// Around another robot: `min_distance_m`, at least both radii. `None` for oneself and when its place is not known.
+    /// Around another robot: `min_distance_m`, at least both radii. `None` for the robot itself and
+    /// if the position is not known.
     #[must_use]
     pub fn of_robot(other: &Nearby<S>, body: &Body<S>, min_distance_m: S) -> Option<Self> {
         let radii = body.radius_m + other.radius_m;
@@ -101,8 +99,8 @@ impl<S: Scalar> Zone<S> {
         })
     }
 
-    /// Around what is nearest of an obstacle to `step`: `min_distance_m` from its border, at least the own radius.
-    /// `None` when it is not finite.
+    /// Around the part of an obstacle that is nearest to `step`: `min_distance_m` from its border,
+    /// at least the own radius. `None` if it is not finite.
     #[must_use]
     pub fn of_obstacle(obstacle: &Obstacle<S>, body: &Body<S>, min_distance_m: S, step: Vec3<S>) -> Option<Self> {
         let margin = at_least(min_distance_m, body.radius_m);
@@ -125,10 +123,10 @@ impl<S: Scalar> Zone<S> {
         Some(Self { shape, is_upright })
     }
 
-    /// How deep `step` leads into the zone, metres; not above 0 when it does not.
+    /// How deep `step` leads into the zone, metres; not above 0 if it does not.
     ///
-    /// Where the robot is too near already, what counts is the end of a step that leads out, and the deepest
-    /// point of one that leads in.
+    /// For a robot that is already too near, the end of a step counts if it leads out, and its
+    /// deepest point if it leads in.
     #[must_use]
     pub fn depth(&self, step: Vec3<S>) -> S {
         let step = self.part(step);
@@ -138,12 +136,12 @@ impl<S: Scalar> Zone<S> {
         }
     }
 
-    /// The same if it is at least `floor`, else `floor`.
+    /// The depth if it is at least `floor`, otherwise `floor`.
     pub(super) fn depth_from(&self, path: &Path<S>, floor: S) -> S {
         let depth = match self.shape {
             Shape::Ball { center, radius, .. } if !self.is_upright => {
                 let way = center - deepest(center, radius, path);
-                // Most are not: without a root.
+                // Most zones are far away: no root needed.
                 let border = Vec3::new((radius - floor).max(S::ZERO), S::ZERO, S::ZERO);
                 if way.length_key() > border.length_key() {
                     return floor;
@@ -155,7 +153,7 @@ impl<S: Scalar> Zone<S> {
         depth.max(floor)
     }
 
-    /// The step around the zone; `None` when the model has none on that side.
+    /// The step around the zone; `None` if the model has none on that side.
     #[must_use]
     pub fn evade(&self, step: Vec3<S>, model: Model, side: Side) -> Option<Vec3<S>> {
         let part = self.part(step);
@@ -169,7 +167,6 @@ impl<S: Scalar> Zone<S> {
         evading.map(|evading| evading + (step - part))
     }
 
-    /// The part of a step that matters.
     fn part(&self, step: Vec3<S>) -> Vec3<S> {
         if self.is_upright { step.xy().extend(S::ZERO) } else { step }
     }
@@ -180,7 +177,8 @@ fn at_least<S: Scalar>(distance: S, bodies: S) -> S {
     if bodies > distance && bodies.is_finite() { bodies } else { distance }
 }
 
-/// A wall is a half-space beside it and a post at its ends: whichever the step comes nearest to.
+/// A wall is a half-space beside it and a post at its ends; takes whichever the step comes nearest
+/// to.
 fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Shape<S>> {
     let is_sound = a.is_finite() && b.is_finite();
     if !is_sound {
@@ -188,12 +186,12 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
     }
     let east = Vec2::new(S::ONE, S::ZERO);
     let along = (b - a).normalized().unwrap_or(east);
-    // Out of the wall on the robot's side; from on the wall to its left.
+    // Out of the wall on the robot's side; on the wall to its left.
     let left = along.perp();
     let normal = if a.dot(left) > S::ZERO { -left } else { left };
     let room = (-a).dot(normal);
     let after = room + step.dot(normal);
-    // Where the step ends, or where it crosses the wall's line.
+    // The end of the step, or where it crosses the wall's line.
     let part = if after < S::ZERO { room.checked_div(room - after).unwrap_or(S::ZERO) } else { S::ONE };
     let at = (step * part - a).dot(along);
     if at >= S::ZERO && at <= (b - a).norm() {
@@ -203,8 +201,8 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
     Some(Shape::Ball { center: end.extend(S::ZERO), radius: margin, otherwise: Otherwise::Way(normal.extend(S::ZERO)) })
 }
 
-/// The point of the step that counts for a ball: the nearest to the centre, or the end when the robot is inside already
-/// and does not go deeper.
+/// The point of the step that counts for a ball: the nearest to the centre, or the end if the robot
+/// is inside already and does not move deeper.
 fn deepest<S: Scalar>(center: Vec3<S>, radius: S, path: &Path<S>) -> Vec3<S> {
     let Some(direction) = path.direction else {
         return Vec3::ZERO;
@@ -214,21 +212,20 @@ fn deepest<S: Scalar>(center: Vec3<S>, radius: S, path: &Path<S>) -> Vec3<S> {
     if !goes_deeper && center.norm() < radius { path.step } else { direction * along }
 }
 
-/// A step of the same length to the left in the plane; east for one that goes straight up or down.
+/// A step of the same length to the left in the plane; east for a vertical one.
 fn sideways<S: Scalar>(step: Vec3<S>) -> Vec3<S> {
     let left = step.xy().perp().normalized();
     let left = left.unwrap_or(Vec2::new(S::ONE, S::ZERO));
     left.extend(S::ZERO) * step.norm()
 }
 
-/// Whether a step with this part across is straight, within half a degree.
 fn is_straight<S: Scalar>(across: Vec3<S>, step: Vec3<S>) -> bool {
     across.norm() <= step.norm() * S::from_ratio(1, 100)
 }
 
 /// Model 1.
 fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
-    // On the border counts as outside.
+    // A robot on the border counts as outside.
     let inside = -S::from_milli(TOLERANCE_MM);
     match shape {
         Shape::Half { normal, room } => {
@@ -246,7 +243,6 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             let distance = center.norm();
             let inwards = step.dot(ahead);
             if distance - radius < inside {
-                // Already inside: no detour.
                 let point = if inwards > S::ZERO { Vec3::ZERO } else { step };
                 let away = (point - center).normalized().unwrap_or(-ahead);
                 return center + away * radius;
@@ -256,7 +252,7 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             }
             let point = deepest(center, radius, &Path::new(step)) - center;
             let away = point.normalized().unwrap_or(-ahead);
-            // The border beyond the tangent point is not reached in a straight line: not farther than that.
+            // The border beyond the tangent point cannot be reached in a straight line; stop there.
             let horizon = radius.checked_div(distance).unwrap_or(S::ONE);
             if -away.dot(ahead) < horizon {
                 let reach = ((distance - radius) * (distance + radius)).sqrt();
@@ -270,7 +266,8 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
     }
 }
 
-/// Model 2: to the border at the same length, by the smaller angle or on the other side; `None` for no step.
+/// Model 2: to the border at the same length, by the smaller angle or on the other side; `None` for
+/// a step of zero.
 fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<Vec3<S>> {
     let direction = step.normalized()?;
     let length = step.norm();
@@ -283,27 +280,21 @@ fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<V
         }
     };
     let across = direction - axis * direction.dot(axis);
-    let across = if is_straight(across, direction) {
-        // Straight at it: to the left.
-        sideways(direction)
-    } else {
-        across.normalized()?
-    };
-    // What the rounding of a nearly straight step leaves along the axis would lead in.
+    let across = if is_straight(across, direction) { sideways(direction) } else { across.normalized()? };
+    // The rounding error of a nearly straight step along the axis would lead in.
     let across = (across - axis * across.dot(axis)).normalized()?;
     let width = ((length - along) * (length + along)).sqrt();
     let width = if is_smaller { width } else { -width };
     Some(axis * along + across * width)
 }
 
-/// Cosine of the angle between the centre of a ball at `distance` and a step of `length` that ends on its border, or
-/// touches it on its way.
+/// Cosine of the angle between the centre of a ball at `distance` and a step of `length` that ends
+/// on its border, or touches it before.
 fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
     let gap = distance - radius;
     let sum = distance + radius;
     let over = |x: S| x.checked_div(distance);
     if gap >= S::ZERO && length * length >= gap * sum {
-        // The border is nearer than the end: the tangent.
         let squared = over(gap).zip(over(sum)).map(|(a, b)| a * b);
         return squared.unwrap_or(S::ZERO).sqrt();
     }
@@ -313,6 +304,5 @@ fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
         let far = gap.checked_div(length)? * over(sum)? * S::HALF;
         Some(near + far)
     };
-    // Far inside: straight out.
     terms().map_or(-S::ONE, |cos| cos.clamp(-S::ONE, S::ONE))
 }

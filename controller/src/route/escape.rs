@@ -1,26 +1,28 @@
-//! The way out of any dead end: along the wall until the target is nearer than it ever was.
+//! Leaves any dead end: follows the wall until the target is nearer than ever before.
 //!
-//! Source: V. Lumelsky and A. Stepanov, "Path-Planning Strategies for a Point Mobile Automaton Moving Amidst Unknown
-//! Obstacles of Arbitrary Shape", Algorithmica 2, 1987, section 4, with the leave condition of "nearer than where
-//! the wall was met", which needs no line. What differs: on a grid the boundary is a closed chain of cells that is
-//! walked with one hand on the wall.
+//! Source: V. Lumelsky and A. Stepanov, "Path-Planning Strategies for a Point Mobile Automaton
+//! Moving Amidst Unknown Obstacles of Arbitrary Shape", Algorithmica 2, 1987, section 4, with the
+//! leave condition "nearer than where the wall was met", which needs no line. Difference: on a grid
+//! the boundary is a closed chain of cells that is followed with one hand on the wall.
 //!
-//! Why it arrives: straight on, each move comes nearer to the target. Where none does, the cell ahead is a wall, and
-//! the straight line through that wall comes out of it nearer to the target, at a cell of the same boundary if the
-//! target can be reached at all. So each wall is left nearer than it was met, and of distances there are finitely many.
+//! Why the robot arrives: in the open each move approaches the target. If no move does, the cell
+//! ahead is a wall. If the target can be reached at all, the straight line through that wall leaves
+//! it nearer to the target, at a cell of the same boundary. So each wall is left nearer to the
+//! target than it was met, and the number of distances is finite.
 
 use super::RouteParams;
 use crate::grid::{Cell, Dir, Window};
 use serde::{Deserialize, Serialize};
 
-/// How the robot comes nearer to its target than it ever was, whatever the walls.
+/// The state of wall following, which brings the robot nearer to its target than ever before, for
+/// any walls.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Escape {
-    /// Squared distance to the target where the wall was met; `None` while no wall is in the way.
+    /// Squared distance to the target where the wall was met; `None` while there is no wall in the
+    /// way.
     met: Option<u64>,
     /// The number of the direction that is tried first, along a wall.
     first: u8,
-    /// The move that was chosen last.
     next: Dir,
 }
 
@@ -29,16 +31,17 @@ impl Escape {
         Self { met: None, first: 0, next: Dir::Stay }
     }
 
-    /// Tells that the robot has moved; whether by the move that was chosen. Otherwise it is off the boundary, and
-    /// begins again.
+    /// Records that the robot has moved; returns whether it made the chosen move. Otherwise it has
+    /// left the boundary, and starts over.
     pub(super) fn has_made(&mut self, params: &RouteParams, made: Dir) -> bool {
-        // The first direction that may be open again, seen from the wall at the right hand.
+        // The first direction that may be open again, with the wall on the right.
         let back = if params.corner_cutting && !made.is_diagonal() { 7 } else { 6 };
         self.first = (made.index() as u8).wrapping_add(back) & 7;
         made == self.next
     }
 
-    /// The next move from `cell`; `None` when it is walled in. The same again until the robot has moved. O(1).
+    /// The next move from `cell`; `None` if it is walled in. Constant until the robot has moved.
+    /// O(1).
     pub(super) fn choose(
         &mut self,
         params: &RouteParams,
@@ -62,7 +65,8 @@ impl Escape {
         }
         let turns = 0..8_u8;
         let hand = turns.map(|turn| Dir::from_index(self.first.wrapping_add(turn) & 7)).find(|&dir| {
-            // Where corners are not cut, an open diagonal lies between two open moves, and the wall is beside those.
+            // If corners are not cut, an open diagonal lies between two open moves, and the wall is
+            // beside those.
             (params.corner_cutting || !dir.is_diagonal()) && is_open(dir)
         });
         self.next = hand.unwrap_or_default();
@@ -70,7 +74,7 @@ impl Escape {
     }
 }
 
-/// The axis along which the target is farther; a move along it always comes nearer.
+/// The axis along which the target is farther; a move along it always approaches the target.
 fn ahead(cell: Cell, target: Cell) -> Dir {
     let (dx, dy) = (i32::from(target.x) - i32::from(cell.x), i32::from(target.y) - i32::from(cell.y));
     match (dx.abs() >= dy.abs(), dx > 0, dy > 0) {

@@ -1,4 +1,4 @@
-//! Robots arrive wherever there is a way, whatever they see, remember and pay.
+//! Robots arrive wherever a path exists, for any visibility, memory and costs.
 
 use super::*;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
@@ -8,7 +8,7 @@ use std::vec::Vec;
 
 const SIDE: i16 = 20;
 
-/// Land of 20 x 20 cells in walls of 7 cells, farther than anybody here sees.
+/// Land of 20 x 20 cells within walls of 7 cells, wider than any view in these tests.
 struct Land {
     cells: Vec<u8>,
 }
@@ -52,7 +52,7 @@ impl Land {
         known.contains(&to)
     }
 
-    /// Moves of a robot until it is there; `None` when it is not after very many.
+    /// Number of moves until the robot arrives; `None` if it has not after very many.
     fn walk<const M: usize, const L: usize>(&self, params: &RouteParams, from: Cell, to: Cell) -> Option<usize> {
         let mut router = Router::<M, L>::new();
         let mut field = CostField::<225>::new();
@@ -79,7 +79,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn what_can_be_reached_is_reached(
+    fn every_reachable_target_is_reached(
         walls in 1..9_u8,
         inside in prop::collection::vec((0..20_u8, 1..4_u8), (SIDE * SIDE) as usize),
         (from, to) in (cell(), cell()),
@@ -98,7 +98,7 @@ proptest! {
     }
 }
 
-/// A dead end of 16 x 14 cells, open towards the robot in its depth.
+/// A dead end of 16 x 14 cells, open towards the robot inside it.
 fn dead_end() -> Land {
     let mut inside = vec![1; (SIDE * SIDE) as usize];
     for at in 2..18 {
@@ -110,17 +110,17 @@ fn dead_end() -> Land {
 }
 
 #[test]
-fn wall_and_learning_lead_out_of_a_dead_end_larger_than_the_window() {
+fn wall_following_and_learning_leave_a_dead_end_larger_than_the_window() {
     let params = RouteParams { radius: 3, ..RouteParams::default() };
     let (from, to) = (Cell::new(15, 10), Cell::new(19, 10));
     let wall = dead_end().walk::<0, 0>(&params, from, to).unwrap();
     let learning = dead_end().walk::<0, 256>(&params, from, to).unwrap();
-    // Around by the nearer end: some 40 moves.
+    // Around the nearer end: some 40 moves.
     assert!(wall < 100 && learning < 200, "{wall} and {learning}");
 }
 
 #[test]
-fn a_robot_that_was_pushed_off_the_wall_arrives_all_the_same() {
+fn a_robot_pushed_off_the_wall_still_arrives() {
     let land = dead_end();
     let params = RouteParams { radius: 3, ..RouteParams::default() };
     let (mut cell, to) = (Cell::new(15, 10), Cell::new(19, 10));
@@ -130,7 +130,7 @@ fn a_robot_that_was_pushed_off_the_wall_arrives_all_the_same() {
     while cell != to {
         router.observe(&params, cell, to);
         let weights = router.weights(&params, &mut field, &land.window(), cell, to, []).unwrap();
-        // Every 150th move is somebody else's choice.
+        // Every 150th move is forced from outside.
         let pushed = land.moves(cell, false).last().filter(|_| moves % 150 == 149);
         cell = pushed.unwrap_or(cell + weights.best().unwrap().offset());
         moves += 1;

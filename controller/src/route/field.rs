@@ -21,22 +21,22 @@ use queue::{MOST_CELLS, Queue, RING};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unreachable;
 
-/// Scratch memory of one search; 14 bytes a cell of the window with its border of one.
+/// Scratch memory of one search; 14 bytes per cell of the window with its border of one.
 ///
 /// `CELLS` is at least (w + 2) * (h + 2) for the largest window used: 169 for r = 5. A larger
-/// window is cut to the rows that fit. Holds no state between calls: many robots can share one.
+/// window is cut to the rows that fit. It has no state between calls: many robots can share one.
 #[derive(Clone, Debug)]
 pub struct CostField<const CELLS: usize> {
-    /// South-west cell of the window, its size, and the array index of a row's successor.
+    /// South-west cell of the window, its size, and the index distance of two rows.
     origin: Cell,
     width: u16,
     height: u16,
     stride: usize,
     impassability: [u8; CELLS],
-    /// Costs of entering a cell beside crossing it: other robots and earlier visits. In a search that learns: what
-    /// the way from the cell costs at least.
+    /// Costs of entering a cell in addition to crossing it: other robots and earlier visits. In a
+    /// search that learns: a lower bound of the cost from the cell.
     extra: [Cost; CELLS],
-    /// Least known cost to the exit. 0 in cells that no route may use: nothing undercuts it.
+    /// Least known cost to the exit. 0 in cells that routes must not use, so that no cost is lower.
     cost: [Cost; CELLS],
     queue: Queue<CELLS>,
     /// log2 of a bucket's width.
@@ -44,11 +44,10 @@ pub struct CostField<const CELLS: usize> {
     /// Impassability of the easiest land in the window, and whether there are walls.
     easiest: u8,
     has_walls: bool,
-    /// What `extra` means.
     learns: bool,
-    /// The robot's own cell, which no route may use.
+    /// The robot's own cell, which routes must not use.
     closed: usize,
-    /// The bucket to look at next, as if the ring were endless: costs below it are final.
+    /// The next bucket to process, in an endless numbering of the ring: costs below it are final.
     at: u32,
 }
 
@@ -68,7 +67,7 @@ struct Query<'a> {
 }
 
 impl<const CELLS: usize> CostField<CELLS> {
-    /// Scratch memory, ready for use.
+    /// Creates scratch memory.
     #[must_use]
     pub const fn new() -> Self {
         const { assert!(CELLS <= MOST_CELLS, "cells are numbered in 16 bits") };
@@ -100,8 +99,8 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// # Errors
     /// [`Unreachable`] when no exit can be reached, or `from` is not in the window.
     ///
-    /// Work: at most three searches, each O(w h) while costs lie within 64 times the cheapest move of
-    /// each other, as they do with sensible gains, and never more than O((w h)^2).
+    /// Work: at most three searches, each O(w h) while costs lie within 64 times the cheapest move
+    /// of each other, as they do with sensible gains, and never more than O((w h)^2).
     pub fn weights<const M: usize>(
         &mut self,
         params: &RouteParams,
@@ -114,8 +113,8 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.weights_knowing(params, window, (from, target), others, visits, &Beyond::default())
     }
 
-    /// [`CostField::weights`] of a robot that knows something of what is beyond the window. O(w + h) for each cell that it has
-    /// learned of more.
+    /// [`CostField::weights`] of a robot that knows something of the land beyond the window.
+    /// Additional O(w + h) for each learned cell.
     pub(super) fn weights_knowing<const M: usize>(
         &mut self,
         params: &RouteParams,
@@ -136,7 +135,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.solve(params, from, target, beyond)
     }
 
-    /// [`Self::weights`] on the window that was loaded. Not inlined: firmware pays for it once.
+    /// [`Self::weights`] on the loaded window. Not inlined: firmware contains it once.
     #[inline(never)]
     fn solve(
         &mut self,
@@ -174,20 +173,20 @@ impl<const CELLS: usize> CostField<CELLS> {
         weights.best().map(|_| weights).ok_or(Unreachable)
     }
 
-    /// Impassability of the easiest land of the window that was loaded, 255 when all of it is wall, and whether there
-    /// are walls in it.
+    /// Impassability of the easiest land of the loaded window, 255 if all of it is wall, and
+    /// whether it contains walls.
     pub(super) const fn land(&self) -> (u8, bool) {
         (self.easiest, self.has_walls)
     }
 
-    /// Goes on with the search of the last query, which ends when the robot's next moves have their
-    /// prices, until every cell of the window has its cost. Work: O(w h).
+    /// Continues the search of the last query until every cell of the window has its cost; the
+    /// query itself stops as soon as the robot's next moves are priced. Work: O(w h).
     pub fn complete(&mut self, params: &RouteParams) {
         self.advance(params, None);
     }
 
-    /// Cost to the exit of the last query from `cell`; `None` if it has none, or one so high that it
-    /// was of no use ([`CostField::complete`] finds those too). The robot's own cell counts as
+    /// Cost to the exit of the last query from `cell`; `None` if it has none, or one too high to
+    /// have been searched ([`CostField::complete`] finds those too). The robot's own cell counts as
     /// blocked.
     #[must_use]
     pub fn cost(&self, cell: Cell) -> Option<Cost> {
@@ -197,19 +196,18 @@ impl<const CELLS: usize> CostField<CELLS> {
         (open && is_final && cost != EXCLUDED).then_some(cost)
     }
 
-    /// The first move of the cheapest route from `cell` under the last query; `None` at an exit
-    /// and where no route starts.
+    /// The first move of the cheapest route from `cell` under the last query; `None` at an exit and
+    /// if no route starts there.
     #[must_use]
     pub fn descend(&self, params: &RouteParams, cell: Cell) -> Option<Dir> {
         let here = self.cost(cell)?;
         let at = self.index(cell)?;
         let weights = self.outgoing(&Query { params, from: at, from_cell: cell, target: cell });
         let dir = weights.best()?;
-        // An exit's own price may undercut every way on from it.
+        // The price of an exit itself may be lower than every route onwards from it.
         (weights.get(dir) <= here).then_some(dir)
     }
 
-    /// Array index of a cell inside the loaded window.
     fn index(&self, cell: Cell) -> Option<usize> {
         let dx = u16::try_from(i32::from(cell.x) - i32::from(self.origin.x)).ok()?;
         let dy = u16::try_from(i32::from(cell.y) - i32::from(self.origin.y)).ok()?;
@@ -221,7 +219,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.impassability.get(at).is_some_and(|&u| u != BLOCKED)
     }
 
-    /// Copies the part of `window` within the radius and prices its cells.
     #[inline(never)]
     pub(super) fn load(&mut self, params: &RouteParams, window: &Window<'_>, from: Cell) {
         let (origin, width, height) = window.cut(from, params.radius);
@@ -250,7 +247,8 @@ impl<const CELLS: usize> CostField<CELLS> {
             let (Some(source), Some(sink)) = (source, sink) else {
                 continue;
             };
-            // Not `copy_from_slice`: that the lengths are equal is not seen, and its panic stays.
+            // Not `copy_from_slice`: the compiler does not see that the lengths are equal, and
+            // keeps its panic.
             for (sink, u) in sink.iter_mut().zip(source) {
                 *sink = *u;
             }
@@ -282,21 +280,19 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// One search from one exit, if there is one.
     fn search_from(&mut self, query: &Query<'_>, exit: Option<usize>) {
         self.begin(query);
         exit.into_iter().for_each(|at| self.offer(at, 0));
         self.search(query);
     }
 
-    /// One search from the exits that were offered.
     fn search(&mut self, query: &Query<'_>) {
         // Costs of the exits may lie far from 0: start the ring at the least of them.
         self.at = self.lowest_offer();
         self.advance(query.params, Some(query.from));
     }
 
-    /// Empties bucket after bucket until nothing is left, or all around a cell is settled.
+    /// Processes bucket after bucket until nothing is left, or all cells around a cell are final.
     #[inline(never)]
     fn advance(&mut self, params: &RouteParams, around: Option<usize>) {
         let mut idle = 0;
@@ -307,7 +303,7 @@ impl<const CELLS: usize> CostField<CELLS> {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
                 let due = cost >> self.shift;
                 if due > at {
-                    // Was farther away than the ring is long.
+                    // Was farther away than the length of the ring.
                     self.queue.link(cell, due.min(at.saturating_add(RING - 1)));
                 } else {
                     self.settle(params, cell, cost, at);
@@ -322,11 +318,11 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Goes to the next cell at once when a whole turn of the ring settled none: extreme gains set costs so
-    /// far apart that turning on would take for ever. O(w h), and then a cell is settled.
+    /// Skips to the next cell if a whole turn of the ring settled none: with extreme gains, costs
+    /// are so far apart that turning would take too long. O(w h), and then a cell is settled.
     fn skip(&mut self) {
         self.at = self.lowest_offer();
-        // Beyond the window lies what a search of a larger one left.
+        // Beyond the window are leftovers of a search of a larger one.
         let used = (usize::from(self.height) + 2) * self.stride;
         for cell in 0..used {
             if self.queue.holds(cell) {
@@ -338,7 +334,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Whether the costs of all cells around `at` are final: they lie in buckets that are empty now.
+    /// Whether the costs of all cells around `at` are final: their buckets are already empty.
     fn has_settled_around(&self, at: usize) -> bool {
         let s = self.stride;
         let rows = [at.wrapping_sub(s + 1), at.wrapping_sub(1), at + s - 1];
@@ -348,13 +344,13 @@ impl<const CELLS: usize> CostField<CELLS> {
         })
     }
 
-    /// Number of the first bucket in use, as if the ring were endless.
+    /// Number of the first bucket in use, in an endless numbering of the ring.
     fn lowest_offer(&self) -> u32 {
         let costs = self.queue.iter().filter_map(|cell| self.cost.get(cell).copied());
         costs.min().unwrap_or(0) >> self.shift
     }
 
-    /// Offers the predecessors of a settled cell the way through it.
+    /// Updates the predecessors of a settled cell with the route through it.
     fn settle(&mut self, params: &RouteParams, cell: usize, cost: Cost, at: u32) {
         let u = u32::from(self.impassability.get(cell).copied().unwrap_or(BLOCKED));
         let extra = if self.learns { 0 } else { self.extra.get(cell).copied().unwrap_or(0) };
@@ -370,7 +366,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         for beside in [east, west, north, south] {
             self.relax(beside, axis, at);
         }
-        // Each side is looked at once, though two corners need it.
+        // Each side is read once, although two corners need it.
         let open = |side| params.corner_cutting || self.is_passable(side);
         let [e, w, n, s] = [east, west, north, south].map(open);
         let corners = [
@@ -403,7 +399,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Makes a cell an exit of the given price.
     fn offer(&mut self, cell: usize, price: Cost) {
         let Some(known) = self.cost.get_mut(cell) else {
             return;
@@ -415,7 +410,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// The cells of the window's outermost ring.
     fn border(&self) -> impl Iterator<Item = Cell> + use<CELLS> {
         let (origin, width, height) = (self.origin, self.width.cast_signed(), self.height.cast_signed());
         let rows = (0..width).flat_map(move |x| [(x, 0), (x, height - 1)]);
@@ -425,8 +419,8 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// The border cell nearest to `exit` (then in the order of [`Cell`]) that the robot can reach.
     fn nearest_reachable_border(&mut self, query: &Query<'_>, exit: Cell) -> Option<usize> {
-        // Moves are symmetric in what they may enter, so a search from the own cell's neighbours
-        // that are open to it finds what can be reached.
+        // Moves are symmetric in the cells that they may enter, so a search from the open
+        // neighbours of the own cell finds all reachable cells.
         let open = self.outgoing_with(query, |_| Some(0));
         self.begin(query);
         for (dir, cost) in open.iter() {
@@ -443,7 +437,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.index(nearest)
     }
 
-    /// Weights of the moves out of the query's cell.
     fn outgoing(&self, query: &Query<'_>) -> Weights {
         self.outgoing_with(query, |at| self.cost.get(at).copied().filter(|&cost| cost != EXCLUDED))
     }

@@ -1,54 +1,56 @@
-//! What a robot knows of land that it does not see: what it has seen otherwise than its map says.
+//! Observed differences from the map, for land out of sight.
 //!
-//! KUZ section 3: land changes with time and is not fully scouted. A robot that has a map plans on a window that is wider
-//! than its sight. Its caller fills that window: with the map ([`supposed`]), then with what the robot has seen otherwise
-//! ([`LandMemory::overlay`]), then with what it sees now. The search takes such a window as any other one, and a plan that does not
-//! hold any more is made anew when the robot sees so. Maps can lie in flash; memory is taken by differences only.
+//! KUZ section 3: land changes with time and is not fully scouted. A robot with a map plans on a
+//! window wider than its view. The caller fills that window: with the map ([`supposed`]), then with
+//! remembered differences ([`LandMemory::overlay`]), then with the present view. The search treats
+//! it as any other window, and an invalid plan is replaced when the robot sees the difference. Maps
+//! can lie in flash; only differences take memory.
 
 use crate::grid::{BLOCKED, Cell, Window};
 use crate::list::{Seldom, sink_last};
 use serde::{Deserialize, Serialize};
 
-/// Ticks that a cell takes for who only supposes that it is closed: no way through it is taken while there is another one, and
-/// none is given up that nobody has looked at.
+/// Ticks that a cell takes if it is only assumed to be closed. No route crosses it while there is
+/// another one, but a route is not given up because of a wall that was never observed.
 pub const SUPPOSED_CLOSED: u8 = u8::MAX;
 
-/// The class with which to plan for a cell out of sight whose class was, or is said to be, this one.
+/// The class to plan with for a cell out of sight that was last seen, or is mapped, with this
+/// class.
 #[must_use]
 pub const fn supposed(class: u8) -> u8 {
     if class == BLOCKED { SUPPOSED_CLOSED } else { class }
 }
 
-/// The classes of up to `N` cells that a robot has seen otherwise than its map says.
+/// The classes of up to `N` cells that differ from the map.
 ///
-/// When full, the cell farthest from the robot is forgotten, and is again what the map says. Memory: 6 bytes a cell.
+/// When full, the cell farthest from the robot is forgotten, and has the map's class again. Memory:
+/// 6 bytes per cell.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LandMemory<const N: usize> {
-    /// By rising cell.
     cells: Seldom<(Cell, u8), N>,
 }
 
 impl<const N: usize> LandMemory<N> {
-    /// Nothing seen otherwise yet.
+    /// Creates an empty memory.
     #[must_use]
     pub const fn new() -> Self {
         Self { cells: Seldom::new() }
     }
 
-    /// The cells that are otherwise, each as it was seen last, by rising cell.
+    /// The cells that differ, each as last seen, in ascending order.
     pub fn iter(&self) -> impl Iterator<Item = (Cell, u8)> + '_ {
         self.cells.iter().copied()
     }
 
-    /// What a cell was when it was seen last, if the map says otherwise. O(log N).
+    /// The last seen class of a cell, if the map differs. O(log N).
     #[must_use]
     pub fn get(&self, cell: Cell) -> Option<u8> {
         let at = self.cells.binary_search_by_key(&cell, |&(at, _)| at).ok()?;
         self.cells.get(at).map(|&(_, class)| class)
     }
 
-    /// Takes note of all cells that the robot `here` sees; `map` says what it would have thought of them.
-    /// O(cells of `seen` x log N), and O(N) for each that has changed since it was seen last.
+    /// Stores all cells that the robot `here` sees; `map` returns their class on the map. O(cells
+    /// of `seen` x log N), and O(N) for each cell that has changed since it was last seen.
     pub fn observe(&mut self, here: Cell, seen: &Window<'_>, map: impl Fn(Cell) -> u8) {
         for (cell, class) in seen.iter() {
             if class == map(cell) {
@@ -78,8 +80,8 @@ impl<const N: usize> LandMemory<N> {
         }
     }
 
-    /// Writes what was seen into a window of known land whose south-west cell is `origin`, row by row from there, each
-    /// `width` cells long. O(N).
+    /// Writes the remembered cells into a window of known land whose south-west cell is `origin`,
+    /// row by row from there, each `width` cells long. O(N).
     pub fn overlay(&self, origin: Cell, width: u16, cells: &mut [u8]) {
         for &(cell, class) in &self.cells {
             let [dx, dy] = [(cell.x, origin.x), (cell.y, origin.y)].map(|(at, from)| i32::from(at) - i32::from(from));
@@ -113,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_otherwise_takes_memory_and_goes_when_it_is_as_the_map_says() {
+    fn only_differences_from_the_map_take_memory() {
         let mut memory = LandMemory::<8>::new();
         see(&mut memory, 0, -1, &[1, 5, 1, BLOCKED]);
         assert!(memory.iter().eq([(at(0), 5), (at(2), BLOCKED)]));
@@ -125,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_memory_forgets_the_farthest_cell_be_it_the_new_one() {
+    fn a_full_memory_forgets_the_farthest_cell_even_the_new_one() {
         let mut memory = LandMemory::<2>::new();
         see(&mut memory, 0, 5, &[2]);
         see(&mut memory, 0, 1, &[3]);
@@ -139,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn walls_out_of_sight_are_dear_and_no_walls() {
+    fn walls_out_of_sight_are_expensive_but_passable() {
         let mut memory = LandMemory::<8>::new();
         see(&mut memory, 0, 0, &[BLOCKED, 4, 1]);
         let mut known = [supposed(BLOCKED), 1, 1, 1, 1, 1];
@@ -149,7 +151,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_knows_what_it_saw_last_as_long_as_there_is_room(
+        fn it_returns_the_last_seen_class_within_its_capacity(
             looks in proptest::collection::vec((-6_i16..6, proptest::collection::vec(0_u8..4, 1..6)), 0..20),
         ) {
             let mut memory = LandMemory::<16>::new();
@@ -165,7 +167,7 @@ mod tests {
         }
 
         #[test]
-        fn no_window_is_too_small_for_it(width: u16, x: i16, y: i16, cells in proptest::collection::vec(0_u8..4, 0..30)) {
+        fn windows_of_any_size_are_overlaid(width: u16, x: i16, y: i16, cells in proptest::collection::vec(0_u8..4, 0..30)) {
             let mut memory = LandMemory::<8>::new();
             for (cx, cy) in [(0, 0), (i16::MIN, i16::MAX), (x, y)] {
                 let seen = Window::new(&[9], Cell::new(cx, cy), 1, 1).expect("fits");

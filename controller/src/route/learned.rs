@@ -1,20 +1,20 @@
-//! What the robot has learned of the way from here to the target: a cost below which no way can be.
+//! Learned lower bounds of the cost to the target.
 
 use crate::cost::Cost;
 use crate::grid::Cell;
 use crate::list::Seldom;
 use serde::{Deserialize, Serialize};
 
-/// Least costs to the target of up to `L` cells, each more than the straight way would cost.
+/// Least costs to the target of up to `L` cells, each more than the straight path would cost.
 ///
-/// When full, the cell farthest from the robot is forgotten. Memory: 8 bytes a cell.
+/// When full, the cell farthest from the robot is forgotten. Memory: 8 bytes per cell.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LearnedCosts<const L: usize> {
     costs: Seldom<(Cell, Cost), L>,
 }
 
 impl<const L: usize> LearnedCosts<L> {
-    /// Nothing learned yet.
+    /// Creates an empty memory.
     #[must_use]
     pub const fn new() -> Self {
         Self { costs: Seldom::new() }
@@ -31,8 +31,8 @@ impl<const L: usize> LearnedCosts<L> {
         self.costs.iter().copied()
     }
 
-    /// Learns that the way from `cell` costs at least `cost`; of a full memory the cell farthest from `here` goes,
-    /// be it `cell` itself. O(L).
+    /// Stores that the route from `cell` costs at least `cost`. A full memory forgets the cell
+    /// farthest from `here`, which may be `cell` itself. O(L).
     pub fn raise(&mut self, cell: Cell, cost: Cost, here: Cell) {
         if let Some((_, known)) = self.costs.iter_mut().find(|(at, _)| *at == cell) {
             *known = cost.max(*known);
@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn a_memory_of_nothing_works() {
+    fn a_memory_of_capacity_zero_works() {
         let mut learned = LearnedCosts::<0>::new();
         learned.raise(at(1), 7, at(0));
         assert_eq!(learned.iter().count(), 0);

@@ -1,4 +1,4 @@
-//! The route of one robot: what it remembers between steps.
+//! The routing state of one robot between steps.
 
 use super::escape::Escape;
 use super::field::Beyond;
@@ -10,54 +10,56 @@ use crate::list::Seldom;
 use crate::names::named;
 use serde::{Deserialize, Serialize};
 
-/// Moves that a plan holds; a longer route is planned again after so many.
+/// Moves in a plan; a longer route is planned again after this many.
 pub const PLAN: usize = 32;
 
-/// Moves without coming nearer to the target than ever before after which the robot follows the wall, if it cannot
-/// learn.
+/// Number of moves without a new least distance to the target after which the robot follows the
+/// wall, if it cannot learn.
 const IDLE: u8 = 20;
-/// The same for a robot that learns: more, as that is the shorter way out more often than not.
+/// The same limit for a robot that learns; higher, as learning is usually the shorter solution.
 const IDLE_LEARNING: u8 = 100;
 
 named! {
-    /// When a route is searched anew.
+    /// When to search for a new route.
     #[derive(Default)]
     pub enum Replan {
-        /// Whenever the robot is free to leave its cell (alg. 1): O((2r + 1)^2) a cell.
+        /// Whenever the robot is free to leave its cell (alg. 1): O((2r + 1)^2) per cell.
         #[default]
         EachCell = "each_cell",
         /// At the end of the planned chain or when something changed on it (KUZ section 3): fewer
-        /// searches, later reactions to what happens beside the chain.
+        /// searches, but slower reactions to changes beside the chain.
         UntilChanged = "until_changed",
     }
 }
 
-/// What one robot's routing keeps between steps: visits (`M` cells), the planned chain, and what gets it out of
-/// dead ends that are larger than its window.
+/// One robot's routing state: visits (`M` cells), the planned chain, and the state that leads it
+/// out of dead ends larger than its window.
 ///
-/// While each move brings the robot nearer to its target than it ever was, the paper's rule decides. When one does not,
-/// and there are walls in sight (or many do not), it *learns*: the window is searched for the costs from all its cells,
-/// and what turns out dearer than believed is remembered, for up to `L` cells (LSS-LRTA*, S. Koenig and X. Sun,
-/// "Comparing real-time and incremental heuristic search for real-time situated agents", JAAMAS 18, 2009; here at each
-/// move, and the costs from the window's inner cells are kept from falling too). Others are no walls: with one in sight
-/// nothing is learned, and the paper's rule decides. What `L` cells cannot hold, or with `L` = 0, the wall gets it out:
-/// after 20 moves (100 with a memory) the robot walks along it until it is nearer than ever. So it arrives wherever
-/// there is a way that it may go undisturbed, with any gains, `M` and `L`.
+/// While each move brings the robot closer to its target than ever before, the paper's rule
+/// decides. When a move does not, and walls are in sight (or many moves do not), the robot
+/// *learns*: it searches the window for the costs from all cells, and stores those that are higher
+/// than assumed, for up to `L` cells (LSS-LRTA*, S. Koenig and X. Sun, "Comparing real-time and
+/// incremental heuristic search for real-time situated agents", JAAMAS 18, 2009; here at each move,
+/// and the costs from the window's inner cells never decrease either). Other robots are not walls:
+/// with one in sight nothing is learned, and the paper's rule decides.
+///
+/// Dead ends that `L` cells cannot represent (any with `L` = 0) are left along the wall: after 20
+/// moves (100 with a memory) the robot follows it until it is closer than ever. So it arrives
+/// wherever a path exists that it may follow undisturbed, with any gains, `M` and `L`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Router<const M: usize, const L: usize = 0> {
     visits: VisitMemory<M>,
     here: Option<Cell>,
     target: Option<Cell>,
-    /// The moves to come, last one first, each with the impassability that it was planned for.
+    /// The next moves, last one first, each with the impassability that it was planned for.
     plan: Seldom<(Dir, u8), PLAN>,
     learned: LearnedCosts<L>,
-    /// Impassability of the easiest land seen on the way to this target.
+    /// Impassability of the easiest land seen on the route to this target.
     easiest: u8,
     /// Least squared distance to the target so far.
     least: u64,
     /// Moves since then.
     idle: u8,
-    /// Along the wall.
     escape: Option<Escape>,
 }
 
@@ -68,7 +70,7 @@ impl<const M: usize, const L: usize> Default for Router<M, L> {
 }
 
 impl<const M: usize, const L: usize> Router<M, L> {
-    /// Knows nothing yet.
+    /// Creates an empty state.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -84,7 +86,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         }
     }
 
-    /// What the robot remembers of its way.
+    /// The memory of visited cells.
     #[must_use]
     pub const fn visits(&self) -> &VisitMemory<M> {
         &self.visits
@@ -95,8 +97,9 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.idle
     }
 
-    /// Tells where the robot is and where it is heading; to be called each step. A changed cell
-    /// counts as a visit and as a move of the planned chain, a target that moves by more than the window forgets the visits.
+    /// Updates the robot's cell and target; call it at each step. A changed cell counts as a visit
+    /// and as a move of the planned chain. A target that moves by more than the window clears the
+    /// visits.
     pub fn observe(&mut self, params: &RouteParams, cell: Cell, target: Cell) {
         if self.target.is_some_and(|old| old.chebyshev(target) > u32::from(params.radius)) {
             self.visits.clear();
@@ -113,14 +116,14 @@ impl<const M: usize, const L: usize> Router<M, L> {
             self.visits.enter(cell);
             self.idle = self.idle.saturating_add(1);
             if self.escape.as_mut().is_some_and(|escape| !escape.has_made(params, made)) {
-                // Pushed aside: another try first.
+                // Pushed aside: try the normal rule first.
                 self.escape = None;
                 self.idle = 1;
             }
         }
         let distance = cell.distance_squared(target);
         if distance == 0 {
-            // Whoever is pushed off its target comes back by a new way.
+            // A robot that is pushed off its target plans a new route back.
             self.begin_anew();
         } else if distance < self.least {
             self.least = distance;
@@ -129,7 +132,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         }
     }
 
-    /// Forgets what it has learned of the way, as for a robot that is led by others for a while.
+    /// Clears the knowledge of the route, for example while other robots lead this one.
     pub fn begin_anew(&mut self) {
         self.learned.clear();
         self.easiest = u8::MAX;
@@ -138,11 +141,11 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.escape = None;
     }
 
-    /// Weights of the eight moves by a new search; see [`CostField::weights`]. Along a wall the one that keeps to it
-    /// weighs nothing. Work: three searches, and O(L w h) while it learns.
+    /// Weights of the eight moves by a new search; see [`CostField::weights`]. While following a
+    /// wall, the move along it has weight zero. Work: three searches, and O(L w h) while learning.
     ///
     /// # Errors
-    /// [`Unreachable`] when no exit of the window can be reached.
+    /// [`Unreachable`] if no exit of the window can be reached.
     pub fn weights<const CELLS: usize>(
         &mut self,
         params: &RouteParams,
@@ -155,11 +158,12 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.weights_over(params, field, window, (from, target), others, None)
     }
 
-    /// [`Router::weights`] of a robot that may know `land` beyond its window, and prices the exits by it instead of learning.
-    /// With no tile known the price is the same. Work: besides, [`FarLand::look`].
+    /// Like [`Router::weights`] for a robot that may know `land` beyond its window, and prices the
+    /// exits by it instead of learning. Without known tiles the prices are unchanged. Additional
+    /// work: [`FarLand::look`].
     ///
     /// # Errors
-    /// [`Unreachable`] when no exit of the window can be reached.
+    /// [`Unreachable`] if no exit of the window can be reached.
     pub fn weights_over<const CELLS: usize>(
         &mut self,
         params: &RouteParams,
@@ -201,11 +205,11 @@ impl<const M: usize, const L: usize> Router<M, L> {
         })
     }
 
-    /// The next move of the planned chain, planned anew when there is none or something on it
-    /// changed. [`Router::observe`] sees whether the robot makes it.
+    /// The next move of the planned chain, which is planned again if there is none or something on
+    /// it changed. [`Router::observe`] detects whether the robot makes it.
     ///
     /// # Errors
-    /// [`Unreachable`] when no exit of the window can be reached.
+    /// [`Unreachable`] if no exit of the window can be reached.
     pub fn follow<const CELLS: usize>(
         &mut self,
         params: &RouteParams,
@@ -215,7 +219,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         target: Cell,
         others: impl IntoIterator<Item = Cell> + Clone,
     ) -> Result<Dir, Unreachable> {
-        // A way out is found anew in each cell.
+        // A path out of a dead end is planned again in each cell.
         let is_anew = self.escapes() || L > 0 && self.idle > 0;
         if is_anew || !self.plan_holds(params, window, from, others.clone()) {
             let weights = self.weights(params, field, window, from, target, others)?;
@@ -228,21 +232,21 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.plan.last().map(|&(dir, _)| dir).ok_or(Unreachable)
     }
 
-    /// Whether the robot follows the wall, or begins to.
     fn escapes(&self) -> bool {
         let patience = if L == 0 { IDLE } else { IDLE_LEARNING };
         self.escape.is_some() || self.idle > patience
     }
 
-    /// Takes the first move off the plan, once the robot has made it; drops a plan that the robot left.
+    /// Removes the first move of the plan once the robot has made it; drops a plan that the robot
+    /// left.
     fn advance(&mut self, made: Dir) {
         if self.plan.pop().is_some_and(|(dir, _)| dir != made) {
             self.plan.clear();
         }
     }
 
-    /// Whether the land on the chain is as planned, as far as the window shows it, no corner beside it has closed, and nobody is
-    /// in the way.
+    /// Whether the land on the chain is as planned, as far as the window shows it, no corner beside
+    /// it has closed, and no robot is in the way.
     fn plan_holds(
         &self,
         params: &RouteParams,

@@ -24,7 +24,7 @@ fn weights_on(rows: &[&str], params: &RouteParams, from: (i16, i16), to: (i16, i
 fn cheapest_way_to_a_target_inside_avoids_bad_land() {
     let params = RouteParams { a3: Gain::ZERO, ..RouteParams::default() };
     let weights = weights_on(&["11111", "19991", "11111"], &params, (0, 1), (4, 1)).unwrap();
-    // Around: two diagonal and two axis moves; once on bad land, off it again by a diagonal.
+    // Around: two diagonal and two straight moves; once on bad land, off it again by a diagonal.
     assert_eq!(weights.get(Dir::East), 10 * TICK + 2 * Gain::ONE.of(DIAGONAL));
     assert_eq!(weights.get(Dir::NorthEast), 2 * TICK + 2 * Gain::ONE.of(DIAGONAL));
     assert_eq!(weights.get(Dir::NorthEast), weights.get(Dir::SouthEast));
@@ -49,7 +49,7 @@ fn weights_never_return_through_the_own_cell() {
 }
 
 #[test]
-fn closed_in_robot_is_told_so() {
+fn closed_in_robot_gets_an_error() {
     let params = RouteParams::default();
     assert_eq!(weights_on(&["###", "#1#", "###"], &params, (1, 1), (9, 9)), Err(Unreachable));
     assert_eq!(weights_on(&["1"], &params, (0, 0), (0, 0)), Err(Unreachable));
@@ -77,7 +77,7 @@ fn ray_takes_the_single_exit_or_the_nearest_reachable_border_cell() {
 }
 
 #[test]
-fn visits_and_other_robots_cost_what_the_gains_say() {
+fn visits_and_other_robots_cost_their_gains() {
     let params = RouteParams {
         radius: 1,
         a1: Gain::from_int(5),
@@ -151,9 +151,10 @@ fn plan_does_not_hold_when_a_corner_beside_it_closes() {
     assert_eq!(follow(&mut router, &cells, Cell::new(4, 4)), Dir::North);
 }
 
-/// Gains at their ends: costs as far apart as can be take no longer and say the same.
+/// Gains at their limits: costs that are extremely far apart take no longer and give the same
+/// result.
 #[test]
-fn extreme_gains_neither_close_the_way_nor_take_for_ever() {
+fn extreme_gains_neither_close_a_route_nor_take_long() {
     let cells = [1; 121];
     let window = Window::new(&cells, Cell::new(-5, -5), 11, 11).unwrap();
     let most = Gain::from_sixteenths(u16::MAX);
@@ -177,7 +178,6 @@ fn extreme_gains_neither_close_the_way_nor_take_for_ever() {
     }
 }
 
-/// Reference: Bellman-Ford over the same moves.
 fn oracle(cells: &[u8], width: usize, from: usize, exits: &[(usize, Cost)], params: &RouteParams) -> Vec<u64> {
     let height = cells.len() / width;
     let mut cost = std::vec![u64::MAX; cells.len()];

@@ -1,4 +1,4 @@
-//! What the robot remembers of its own way (eq. 9).
+//! The robot's memory of its own path (eq. 9).
 
 use crate::grid::Cell;
 use crate::list::Seldom;
@@ -6,15 +6,14 @@ use serde::{Deserialize, Serialize};
 
 /// How often the robot entered each of the last `M` different cells.
 ///
-/// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes a cell.
+/// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes per cell.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct VisitMemory<const M: usize> {
-    /// In order of the last entry, oldest first.
     visits: Seldom<(Cell, u8), M>,
 }
 
 impl<const M: usize> VisitMemory<M> {
-    /// Nothing visited yet.
+    /// Creates an empty memory.
     #[must_use]
     pub const fn new() -> Self {
         Self { visits: Seldom::new() }
@@ -29,7 +28,7 @@ impl<const M: usize> VisitMemory<M> {
             self.visits.pop()
         });
         let count = gone.filter(|&(at, _)| at == cell).map_or(0, |(_, count)| count);
-        // Fails only for M = 0, a memory that remembers nothing.
+        // Fails only for M = 0, a memory without capacity.
         let _ = self.visits.push((cell, count.saturating_add(1)));
     }
 
@@ -50,7 +49,8 @@ impl<const M: usize> VisitMemory<M> {
     }
 }
 
-/// Moves the item at `at` to the end; those behind it move up. Nothing happens when there is none.
+/// Moves the item at `at` to the end; those behind it move up. Nothing happens if it does not
+/// exist.
 fn to_end<T>(items: &mut [T], at: usize) {
     let mut rest = items.get_mut(at..).unwrap_or_default();
     while let [item, next, ..] = rest {
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_item_goes_to_the_end_and_the_others_keep_their_order() {
+    fn an_item_moves_to_the_end_and_the_others_keep_their_order() {
         let mut items = [1, 3, 4, 5, 7];
         to_end(&mut items, 1);
         assert_eq!(items, [1, 4, 5, 7, 3]);
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_saturate_and_a_memory_of_nothing_works() {
+    fn counts_saturate_and_a_memory_of_capacity_zero_works() {
         let mut memory = VisitMemory::<1>::new();
         for _ in 0..300 {
             memory.enter(Cell::new(5, 5));

@@ -1,16 +1,17 @@
-//! Approximate `f32` through micromath, for parts with an FPU and no time: ORCA takes a fifth fewer instructions on a Cortex-M4F than in
-//! `f32` (`docs/firmware.md`).
+//! Approximate `f32` through micromath, for parts with an FPU and little time: ORCA takes a fifth
+//! fewer instructions on a Cortex-M4F than with `f32` (`docs/firmware.md`).
 
 use super::{Scalar, sealed};
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use micromath::F32Ext;
 use serde::{Deserialize, Serialize};
 
-/// An `f32` whose functions are approximations: same bits on every target, fewer of them right.
+/// An `f32` whose functions are approximations: identical bits on every target, fewer of them
+/// correct.
 ///
-/// Sums, products and conversions are those of `f32`. Errors against exact functions: 0.2 % for `sqrt`,
-/// `norm` and `unit`; 0.002 and 1e-7 of the angle for `sin_cos`; 0.003 rad for `atan2`; 0.3 % for `exp`
-/// (0 below -87, infinite above 88); 1e-4 and 1e-6 of the value for `ln`.
+/// Sums, products and conversions are those of `f32`. Errors against exact functions: 0.2 % for
+/// `sqrt`, `norm` and `unit`; 0.002 and 1e-7 of the angle for `sin_cos`; 0.003 rad for `atan2`; 0.3
+/// % for `exp` (0 below -87, infinite above 88); 1e-4 and 1e-6 of the value for `ln`.
 ///
 /// `atan2` of components beyond 1e18 is NaN, and of vectors shorter than 1e-18 it is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
@@ -138,7 +139,7 @@ impl Scalar for Fast32 {
         if self.0.is_normal() && self.0 > 0.0 {
             Self(self.0 * inverse_sqrt(self.0))
         } else {
-            // Infinity and NaN stay, what is negative or too small to matter is 0.
+            // Infinity and NaN are kept; negative and negligible values give 0.
             Self(if self.0 < f32::MIN_POSITIVE { 0.0 } else { self.0 })
         }
     }

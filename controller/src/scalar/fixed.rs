@@ -1,4 +1,4 @@
-//! Q16.16: fixed point for parts without an FPU. Integers only, nothing overflows.
+//! Q16.16: fixed point for parts without an FPU. Integers only, without overflow.
 
 use super::integer::{bow_q32, log2_q32, polynomial_q30};
 use super::{Scalar, sealed};
@@ -8,8 +8,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A number from -32768 to 32767.99998 in steps of 2^-16 (0.000015), saturating everywhere.
 ///
-/// Products are rounded to nearest. There is neither NaN nor infinity: what is out of range becomes
-/// [`Scalar::MAX`] or its negative, and [`Scalar::is_finite`] is always true.
+/// Products are rounded to nearest. There is neither NaN nor infinity: a result out of range
+/// becomes [`Scalar::MAX`] or its negative, and [`Scalar::is_finite`] is always true.
 ///
 /// Errors against exact functions, each beside the half step of rounding: `sqrt` and `norm` one
 /// step (rounded down); `sin_cos`, `atan2`, `ln` one step; `exp` a factor of 1 + 1e-8.
@@ -29,7 +29,6 @@ impl Q16 {
         self.0
     }
 
-    /// The nearest number to `bits` / 65536 that is in range.
     fn saturating(bits: i64) -> Self {
         Self::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
     }
@@ -39,7 +38,6 @@ impl Q16 {
     }
 }
 
-/// As its bits.
 impl Serialize for Q16 {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         serializer.serialize_i32(self.bits())
@@ -150,7 +148,6 @@ impl Scalar for Q16 {
     }
 
     fn from_micro(micro: i32) -> Self {
-        // 0.065536 in Q34.
         const STEPS_Q34: i64 = 1_125_899_907;
         Self::saturating((i64::from(micro) * STEPS_Q34 + (1 << 33)) >> 34)
     }
@@ -169,7 +166,6 @@ impl Scalar for Q16 {
     }
 
     fn from_f32(value: f32) -> Option<Self> {
-        // The product is exact, and the cast saturates.
         (!value.is_nan()).then(|| Self::from_bits(libm::roundf(value * 65_536.0) as i32))
     }
 

@@ -34,7 +34,6 @@ macro_rules! impl_scalar {
             }
 
             fn to_milli(self) -> Option<i32> {
-                // The cast saturates.
                 (!self.is_nan()).then(|| libm::$round(self * 1e3) as i32)
             }
 

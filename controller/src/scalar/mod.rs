@@ -1,11 +1,11 @@
-//! The one numeric trait, and the four numbers that implement it.
+//! The numeric trait of the controller, and the four types that implement it.
 //!
-//! `f32` ships, `f64` is the oracle, [`Q16`] serves parts without an FPU and [`Fast32`] trades
-//! accuracy for time. Everything beyond + - * goes through [`Scalar`] and hence through the same
-//! software routines on every target: same bits everywhere.
+//! `f32` is the default, `f64` the reference, [`Q16`] serves parts without an FPU, and [`Fast32`]
+//! trades accuracy for time. All operations beyond + - * use [`Scalar`] and hence the same software
+//! routines on every target, so that all targets compute identical bits.
 //!
 //! NaN fails closed: it passes through arithmetic, `min`, `max` and `clamp` unchanged, is the last
-//! in [`Scalar::order`], and conversions to integers answer `None`.
+//! in [`Scalar::order`], and conversions to integers return `None`.
 
 #[cfg(feature = "micromath")]
 mod fast;
@@ -31,7 +31,7 @@ mod sealed {
 
 /// A real number of limited range and precision; sealed.
 ///
-/// There is no `Div`: a division by zero must be met where it happens, see
+/// There is no `Div`: the caller must handle a division by zero where it occurs, see
 /// [`Scalar::checked_div`].
 pub trait Scalar:
     sealed::Sealed
@@ -67,7 +67,8 @@ pub trait Scalar:
     const EPSILON: Self;
     /// The largest finite number; its negative is in range too.
     const MAX: Self;
-    /// Whether precision is relative: the square of a short or a long vector's length is as precise as the length.
+    /// Whether precision is relative: the square of a short or a long vector's length is as precise
+    /// as the length.
     const IS_FLOATING: bool;
 
     /// An integer, rounded to nearest; saturates.
@@ -102,8 +103,8 @@ pub trait Scalar:
     #[must_use]
     fn to_f64(self) -> f64;
 
-    /// The nearest number, saturating; NaN gives `None`. What comes from elsewhere (a host, a file, another robot's link) comes
-    /// as `f32`; by integers and single precision only.
+    /// The nearest number, saturating; NaN gives `None`. Values from elsewhere (a host, a file,
+    /// another robot's link) arrive as `f32`; uses integers and single precision only.
     #[must_use]
     fn from_f32(value: f32) -> Option<Self>;
 
@@ -158,9 +159,9 @@ pub trait Scalar:
     #[must_use]
     fn length_key(components: [Self; 3]) -> u64;
 
-    /// The vector of length 1 with the same direction, to the full precision of the type whatever
-    /// the length; `None` for the zero vector (floats: also shorter than 2e-19) and when a
-    /// component is not finite.
+    /// The vector of length 1 with the same direction, to the full precision of the type at any
+    /// length; `None` for the zero vector (floats: also shorter than 2e-19) and if a component is
+    /// not finite.
     #[must_use]
     fn unit(components: [Self; 3]) -> Option<[Self; 3]>;
 
@@ -188,7 +189,7 @@ pub trait Scalar:
         self.max(low).min(high)
     }
 
-    /// A total order by value with NaN after everything else, so that what is unknown is never the
+    /// A total order by value with NaN after everything else, so that an unknown value is never the
     /// least.
     #[must_use]
     fn order(self, other: Self) -> Ordering {
@@ -196,13 +197,12 @@ pub trait Scalar:
     }
 }
 
-/// The nearest number of another kind, by way of `f32`; no number becomes 0.
+/// The nearest number of another scalar type, via `f32`; NaN becomes 0.
 #[must_use]
 pub fn cast<S: Scalar, T: Scalar>(x: S) -> T {
     T::from_f32(x.to_f32()).unwrap_or(T::ZERO)
 }
 
-/// Whether `x` is no number at all.
 #[expect(clippy::eq_op, reason = "only NaN differs from itself")]
 fn is_nan<S: Scalar>(x: S) -> bool {
     x != x

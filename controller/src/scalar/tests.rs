@@ -124,7 +124,6 @@ fn number() -> impl Strategy<Value = f64> {
     prop_oneof![9 => magnitude, 1 => Just(0.0)]
 }
 
-/// Calls everything; the results only have to exist and to keep what holds for any bits.
 fn survives<S: Scalar>(a: S, b: S, c: S) {
     let (sum, product) = (a + b, a * b);
     let _ = (sum - c, -product, a.abs(), a.checked_div(b));
@@ -210,7 +209,7 @@ proptest! {
 }
 
 #[test]
-fn constants_are_what_they_say() {
+fn constants_have_their_values() {
     fn check<S: Scalar>() {
         assert_eq!(S::ZERO.to_f64(), 0.0);
         assert_eq!(S::ONE.to_f64(), 1.0);
@@ -229,7 +228,7 @@ fn constants_are_what_they_say() {
 }
 
 #[test]
-fn corners_have_answers() {
+fn boundary_cases_have_defined_results() {
     fn check<S: Scalar>() {
         assert_eq!(S::ONE.checked_div(S::ZERO), None);
         assert_eq!(S::ZERO.checked_div(S::ZERO), None);
@@ -339,7 +338,8 @@ fn sweep<S: Scalar>() -> u64 {
 
 #[test]
 fn bits_are_pinned() {
-    // The same on every target and with every version of the libraries, or recorded runs change.
+    // Identical on every target and with every version of the libraries, or recorded runs would
+    // change.
     let (sin, cos) = Scalar::sin_cos(1f32);
     let known = [sin, cos, Scalar::exp(1f32), Scalar::sqrt(2f32), Scalar::atan2(1f32, 2.0)];
     let bits = [0x3F57_6AA4, 0x3F0A_5140, 0x402D_F854, 0x3FB5_04F3, 0x3EED_6338];

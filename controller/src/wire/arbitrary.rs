@@ -1,4 +1,4 @@
-//! Any message at all, for the properties of this module.
+//! Strategies that generate arbitrary messages, for the property tests of this module.
 
 use super::*;
 use crate::grid::{Cell, Dir};

@@ -1,5 +1,6 @@
-//! A formation template in parts: splitting it for the air, and putting it together again from
-//! parts that come in any order, more than once, or not at all.
+//! Splits a formation template into parts for transmission and reassembles it.
+//!
+//! Parts may arrive in any order, more than once, or not at all.
 
 use super::{Newest, TEMPLATE_PART, TemplateAssignment};
 use crate::grid::Cell;
@@ -9,29 +10,28 @@ use crate::template::{Template, TemplateEntry};
 use heapless::Vec;
 use serde::{Deserialize, Serialize, Serializer};
 
-/// Parts that a [`TemplateAssembler`] can tell apart: one bit each.
+/// Parts that a [`TemplateAssembler`] can track: one bit each.
 const MAX_PARTS: usize = u64::BITS as usize;
 
-/// Entries of the largest template that [`TemplateAssignment::split`] makes parts of.
+/// Entries in the largest template that [`TemplateAssignment::split`] accepts.
 pub const MAX_TEMPLATE: usize = MAX_PARTS * TEMPLATE_PART;
 
-/// What stands in a place that no part has filled.
 const NO_ENTRY: TemplateEntry = TemplateEntry { offset: Cell::new(0, 0), id: RobotId::NOBODY, hops: 0 };
 
-/// Why a part was refused; what was collected before is as it was.
+/// Why a part was rejected. The parts collected before are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum PartError {
-    /// The part's number is not below the number of parts, or there are no parts.
+    /// The number of the part is not below the number of parts, or there are no parts.
     Number,
     /// A part before the last is not full, or the last of several is empty.
     Length,
-    /// The whole template has more entries than fit.
+    /// The whole template has more entries than the assembler can hold.
     TooLarge,
     /// An entry is 0 hops away: the robot would be its own neighbour.
     NoHops,
-    /// It says otherwise than an earlier part of the same version: another slot, offset or number
-    /// of parts, or other entries for the same part.
+    /// The part contradicts an earlier part of the same version: another slot, offset or number of
+    /// parts, or other entries for the same part.
     Contradiction,
 }
 
@@ -50,11 +50,11 @@ impl core::fmt::Display for PartError {
 impl core::error::Error for PartError {}
 
 impl TemplateAssignment {
-    /// The parts of a template, for one frame each; send them in any order.
+    /// Splits a template into parts of one frame each, which may be sent in any order.
     ///
     /// # Errors
-    /// [`PartError::TooLarge`] when there are more than [`MAX_TEMPLATE`] entries,
-    /// [`PartError::NoHops`] when one is 0 hops away.
+    /// [`PartError::TooLarge`] for more than [`MAX_TEMPLATE`] entries, [`PartError::NoHops`] if an
+    /// entry is 0 hops away.
     pub fn split(
         to: RobotId,
         version: u8,
@@ -78,22 +78,20 @@ impl TemplateAssignment {
             parts,
             slot,
             offset,
-            // A template without entries has one part without entries.
+            // A template without entries still has one part, which is empty.
             entries: list::collect(chunks.next().unwrap_or_default().iter().copied()),
         }))
     }
 
-    /// The place of this part's first entry in the template.
     fn start(&self) -> usize {
         usize::from(self.part) * TEMPLATE_PART
     }
 
-    /// Whether no part follows.
     fn is_last(&self) -> bool {
         self.part.checked_add(1) == Some(self.parts)
     }
 
-    /// Entries of the whole template: exact for the last part, otherwise the least possible.
+    /// Entries in the whole template: exact for the last part, otherwise the least possible number.
     #[expect(clippy::arithmetic_side_effects, reason = "a part has at most 255 before it, of few entries each")]
     fn total(&self) -> usize {
         if self.is_last() {
@@ -103,7 +101,6 @@ impl TemplateAssignment {
         }
     }
 
-    /// Whether this can be a part of a template of at most `capacity` entries.
     fn check(&self, capacity: usize) -> Result<(), PartError> {
         let len = self.entries.len();
         let is_length_right = if self.is_last() { len > 0 || self.parts == 1 } else { len == TEMPLATE_PART };
@@ -123,18 +120,18 @@ impl TemplateAssignment {
 
 /// Collects the parts of the newest template of one sender for one robot; about 12 `F` + 24 bytes.
 ///
-/// The caller passes only parts that are addressed to the robot and come from whom it obeys. A
-/// newer version (see [`Newest`]) drops what was collected, finished or not, with its first part; a
-/// part of an older version is passed over. Versions that are lost in the air are no matter: the
-/// sender resends, or sends a newer one.
+/// The caller passes only parts that are addressed to the robot and come from a sender that it
+/// obeys. The first part of a newer version (see [`Newest`]) discards all collected parts, complete
+/// or not; parts of older versions are ignored. A version that is lost in transmission does no
+/// harm: the sender resends it, or sends a newer one.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TemplateAssembler<const F: usize> {
     #[serde(serialize_with = "as_slice")]
     #[serde(deserialize_with = "of_slice")]
     entries: [TemplateEntry; F],
-    /// Bit p: part p is there.
+    /// Bit p: part p has arrived.
     there: u64,
-    /// Entries in all; known when the last part is there.
+    /// Total number of entries; valid once the last part has arrived.
     len: usize,
     newest: Newest,
     parts: u8,
@@ -142,12 +139,12 @@ pub struct TemplateAssembler<const F: usize> {
     offset: Cell,
 }
 
-/// Arrays of any length are not serde's.
+/// Serde does not support arrays of arbitrary length.
 fn as_slice<const F: usize, Z: Serializer>(entries: &[TemplateEntry; F], serializer: Z) -> Result<Z::Ok, Z::Error> {
     entries.as_slice().serialize(serializer)
 }
 
-/// What [`as_slice`] wrote.
+/// The inverse of [`as_slice`].
 fn of_slice<'de, const F: usize, D: serde::Deserializer<'de>>(from: D) -> Result<[TemplateEntry; F], D::Error> {
     let entries: Vec<TemplateEntry, F> = serde::Deserialize::deserialize(from)?;
     let count = entries.len();
@@ -163,7 +160,7 @@ impl<const F: usize> Default for TemplateAssembler<F> {
 impl<const F: usize> TemplateAssembler<F> {
     const FITS: () = assert!(F <= MAX_TEMPLATE, "more entries than parts can carry");
 
-    /// Nothing collected yet.
+    /// Creates an assembler without parts.
     #[must_use]
     pub const fn new() -> Self {
         let () = Self::FITS;
@@ -178,12 +175,13 @@ impl<const F: usize> TemplateAssembler<F> {
         }
     }
 
-    /// Takes a part in. Returns the template with the part that completes it and never again;
-    /// `None` while parts are missing, and for a part that came before or is out of date.
+    /// Stores a part. Returns the template once, with the part that completes it.
+    ///
+    /// Returns `None` while parts are missing, and for a part that is repeated or outdated.
     ///
     /// # Errors
-    /// What is wrong with the part, see [`PartError`]. It changes nothing, even if its version is
-    /// newer.
+    /// Why the part was rejected, see [`PartError`]. A rejected part changes nothing, even if its
+    /// version is newer.
     ///
     /// Bounded work: O(`F`).
     #[expect(clippy::arithmetic_side_effects, reason = "as in `total`")]
@@ -200,7 +198,7 @@ impl<const F: usize> TemplateAssembler<F> {
             return Err(PartError::Contradiction);
         }
         let end = part.start() + part.entries.len();
-        // `check` has seen that both are in range.
+        // `check` guarantees that both are in range.
         let bit = 1_u64.checked_shl(part.part.into()).ok_or(PartError::TooLarge)?;
         let place = self.entries.get_mut(part.start()..end).ok_or(PartError::TooLarge)?;
         if self.there & bit != 0 {
@@ -217,13 +215,12 @@ impl<const F: usize> TemplateAssembler<F> {
         Ok(self.complete())
     }
 
-    /// Takes the next part as the first of all, whatever its version: for when the sender has
-    /// started anew, see [`Newest`].
+    /// Discards everything, so that the next part is accepted with any version. Call it after the
+    /// sender has restarted, see [`Newest`].
     pub fn forget(&mut self) {
         *self = Self::new();
     }
 
-    /// The template, if every part is there.
     fn complete(&self) -> Option<Template<F>> {
         if self.there.count_ones() != u32::from(self.parts) {
             return None;

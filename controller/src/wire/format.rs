@@ -1,8 +1,8 @@
-//! How messages become bytes of the air: [`Wire`], and [`Postcard`], the frames of this crate.
+//! The trait of all wire formats, [`Wire`], and the format of this crate, [`Postcard`].
 //!
-//! An [`Agent`](crate::agent::Agent) speaks the one format that its type names, so that a firmware pays for no other. What a
-//! format keeps between frames (counters, keys) is a part of the agent's state, and so of its digest; one that keeps nothing
-//! adds nothing to either.
+//! The type of an [`Agent`](crate::agent::Agent) names a single format, so that a firmware contains
+//! no other. The state that a format keeps between frames (counters, keys) belongs to the agent's
+//! state and its digest; a format without state adds nothing to either.
 
 use super::frame::next_frame;
 use super::{Beacon, DecodeError, EncodeError, Frame, Header, KeyPhase, Message, decode, encode};
@@ -10,19 +10,21 @@ use crate::names::named;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// A wire format: frames of one message each, which can be told apart in a stream of bytes.
+/// A wire format: frames of one message each, which can be separated in a byte stream.
 ///
-/// Whatever the bytes are, its functions give an answer, allocate nothing, do not panic, and their work is bounded.
+/// Its functions accept any bytes, do not allocate, do not panic, and do bounded work.
 pub trait Wire: Clone + core::fmt::Debug + Serialize {
-    /// Bytes of a frame that carries a [`Beacon`], at most: what acknowledgements and requests leave free
-    /// for it in the outbox.
+    /// Maximum length in bytes of a frame that carries a [`Beacon`]. Acknowledgements and requests
+    /// leave this much space free in the outbox.
     fn beacon_len(&self) -> usize;
 
     /// Appends one frame to `out` and returns its length.
     ///
     /// # Errors
-    /// [`EncodeError::Full`] when the whole frame does not fit, [`EncodeError::NoSender`] when `header` names nobody,
-    /// [`EncodeError::Robot`] when the format has no room for a robot's number. Nothing is written then.
+    /// [`EncodeError::Full`] if the whole frame does not fit, [`EncodeError::NoSender`] if the
+    /// header's sender is [`RobotId::NOBODY`](crate::robot::RobotId::NOBODY),
+    /// [`EncodeError::Robot`] if the format cannot represent a robot number. Nothing is written in
+    /// these cases.
     fn encode<const N: usize>(
         &mut self,
         header: Header,
@@ -30,24 +32,27 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
         out: &mut Vec<u8, N>,
     ) -> Result<usize, EncodeError>;
 
-    /// Reads one frame as [`Wire::next_frame`] gave it.
+    /// Decodes one frame as returned by [`Wire::next_frame`].
     ///
     /// # Errors
-    /// What is wrong with it, see [`DecodeError`]; any bytes at all give an answer.
+    /// The reason for rejecting the frame, see [`DecodeError`]. Any bytes give a defined result.
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError>;
 
-    /// How far the robot is with the keys that it was sent, for who sends them; `None` for a format without keys of its own.
+    /// The robot's progress with the keys assigned to it, for the operator; `None` for a format
+    /// without own keys.
     fn held(&self) -> Option<(u16, KeyPhase)> {
         None
     }
 
-    /// Takes the next frame off `rest`, or bytes between frames that [`Wire::decode`] will refuse, so that damage is counted.
-    /// `None` when nothing is left; otherwise `rest` is shorter than before.
+    /// Removes the next frame from `rest`, or bytes between frames, which [`Wire::decode`] will
+    /// reject so that damage is counted.
+    ///
+    /// Returns `None` when nothing is left; otherwise `rest` is shorter than before.
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]>;
 }
 
 named! {
-    /// The wire formats that robots can be told to speak, by name.
+    /// The wire formats that a configuration can name.
     #[derive(Default)]
     pub enum Format {
         /// [`Postcard`].
@@ -58,18 +63,20 @@ named! {
     }
 }
 
-/// A wire format that is, or can be, the one of a name.
+/// A wire format that can be chosen by name.
 pub trait FromFormat: Wire {
-    /// The format, without a past; `None` when this is another one.
+    /// The format in its initial state; `None` if `format` is not the name of this format.
     fn from_format(format: Format) -> Option<Self>;
 }
 
-/// The frames of this crate: postcard within COBS, see [`encode`] and [`decode`]; without a tag. It keeps nothing.
+/// The frames of this crate: untagged postcard within COBS, see [`encode`] and [`decode`]. It has
+/// no state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Postcard;
 
 impl Wire for Postcard {
-    // With the room of a tag, so that a robot that sends none says no more in a step than one that does.
+    // Includes the space of a tag, so that a robot sends as much per step without tags as with
+    // them.
     fn beacon_len(&self) -> usize {
         Beacon::MAX_FRAME_LEN
     }

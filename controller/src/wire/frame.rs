@@ -1,4 +1,4 @@
-//! Frames: one message each, checked, delimited by zero bytes. Read this first.
+//! The layout of a frame: one message, protected by a checksum, delimited by a zero byte.
 //!
 //! ```text
 //! frame   = COBS(content) 0x00
@@ -6,29 +6,32 @@
 //! ```
 //!
 //! - `version` holds [`VERSION`] in its low 7 bits; its top bit says that a tag is present. Every
-//!   version keeps COBS, this byte in front and the CRC at the end, so that a foreign version can
-//!   be told from damage.
-//! - The tag authenticates everything before it ([`encode_tagged`], [`decode_verified`]). What it is made of is said in
-//!   [`Sealed`](super::Sealed), which makes and checks it. A frame with a tag has at most 60 bytes too, because robots' numbers in it
-//!   are below 2^21 and take 3 bytes at most instead of 5.
+//!   version of the format keeps COBS, this first byte and the final CRC, so that a receiver can
+//!   tell a foreign version from a damaged frame.
+//! - The tag authenticates everything before it ([`encode_tagged`], [`decode_verified`]).
+//!   [`Sealed`](super::Sealed) defines, creates and checks it. A tagged frame also fits into 60
+//!   bytes, because its robot numbers are below 2^21 and take at most 3 bytes instead of 5.
 //! - The CRC covers everything before it. Integers are little-endian.
-//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) takes out the zero
-//!   bytes at the price of one byte, since no content is longer than 253 bytes. It is written here,
-//!   not taken from the `cobs` crate, because these few lines visibly never panic.
+//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) removes the zero
+//!   bytes. It costs one byte, since the content never exceeds 253 bytes. This module implements
+//!   COBS itself instead of using the `cobs` crate, because these few lines visibly never panic.
 //!
-//! # What the CRC finds
+//! # Errors that the CRC detects
 //!
-//! CRC-16/IBM-SDLC (X.25; polynomial 0x1021, reflected, start and final inversion 0xFFFF). At
-//! our lengths no 16-bit polynomial guarantees more than its Hamming distance 4: every 1 to 3
-//! flipped bits of a content, every odd number of them and every burst of up to 16 bits are found;
-//! of anything else 1 in 65,536 passes. A bit flipped in one of COBS' own bytes moves a zero and
-//! counts as "anything else". Sixteen bits suffice because what passes must also parse as a
-//! message, radios check their packets before us, and a state is replaced by the next beacon: on
-//! a bare UART with one wrong bit in 10^4 and 80 beacons per second, about one wrong beacon in 5
-//! hours, believed for one period. Who needs more uses the tag.
+//! The CRC is CRC-16/IBM-SDLC (X.25; polynomial 0x1021, reflected, start and final inversion
+//! 0xFFFF). At these lengths no 16-bit polynomial guarantees more than its Hamming distance of 4:
+//! it detects 1 to 3 flipped bits in the content, any odd number of flipped bits, and any burst of
+//! up to 16 bits. Of all other errors, 1 in 65,536 passes. A flipped bit in one of the bytes that
+//! COBS inserted moves a zero and counts among these other errors.
 //!
-//! The table takes 512 bytes of flash (with the feature `host` there are 16); [`encode`] and [`decode`] with all
-//! messages 7 KiB in all on a Cortex-M0 (`opt-level = "s"`, one link-time unit), and no panic is reachable from them.
+//! Sixteen bits suffice for three reasons: an undetected error must also parse as a message, radios
+//! check their packets themselves, and the next beacon replaces a wrong state. A bare UART with one
+//! wrong bit in 10^4 and 80 beacons per second passes about one wrong beacon in 5 hours, which is
+//! believed for one period. Use the tag if that is too often.
+//!
+//! The CRC table takes 512 bytes of flash (16 tables with the feature `host`). [`encode`] and
+//! [`decode`] with all messages take 7 KiB in total on a Cortex-M0 (`opt-level = "s"`, one
+//! link-time unit). They cannot reach a panic.
 
 use super::message::{
     Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART, TemplateAssignment,
@@ -47,75 +50,75 @@ mod beacon;
 
 /// The version of the format that this code writes and reads, 1..=127.
 pub const VERSION: u8 = 3;
-/// Bytes of an authentication tag.
+/// Length of an authentication tag in bytes.
 pub const TAG_LEN: usize = 8;
-/// The greatest number of a robot in frames with a tag, as sender and as leader.
+/// The greatest robot number that a tagged frame can hold, as sender or as leader.
 pub const MAX_TAGGED_ROBOT: RobotId = RobotId((1 << 21) - 1);
 
-/// The flag in the version byte: a tag is present.
 const TAGGED: u8 = 0x80;
 const CRC_LEN: usize = 2;
-/// A robot's number as a varint in a frame with a tag, at most. Without a tag it is 5, and no message has so many numbers that such a frame were longer.
+/// Maximum length of a robot number (a varint) in a tagged frame. An untagged number may take 5
+/// bytes, but no message has enough of them to exceed the length with a tag.
 const ID: usize = 3;
-/// Everything but the message: version, boot, sender, sequence, tag, CRC; COBS' byte, delimiter.
+/// Everything except the message: version, boot, sender, sequence, tag, CRC, COBS byte, delimiter.
 const OVERHEAD: usize = 1 + 1 + ID + 2 + TAG_LEN + CRC_LEN + 2;
 const CELL: usize = 4;
 
-/// Tables that the CRC goes by: with 16 it takes 16 bytes at a time.
+/// Number of CRC lookup tables; 16 tables process 16 bytes at a time.
 const TABLES: usize = if cfg!(feature = "host") { 16 } else { 1 };
 static CRC: Crc<u16, Table<TABLES>> = Crc::<u16, Table<TABLES>>::new(&CRC_16_IBM_SDLC);
 
 impl Beacon {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 4 + 3 * 4 + 3 * 2 + 2 + CELL + 1 + 2 + ID + 1 + 1 + CELL;
 }
 
 impl Request {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + ID + 1 + 1 + 2;
 }
 
 impl Ack {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1;
 }
 
 impl TemplateAssignment {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 1 + 1 + CELL + 1 + TEMPLATE_PART * (CELL + ID + 1);
 }
 
 impl GoalAssignment {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + CELL;
 }
 
 impl WaypointAssignment {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 1 + 3 * 4 + 3 * 2;
 }
 
 impl KeyAssignment {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 2 + 1 + 32;
 }
 
 impl KeyHeld {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 2 + 1;
 }
 
 impl LandPatch {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + CELL + PATCH_TILES;
 }
 
 impl PayloadBytes {
-    /// Bytes of a frame that carries one, at most: tag and delimiter included.
+    /// Maximum length of its frame in bytes, with tag and delimiter.
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 1 + MAX_PAYLOAD;
 }
 
-/// Bytes of any frame, at most: tag and delimiter included.
+/// Maximum length of any frame in bytes, with tag and delimiter.
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
         Beacon::MAX_FRAME_LEN,
@@ -140,50 +143,50 @@ pub const MAX_FRAME_LEN: usize = {
     max
 };
 
-/// A frame between COBS and the delimiter, at most.
 const MAX_CONTENT: usize = MAX_FRAME_LEN - 2;
 
-// Crazyflie peer-to-peer packets hold 60 bytes; COBS here knows one block.
+// Crazyflie peer-to-peer packets hold 60 bytes; this COBS handles a single block.
 const _: () = assert!(MAX_FRAME_LEN <= 60);
-// Sender, addressee and those of a template.
+// The numbers of sender, addressee and template entries.
 const _: () = assert!((2 + TEMPLATE_PART) * (5 - ID) <= TAG_LEN);
 const _: () = assert!(MAX_CONTENT <= 253);
 
-/// Who says it, and which of its frames this is.
+/// The sender of a frame and the frame's place in the sender's sequence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Header {
-    /// Changes with each start of the sender, so that its sequence may start anew.
+    /// Changes with each start of the sender, so that its sequence may restart.
     pub boot: u8,
-    /// Who sends this frame; never nobody.
+    /// The robot that sends this frame; never [`RobotId::NOBODY`].
     pub sender: RobotId,
-    /// Counts the sender's frames of every kind, wraps.
+    /// Counts all frames of the sender, wraps.
     #[serde(with = "crate::fixint")]
     pub sequence: u16,
 }
 
-/// What [`decode`] gives.
+/// A decoded frame, see [`decode`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Who says it.
+    /// Sender and sequence number.
     pub header: Header,
-    /// What it says.
+    /// The message that the frame carries.
     pub message: Message,
-    /// The authentication tag, if there is one; [`decode`] does not check it.
+    /// The authentication tag, if present; [`decode`] does not check it.
     pub tag: Option<[u8; TAG_LEN]>,
 }
 
-/// Why a message was not encoded; the outbox is as it was.
+/// Why a message was not encoded. The outbox is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum EncodeError {
-    /// The outbox has less room than the frame needs.
+    /// The outbox has less free space than the frame needs.
     Full,
-    /// The header names nobody as the sender.
+    /// The header's sender is [`RobotId::NOBODY`].
     NoSender,
-    /// The format has no room for this robot's number; give the robot another one, or the swarm another format.
+    /// The format cannot represent this robot number. Give the robot another number, or the swarm
+    /// another format.
     Robot(RobotId),
-    /// The format's counter has come to its end: the robot must start anew, or the swarm needs a new key.
+    /// The format's counter has reached its end. Restart the robot, or give the swarm a new key.
     Exhausted,
 }
 
@@ -204,37 +207,40 @@ impl fmt::Display for EncodeError {
 
 impl core::error::Error for EncodeError {}
 
-/// Why a frame was refused.
+/// Why a frame was rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum DecodeError {
-    /// No bytes.
+    /// The frame has no bytes.
     Empty,
-    /// More bytes than [`MAX_FRAME_LEN`] less the delimiter.
+    /// The frame is longer than [`MAX_FRAME_LEN`] less the delimiter.
     TooLong,
-    /// The stuffing does not end where the frame ends, or a zero byte lies within.
+    /// The COBS encoding does not end where the frame ends, or a zero byte lies inside.
     Cobs,
-    /// The CRC differs, or the frame is too short for one: damaged or cut.
+    /// The CRC differs, or the frame is too short to hold one: damaged or cut.
     Crc,
-    /// Sound, but another version of the format (the low 7 bits) than [`VERSION`].
+    /// The frame is intact, but of another version of the format (the low 7 bits) than [`VERSION`].
     Version(u8),
-    /// Sound, but without the tag or signature that is asked for.
+    /// The frame is intact, but lacks the required tag or signature.
     Unsigned,
-    /// Sound, but its tag or signature is not of the key that is asked for: an order that is not of the robot's own key, too.
+    /// The frame is intact, but its tag or signature belongs to another key than the required one.
+    /// This includes an order that was not made with the robot's own key.
     Forged,
-    /// Authentic, but recorded: seen before, or older than what was.
+    /// The frame is authentic, but it was received before, or it is older than one that was.
     Replayed,
-    /// Authentic, but its counter or timestamp is too far ahead to be true.
+    /// The frame is authentic, but its counter or timestamp is implausibly far ahead.
     Ahead,
-    /// Authentic, but there is no room to remember its sender, see [`ReplayGuard`](crate::auth::ReplayGuard).
+    /// The frame is authentic, but the table of senders is full, see
+    /// [`ReplayGuard`](crate::auth::ReplayGuard).
     NoRoom,
-    /// Sound, but no header and message that this code knows.
+    /// The frame is intact, but header or message are unknown to this code.
     Body,
-    /// Sound, but something follows the message.
+    /// The frame is intact, but bytes follow the message.
     Trailing,
-    /// Sound, but the sender is nobody.
+    /// The frame is intact, but its sender is [`RobotId::NOBODY`].
     NoSender,
-    /// Sound, but none of the swarm's messages: somebody else's, on a band that is shared with others.
+    /// The frame is intact, but does not hold a message of the swarm: it belongs to another user of
+    /// a shared band.
     Foreign,
 }
 
@@ -265,21 +271,21 @@ impl fmt::Display for DecodeError {
 
 impl core::error::Error for DecodeError {}
 
-/// Appends one frame without a tag to `out` and returns its length.
+/// Appends one untagged frame to `out` and returns its length.
 ///
 /// # Errors
-/// [`EncodeError::Full`] when the whole frame does not fit (nothing is written),
-/// [`EncodeError::NoSender`] when `header` names nobody.
+/// [`EncodeError::Full`] if the whole frame does not fit (nothing is written),
+/// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NOBODY`].
 ///
 /// Bounded work: O([`MAX_FRAME_LEN`]).
 pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
     write(header, message, None::<fn(&[u8]) -> [u8; TAG_LEN]>, out)
 }
 
-/// Like [`encode`], with the tag that `authenticate` makes of everything before it.
+/// Like [`encode`], with a tag: `authenticate` computes it from everything before it.
 ///
 /// # Errors
-/// Those of [`encode`], and [`EncodeError::Robot`] when sender or leader are greater than [`MAX_TAGGED_ROBOT`].
+/// Those of [`encode`], and [`EncodeError::Robot`] if sender or leader exceed [`MAX_TAGGED_ROBOT`].
 pub fn encode_tagged<const N: usize>(
     header: Header,
     message: &Message,
@@ -289,20 +295,20 @@ pub fn encode_tagged<const N: usize>(
     write(header, message, Some(authenticate), out)
 }
 
-/// Reads one frame, given without its delimiter; a tag is handed out unchecked.
+/// Decodes one frame, given without its delimiter. A tag is returned unchecked.
 ///
 /// # Errors
-/// What is wrong with it, see [`DecodeError`]; any bytes at all give an answer.
+/// The reason for rejecting the frame, see [`DecodeError`]. Any bytes give a defined result.
 ///
 /// Bounded work: O([`MAX_FRAME_LEN`]).
 pub fn decode(frame: &[u8]) -> Result<Frame, DecodeError> {
     decode_verified(frame, |_, _| Ok(()))
 }
 
-/// Like [`decode`], and asks `verify` with the authenticated bytes and the tag, if there is one.
+/// Like [`decode`], but calls `verify` with the authenticated bytes and the tag, if present.
 ///
 /// # Errors
-/// Those of [`decode`], and what `verify` says.
+/// Those of [`decode`], and any error of `verify`.
 pub fn decode_verified(
     frame: &[u8],
     verify: impl FnOnce(&[u8], Option<[u8; TAG_LEN]>) -> Result<(), DecodeError>,
@@ -346,17 +352,17 @@ pub fn decode_verified(
     Ok(Frame { header, message, tag })
 }
 
-/// The frames of a byte stream, without their delimiters; empty pieces are left out.
+/// Splits a byte stream into frames without their delimiters; empty frames are skipped.
 ///
-/// The bytes after the last delimiter are a frame too: if only its delimiter was lost, [`decode`]
-/// accepts it, and if it was cut, [`decode`] refuses it, so that it is counted as damaged. A caller
-/// that reads a serial line in pieces keeps the bytes after the last delimiter until the rest is
-/// there.
+/// The bytes after the last delimiter also count as a frame. If only its delimiter was lost,
+/// [`decode`] accepts it; if it was cut, [`decode`] rejects it, so that it is counted as damaged. A
+/// caller that reads a serial line in pieces must keep the bytes after the last delimiter until the
+/// rest has arrived.
 pub fn frames(mut inbox: &[u8]) -> impl Iterator<Item = &[u8]> {
     core::iter::from_fn(move || next_frame(&mut inbox))
 }
 
-/// Takes the next of [`frames`] and its delimiter off `rest`.
+/// Removes the next frame and its delimiter from `rest`.
 pub(super) fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     while let [0, after @ ..] = *rest {
         *rest = after;
@@ -366,8 +372,8 @@ pub(super) fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     (!frame.is_empty()).then_some(frame)
 }
 
-/// Bytes before the first zero: a machine word at a time (S. E. Anderson, "Bit Twiddling Hacks", "Determine if a word has
-/// a zero byte"; the lowest mark is never a false one).
+/// Number of bytes before the first zero, found one machine word at a time (S. E. Anderson, "Bit
+/// Twiddling Hacks", "Determine if a word has a zero byte"; the lowest mark is never a false one).
 #[expect(clippy::arithmetic_side_effects, reason = "lengths within a slice")]
 fn frame_len(bytes: &[u8]) -> usize {
     const WORD: usize = size_of::<usize>();
@@ -406,7 +412,7 @@ fn write<const N: usize>(
     }
     let mut frame = [0; MAX_FRAME_LEN];
     let [first, content @ .., _delimiter] = &mut frame;
-    // The buffer holds the longest frame of all: `Full` cannot come from here.
+    // The buffer holds the longest possible frame, so `Full` cannot originate here.
     let len = fill(header, message, authenticate, content).ok_or(EncodeError::Full)?;
     let content = content.get_mut(..len).ok_or(EncodeError::Full)?;
     *first = stuff(content);
@@ -415,7 +421,6 @@ fn write<const N: usize>(
     Ok(frame.len())
 }
 
-/// Writes the content and returns its length; `None` when `content` is too short.
 #[expect(clippy::arithmetic_side_effects, reason = "lengths within a frame")]
 fn fill(
     header: Header,
@@ -435,8 +440,8 @@ fn fill(
     Some(len + CRC_LEN)
 }
 
-/// Replaces each zero by the distance to the next one (the last: to the delimiter) and returns
-/// the distance to the first, counted from the byte in front. At most 253 bytes.
+/// Replaces each zero by the distance to the next zero (the last one: to the delimiter). Returns
+/// the distance to the first zero, counted from the byte in front. At most 253 bytes.
 fn stuff(content: &mut [u8]) -> u8 {
     content.iter_mut().rev().fold(1, |distance, byte| {
         if *byte == 0 {
@@ -448,7 +453,7 @@ fn stuff(content: &mut [u8]) -> u8 {
     })
 }
 
-/// The inverse of [`stuff`]; `None` when the chain of distances misses the end.
+/// The inverse of [`stuff`]; `None` if the chain of distances misses the end.
 #[expect(clippy::arithmetic_side_effects, reason = "`next` is within the content, and a step is at most 255")]
 fn unstuff(first: u8, content: &mut [u8]) -> Option<()> {
     let mut next = usize::from(first).checked_sub(1)?;

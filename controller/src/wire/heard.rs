@@ -1,4 +1,4 @@
-//! What beacons tell of their senders, as the neighbour table keeps it.
+//! Conversion of a beacon into an entry of the neighbour table.
 
 use super::Beacon;
 use crate::geom::{Position, Vec3};
@@ -8,7 +8,7 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 
 impl<S: Scalar, P: Default> Neighbor<S, P> {
-    /// The robot `id` as its beacon, received at `now`, describes it.
+    /// The robot `id` as described by its beacon, received at `now`.
     #[must_use]
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn from_beacon(id: RobotId, beacon: &Beacon, now: Instant) -> Self {

@@ -1,9 +1,10 @@
-//! The messages, in integers: millimetres, millimetres per second, microseconds, cells.
+//! The messages. All values are integers: millimetres, millimetres per second, microseconds, cells.
 //!
-//! The order and the types of the fields are the wire format (postcard): what is marked `fixint`
-//! takes its full width, everything else is a byte or a varint. A change of what is here is a new
-//! [`VERSION`](super::VERSION); a further message at the end of [`Message`] is not: who does not know it refuses it
-//! ([`DecodeError::Body`](super::DecodeError::Body)) and hears all others.
+//! The order and the types of the fields define the wire format (postcard): a field marked `fixint`
+//! takes its full width, all others are a byte or a varint. Any change to these types needs a new
+//! [`VERSION`](super::VERSION), with one exception: a message appended to [`Message`]. A robot that
+//! does not know the new message rejects it ([`DecodeError::Body`](super::DecodeError::Body)) and
+//! still receives all others.
 
 use super::payload::PayloadBytes;
 use crate::fixint;
@@ -14,120 +15,126 @@ use crate::template::TemplateEntry;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
 
-/// What a robot says of itself, periodically. Everything that others may rely on.
+/// The state that a robot broadcasts periodically: everything that other robots may rely on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Beacon {
-    /// Sender's clock when it sampled its state.
+    /// The sender's clock when it sampled its state.
     #[serde(with = "fixint")]
     pub time: Instant,
-    /// World position, mm.
+    /// Position in world coordinates, mm.
     #[serde(with = "fixint")]
     pub position_mm: [i32; 3],
-    /// World velocity, mm/s.
+    /// Velocity in world coordinates, mm/s.
     #[serde(with = "fixint")]
     pub velocity_mmps: [i16; 3],
     /// Radius of the smallest disc (ball) around the body, mm.
     #[serde(with = "fixint")]
     pub radius_mm: u16,
-    /// Cell that the robot occupies.
+    /// The cell that the robot occupies.
     #[serde(with = "fixint")]
     pub cell: Cell,
-    /// The move it wants next.
+    /// The move that it wants to make next.
     pub heading: Dir,
-    /// Time until it is free to leave its cell, ms (saturating).
+    /// Time until it may leave its cell, ms (saturating).
     #[serde(with = "fixint")]
     pub busy_ms: u16,
-    /// Its leader, or nobody.
+    /// Its leader, or [`RobotId::NOBODY`].
     pub leader: RobotId,
-    /// Its place in the formation; of a robot in a flock the flock's number. Nobody is in both, and the frame is full.
+    /// Its place in the formation, or the number of its flock. The frame is full, and a robot is
+    /// never in both.
     pub slot: u8,
-    /// What it is doing.
+    /// Its current activity.
     pub mode: Mode,
-    /// Cell it is heading for.
+    /// The cell that it is heading for.
     #[serde(with = "fixint")]
     pub target: Cell,
 }
 
-/// What one robot asks of another (A. V. Kuznetsov 2017, KUZ, section 7: up the leader chain, hop by hop).
+/// What one robot asks of another. Requests travel up the leader chain, hop by hop (A. V. Kuznetsov
+/// 2017, KUZ, section 7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RequestKind {
-    /// Stand until told to resume (or the request expires).
+    /// Stop until a [`RequestKind::Resume`] arrives or the request expires.
     Stop,
-    /// Go on.
+    /// Continue.
     Resume,
     /// Choose another direction than the last one.
     Redirect,
 }
 
-/// A request to one robot; resent until acknowledged, given up after its expiry.
+/// A request to one robot. It is resent until it is acknowledged, and abandoned when it expires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Request {
-    /// Whom it asks.
+    /// The addressee.
     pub to: RobotId,
-    /// Who first asked, when it travels up the chain.
+    /// The robot that made the request first; differs from the sender as it travels up the leader
+    /// chain.
     pub origin: RobotId,
-    /// Distinguishes requests of one sender; resent unchanged with each retry.
+    /// Distinguishes the requests of one sender; unchanged in each retry.
     pub number: u8,
-    /// What it asks.
+    /// What it asks for.
     pub kind: RequestKind,
-    /// How long the request stands after it was received, ms.
+    /// How long the request is valid after its reception, ms.
     #[serde(with = "fixint")]
     pub valid_ms: u16,
 }
 
-/// "I have your request", whatever became of it.
+/// Confirms the reception of a request, whether or not it will be followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ack {
-    /// The robot that asked.
+    /// The robot that sent the request.
     pub to: RobotId,
-    /// The boot in which it asked: its numbers start anew with each.
+    /// The boot number of that robot when it sent the request; its request numbers restart with
+    /// each boot.
     pub boot: u8,
-    /// The number of its request.
+    /// The number of the request.
     pub number: u8,
-    /// Whether it will be followed.
+    /// Whether the request will be followed.
     pub accepted: bool,
 }
 
-/// Entries in one [`TemplateAssignment`]: as many as a frame of 60 bytes carries.
+/// Entries in one [`TemplateAssignment`]: as many as fit into a frame of 60 bytes.
 pub const TEMPLATE_PART: usize = 2;
 
-/// A part of a formation template, from whoever commands the swarm to one robot.
+/// One part of a formation template, sent by the swarm's operator to one robot.
 ///
-/// Every part but the last is full, so that a part's number says where its entries belong; only the
-/// single part of a template without neighbours is empty. See [`TemplateAssignment::split`] and
-/// [`TemplateAssembler`](super::TemplateAssembler).
+/// All parts except the last are full, so that the number of a part determines where its entries
+/// belong. Only the single part of a template without neighbours is empty. See
+/// [`TemplateAssignment::split`] and [`TemplateAssembler`](super::TemplateAssembler).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TemplateAssignment {
-    /// Who it is for.
+    /// The addressee.
     pub to: RobotId,
-    /// Counts templates of this sender, wraps; parts of different versions never mix.
+    /// Counts the templates of this sender, wraps. Parts of different versions never mix.
     pub version: u8,
-    /// This part, 0..`parts`.
+    /// The number of this part, 0..`parts`.
     pub part: u8,
-    /// How many parts make the template.
+    /// The number of parts in the template.
     pub parts: u8,
     /// The robot's place in the formation.
     pub slot: u8,
-    /// Cell difference from the top leader's place to this robot's place.
+    /// Cell difference from the place of the top leader to the place of this robot.
     #[serde(with = "fixint")]
     pub offset: Cell,
     /// The neighbours within the geodesic radius that this part lists.
     pub entries: heapless::Vec<TemplateEntry, TEMPLATE_PART>,
 }
 
-/// A new goal for one robot, or for all. Nobody acknowledges it: its sender says it again, with the same
-/// version, for as long as somebody may have missed it. The same holds for [`TemplateAssignment`].
+/// A new goal for one robot or for all.
+///
+/// It is not acknowledged: the sender repeats it, with the same version, as long as a robot may
+/// have missed it. The same holds for [`TemplateAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalAssignment {
-    /// Who it is for; nobody = everybody.
+    /// The addressee; [`RobotId::NOBODY`] = all robots.
     pub to: RobotId,
-    /// Counts goals of this sender, wraps; an older one never replaces a newer one
+    /// Counts the goals of this sender, wraps. An older goal never replaces a newer one
     /// ([`Newest`](super::Newest)).
     pub version: u8,
     /// The goal of the formation's top leader (each robot adds its own offset).
@@ -135,93 +142,96 @@ pub struct GoalAssignment {
     pub target: Cell,
 }
 
-/// A place to go to for one robot, or for all, in the plane or in space; it may move. Nobody acknowledges it: see
-/// [`GoalAssignment`].
+/// A waypoint in the plane or in space for one robot or for all; it may move.
+///
+/// It is not acknowledged, see [`GoalAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WaypointAssignment {
-    /// Who it is for; nobody = everybody.
+    /// The addressee; [`RobotId::NOBODY`] = all robots.
     pub to: RobotId,
-    /// Counts places of this sender and index, wraps.
+    /// Counts the waypoints of this sender and index, wraps.
     pub version: u8,
-    /// Which of several places, from 0.
+    /// Which of several waypoints, from 0.
     pub index: u8,
-    /// World position when sent, mm.
+    /// Position in world coordinates when sent, mm.
     #[serde(with = "fixint")]
     pub position_mm: [i32; 3],
-    /// World velocity, mm/s.
+    /// Velocity in world coordinates, mm/s.
     #[serde(with = "fixint")]
     pub velocity_mmps: [i16; 3],
 }
 
-/// What a robot is to do with a key of the swarm's.
+/// What a robot shall do with a new key of the swarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum KeyPhase {
-    /// Hear who speaks with it, too.
+    /// Accept frames made with it, in addition to the previous key.
     Hear,
-    /// Speak with it.
+    /// Send with it.
     Speak,
-    /// Hear nobody any more who speaks with an earlier one.
+    /// Reject frames made with earlier keys.
     Forget,
 }
 
-/// A new key of the swarm's for one robot, sealed with that robot's own; said again until [`KeyHeld`] comes back.
+/// A new key of the swarm for one robot, sealed with that robot's own key. The operator repeats it
+/// until [`KeyHeld`] arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct KeyAssignment {
-    /// Who it is for.
+    /// The addressee.
     pub to: RobotId,
-    /// Counts the swarm's keys, from 0 for the first.
+    /// Counts the keys of the swarm, from 0 for the first.
     #[serde(with = "fixint")]
     pub generation: u16,
-    /// What to do with it.
+    /// What to do with the key.
     pub phase: KeyPhase,
-    /// The seed that it is made of, encrypted for that robot: see `auth::Seed`.
+    /// The seed of the key, encrypted for the addressee: see `auth::Seed`.
     pub wrapped: [u8; 32],
 }
 
-/// "So far I am": the answer to a [`KeyAssignment`], sealed with the robot's own key.
+/// A robot's progress with its keys: the answer to a [`KeyAssignment`], sealed with the robot's own
+/// key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct KeyHeld {
-    /// Who had sent it.
+    /// The operator that sent the key.
     pub to: RobotId,
-    /// The latest generation that it has.
+    /// The latest generation that the robot has.
     #[serde(with = "fixint")]
     pub generation: u16,
-    /// What it does with it.
+    /// What the robot does with that generation.
     pub phase: KeyPhase,
 }
 
-/// Everything that a frame can carry.
+/// The content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Message {
-    /// Periodic state.
+    /// The periodic state of a robot.
     Beacon(Beacon),
     /// A request to one robot.
     Request(Request),
-    /// Its acknowledgement.
+    /// The acknowledgement of a request.
     Ack(Ack),
     /// A part of a formation template.
     Template(TemplateAssignment),
-    /// A goal.
+    /// A goal on the grid.
     Goal(GoalAssignment),
-    /// A place.
+    /// A waypoint in the plane or in space.
     Waypoint(WaypointAssignment),
-    /// A key.
+    /// A new key of the swarm.
     Key(KeyAssignment),
-    /// How far its receiver is with it.
+    /// A robot's progress with its keys.
     KeyHeld(KeyHeld),
-    /// Land that the sender knows of.
+    /// A piece of the sender's map.
     Land(LandPatch),
-    /// What the sender's law tells others of its kind.
+    /// Data of the sender's guidance law for robots with the same law.
     Payload(PayloadBytes),
 }
 
 impl Message {
-    /// Whom it is for; `None` for what is for everybody.
+    /// The robot that the message is addressed to; `None` if it is for all robots.
     #[must_use]
     pub const fn addressee(&self) -> Option<RobotId> {
         let to = match self {
@@ -237,7 +247,7 @@ impl Message {
         if to.is_somebody() { Some(to) } else { None }
     }
 
-    /// Whether it is for an operator, and for nobody else, to say.
+    /// Whether only an operator may send this message.
     #[must_use]
     pub const fn is_order(&self) -> bool {
         matches!(self, Self::Template(_) | Self::Goal(_) | Self::Waypoint(_) | Self::Key(_))

@@ -1,4 +1,6 @@
-//! What robots say to each other: messages, and the frames that carry them.
+//! The messages that robots exchange, and the frames that carry them.
+//!
+//! Start with `frame.rs`, the layout of a frame; `message.rs` lists the messages.
 
 mod assembly;
 mod format;

@@ -1,13 +1,13 @@
-//! Which of two assignments is the newer one, by a version that wraps.
+//! Orders assignments by a version number that wraps.
 
 use serde::{Deserialize, Serialize};
 /// The version of the newest assignment so far; 2 bytes.
 ///
-/// One for each sender and kind of assignment, since each sender counts its own. A version is newer
-/// when it is less than half the circle (1 to 127) ahead; one that is exactly 128 away counts as
-/// old from both sides. A sender that starts anew may count from anywhere: its owner calls
-/// [`Newest::forget`] when a [`SequenceWindow`](super::SequenceWindow) says
-/// [`Arrival::Rebooted`](super::Arrival::Rebooted), or when it forgets the sender.
+/// Each sender counts its own versions, so keep one instance per sender and kind of assignment. A
+/// version is newer if it is 1 to 127 ahead on the circle of 256 values; a version exactly 128 away
+/// counts as old from both sides. A restarted sender may count from anywhere: its owner calls
+/// [`Newest::forget`] when a [`SequenceWindow`](super::SequenceWindow) reports
+/// [`Arrival::Rebooted`](super::Arrival::Rebooted), or when it drops the sender.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Newest {
@@ -15,14 +15,14 @@ pub struct Newest {
 }
 
 impl Newest {
-    /// Nothing was assigned yet.
+    /// Creates an instance without a version.
     #[must_use]
     pub const fn new() -> Self {
         Self { version: None }
     }
 
-    /// Whether `version` is newer than all before, or the first; remembers it if so. An assignment
-    /// that comes again or late is not. Constant work.
+    /// Whether `version` is the first or newer than all before; if so, records it. A repeated or
+    /// late assignment is not. Constant work.
     #[must_use = "an assignment that is not newer must not be followed"]
     pub fn admit(&mut self, version: u8) -> bool {
         let is_newer = self.is_news(version);
@@ -32,7 +32,8 @@ impl Newest {
         is_newer
     }
 
-    /// Whether [`Newest::admit`] would admit `version`; remembers nothing. For what may prove to be of no use. Constant work.
+    /// Whether [`Newest::admit`] would accept `version`, without recording it. Use it if the
+    /// assignment may still prove unusable. Constant work.
     #[must_use]
     pub fn is_news(self, version: u8) -> bool {
         self.version.is_none_or(|newest| version.wrapping_sub(newest).cast_signed() > 0)
@@ -44,7 +45,7 @@ impl Newest {
         self.version
     }
 
-    /// Takes the next version as the first, whatever it is.
+    /// Forgets the version, so that any next version is accepted.
     pub fn forget(&mut self) {
         *self = Self::new();
     }
@@ -63,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn first_version_is_newest_whatever_it_is() {
+    fn first_version_is_always_accepted() {
         assert_eq!(Newest::new().version(), None);
         for version in 0..=u8::MAX {
             assert_eq!(after(version).version(), Some(version));
@@ -71,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn newer_is_1_to_127_ahead_from_anywhere_on_the_circle() {
+    fn version_1_to_127_ahead_is_newer_from_any_start() {
         for newest in 0..=u8::MAX {
             for ahead in 0..=u8::MAX {
                 let version = newest.wrapping_add(ahead);
@@ -87,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn forgotten_count_starts_anywhere() {
+    fn any_version_is_accepted_after_forget() {
         let mut filter = after(100);
         assert!(!filter.admit(7));
         filter.forget();
@@ -96,8 +97,8 @@ mod tests {
     }
 
     proptest! {
-        /// Versions counted by the sender, delivered late by up to 100: each is admitted exactly
-        /// when it is the highest so far.
+        /// The sender counts versions, and they arrive up to 100 versions late. Each is admitted
+        /// exactly if it is the highest so far.
         #[test]
         fn late_and_repeated_versions_never_replace_a_newer_one(
             start: u8, lateness in vec((0..3_u32, 0..100_u32), 1..300),

@@ -1,4 +1,4 @@
-//! The operator's end of the robots' own keys: [`OperatorWire`].
+//! The operator's side of the robots' own keys: [`OperatorWire`].
 
 use super::frame::decode_verified;
 use super::sealed::{Epochs, code, counter};
@@ -9,8 +9,8 @@ use crate::auth::{Mac, Master, ReplayGuard, is_same};
 use crate::robot::RobotId;
 use heapless::Vec;
 
-/// Speaks to each robot under that robot's own key, and hears what each says under it: how far it is with its keys. Counters are those of
-/// [`Sealed`](super::Sealed), with the same rule for starts.
+/// Sends to each robot under that robot's own key, and receives the robots' reports about their
+/// keys. Its counters work as in [`Sealed`](super::Sealed), with the same rule for starts.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct OperatorWire<const N: usize = PEERS> {
     master: Master,
@@ -20,20 +20,21 @@ pub struct OperatorWire<const N: usize = PEERS> {
 }
 
 impl<const N: usize> OperatorWire<N> {
-    /// The operator with this number, at his start number `starts`; `None` from 2^20 on.
+    /// Creates the format of operator `id` at its start number `starts`; `None` from 2^20 on.
     #[must_use]
     pub fn at_start(master: Master, id: RobotId, starts: u32) -> Option<Self> {
         let header = Header { boot: starts as u8, sender: id, sequence: 0 };
         Some(Self { master, header, epochs: Epochs::at_start(starts)?, guard: ReplayGuard::new() })
     }
 
-    /// What all keys are made of.
+    /// The master key from which all other keys are derived.
     #[must_use]
     pub const fn master(&self) -> &Master {
         &self.master
     }
 
-    /// Appends a frame for one robot. An order in it is for that robot, whatever others hear of it.
+    /// Appends a frame for one robot. An order in it applies to that robot only, although others
+    /// may receive it.
     ///
     /// # Errors
     /// Those of [`Sealed`](super::Sealed).
@@ -49,7 +50,7 @@ impl<const N: usize> OperatorWire<N> {
         Ok(len)
     }
 
-    /// Appends a frame that gives a robot the key of a generation.
+    /// Appends a frame that assigns the key of a generation to a robot.
     ///
     /// # Errors
     /// Those of [`Sealed`](super::Sealed).
@@ -65,12 +66,13 @@ impl<const N: usize> OperatorWire<N> {
         self.say(to, &Message::Key(KeyAssignment { to, generation, phase, wrapped }), out)
     }
 
-    /// What a robot says of its keys, if the frame is that.
+    /// Decodes a robot's report about its keys.
     ///
     /// # Errors
-    /// [`DecodeError::Foreign`] for everything else that is sound; otherwise why it is not believed.
+    /// [`DecodeError::Foreign`] for any other intact frame; otherwise the reason for rejecting the
+    /// frame.
     pub fn hear(&mut self, frame: &[u8]) -> Result<(RobotId, KeyHeld), DecodeError> {
-        // Whose key it is, it says itself.
+        // The frame itself names the robot whose key verifies it.
         let Frame { header: Header { sender, .. }, message, .. } = decode(frame)?;
         let Message::KeyHeld(held) = message else {
             return Err(DecodeError::Foreign);

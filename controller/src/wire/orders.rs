@@ -1,7 +1,7 @@
-//! Being asked: requests are acted on once, acknowledged as often as they come, and a stop stands
-//! until it is lifted or its time has passed.
+//! Received requests: each is executed once and acknowledged each time it arrives. A stop remains
+//! in force until it is lifted or expires.
 //!
-//! The other side is [`Requests`](super::Requests).
+//! The sending side is [`Requests`](super::Requests).
 
 use super::{Ack, Header, Request, RequestKind};
 use crate::list::Seldom;
@@ -9,23 +9,23 @@ use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// A request that lies this far behind a newer one on the same matter, or less, is an old one that
-/// came late; one that seems to lie farther behind is a new one whose number wrapped.
+/// A request up to this far behind a newer one on the same matter is an old one that arrived late;
+/// a request that seems to be farther behind is a new one whose number wrapped.
 const LATE: u8 = 32;
 
-/// What to do about a request.
+/// How to respond to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "an unacknowledged request is sent again"]
 pub struct Answer {
-    /// To be sent back.
+    /// The acknowledgement to send back.
     pub ack: Ack,
-    /// Whether the request came for the first time and is followed: the moment to pass it on up
-    /// the chain or to choose another direction.
+    /// Whether the request arrived for the first time and is followed. If so, pass it on up the
+    /// leader chain, or choose another direction.
     pub is_new: bool,
 }
 
-/// The latest request on one matter (to stand or not; the direction) of one origin by one sender.
+/// The latest request on one matter (stop and resume, or direction) from one origin by one sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Order {
     sender: RobotId,
@@ -34,7 +34,7 @@ struct Order {
     number: u8,
     kind: RequestKind,
     heard: Instant,
-    /// Until when a stop stands.
+    /// End of a stop.
     until: Instant,
 }
 
@@ -53,19 +53,20 @@ impl Order {
     }
 }
 
-/// The requests that a robot received, at most `S` matters at a time; 20 bytes each.
+/// The requests that a robot received, on at most `S` matters at a time; 20 bytes each.
 ///
-/// Each matter (sender, origin, standing or direction) is a line of its own, so that two
-/// followers, or two robots whose requests one follower passes on, stop and resume independently. In
-/// a line the request sent last decides, whatever order they arrive in. A request is remembered
-/// for a while after it was last heard, so that its repeats and what it replaced are recognised.
+/// Each matter (sender, origin, and either stop/resume or direction) has its own entry. Therefore
+/// two followers, or two robots whose requests one follower passes on, stop and resume
+/// independently. Within an entry the request that was sent last decides, whatever the order of
+/// arrival. A request is remembered for a while after its last reception, so that repeats and
+/// replaced requests are recognised.
 ///
-/// When all lines are taken, the one heard of longest ago that holds no stop makes room; when
-/// all hold stops, a further stop or redirection is refused. A stop is never dropped before its
-/// time.
+/// When all entries are in use, the entry without a stop that was received longest ago is evicted.
+/// If all entries hold stops, further stops and redirections are refused. A stop is never evicted
+/// before its time.
 ///
-/// Time is compared by wrapped difference: [`Orders::is_stopped`] should be called at least every half
-/// hour. After a longer pause no stop stands, but a repeat may be taken for a new request.
+/// Times are compared by wrapped difference: call [`Orders::is_stopped`] at least every half hour.
+/// After a longer pause no stop is in force, but a repeat may be taken for a new request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Orders<const S: usize> {
     lines: Seldom<Order, S>,
@@ -73,17 +74,17 @@ pub struct Orders<const S: usize> {
 }
 
 impl<const S: usize> Orders<S> {
-    /// Nothing was asked yet.
+    /// Creates an empty table.
     ///
-    /// `memory`: how long a request is remembered after it was last heard. More than the asker's
-    /// attempts times interval plus the radio's longest delay, or a late repeat is acted on
-    /// again; less than it takes the asker to use 200 numbers.
+    /// `memory`: how long a request is remembered after its last reception. It must exceed the
+    /// sender's attempts times its retry interval plus the radio's longest delay, or a late repeat
+    /// is executed again. It must be shorter than the time in which the sender uses 200 numbers.
     #[must_use]
     pub const fn new(memory: Duration) -> Self {
         Self { lines: Seldom::new(), memory }
     }
 
-    /// Judges a request to this robot that came in a frame with `header`. O(`S`).
+    /// Processes a request to this robot that arrived in a frame with `header`. O(`S`).
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn receive(&mut self, header: Header, request: &Request, now: Instant) -> Answer {
         self.forget_old(now);
@@ -114,18 +115,18 @@ impl<const S: usize> Orders<S> {
         }
         match (self.lines.push(order), request.kind) {
             (Ok(()), _) => answer(true, true),
-            // Nothing of this origin stands: there is nothing to lift and nothing to remember.
+            // No request of this origin is stored, so there is no stop to lift.
             (Err(_), RequestKind::Resume) => answer(true, false),
             (Err(_), _) => answer(false, false),
         }
     }
 
-    /// Whether somebody's stop stands.
+    /// Whether any stop is in force.
     pub fn is_stopped(&mut self, now: Instant) -> bool {
         self.stopped_until(now).is_some()
     }
 
-    /// When the last stop that stands now will have passed; `None` when none stands.
+    /// When the last of the stops now in force ends; `None` if there is none.
     pub fn stopped_until(&mut self, now: Instant) -> Option<Instant> {
         self.forget_old(now);
         self.lines
@@ -135,7 +136,7 @@ impl<const S: usize> Orders<S> {
             .max_by_key(|until| until.since(now))
     }
 
-    /// Forgets what `sender` asked, because it started anew and no longer knows of it.
+    /// Drops all requests of `sender`, because it restarted and no longer knows them.
     pub fn forget(&mut self, sender: RobotId) {
         self.lines.retain(|line| line.sender != sender);
     }
@@ -148,7 +149,7 @@ impl<const S: usize> Orders<S> {
         });
     }
 
-    /// Drops the line heard of longest ago that holds no stop.
+    /// Evicts the entry without a stop that was received longest ago.
     fn make_room(&mut self, now: Instant) {
         let stalest =
             self.lines.iter().filter(|line| !line.is_stop_at(now)).max_by_key(|line| now.since(line.heard)).copied();

@@ -1,18 +1,20 @@
-//! What a guidance law of somebody's own tells robots of its kind, beside what beacons say.
+//! Data that a custom guidance law sends to robots with the same law, in addition to beacons.
 
 use core::fmt::Debug;
 use heapless::Vec;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// Bytes of a payload, at most.
+/// Maximum length of a payload in bytes.
 pub const MAX_PAYLOAD: usize = 16;
 
-/// What a law tells its neighbours behind each beacon: any small value that serde knows. `()` is nothing, and costs nothing.
+/// The data that a law sends after each beacon: any small value that serde supports. `()` sends
+/// nothing and costs nothing.
 ///
-/// Its default is what a neighbour's is taken for until it has been heard. On the air it is in postcard's encoding: an integer of more
-/// than 8 bits takes up to 3, 5 or 10 bytes by its size, a float 4 or 8. A value that takes more than [`MAX_PAYLOAD`] bytes is not
-/// said: [`PayloadBytes::of`] tells.
+/// A neighbour has the default value until its first payload arrives. Payloads are encoded with
+/// postcard: an integer of more than 8 bits takes up to 3, 5 or 10 bytes depending on its type, a
+/// float 4 or 8. A value of more than [`MAX_PAYLOAD`] bytes is not sent; [`PayloadBytes::of`]
+/// reports this.
 ///
 /// ```
 /// use serde::{Deserialize, Serialize};
@@ -30,13 +32,13 @@ pub trait Payload: Copy + Debug + Default + Send + Sync + Serialize + Deserializ
 
 impl<P: Copy + Debug + Default + Send + Sync + Serialize + DeserializeOwned> Payload for P {}
 
-/// A payload as it is on the air.
+/// An encoded payload.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PayloadBytes(Vec<u8, MAX_PAYLOAD>);
 
 impl PayloadBytes {
-    /// A value's bytes; `None` when they are more than [`MAX_PAYLOAD`]. O([`MAX_PAYLOAD`]).
+    /// Encodes a value; `None` if it takes more than [`MAX_PAYLOAD`] bytes. O([`MAX_PAYLOAD`]).
     #[must_use]
     pub fn of(payload: &impl Payload) -> Option<Self> {
         let mut buffer = [0; MAX_PAYLOAD];
@@ -44,20 +46,20 @@ impl PayloadBytes {
         Self::new(bytes)
     }
 
-    /// These bytes; `None` when they are too many.
+    /// Wraps encoded bytes; `None` if there are more than [`MAX_PAYLOAD`].
     #[must_use]
     pub fn new(bytes: &[u8]) -> Option<Self> {
         Vec::from_slice(bytes).ok().map(Self)
     }
 
-    /// The value; `None` when these are not exactly the bytes of one. O([`MAX_PAYLOAD`]).
+    /// Decodes the value; `None` unless the bytes are exactly one value. O([`MAX_PAYLOAD`]).
     #[must_use]
     pub fn get<P: Payload>(&self) -> Option<P> {
         let (payload, rest) = postcard::take_from_bytes(&self.0).ok()?;
         rest.is_empty().then_some(payload)
     }
 
-    /// The bytes.
+    /// The encoded bytes.
     #[must_use]
     pub fn as_slice(&self) -> &[u8] {
         &self.0

@@ -1,7 +1,8 @@
-//! Asking: requests that are resent until acknowledged, replaced or given up.
+//! Sent requests: each is resent until it is acknowledged, replaced or abandoned.
 //!
-//! The other side is [`Orders`](super::Orders). Source: A. V. Kuznetsov 2017 (KUZ), section 7 (up the leader
-//! chain); the papers' requests are never lost, ours are small datagrams over a lossy radio.
+//! The receiving side is [`Orders`](super::Orders). Source: A. V. Kuznetsov 2017 (KUZ), section 7
+//! (up the leader chain). The requests of the papers are never lost; these are small datagrams over
+//! a lossy radio.
 
 use super::{Ack, Request, RequestKind};
 use crate::list::Seldom;
@@ -10,12 +11,12 @@ use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Keeps the jitter of resends apart from other uses of randomness.
+/// Separates the random jitter of resends from other uses of randomness.
 const PURPOSE: u32 = u32::from_be_bytes(*b"rsnd");
 
 impl RequestKind {
-    /// Whether it bears on standing: of `Stop` and `Resume` the newer one cancels the older one,
-    /// `Redirect` stands for itself.
+    /// Whether it concerns stopping: of `Stop` and `Resume` the newer one cancels the older one;
+    /// `Redirect` is independent of both.
     #[must_use]
     pub const fn is_standing(self) -> bool {
         matches!(self, Self::Stop | Self::Resume)
@@ -26,12 +27,12 @@ impl RequestKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Retry {
-    /// Sends in all, the first included; 0 counts as 1. With a loss of p per packet, request or
-    /// acknowledgement fails in all of them with probability (1 - (1 - p)^2)^attempts: 4 % at
-    /// p = 0.3 and 5 attempts.
+    /// Total number of sends, including the first; 0 counts as 1. With packet loss p, request or
+    /// acknowledgement fails in all attempts with probability (1 - (1 - p)^2)^attempts: 4 % at p =
+    /// 0.3 and 5 attempts.
     pub attempts: u8,
-    /// Time between two sends, lengthened at random by up to a quarter so that two robots do
-    /// not collide time and again. More than the way there and back, or each request is sent twice.
+    /// Time between two sends. A random extension of up to a quarter prevents two robots from
+    /// colliding repeatedly. It must exceed the round-trip time, or each request is sent twice.
     pub interval: Duration,
 }
 
@@ -41,13 +42,13 @@ impl Default for Retry {
     }
 }
 
-/// Why a request was not taken on.
+/// Why a request was not accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum AskError {
-    /// As many requests as fit are on their way.
+    /// The maximum number of requests is pending.
     Full,
-    /// Nobody cannot acknowledge.
+    /// The addressee is [`RobotId::NOBODY`], which cannot acknowledge.
     Nobody,
 }
 
@@ -62,26 +63,25 @@ impl core::fmt::Display for AskError {
 
 impl core::error::Error for AskError {}
 
-/// What [`Requests::poll`] wants done.
+/// An action that [`Requests::poll`] returns to the caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "a request that is not sent counts as one lost in the air"]
 pub enum Due {
-    /// Send this now. One that does not fit the outbox counts as lost in the air.
+    /// Send this request now. If it does not fit into the outbox, it counts as lost in
+    /// transmission.
     Send(Request),
-    /// No acknowledgement came in time; the request is forgotten.
+    /// No acknowledgement arrived in time; the request is dropped.
     Expired(Request),
 }
 
-/// A request on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Pending {
     request: Request,
-    /// Sends so far.
     sent: u8,
     /// When to send again or to give up.
     due: Instant,
-    /// When to give up in any case.
+    /// When to give up regardless of the number of sends.
     expiry: Instant,
 }
 
@@ -97,7 +97,7 @@ impl Pending {
 
 /// The requests of one robot to others, at most `P` at a time; 24 bytes each.
 ///
-/// After a pause of any length [`Requests::poll`] goes on with what was on its way: see
+/// After a pause of any length [`Requests::poll`] continues with the pending requests: see
 /// [`Instant::has_reached`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Requests<const P: usize> {
@@ -109,34 +109,33 @@ pub struct Requests<const P: usize> {
 }
 
 impl<const P: usize> Requests<P> {
-    /// Half of the numbers are always free to tell requests apart.
+    /// Half of the numbers are always free, so that requests remain distinguishable.
     const FITS: () = assert!(P <= 128, "at most 128 requests at a time");
 
-    /// No requests yet.
-    ///
-    /// From now on the robot's frames say this `boot`.
+    /// Sets the boot number that the robot's frames have from now on.
     pub const fn set_boot(&mut self, boot: u8) {
         self.boot = boot;
     }
 
-    /// `own` and `boot` are what the robot's frames say.
+    /// Creates a table without requests. `own` and `boot` are the robot's number and boot number in
+    /// its frames.
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
         let () = Self::FITS;
         Self { pending: Seldom::new(), retry, own, boot, next: 0 }
     }
 
-    /// Takes on a request to `to` and returns its number; the next [`Requests::poll`] sends it.
+    /// Adds a request to `to` and returns its number; the next [`Requests::poll`] sends it.
     ///
-    /// `origin` is who first asked: oneself, or the follower whose request one passes on. A
-    /// request of the same robot and origin that is still on its way stays when it asks the same
-    /// (its number is returned, and nothing changes), and is replaced when it asks the opposite.
-    /// It is given up `valid_ms` after now, or after the last send's interval, but never before its
-    /// first send.
+    /// `origin` is the robot that made the request first: this robot, or the follower whose request
+    /// it passes on. If a request to the same robot with the same origin is pending, it is kept if
+    /// it asks for the same thing (its number is returned, and nothing changes), and replaced if it
+    /// asks for the opposite. The request is abandoned `valid_ms` after now, or after the interval
+    /// of the last send, but never before its first send.
     ///
     /// # Errors
-    /// [`AskError::Full`] when `P` other requests are on their way, [`AskError::Nobody`] when
-    /// `to` is nobody.
+    /// [`AskError::Full`] if `P` other requests are pending, [`AskError::Nobody`] if `to` is
+    /// [`RobotId::NOBODY`].
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn ask(
         &mut self,
@@ -169,8 +168,8 @@ impl<const P: usize> Requests<P> {
         Ok(number)
     }
 
-    /// The next thing to do at `now`; call until `None`, which comes after at most 2 `P` calls
-    /// (when [`Retry::interval`] is more than 0). O(`P`) each.
+    /// Returns the next action at `now`. Call it until it returns `None`, which takes at most 2 `P`
+    /// calls (if [`Retry::interval`] is more than 0). O(`P`) each.
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn poll(&mut self, now: Instant) -> Option<Due> {
         let retry = self.retry;
@@ -188,22 +187,24 @@ impl<const P: usize> Requests<P> {
         Some(Due::Send(request))
     }
 
-    /// When [`Requests::poll`] has something to do, seen from `now`; `None` when nothing is on its
-    /// way.
+    /// When [`Requests::poll`] will have an action, seen from `now`; `None` if no request is
+    /// pending.
     #[must_use]
     pub fn poll_at(&self, now: Instant) -> Option<Instant> {
         self.pending
             .iter()
             .map(|pending| {
-                // What only seems to lie ahead after a long pause is to be done now.
+                // After a long pause a due time may only seem to lie ahead; it is due now.
                 let has_come = pending.is_due(self.retry, now) && now.is_before(pending.due);
                 if has_come { now } else { pending.due }
             })
             .min_by_key(|due| due.since(now))
     }
 
-    /// Takes note of an acknowledgement by `from`, and returns the request it ends; `None` when
-    /// there is none: it is meant for another robot or boot, or came twice, or too late. O(`P`).
+    /// Processes an acknowledgement by `from` and returns the request that it ends.
+    ///
+    /// Returns `None` if it ends none: it is meant for another robot or boot, a duplicate, or too
+    /// late. O(`P`).
     pub fn acknowledged(&mut self, from: RobotId, ack: &Ack) -> Option<Request> {
         let &Ack { to, boot, number, .. } = ack;
         if (to, boot) != (self.own, self.boot) {
@@ -218,27 +219,26 @@ impl<const P: usize> Requests<P> {
         Some(request)
     }
 
-    /// How many requests are on their way.
+    /// The number of pending requests.
     #[must_use]
     pub fn len(&self) -> usize {
         self.pending.len()
     }
 
-    /// Whether no request is on its way.
+    /// Whether no request is pending.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pending.is_empty()
     }
 
-    /// Numbers are unique among the requests on their way.
     fn remove(&mut self, number: u8) {
         self.pending.retain(|p| p.request.number != number);
     }
 
-    /// The next number that no request on its way has.
+    /// The next number that no pending request has.
     fn free_number(&self) -> u8 {
         let mut number = self.next;
-        // As many steps as there are requests always pass them all.
+        // As many steps as there are requests skip all of their numbers.
         for _ in &self.pending {
             if self.pending.iter().all(|p| p.request.number != number) {
                 break;
@@ -249,7 +249,7 @@ impl<const P: usize> Requests<P> {
     }
 }
 
-/// Between nothing and a quarter of the interval; a function of who asks what for which time.
+/// Between zero and a quarter of the interval; a function of robot, request and number of sends.
 fn jitter(retry: Retry, own: RobotId, request: Request, sent: u8) -> Duration {
     let quarter = (retry.interval.as_micros() >> 2).max(0);
     let send = u32::from_be_bytes([0, 0, request.number, sent]);

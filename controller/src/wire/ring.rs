@@ -1,10 +1,10 @@
-//! The keys that a robot has: the swarm's, of one generation or of two while they change, and its own.
+//! The keys of a robot: its own key, and the swarm's key in one generation, or in two during a key
+//! change.
 
 use super::{KeyAssignment, KeyPhase};
 use crate::auth::{Key, Mac, Seed};
 use serde::{Deserialize, Serialize};
 
-/// The swarm's key of one generation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Group {
     generation: u16,
@@ -14,74 +14,75 @@ struct Group {
     seed: Option<Seed>,
 }
 
-/// By which key a frame was made.
+/// The key with which a frame was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Signer {
-    /// The swarm's, of this generation: any robot that has it.
+    /// The swarm's key of this generation, which any of its robots may hold.
     Swarm(u16),
-    /// The robot's own: its operator.
+    /// The robot's own key, which its operator holds.
     Operator,
 }
 
-/// The keys of a robot. While a key is rolled it hears two generations and speaks one:
+/// The keys of a robot. During a key change the robot accepts two generations and sends with one:
 ///
-/// | told | hears | speaks |
+/// | last phase received | accepts | sends with |
 /// | --- | --- | --- |
-/// | [`KeyPhase::Hear`] | both | the old one |
-/// | [`KeyPhase::Speak`] | both | the new one |
-/// | [`KeyPhase::Forget`] | the new one | the new one |
+/// | [`KeyPhase::Hear`] | both | the old key |
+/// | [`KeyPhase::Speak`] | both | the new key |
+/// | [`KeyPhase::Forget`] | the new key | the new key |
 ///
-/// A phase that comes without those before it brings them along, so that a robot that was off takes one message. Nothing goes back: of two generations
-/// the later one stays, and who is told of an earlier one changes nothing.
+/// A phase includes all phases before it, so that a robot that was switched off needs only one
+/// message. A key change never goes back: the later of two generations stays, and an assignment of
+/// an earlier generation has no effect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ring {
     speaks: Group,
-    /// The generation before, or the one to come.
+    /// The previous or the next generation.
     also: Option<Group>,
     #[serde(with = "crate::digest::uncounted")]
     own: Option<Mac>,
 }
 
 impl Ring {
-    /// Of the swarm's first key, and no other.
+    /// Creates a ring with only the swarm's first key.
     #[must_use]
     pub fn new(key: &Key) -> Self {
         Self { speaks: Group { generation: 0, mac: Mac::new(key), seed: None }, also: None, own: None }
     }
 
-    /// Of the swarm's key of a generation.
+    /// Creates a ring with only the swarm's key of `generation`.
     #[must_use]
     pub fn of_generation(generation: u16, seed: &Seed) -> Self {
         Self { speaks: Group::new(generation, seed), also: None, own: None }
     }
 
-    /// The same with a key of its own.
+    /// Adds the robot's own key.
     #[must_use]
     pub fn with_own(mut self, own: &Key) -> Self {
         self.own = Some(Mac::new(own));
         self
     }
 
-    /// Its own key, if it has one.
+    /// The robot's own key, if it has one.
     #[must_use]
     pub const fn own(&self) -> Option<&Mac> {
         self.own.as_ref()
     }
 
-    /// What it speaks with.
+    /// The key that the robot sends with.
     #[must_use]
     pub const fn speaks(&self) -> &Mac {
         &self.speaks.mac
     }
 
-    /// The generation that it speaks.
+    /// The generation that the robot sends with.
     #[must_use]
     pub const fn generation(&self) -> u16 {
         self.speaks.generation
     }
 
-    /// How far it is: the latest generation that it has, and what it does with it.
+    /// The robot's progress: the latest generation that it has, and what it does with that.
     #[must_use]
     pub fn held(&self) -> (u16, KeyPhase) {
         match &self.also {
@@ -91,8 +92,9 @@ impl Ring {
         }
     }
 
-    /// What to keep in lasting memory after each change, for [`Self::of_generation`] at the next start and [`Self::hear`]: the seed that it speaks
-    /// with, and the other one. `None` for a key that was not made of a seed.
+    /// The seeds to keep in persistent memory after each change: first that of the key that the
+    /// robot sends with, for [`Self::of_generation`] at the next start, then the other one, for
+    /// [`Self::hear`]. `None` for a key that was not derived from a seed.
     #[must_use]
     pub fn seeds(&self) -> [Option<(u16, &Seed)>; 2] {
         [Some(&self.speaks), self.also.as_ref()].map(|group| {
@@ -101,7 +103,8 @@ impl Ring {
         })
     }
 
-    /// By which key `is_made` says that a frame was made; the most likely one is asked first. At most three codes.
+    /// Finds the key for which `is_made` returns true; the most likely key is tried first. At most
+    /// three calls.
     pub fn signer(&self, is_made: impl Fn(&Mac) -> bool) -> Option<Signer> {
         let groups = [Some(&self.speaks), self.also.as_ref()];
         let group = groups.into_iter().flatten().find(|group| is_made(&group.mac));
@@ -109,21 +112,21 @@ impl Ring {
         group.map(|group| Signer::Swarm(group.generation)).or_else(own)
     }
 
-    /// Hears a later generation than all before, too; the last one that there is a number for is none.
+    /// Also accepts a generation later than all others; the generation `u16::MAX` does not exist.
     pub fn hear(&mut self, generation: u16, seed: &Seed) {
         if generation > self.held().0 && generation < u16::MAX {
             self.also = Some(Group::new(generation, seed));
         }
     }
 
-    /// Hears a later generation too, by a key that was made in another way.
+    /// Also accepts a later generation, with a key that was not derived from a seed.
     pub fn hear_key(&mut self, generation: u16, key: &Key) {
         if generation > self.held().0 && generation < u16::MAX {
             self.also = Some(Group { generation, mac: Mac::new(key), seed: None });
         }
     }
 
-    /// Speaks this generation, if it is later than the one that it speaks.
+    /// Sends with this generation from now on, if it is held and later than the present one.
     pub fn speak(&mut self, generation: u16) {
         if let Some(also) = &mut self.also
             && also.generation == generation
@@ -133,14 +136,15 @@ impl Ring {
         }
     }
 
-    /// Does not hear earlier generations than this one any more, if it speaks it.
+    /// Rejects all generations before this one from now on, if the robot sends with this one.
     pub fn forget_before(&mut self, generation: u16) {
         if self.speaks.generation == generation && self.also.as_ref().is_some_and(|also| also.generation < generation) {
             self.also = None;
         }
     }
 
-    /// Does what its operator says; whether the key was made for this robot. What is older than what it has changes nothing.
+    /// Executes an assignment of the operator and returns whether its key was encrypted for this
+    /// robot. Generations older than the present one have no effect.
     ///
     /// Bounded work: twelve blocks of SHA-256.
     pub fn apply(&mut self, told: &KeyAssignment) -> bool {

@@ -1,41 +1,41 @@
-//! Which frames of one sender are new, late, repeated or replayed.
+//! Classifies the frames of one sender: new, late, duplicate or replayed.
 //!
-//! The sliding window of IPsec (RFC 4303, section 3.4.3) over a sequence of 16 bits that wraps, and
-//! a boot number that says that the sequence started anew.
+//! Implements the sliding window of IPsec (RFC 4303, section 3.4.3) on a wrapping 16-bit sequence,
+//! with a boot number that marks a restart of the sequence.
 
 use super::Header;
 use serde::{Deserialize, Serialize};
 
-/// How many sequence numbers a [`SequenceWindow`] remembers, the newest included.
+/// How many sequence numbers a [`SequenceWindow`] remembers, including the newest.
 pub const SEQUENCE_SPAN: u16 = u32::BITS as u16;
 
-/// What a frame is, seen from what came before it.
+/// The class of a frame, given the frames received before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Arrival {
-    /// The first frame of the sender, or newer than everything before.
+    /// The first frame of the sender, or newer than all frames before.
     New,
-    /// Not seen yet, but a newer one came first.
+    /// Not received yet, but a newer frame arrived first.
     OutOfOrder,
-    /// Seen already.
+    /// Received before.
     Duplicate,
-    /// [`SEQUENCE_SPAN`] or more behind the newest: whether it was seen is forgotten; a replay.
+    /// [`SEQUENCE_SPAN`] or more behind the newest. The window no longer knows whether it was
+    /// received; treat it as a replay.
     TooOld,
-    /// The sender started anew, and this is the first frame since.
+    /// The first frame after a restart of the sender.
     Rebooted,
-    /// From before the sender's last start; a replay.
+    /// A frame from before the sender's last restart; a replay.
     PreviousBoot,
 }
 
 impl Arrival {
-    /// Whether the frame was never accepted before: new, late or the first of a new boot.
+    /// Whether the frame was not accepted before: new, late, or the first after a restart.
     #[must_use]
     pub const fn is_accepted(self) -> bool {
         matches!(self, Self::New | Self::OutOfOrder | Self::Rebooted)
     }
 
-    /// Whether the frame is the latest word of its sender: what it says of its state replaces
-    /// what was known.
+    /// Whether the frame is the latest of its sender, so that its state replaces the known one.
     #[must_use]
     pub const fn is_latest(self) -> bool {
         matches!(self, Self::New | Self::Rebooted)
@@ -44,36 +44,36 @@ impl Arrival {
 
 /// The recent sequence numbers of one sender; 8 bytes.
 ///
-/// "Newer" means less than 2^15 ahead. The owner therefore drops the window when it forgets a
-/// silent sender, at the latest after 2^15 frame periods (54 minutes at 10 Hz). That also heals the
-/// window when a damaged frame passed every check and moved it far ahead, or to a boot that
-/// never was: refused frames do not count as a sign of life.
+/// "Newer" means less than 2^15 ahead. Therefore the owner must drop the window of a silent sender
+/// after at most 2^15 frame periods (54 minutes at 10 Hz). Dropping also repairs a window that a
+/// damaged but undetected frame moved far ahead or to a wrong boot number, since rejected frames do
+/// not count as a sign of life.
 ///
-/// A new boot number is believed at once. One earlier boot is remembered: its frames are
-/// [`Arrival::PreviousBoot`]; frames of still earlier boots look like another start. Boot numbers
-/// are best counted in lasting memory; one drawn at random equals the previous one (and makes
-/// the robot wait until it is forgotten) once in 256 starts.
+/// A new boot number is accepted at once. The window remembers one earlier boot, whose frames give
+/// [`Arrival::PreviousBoot`]; frames of still earlier boots look like another restart. Count boot
+/// numbers in persistent memory. A random boot number equals the previous one once in 256 starts,
+/// and then the robot is rejected until the window is dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SequenceWindow {
-    /// Bit k: the frame `newest - k` was seen. 0: none was, ever.
+    /// Bit k: the frame `newest - k` was received. 0: no frame was ever received.
     seen: u32,
     newest: u16,
     boot: u8,
-    /// The boot before; equal to `boot` when there was none.
+    /// The boot number before `boot`; equal to it if there was none.
     previous: u8,
 }
 
 const _: () = assert!(size_of::<SequenceWindow>() == 8);
 
 impl SequenceWindow {
-    /// A window that has seen nothing.
+    /// Creates a window that has not received any frame.
     #[must_use]
     pub const fn new() -> Self {
         Self { seen: 0, newest: 0, boot: 0, previous: 0 }
     }
 
-    /// Judges a frame of this window's sender and remembers it. Constant work.
+    /// Classifies a frame of this window's sender and records it. Constant work.
     pub fn check(&mut self, header: Header) -> Arrival {
         let Header { boot, sequence, .. } = header;
         if self.seen == 0 {
@@ -103,7 +103,7 @@ impl SequenceWindow {
         Arrival::OutOfOrder
     }
 
-    /// How many frames between the newest and this newer one have not come.
+    /// How many frames are missing between the newest frame and this newer one.
     #[must_use]
     #[expect(clippy::arithmetic_side_effects, reason = "it is more than 0 there")]
     pub const fn skipped(&self, header: Header) -> u16 {
@@ -111,7 +111,8 @@ impl SequenceWindow {
         if self.seen == 0 || header.boot != self.boot || ahead.cast_signed() <= 0 { 0 } else { ahead - 1 }
     }
 
-    /// How many frames this one is before or behind the newest, if it is of the same boot; 0 otherwise.
+    /// The distance of this frame from the newest one, before or behind, if both are of the same
+    /// boot; otherwise 0.
     #[must_use]
     pub const fn distance(&self, header: Header) -> u16 {
         let ahead = header.sequence.wrapping_sub(self.newest);

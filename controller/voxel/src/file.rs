@@ -1,12 +1,12 @@
-//! Models as bytes: what stands in a file, and in flash.
+//! The binary format of models, in files and in flash.
 //!
-//! | bytes | what |
+//! | bytes | content |
 //! | --- | --- |
 //! | 0..4 | `FVM` and a zero |
 //! | 4..6 | [`VERSION`] |
 //! | 6 | variables: 2 or 3 |
 //! | 7 | bits of a component: 4 to 16 |
-//! | 8..14 | nodes along each axis, 2 or more; 1 along an axis that is not there |
+//! | 8..14 | nodes along each axis, 2 or more; 1 along an unused axis |
 //! | 14..16 | zero |
 //! | 16..28 | coordinates of the first node |
 //! | 28..40 | steps between nodes |
@@ -19,61 +19,60 @@
 use core::fmt::{self, Display};
 use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 
-/// Of the format; another one is refused.
+/// Version of the format; other versions are rejected.
 pub const VERSION: u16 = 1;
-/// Bytes in front of the components.
+/// Length of the header in bytes, before the components.
 pub const HEADER_LEN: usize = 48;
 const MAGIC: [u8; 4] = *b"FVM\0";
-/// Where the checksum is.
 const CHECKED: usize = 44;
-/// Without a table: slower once, instead of 1 KiB of flash for ever.
+/// Without a table: slower once, instead of 1 KiB of flash permanently.
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// What a model says of itself in front of its components.
+/// The header of a model, before its components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Header {
     /// Variables of the function: 2 or 3.
     pub variables: u8,
-    /// Bits of each stored component, its sign with them: 4 to 16.
+    /// Bits of each stored component, including its sign: 4 to 16.
     pub depth: u8,
-    /// Nodes along each axis: 2 or more; 1 along an axis that is not there.
+    /// Nodes along each axis: 2 or more; 1 along an unused axis.
     pub nodes: [u16; 3],
     /// Coordinates of the first node, in the function's own units.
     pub first: [f32; 3],
-    /// Between nodes; more than 0, for an axis that is not there 0.
+    /// Step between nodes; more than 0, for an unused axis 0.
     pub step: [f32; 3],
-    /// What values are counted in; more than 0.
+    /// Unit of the values; more than 0.
     pub unit: f32,
 }
 
-/// Why bytes are no model.
+/// Why bytes are not a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileError {
-    /// Fewer or more bytes than the header asks for.
+    /// The length differs from that in the header.
     Length {
-        /// Bytes that a model with this header has.
+        /// Length in bytes of a model with this header.
         needed: usize,
-        /// Bytes that are there.
+        /// Actual length in bytes.
         found: usize,
     },
-    /// It does not begin as a model does.
+    /// The beginning is not that of a model.
     NotAModel,
-    /// Of another version of the format.
+    /// Another version of the format.
     Version(u16),
-    /// A function of another number of variables than was asked for.
+    /// The function has another number of variables than required.
     Variables {
-        /// What was asked for.
+        /// Required number.
         needed: u8,
-        /// What is there.
+        /// Actual number.
         found: u8,
     },
-    /// A field of the header makes no sense; its first byte.
+    /// A field of the header is invalid; its first byte.
     Field(usize),
-    /// Bytes were damaged.
+    /// The bytes are damaged.
     Checksum {
-        /// What the header says.
+        /// The checksum in the header.
         stored: u32,
-        /// What the bytes give.
+        /// The checksum of the bytes.
         computed: u32,
     },
 }
@@ -104,32 +103,33 @@ impl Display for FileError {
 impl core::error::Error for FileError {}
 
 impl Header {
-    /// Components of a node: one for each variable, the function's own and the free one.
+    /// Components of a node: one for each variable, that of the function and the free one.
     #[must_use]
     pub const fn components(&self) -> usize {
         self.variables as usize + 2
     }
 
-    /// Bytes of a component.
+    /// Length of a component in bytes.
     #[must_use]
     pub const fn component_len(&self) -> usize {
         if self.depth > 8 { 2 } else { 1 }
     }
 
-    /// Nodes in all; saturates.
+    /// Total number of nodes; saturates.
     #[must_use]
     pub fn count(&self) -> usize {
         self.nodes.iter().fold(1, |count: usize, &along| count.saturating_mul(along.into()))
     }
 
-    /// Bytes of the whole model; saturates.
+    /// Length of the whole model in bytes; saturates.
     #[must_use]
     pub fn model_len(&self) -> usize {
         let node = self.components().saturating_mul(self.component_len());
         self.count().saturating_mul(node).saturating_add(HEADER_LEN)
     }
 
-    /// As bytes, the checksum zero: [`checksum`] of all, then to be put in bytes 44 to 47.
+    /// The header as bytes, with a checksum of zero. Compute the [`checksum`] of the whole model
+    /// and write it to bytes 44 to 47.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; HEADER_LEN] {
         let mut bytes = [0; HEADER_LEN];
@@ -150,7 +150,7 @@ impl Header {
     /// Reads and checks the header, the length and the checksum of a whole model: O(length).
     ///
     /// # Errors
-    /// [`FileError`], with the first thing that is wrong.
+    /// [`FileError`], for the first error found.
     pub fn read(bytes: &[u8]) -> Result<Self, FileError> {
         let found = bytes.len();
         if bytes.first_chunk::<4>().is_some_and(|magic| *magic != MAGIC) {
@@ -182,7 +182,6 @@ impl Header {
         if stored == computed { Ok(header) } else { Err(FileError::Checksum { stored, computed }) }
     }
 
-    /// What can be wrong with the fields.
     fn check(&self) -> Result<(), FileError> {
         let ensure = |is_sound: bool, byte| if is_sound { Ok(()) } else { Err(FileError::Field(byte)) };
         ensure(matches!(self.variables, 2 | 3), 6)?;
@@ -200,7 +199,7 @@ impl Header {
     }
 }
 
-/// CRC-32 of a model's bytes but those of its checksum. O(length).
+/// CRC-32 of a model's bytes except those of its checksum. O(length).
 #[must_use]
 pub fn checksum(bytes: &[u8]) -> u32 {
     let mut digest = CRC.digest();

@@ -1,6 +1,6 @@
 #![doc = include_str!("../README.md")]
 #![no_std]
-// What may panic has no place on a robot; tests may.
+// Code that may panic is not permitted on a robot, except in tests.
 #![cfg_attr(
     not(test),
     deny(

@@ -1,17 +1,21 @@
-//! A function from its local geometric characteristics (A. Tolok 2016, "The functional voxel method in computer
-//! modelling"; Tolok et al., FVM, eqs. 16 and 17).
+//! Evaluates a function from its local geometric characteristics (A. Tolok 2016, "The functional
+//! voxel method in computer modelling"; Tolok et al., FVM, eqs. 16 and 17).
 //!
-//! In each node the model keeps the unit vector (cos alpha, cos beta, [..] cos gamma, cos delta) of the plane that
-//! touches the function's graph there: cos alpha x + cos beta y + cos gamma z = cos delta (eq. 16; one more in
-//! front for three variables). Value, gradient and half-plane follow by a few products and one division.
+//! In each node the model stores the unit vector (cos alpha, cos beta, [..] cos gamma, cos delta)
+//! of the plane that touches the function's graph there: cos alpha x + cos beta y + cos gamma z =
+//! cos delta (eq. 16; one more at the front for three variables). Value, gradient and half-plane
+//! follow by a few products and one division.
 //!
-//! What differs from the literature, and why:
-//! - Coordinates are relative to the node, and counted in half of the extent along each axis; values are counted in the
-//!   model's unit. With coordinates from one origin cos delta carries the place as well, and far from the origin it
-//!   takes the bits that the value needs.
-//! - Components are signed integers, so that 0 is exactly 0; an M-image has 256 greys, or 65,536, of which none is 0.
-//! - Besides the plane of the nearest node ([`Model::nearest`], the method as it is) there is the blend of the planes
-//!   around ([`Model::blend`]): continuous, and with errors that fall with the square of the step.
+//! Differences to the literature, and why:
+//!
+//! - Coordinates are relative to the node, in units of half of the extent along each axis; values
+//!   are in the model's unit. With coordinates from one origin, cos delta would also contain the
+//!   position, and far from the origin it would take the bits that the value needs.
+//! - Components are signed integers, so that 0 is exactly 0; an M-image has 256 greys, or 65,536,
+//!   and none of them is 0.
+//! - Besides the plane of the nearest node ([`Model::nearest`], the original method) there is the
+//!   blend of the surrounding planes ([`Model::blend`]): continuous, and with errors that decrease
+//!   with the square of the step.
 
 use crate::file::{FileError, HEADER_LEN, Header};
 use core::array;
@@ -19,7 +23,7 @@ use serde::{Serialize, Serializer};
 use staya_controller::geom::Vec2;
 use staya_controller::scalar::Scalar;
 
-/// What a model knows of its function in one point.
+/// Value and gradient of a function at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Local<S, const V: usize> {
     /// The function's value, in its own units.
@@ -29,15 +33,16 @@ pub struct Local<S, const V: usize> {
 }
 
 impl<S: Scalar> Local<S, 2> {
-    /// Unit vector that the function grows in: eq. 17, (cos, sin) of the angle. `None` where it is level.
+    /// Unit vector of the steepest increase: eq. 17, (cos, sin) of the angle. `None` where the
+    /// function is level.
     #[must_use]
     pub fn direction(&self) -> Option<Vec2<S>> {
         let [x, y] = self.gradient;
         Vec2::new(x, y).normalized()
     }
 
-    /// Signed distance to the border, where the function is 0, to first order: positive where the function is. `None`
-    /// where it is level.
+    /// Signed distance to the border, where the function is 0, to first order; it has the
+    /// function's sign. `None` where the function is level.
     #[must_use]
     pub fn distance(&self) -> Option<S> {
         let [x, y] = self.gradient;
@@ -45,17 +50,16 @@ impl<S: Scalar> Local<S, 2> {
     }
 }
 
-/// A function of `V` variables, 2 or 3, from bytes that stay where they are.
+/// A function of `V` variables, 2 or 3, evaluated from borrowed bytes.
 ///
-/// Bytes of the model itself: 8 + 13 V and some (`f32`); nothing is copied.
+/// Size of the model itself: about 8 + 13 V bytes (`f32`); nothing is copied.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model<'a, S, const V: usize> {
-    /// The components, node by node.
     nodes: &'a [u8],
-    /// Bytes of a component, and of a node.
+    /// Length in bytes of a component, and of a node.
     component_len: usize,
     node_len: usize,
-    /// 1 as a component, in `S`: fixed point would not hold sums of products of whole components.
+    /// 1 as a component, in `S`: fixed point could not hold sums of products of whole components.
     one: S,
     unit: S,
     axes: [Axis<S>; V],
@@ -66,9 +70,8 @@ pub struct Model<'a, S, const V: usize> {
 struct Axis<S> {
     first: S,
     per_step: S,
-    /// The last node.
     last: i32,
-    /// Nodes from one along this axis to the next one.
+    /// Index distance of neighbouring nodes along this axis.
     stride: usize,
     /// A step, in half of the extent.
     scale: S,
@@ -77,7 +80,7 @@ struct Axis<S> {
     high: S,
 }
 
-/// Digests of agents hold the model's checksum.
+/// Digests of agents contain the model's checksum.
 impl<S, const V: usize> Serialize for Model<'_, S, V> {
     fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
         serializer.serialize_u32(self.checksum)
@@ -85,10 +88,12 @@ impl<S, const V: usize> Serialize for Model<'_, S, V> {
 }
 
 impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
-    /// The model in these bytes, which `staya voxel build` makes. Checks all of them: O(length), once at the start.
+    /// Opens the model in these bytes, which `staya voxel build` writes. Checks all bytes:
+    /// O(length), once at the start.
     ///
     /// # Errors
-    /// [`FileError`], with the first thing that is wrong; a number that `S` cannot hold is a field that makes no sense.
+    /// [`FileError`], for the first error found; a number that `S` cannot represent counts as an
+    /// invalid field.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FileError> {
         let header = Header::read(bytes)?;
         if usize::from(header.variables) != V {
@@ -134,30 +139,29 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         })
     }
 
-    /// The CRC-32 that the model was checked by: tells models apart.
+    /// The CRC-32 of the model, which distinguishes models.
     #[must_use]
     pub const fn checksum(&self) -> u32 {
         self.checksum
     }
 
-    /// Bytes in flash.
+    /// Size in flash, bytes.
     #[must_use]
     pub const fn bytes(&self) -> usize {
         self.nodes.len().saturating_add(HEADER_LEN)
     }
 
-    /// The least and the greatest coordinate along each axis; the model knows nothing outside.
+    /// The least and the greatest coordinate along each axis; the model is undefined outside.
     #[must_use]
     pub fn extent(&self) -> [[S; 2]; V] {
         self.axes.map(|axis| [axis.first, axis.high])
     }
 
-    /// By the plane of the nearest node: the functional voxel method as it is. Jumps between voxels; the error falls
-    /// with the step in gradients, with its square in values.
+    /// Evaluates the plane of the nearest node: the original functional voxel method. It jumps
+    /// between voxels; the error decreases with the step in gradients, with its square in values.
     ///
-    /// `None` outside of the extent, of what is not finite, and where the function is too steep for the depth. Work:
-    /// one
-    /// node.
+    /// `None` outside the extent, for input that is not finite, and where the function is too steep
+    /// for the depth. Work: one node.
     #[must_use]
     pub fn nearest(&self, at: [S; V]) -> Option<Local<S, V>> {
         let (mut node, mut offset) = (0_usize, [S::ZERO; V]);
@@ -172,10 +176,10 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         self.local(&sum)
     }
 
-    /// By the planes of the 2^V nodes around, blended: continuous, with errors of the square of the step in values and
-    /// in gradients.
+    /// Evaluates the blended planes of the 2^V surrounding nodes: continuous, with errors of the
+    /// square of the step in values and in gradients.
     ///
-    /// `None` as [`Model::nearest`]. Work: 4 or 8 nodes.
+    /// `None` as in [`Model::nearest`]. Work: 4 or 8 nodes.
     #[must_use]
     pub fn blend(&self, at: [S; V]) -> Option<Local<S, V>> {
         let (mut node, mut on) = (0_usize, [S::ZERO; V]);
@@ -199,8 +203,8 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         self.local(&sum)
     }
 
-    /// The components of a node, as M-images have them, in -1 to 1: those of the variables, then of the function, then
-    /// the free one. `None` when there is no such node.
+    /// The components of a node, as in M-images, from -1 to 1: those of the variables, then that of
+    /// the function and the free one. `None` if the node does not exist.
     #[must_use]
     pub fn node(&self, index: [u16; V]) -> Option<([S; V], [S; 2])> {
         let mut node = 0_usize;
@@ -220,7 +224,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
             *sum += slope * weight;
         }
         sum.height += height * weight;
-        // Of planes that are graphs of functions the component is below 0.
+        // If a plane is the graph of a function, this component is below 0.
         sum.down -= own * weight;
         Some(())
     }
@@ -256,21 +260,19 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
 }
 
 impl<S: Scalar> Axis<S> {
-    /// Steps from the first node; `None` outside.
     #[inline]
     fn steps(&self, x: S) -> Option<S> {
         let is_inside = x >= self.first && x <= self.high;
         is_inside.then(|| (x - self.first) * self.per_step)
     }
 
-    /// The node so many nodes on along this axis.
     #[inline]
     fn advance(&self, node: usize, index: i32) -> Option<usize> {
         Some(node.saturating_add(usize::try_from(index).ok()?.saturating_mul(self.stride)))
     }
 }
 
-/// A plane, or the weighted sum of some.
+/// A plane, or the weighted sum of several.
 struct Sum<S, const V: usize> {
     slopes: [S; V],
     height: S,

@@ -1,6 +1,6 @@
-//! ORCA on functional voxel models: what a model of a velocity obstacle forbids ([`velocity_half_plane`]), of any pair
-//! of robots ([`VoxelNeighbor`]), and of land or a room ([`obstacles`]). Functions are positive inside of what is
-//! forbidden, as the paper's eq. 15.
+//! ORCA on functional voxel models: constraints from a model of a velocity obstacle
+//! ([`velocity_half_plane`]), of any pair of robots ([`VoxelNeighbor`]), and of land or a room
+//! ([`obstacles`]). Functions are positive inside the forbidden region, as in the paper's eq. 15.
 
 use crate::model::{Local, Model};
 use heapless::Vec;
@@ -10,11 +10,13 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::{HalfPlane, HalfSpaces, MovingBall, Params, half_plane};
 use staya_controller::scalar::Scalar;
 
-/// The half-plane of ORCA by the model of a velocity obstacle over the plane of relative velocities, m/s (FVM, eqs. 12,
-/// 14 and 17): out of the obstacle by the shortest way that the local plane knows, `share` of it the own one.
+/// ORCA's half-plane from the model of a velocity obstacle over the plane of relative velocities,
+/// m/s (FVM, eqs. 12, 14 and 17): leaves the obstacle by the shortest path that the local plane
+/// gives; the robot makes `share` of it.
 ///
-/// `None` where the model knows nothing, or the function is level. Unlike [`VoxelNeighbor`] it takes the function
-/// at its word: whether the half-plane forbids all of the obstacle is up to the function. Work: [`Model::blend`].
+/// `None` where the model is undefined, or the function is level. Unlike [`VoxelNeighbor`] it
+/// trusts the function: whether the half-plane forbids the whole obstacle depends on the function.
+/// Work: [`Model::blend`].
 #[must_use]
 pub fn velocity_half_plane<S: Scalar>(
     obstacle: &Model<'_, S, 2>,
@@ -28,26 +30,26 @@ pub fn velocity_half_plane<S: Scalar>(
     point.is_finite().then_some(HalfPlane { point, normal })
 }
 
-/// Half-planes of moving neighbours by a model of every velocity obstacle (`staya voxel build neighbor`), for an
-/// [`Avoider`](staya_controller::orca::Avoider).
+/// Half-planes of moving neighbours from a model of all velocity obstacles (`staya voxel build
+/// neighbor`), for an [`Avoider`](staya_controller::orca::Avoider).
 ///
-/// Turned so that the neighbour is on the x axis, with the disc's centre in the origin and its radius as unit, a
-/// velocity obstacle depends on one number: its half angle. The model's variables are velocity along and
-/// beside that axis (its mirror image is not kept), and the tangent of half of the half angle, in which the legs turn
-/// evenly: over the sine, which comes for free, they turn ever faster up to the end, and errors are twice as large.
+/// Turned so that the neighbour is on the x axis, with the disc's centre in the origin and its
+/// radius as unit, a velocity obstacle depends on one number: its half angle. The model's variables
+/// are the velocity along and beside that axis (its mirror image is not stored), and the tangent of
+/// half of the half angle, in which the legs turn evenly. The sine is available without
+/// computation, but over it the legs turn ever faster up to the end, and errors are twice as large.
 ///
-/// **Each half-plane is safe whatever the model says**: of the model only the normal is used (eq. 17), turned to lie
-/// between
-/// those of the two legs if it does not, and the border touches the disc: then the whole obstacle is behind it. The
-/// model's error only makes the demanded change of velocity longer. Both robots of a pair read the
-/// same nodes, so that their half-planes are opposite.
+/// **Each half-plane is safe for any content of the model**: only the model's normal is used (eq.
+/// 17), limited to lie between those of the two legs, and the border touches the disc. Then the
+/// whole obstacle is behind it. The model's error only makes the demanded change of velocity
+/// longer. Both robots of a pair read the same nodes, so that their half-planes are opposite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VoxelNeighbor<'a, S: Scalar> {
     model: Model<'a, S, 3>,
 }
 
 impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
-    /// By this model.
+    /// Creates a source of half-planes from this model.
     #[must_use]
     pub const fn new(model: Model<'a, S, 3>) -> Self {
         Self { model }
@@ -59,12 +61,14 @@ impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
         &self.model
     }
 
-    /// The normal out of the obstacle at the border nearest to `w`, in disc radii from the disc's centre, `w.y >= 0`.
+    /// The normal out of the obstacle at the border nearest to `w`, in disc radii from the disc's
+    /// centre, `w.y >= 0`.
     fn normal(&self, w: Vec2<S>, sine: S) -> Option<Vec2<S>> {
         let cos = (S::ONE - sine * sine).sqrt();
         let opening = sine.checked_div(S::ONE + cos)?;
         let [[_, right], [_, top], _] = self.model.extent();
-        // What is outside is moved straight to the centre: on the way the nearest border's normal is the same.
+        // A point outside is moved straight to the centre: along that line the nearest border's
+        // normal is constant.
         let times = w.x.abs().checked_div(right)?.max(w.y.checked_div(top)?);
         let w = if times > S::ONE { w * S::ONE.checked_div(times)? } else { w };
         let Local { gradient: [x, y, _], .. } =
@@ -81,7 +85,7 @@ impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
 impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
     type Velocity = Vec2<S>;
 
-    /// By the formula where the model has no answer: robots that overlap have no cone.
+    /// Uses the formula where the model has no result: overlapping robots have no cone.
     #[inline(never)]
     fn half_space(
         &self,
@@ -101,7 +105,7 @@ impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
             let w = v - p * rate;
             let across = ahead.det(w);
             let normal = self.normal(Vec2::new(w.dot(ahead), across.abs()) * per_radius, r.checked_div(distance)?)?;
-            // On the axis to the right, as the formula.
+            // On the axis: to the right, as in the formula.
             let side = if across > S::ZERO { normal.y } else { -normal.y };
             let normal = ahead.rotate(normal.x, side);
             let point = own_velocity_mps + normal * ((radius - w.dot(normal)) * params.share);
@@ -111,21 +115,20 @@ impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
     }
 }
 
-/// Directions that [`obstacles`] looks in, besides the robot's own place.
+/// Number of directions that [`obstacles`] probes, in addition to the robot's own position.
 pub const PROBES: usize = 8;
 
-/// What stands around a robot by a model of land or a room, metres: planes that touch the nearest borders, for ORCA,
-/// the nearest first.
+/// The obstacles around a robot from a model of land or a room, metres: planes that touch the
+/// nearest borders, for ORCA, nearest first.
 ///
-/// The plane in the robot's own place is that of the nearest border alone; in a corner the other wall counts too. So
-/// the
-/// model is asked at [`PROBES`] places at the distance `reach_m` as well (what the robot covers in a step or two, and
-/// its
-/// radius; more sees corners sooner). What is found there counts unless its plane is nearer than the nearest border:
-/// then it only touches something round
-/// beside the robot, and would forbid what is free.
+/// The plane at the robot's own position is that of the nearest border alone, but in a corner the
+/// other wall matters too. So the model is also evaluated at [`PROBES`] points at the distance
+/// `reach_m` (the distance that the robot covers in a step or two, plus its radius; a larger value
+/// detects corners sooner). A plane found there counts unless it is nearer than the nearest border:
+/// then it only touches something round beside the robot, and would forbid free space.
 ///
-/// `None` where the model knows nothing: stand still, or have a larger model. Work: nine times [`Model::blend`].
+/// `None` where the model is undefined: stop, or use a larger model. Work: nine times
+/// [`Model::blend`].
 #[must_use]
 pub fn obstacles<S: Scalar>(
     model: &Model<'_, S, 2>,
@@ -171,8 +174,8 @@ pub fn obstacles<S: Scalar>(
     Some(planes)
 }
 
-/// Adds a plane behind those that are nearer; there is room. By patterns: `swap` and `sort` would leave panics in
-/// firmware.
+/// Inserts a plane behind those that are nearer; there is space. By slice patterns: `swap` and
+/// `sort` would leave panics in firmware.
 fn insert<S: Scalar, const N: usize>(found: &mut Vec<(Vec2<S>, S), N>, plane: (Vec2<S>, S)) {
     let _ = found.push(plane);
     let mut at = found.len().saturating_sub(1);

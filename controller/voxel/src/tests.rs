@@ -1,4 +1,5 @@
-//! Boundaries and faults on models made by hand; what models are made of is tested where they are made (`staya-fvm`).
+//! Boundaries and faults on models made by hand; the tests of `staya-fvm` cover the creation of
+//! models.
 
 use crate::*;
 use proptest::prelude::*;
@@ -9,7 +10,8 @@ use staya_controller::scalar::{Q16, Scalar};
 use std::string::ToString as _;
 use std::vec::Vec;
 
-/// A model with the same plane in each node but for the free component: of a linear function from 0 in the first node.
+/// A model with the same plane in each node except for the free component: a linear function with
+/// the value 0 in the first node.
 fn linear(variables: u8, depth: u8, nodes: [u16; 3], slopes: [f64; 3]) -> Vec<u8> {
     let axes = usize::from(variables);
     let mut step = [0.0; 3];
@@ -51,7 +53,7 @@ fn plane(depth: u8) -> Vec<u8> {
 }
 
 #[test]
-fn a_linear_function_is_exact_to_its_depth_up_to_the_very_edge_and_unknown_beyond() {
+fn a_linear_function_is_exact_to_its_depth_up_to_the_edge_and_undefined_beyond() {
     for (depth, most) in [(8, 0.05), (12, 0.003), (16, 0.0002)] {
         let bytes = plane(depth);
         let model = Model::<f64, 2>::from_bytes(&bytes).unwrap();
@@ -85,14 +87,13 @@ fn three_variables_are_exact_in_each_corner() {
 }
 
 #[test]
-fn what_is_no_model_is_refused_by_name() {
+fn invalid_models_return_their_error() {
     let whole = plane(16);
     let refused = |change: &dyn Fn(&mut Vec<u8>)| {
         let mut bytes = whole.clone();
         change(&mut bytes);
         Model::<f32, 2>::from_bytes(&bytes).unwrap_err()
     };
-    // A sealed header with another field.
     let field = |at: usize, value: &[u8]| {
         refused(&|bytes| {
             bytes[at..at + value.len()].copy_from_slice(value);
@@ -134,7 +135,7 @@ fn a_level_function_has_no_direction_and_no_distance() {
 
 #[test]
 fn a_straight_wall_is_one_plane() {
-    // Positive to the east of x = 0: the robot is inside of the wall by 0.3 m.
+    // Positive to the east of x = 0: the robot is 0.3 m inside the wall.
     let bytes = linear(2, 16, [5, 3, 1], [1.0, 0.0, 0.0]);
     let model = Model::<f32, 2>::from_bytes(&bytes).unwrap();
     let found = obstacles(&model, Vec2::new(0.3, 0.5), 0.1).unwrap();
@@ -144,7 +145,7 @@ fn a_straight_wall_is_one_plane() {
 }
 
 #[test]
-fn neighbors_that_overlap_and_nonsense_go_by_the_formula() {
+fn overlapping_neighbors_and_invalid_input_use_the_formula() {
     let bytes = linear(3, 16, [3; 3], [1.0, 1.0, 1.0]);
     let source = VoxelNeighbor::new(Model::<f64, 3>::from_bytes(&bytes).unwrap());
     let params = Params { horizon_s: 2.0, separation_s: 0.05, share: 0.5 };
@@ -157,12 +158,12 @@ fn neighbors_that_overlap_and_nonsense_go_by_the_formula() {
 }
 
 proptest! {
-    /// Any bytes are a model or an error, and a model answers or says that it does not know.
+    /// Any bytes are a model or an error, and a model returns a value or `None`.
     #[test]
     fn damaged_bytes_never_panic(mut bytes in prop::collection::vec(any::<u8>(), 0..400), is_sealed: bool) {
         let whole = plane(8);
         let length = bytes.len().min(40);
-        // Half of them with a sound beginning.
+        // Half of them with a valid beginning.
         if is_sealed && bytes.len() > 48 {
             bytes[..length].copy_from_slice(&whole[..length]);
             bytes[40..44].copy_from_slice(&whole[40..44]);
@@ -176,7 +177,7 @@ proptest! {
     }
 
     #[test]
-    fn a_flipped_bit_is_noticed(at in 0_usize..168, bit in 0..8) {
+    fn a_flipped_bit_is_detected(at in 0_usize..168, bit in 0..8) {
         let mut bytes = plane(16);
         bytes[at] ^= 1_u8 << bit;
         prop_assert!(Model::<f32, 2>::from_bytes(&bytes).is_err());

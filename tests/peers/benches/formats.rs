@@ -1,4 +1,5 @@
-//! Saying and hearing one beacon in each wire format: to hear is to find the frame in the inbox, and to read it.
+//! Encoding and decoding one beacon in each wire format; decoding includes finding the frame in the
+//! inbox.
 
 use core::hint::black_box;
 use core::time::Duration;
@@ -36,7 +37,7 @@ fn format<W: Wire>(c: &mut Criterion, name: &str, mut wire: W) {
             wire.encode(header, black_box(&message), &mut out).unwrap()
         });
     });
-    // The benchmark before may have been left out.
+    // The previous benchmark may have been filtered out.
     out.clear();
     wire.encode(header, &message, &mut out).unwrap();
     c.bench_function(&format!("beacon/decode/{name}"), |bencher| {
@@ -53,7 +54,7 @@ fn formats(c: &mut Criterion) {
     format(c, "mavlink", Mavlink);
 }
 
-/// Benchmarks of tens of nanoseconds need no five seconds each.
+/// Benchmarks of tens of nanoseconds do not need five seconds each.
 fn short() -> Criterion {
     Criterion::default().warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2))
 }

@@ -1,4 +1,4 @@
-//! The laws of the flocks by themselves.
+//! The laws of the flocks without an agent.
 
 use super::{StayaBody, StayaNearby, StayaReference, nearest, surroundings};
 use crate::io::{StayaObstacle, array, vector};
@@ -11,7 +11,8 @@ use staya_controller::geom::{Position, Vec2};
 use staya_controller::robot::RobotId;
 use staya_controller::scalar::cast;
 
-/// What a robot of an alpha flock should do to its velocity, m/s^2; not bounded by what the body can do. `reference` may be null.
+/// Returns the acceleration of a robot in an alpha flock, m/s^2; not limited to what the body can
+/// do. `reference` may be null.
 /// cbindgen:ptrs-as-arrays=[[acceleration_mps2; 3]]
 ///
 /// # Safety
@@ -28,7 +29,7 @@ pub unsafe extern "C" fn staya_lattice_acceleration(
     acceleration_mps2: *mut f32,
 ) -> StayaStatus {
     let flock = || {
-        // SAFETY: the caller gives all of them, or what is refused.
+        // SAFETY: all are valid by the caller's contract, or they are rejected.
         let (params, reference) = unsafe { (shared(lattice)?.params()?, optional(reference)?) };
         // SAFETY: as above.
         let (body, others, obstacles) = unsafe { surroundings(body, nearby, nearby_count, obstacles, obstacle_count)? };
@@ -37,13 +38,14 @@ pub unsafe extern "C" fn staya_lattice_acceleration(
             velocity_mps: vector(reference.velocity_mps),
         });
         let answer = acceleration(&params, &body, &others, &obstacles, reference.as_ref());
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(acceleration_mps2.cast(), array(answer)) }
     };
     answer(flock())
 }
 
-/// The velocity that a robot of a goal flock wishes for, m/s. Places are in millimetres; `goal_mm` may be null.
+/// Returns the preferred velocity of a robot in a goal flock, m/s. Positions are in millimetres;
+/// `goal_mm` may be null.
 /// cbindgen:ptrs-as-arrays=[[own_mm; 3], [goal_mm; 3], [wish_mps; 3]]
 ///
 /// # Safety
@@ -60,20 +62,20 @@ pub unsafe extern "C" fn staya_goal_flock_wish(
     wish_mps: *mut f32,
 ) -> StayaStatus {
     let flock = || {
-        // SAFETY: the caller gives all of them, or what is refused.
+        // SAFETY: all are valid by the caller's contract, or they are rejected.
         let (params, own, goal) =
             unsafe { (shared(goal_flock)?.params(speed_mps)?, *shared(own_mm.cast())?, optional(goal_mm.cast())?) };
         // SAFETY: as above.
         let (body, others, _) = unsafe { surroundings(body, nearby, nearby_count, core::ptr::null(), 0)? };
         let (own, goal) = (Position::from_mm(own), goal.map(|goal| Position::from_mm(*goal)));
         let wish = wish(&params, &body, own, goal, &others);
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(wish_mps.cast(), array(wish)) }
     };
     answer(flock())
 }
 
-/// Turns a boid's heading, a unit vector, to what it is one step later.
+/// Turns a boid's heading, a unit vector, to its value one step later.
 /// cbindgen:ptrs-as-arrays=[[heading; 2]]
 ///
 /// # Safety
@@ -87,11 +89,11 @@ pub unsafe extern "C" fn staya_boids_steer(
     heading: *mut f32,
 ) -> StayaStatus {
     let flock = || {
-        // SAFETY: the caller gives all of them, or what is refused.
+        // SAFETY: all are valid by the caller's contract, or they are rejected.
         let (params, others, [x, y]) =
             unsafe { (shared(boids)?.params(), row(nearby, nearby_count)?, *shared(heading.cast::<[f32; 2]>())?) };
         let next = params.steer(RobotId(id), Vec2::new(cast(x), cast(y)), &nearest(others));
-        // SAFETY: as above, and the references are no more.
+        // SAFETY: as above; the references have ended.
         unsafe { memory::write(heading.cast::<[f32; 2]>(), [cast(next.x), cast(next.y)]) }
     };
     answer(flock())

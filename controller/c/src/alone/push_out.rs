@@ -1,4 +1,4 @@
-//! Push-out by itself.
+//! Push-out without an agent.
 
 use super::{StayaBody, StayaNearby, surroundings};
 use crate::io::{StayaObstacle, array, vector};
@@ -7,7 +7,7 @@ use crate::setup::StayaPushOut;
 use crate::status::{StayaStatus, answer};
 use staya_controller::push_out::push_out;
 
-/// The velocity nearest to `wish_mps` by the rules of push-out, m/s, for the next `step_s`.
+/// Returns the velocity nearest to `wish_mps` by the rules of push-out, m/s, for the next `step_s`.
 /// cbindgen:ptrs-as-arrays=[[wish_mps; 3], [velocity_mps; 3]]
 ///
 /// # Safety
@@ -24,12 +24,12 @@ pub unsafe extern "C" fn staya_push_out_velocity(
     velocity_mps: *mut f32,
 ) -> StayaStatus {
     let push = || {
-        // SAFETY: the caller gives all of them, or what is refused.
+        // SAFETY: all are valid by the caller's contract, or they are rejected.
         let (params, wish) = unsafe { (shared(params)?.params()?, vector(*shared::<[f32; 3]>(wish_mps.cast())?)) };
         // SAFETY: as above.
         let (body, others, obstacles) = unsafe { surroundings(body, nearby, nearby_count, obstacles, obstacle_count)? };
         let best = push_out(&params, &body, wish, &others, &obstacles);
-        // SAFETY: the caller gives room for it, or what `write` refuses.
+        // SAFETY: valid space by the caller's contract, or `write` rejects it.
         unsafe { memory::write(velocity_mps.cast(), array(best)) }
     };
     answer(push())

@@ -1,4 +1,4 @@
-//! Parameters of what keeps robots clear of each other.
+//! Parameters of collision avoidance.
 
 use crate::Number;
 use crate::choices::StayaPushOutModel;
@@ -13,24 +13,30 @@ use staya_controller::scalar::cast;
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaOrca {
-    /// Time ahead for which no collision with a robot may happen, seconds; 1 to 5. Longer gives way earlier and slows crowds.
-    /// Shorter than the body needs to stop (speed / acceleration) is not safe.
+    /// Time ahead for which collisions with robots are excluded, seconds; 1 to 5. With a longer
+    /// time robots give way earlier and crowds become slower. A time shorter than the body needs to
+    /// stop (speed / acceleration) is not safe.
     pub horizon_s: f32,
-    /// The same for obstacles, seconds. A robot slows to (distance / this time) in front of a wall.
+    /// Time ahead for which collisions with obstacles are excluded, seconds. In front of a wall a
+    /// robot slows to (distance / this time).
     pub wall_horizon_s: f32,
-    /// Own share of a correction: 0.5 when all do the same. Less is not safe.
+    /// Own share of a correction: 0.5 if all robots use the same. Less is not safe.
     pub share: f32,
-    /// Kept on top of the radii, metres: the error of what is known of places.
+    /// Distance kept in addition to the radii, metres: the error of the known positions.
     pub margin_m: f32,
-    /// How far to the right of the wish to lean while a robot is in the way, radians; 0.4 to 0.6, 0 never.
+    /// How far the preferred velocity turns to the right while a robot is in the way, radians; 0.4
+    /// to 0.6, 0 disables it.
     pub lean_rad: f32,
-    /// For how long a gap is left to those whose turn it is: the time for so many own radii at full speed; 4 to 16.
+    /// How long a gap is left to robots whose turn it is: the time to travel this many own radii at
+    /// full speed; 4 to 16.
     pub patience_radii: f32,
-    /// How the ball of a silent robot grows, m/s: the highest speed that others can have. Less is not safe when the radio is bad.
+    /// Growth of the ball around a silent robot, m/s: the highest speed that others can have. Less
+    /// is not safe if the radio is bad.
     pub growth_mps: f32,
-    /// How much the ball of one that stands grows at most, metres.
+    /// Limit of this growth for a stationary robot, metres.
     pub growth_max_m: f32,
-    /// In space: how many times as far as beside each other robots keep apart above and below; 1 or more, for quadrotors 2.5.
+    /// In space: ratio of the vertical to the horizontal distance between robots; 1 or more, for
+    /// quadrotors 2.5.
     pub downwash: f32,
 }
 
@@ -38,11 +44,12 @@ pub struct StayaOrca {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaPushOut {
-    /// Least distance of two centres, and of a centre from an obstacle, metres; more than bodies need by a step's length.
+    /// Least distance of two centres, and of a centre from an obstacle, metres; more than bodies
+    /// need by the length of a step.
     pub min_distance_m: f32,
     /// StayaPushOutModel.
     pub model: u8,
-    /// Other than 0: only the nearest of the robots in the way is evaded.
+    /// Other than 0: evades only the nearest of the robots in the way.
     pub only_nearest: u8,
 }
 

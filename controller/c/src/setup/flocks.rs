@@ -13,11 +13,13 @@ use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Gain, LatticeParams};
 use staya_controller::scalar::cast;
 
-/// The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3). `staya_lattice_defaults` has the paper's values.
+/// The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3). `staya_lattice_defaults` writes the
+/// paper's values.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaLattice {
-    /// Distance of neighbours (d), metres; 0.01 to 100, more than two radii plus half a second's way.
+    /// Distance of neighbours (d), metres; 0.01 to 100, more than two radii plus the distance
+    /// covered in half a second.
     pub spacing_m: f32,
     /// Range of interaction over spacing; above 1, below 1.7 for an even lattice.
     pub range_ratio: f32,
@@ -27,21 +29,22 @@ pub struct StayaLattice {
     pub attraction: f32,
     /// See `attraction`.
     pub repulsion: f32,
-    /// Gains among robots on places (1/s^2) and on velocities (1/s). Old news need small ones: see `staya_lattice_soften`.
+    /// Gains between robots on positions (1/s^2) and on velocities (1/s). Old beacons need small
+    /// gains: see `staya_lattice_soften`.
     pub alpha_position: f32,
     /// See `alpha_position`.
     pub alpha_velocity: f32,
-    /// The same for obstacles; well above the others.
+    /// Gains of obstacles; well above the others.
     pub beta_position: f32,
     /// See `beta_position`.
     pub beta_velocity: f32,
-    /// The same for the reference.
+    /// Gains of the reference.
     pub gamma_position: f32,
     /// See `gamma_position`.
     pub gamma_velocity: f32,
     /// StayaLatticeTerms.
     pub terms: u8,
-    /// Other than 0: the reference goes where its velocity takes it. Agents only.
+    /// Other than 0: the reference moves with its velocity. Agents only.
     pub reference_moves: u8,
 }
 
@@ -55,13 +58,14 @@ pub struct StayaGoalFlock {
     pub center_gain: f32,
     /// Push of neighbours that are too near (K3).
     pub repulsion_gain: f32,
-    /// How far neighbours are seen, metres; at least twice `min_distance_m`.
+    /// Distance up to which neighbours count, metres; at least twice `min_distance_m`.
     pub neighborhood_m: f32,
     /// Least distance of two centres, metres; at least two radii.
     pub min_distance_m: f32,
-    /// How near to a goal counts as being there, metres: about the neighbourhood, for a crowd needs room. Agents only.
+    /// Distance within which a goal counts as reached, metres: about the neighbourhood, as a crowd
+    /// needs space. Agents only.
     pub arrival_m: f32,
-    /// Seed of the draws of goals. Agents only.
+    /// Seed of the random choice of goals. Agents only.
     pub seed: u32,
 }
 
@@ -69,13 +73,13 @@ pub struct StayaGoalFlock {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaBoids {
-    /// Nearer than this a boid turns away, metres.
+    /// Distance below which a boid turns away, metres.
     pub crowded_m: f32,
-    /// Up to this distance a neighbour counts, metres.
+    /// Distance up to which a neighbour counts, metres.
     pub closest_m: f32,
-    /// Largest turn to the others in a step, radians.
+    /// Largest turn towards the others in a step, radians.
     pub max_turn_rad: f32,
-    /// Turn away from one that is too near in a step, radians.
+    /// Turn away from a neighbour that is too near in a step, radians.
     pub max_turn_away_rad: f32,
 }
 
@@ -175,7 +179,7 @@ impl StayaBoids {
     }
 }
 
-/// The guidance law, just started: one of the flocks.
+/// The guidance law in its initial state: one of the flocks.
 #[cfg(feature = "flocks")]
 pub(super) fn law(setup: &StayaSetup, law: StayaLaw) -> Checked<Law> {
     Ok(match law {
@@ -196,25 +200,26 @@ pub(super) fn law(setup: &StayaSetup, law: StayaLaw) -> Checked<Law> {
     })
 }
 
-/// The paper's values of the lattice for a spacing, metres: as in a setup's defaults.
+/// Writes the paper's values of the lattice for a spacing, metres, as in a setup's defaults.
 ///
 /// # Safety
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_lattice_defaults(lattice: *mut StayaLattice, spacing_m: f32) -> StayaStatus {
-    // SAFETY: the caller gives room for it, or what `write` refuses.
+    // SAFETY: valid space by the caller's contract, or `write` rejects it.
     answer(unsafe { memory::write(lattice, StayaLattice::defaults(spacing_m)) })
 }
 
-/// Softens the gains as far as news ask that are `delay_s` old when they arrive and come `rate_hz` times a second: stiffer ones swing
-/// the lattice apart.
+/// Reduces the gains as far as required if beacons are `delay_s` old when they arrive and come
+/// `rate_hz` times per second. Stiffer gains make the lattice oscillate and break apart.
 ///
 /// # Safety
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_lattice_soften(lattice: *mut StayaLattice, delay_s: f32, rate_hz: f32) -> StayaStatus {
-    // SAFETY: the caller gives a lattice, or what `shared` refuses; nothing else uses it meanwhile.
+    // SAFETY: a valid lattice that is not used elsewhere, by the caller's contract, or `shared`
+    // rejects it.
     let softened = unsafe { shared(lattice) }.and_then(|lattice| lattice.softened(delay_s, rate_hz));
-    // SAFETY: as above, and the reference is no more.
+    // SAFETY: as above; the reference has ended.
     answer(softened.and_then(|softened| unsafe { memory::write(lattice, softened) }))
 }

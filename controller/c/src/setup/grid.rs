@@ -7,36 +7,39 @@ use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::template::{Template, TemplateEntry, TemplateError};
 
-/// Entries of a formation's template.
+/// Maximum number of entries in a formation's template.
 pub const STAYA_TEMPLATE: usize = 8;
 /// Largest radius of a search over a window, cells.
 pub const STAYA_MAX_RADIUS: u8 = 5;
 
 const _: () = assert!(STAYA_TEMPLATE == TEMPLATE);
 
-/// What a route across cells costs (A. V. Kuznetsov 2017); gains are in sixteenths of a tick.
+/// The costs of a route across cells (A. V. Kuznetsov 2017); gains are in sixteenths of a tick.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaRoute {
     /// Weight of travel time (a0), sixteenths.
     pub time_gain_16ths: u16,
-    /// What a cell with another robot costs extra (a1), sixteenths of a tick.
+    /// Additional cost of a cell with another robot (a1), sixteenths of a tick.
     pub others_gain_16ths: u16,
-    /// What a cell costs extra for each earlier visit (a2), sixteenths of a tick.
+    /// Additional cost of a cell for each earlier visit (a2), sixteenths of a tick.
     pub visits_gain_16ths: u16,
-    /// Price of a cell between window and target (a3), sixteenths of a tick: near the time that a cell takes on a good way.
+    /// Price of a cell between window and target (a3), sixteenths of a tick: about the time that a
+    /// cell takes on a good route.
     pub way_gain_16ths: u16,
-    /// Moves that cost so much more, in sixteenths of a tick, come first half as often; 0: the cheapest always comes first.
+    /// A move that costs this much more, in sixteenths of a tick, comes first half as often; 0: the
+    /// cheapest always comes first.
     pub halved_per_16ths: u16,
     /// Radius of the window that is searched, cells; 1 to STAYA_MAX_RADIUS.
     pub radius_cells: u8,
-    /// Other than 0: the exit of the window lies on the ray to the target; else it is the best of all.
+    /// Other than 0: the window's exit lies on the ray to the target; otherwise it is the best of
+    /// all.
     pub exit_on_ray: u8,
-    /// Other than 0: a diagonal move counts as long as a straight one.
+    /// Other than 0: a diagonal move is as long as a straight one.
     pub diagonals_count_as_one: u8,
     /// Other than 0: diagonal moves may pass a blocked corner.
     pub cuts_corners: u8,
-    /// Other than 0: it plans anew only when something on its way has changed, for fewer searches.
+    /// Other than 0: plans again only when the land on its route has changed, for fewer searches.
     pub keeps_plan: u8,
 }
 
@@ -62,49 +65,52 @@ impl From<Cell> for StayaCell {
     }
 }
 
-/// Where a neighbour in the formation should be.
+/// The place of a neighbour in the formation.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StayaPlace {
-    /// Which robot; 0 for anyone.
+    /// The neighbour's number; 0 for any robot.
     pub robot: u32,
-    /// Its cell minus the own one.
+    /// Its cell minus that of this robot.
     pub offset: StayaCell,
-    /// How many edges of the formation's graph are between; 1 or more.
+    /// Its distance in edges of the formation's graph; 1 or more.
     pub hops: u8,
 }
 
-/// Keeping a formation (A. V. Kuznetsov 2017); a unit is 1/70 of a cell. `staya_formation_from_graph` fills in the place.
+/// Formation keeping (A. V. Kuznetsov 2017); a unit is 1/70 of a cell. `staya_formation_from_graph`
+/// fills in the place.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaFormation {
     /// The neighbours, `neighbor_count` of them.
     pub neighbors: [StayaPlace; STAYA_TEMPLATE],
-    /// How many of `neighbors` there are.
+    /// Length of `neighbors`.
     pub neighbor_count: u8,
     /// The robot's place: 0 for the top leader.
     pub slot: u8,
     /// The place's cell minus the top leader's.
     pub offset: StayaCell,
-    /// Price of being off one's place, sixteenths of a tick per cell.
+    /// Price of being off the own place, sixteenths of a tick per cell.
     pub gain_16ths: u16,
-    /// How far somebody falls behind before the top leader waits, units.
+    /// How far a robot may fall behind before the top leader waits, units.
     pub halt_lag_units: u16,
-    /// How near he must have come again, units; at most `halt_lag_units`.
+    /// The lag down to which it must catch up before the leader continues, units; at most
+    /// `halt_lag_units`.
     pub resume_lag_units: u16,
-    /// Decisions (in the plane seconds) for which they wait for each other.
+    /// Number of decisions (in the plane seconds) for which robots wait for each other.
     pub patience: u16,
-    /// How far from its place a neighbour still counts as found, cells.
+    /// Distance from its place up to which a neighbour is found, cells.
     pub eps_cells: u8,
     /// How far ahead of the leader the others aim, cells.
     pub lead_cells: u8,
     /// Share of the others' land in the leader's price, sixteenths.
     pub footprint_16ths: u8,
-    /// Other than 0: those behind a dead robot move up.
+    /// Other than 0: robots behind a dead robot move up.
     pub closes_ranks: u8,
-    /// Other than 0: others are foreseen by asking what one would do in their place; dear.
+    /// Other than 0: predicts others by computing the move that this robot would make in their
+    /// place; expensive.
     pub foresees_others: u8,
-    /// Other than 0: a leader heads for where the others are off to instead of waiting.
+    /// Other than 0: instead of waiting, the leader heads for where the others are displaced.
     pub turns_back: u8,
 }
 
@@ -145,10 +151,12 @@ impl StayaFormation {
     }
 }
 
-/// Fills in the place number `own` of a formation: its cells in any common frame, the top leader's first, and the edges of its graph.
-/// Who is within `hops` edges becomes a neighbour; the robot at place i has the number i + 1.
+/// Fills in the place number `own` of a formation, given the cells of all places in any common
+/// frame, the top leader's first, and the edges of its graph. Robots within `hops` edges become
+/// neighbours; the robot at place i has the number i + 1.
 ///
-/// `STAYA_STATUS_SHAPE` for a place or an edge that does not exist, `STAYA_STATUS_TOO_MANY` for more than STAYA_TEMPLATE neighbours.
+/// `STAYA_STATUS_SHAPE` for a place or an edge that does not exist, `STAYA_STATUS_TOO_MANY` for
+/// more than STAYA_TEMPLATE neighbours.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -163,16 +171,17 @@ pub unsafe extern "C" fn staya_formation_from_graph(
     hops: u8,
 ) -> StayaStatus {
     let template = || {
-        // SAFETY: the caller gives so many places and edges, or what `row` refuses.
+        // SAFETY: this many places and edges by the caller's contract, or `row` rejects them.
         let (places, edges) = unsafe { (row(places, place_count)?, row(edges, edge_count)?) };
         from_graph(places, edges, own, hops)
     };
     let placed = || {
         let template = template()?;
-        // SAFETY: the caller gives a formation, or what `shared` refuses; nothing else uses it meanwhile.
+        // SAFETY: a valid formation that is not used elsewhere, by the caller's contract, or
+        // `shared` rejects it.
         let mut filled = unsafe { *shared(formation)? };
         filled.place(&template);
-        // SAFETY: as above, and the reference is no more.
+        // SAFETY: as above; the reference has ended.
         unsafe { memory::write(formation, filled) }
     };
     answer(placed())

@@ -1,4 +1,4 @@
-//! The laws that cross land in cells, from their parameters.
+//! Creates the laws that cross land in cells from their parameters.
 
 use super::{STAYA_MAX_RADIUS, StayaFormation, StayaRoute, StayaSetup};
 use crate::choices::StayaLaw;

@@ -1,4 +1,4 @@
-//! What C may do wrong is answered.
+//! Errors of a C program are reported.
 
 use super::{Memory, nothing, setup, waypoint};
 use crate::agent::*;
@@ -19,7 +19,7 @@ fn null_is_refused_by_every_function() {
     let (inputs, mut out) = nothing();
     let (mut agents, mut avoider) = (null_mut(), null_mut::<StayaAvoider>());
     let mut orca = MaybeUninit::uninit();
-    // SAFETY: what is not null is there.
+    // SAFETY: pointers that are not null are valid.
     let answers = unsafe {
         assert_eq!(staya_orca_defaults(orca.as_mut_ptr()), StayaStatus::Ok);
         [
@@ -48,19 +48,19 @@ fn null_is_refused_by_every_function() {
         ]
     };
     for (index, answer) in answers.into_iter().enumerate() {
-        // An empty graph has no place 0, which comes first.
+        // An empty graph does not have a place 0, which is checked first.
         let wanted = if index == 19 { StayaStatus::Shape } else { StayaStatus::Null };
         assert_eq!(answer, wanted, "number {index}");
     }
 }
 
 #[test]
-fn memory_that_is_too_small_misaligned_or_empty_holds_no_agent() {
+fn invalid_memory_is_refused() {
     let (setup, mut memory) = (setup(1), Memory::new());
     let base: *mut u8 = (&raw mut *memory).cast();
     let (bytes, mut agent) = (staya_agent_bytes(), null_mut());
     assert!(bytes <= STAYA_AGENT_SIZE);
-    // SAFETY: within the memory, or refused.
+    // SAFETY: within the memory, or rejected.
     unsafe {
         assert_eq!(staya_init(base.cast(), bytes - 1, &setup, &mut agent), StayaStatus::MemorySize);
         assert_eq!(staya_init(base.add(1).cast(), bytes, &setup, &mut agent), StayaStatus::Alignment);
@@ -70,7 +70,7 @@ fn memory_that_is_too_small_misaligned_or_empty_holds_no_agent() {
         assert_eq!(staya_mode(base.add(4).cast(), &mut mode), StayaStatus::Alignment);
         assert_eq!(staya_init(base.cast(), bytes, &setup, &mut agent), StayaStatus::Ok);
         assert_eq!((staya_mode(agent, &mut mode), mode), (StayaStatus::Ok, 0));
-        // One that is refused leaves no agent behind.
+        // A rejected setup leaves no agent.
         let wrong = StayaSetup { id: 0, ..setup };
         assert_eq!(staya_init(base.cast(), bytes, &wrong, &mut agent), StayaStatus::Nobody);
         assert_eq!(staya_mode(base.cast(), &mut mode), StayaStatus::NotThere);
@@ -78,7 +78,7 @@ fn memory_that_is_too_small_misaligned_or_empty_holds_no_agent() {
 }
 
 #[test]
-fn setups_that_make_no_sense_are_refused_by_name() {
+fn invalid_setups_return_their_status() {
     let good = setup(3);
     let refused = |change: &dyn Fn(&mut StayaSetup)| {
         let (mut setup, mut memory) = (good, Memory::new());
@@ -126,7 +126,7 @@ fn setups_that_make_no_sense_are_refused_by_name() {
 }
 
 #[test]
-fn inputs_that_make_no_sense_change_nothing() {
+fn invalid_inputs_change_nothing() {
     let mut memory = Memory::new();
     let agent = memory.agent(&setup(1)).unwrap();
     let (mut inputs, mut out) = nothing();
@@ -139,7 +139,7 @@ fn inputs_that_make_no_sense_change_nothing() {
         digest
     };
     let before = digest(agent);
-    // SAFETY: what is not null is there.
+    // SAFETY: pointers that are not null are valid.
     unsafe {
         (inputs.obstacles, inputs.obstacle_count) = (many.as_ptr(), many.len());
         assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::TooMany);
@@ -159,7 +159,7 @@ fn inputs_that_make_no_sense_change_nothing() {
 }
 
 #[test]
-fn parameters_are_those_of_the_controller() {
+fn parameters_match_those_of_the_controller() {
     use staya_controller::agent::Parameter;
     use staya_controller::names::Named as _;
     let mut memory = Memory::new();
@@ -185,7 +185,7 @@ fn parameters_are_those_of_the_controller() {
 
 #[test]
 fn every_status_has_a_name_and_a_text() {
-    // SAFETY: they end with a zero.
+    // SAFETY: the strings end with a zero.
     let text = |pointer| unsafe { CStr::from_ptr(pointer) }.to_str().unwrap();
     for status in 0..16 {
         assert!(text(staya_status_name(status)).starts_with("STAYA_STATUS_"), "{status}");

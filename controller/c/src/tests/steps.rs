@@ -1,4 +1,5 @@
-//! Steps through C are the steps of the same agent in Rust; those of the plane are compared by `cargo xtask c`.
+//! Steps through C equal the steps of the same agent in Rust; `cargo xtask c` compares those of the
+//! plane.
 
 use super::{Memory, nothing, setup, waypoint};
 use crate::agent::*;
@@ -20,7 +21,7 @@ fn two_robots_hear_each_other() {
             (inputs.now_us, inputs.max_speed_mps) = (tick * 50_000, 0.5);
             inputs.position_mm = [place * 1000, 0, 0];
             (inputs.inbox, inputs.inbox_bytes) = (air.as_ptr(), air.len());
-            // SAFETY: all is there.
+            // SAFETY: all pointers are valid.
             unsafe {
                 assert_eq!(staya_assign_waypoint(agent, 0, &waypoint(5000)), StayaStatus::Ok);
                 assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Ok);
@@ -30,13 +31,13 @@ fn two_robots_hear_each_other() {
         }
     }
     let (mut known, mut count) = ([StayaNeighbor::default(); 2], 0);
-    // SAFETY: all is there.
+    // SAFETY: all pointers are valid.
     let status = unsafe { staya_neighbors(agents[0], known.as_mut_ptr(), known.len(), &mut count) };
     assert_eq!((status, count, known[0].id, known[0].position_mm), (StayaStatus::Ok, 1, 2, [1000, 0, 0]));
 }
 
 #[test]
-fn orca_alone_keeps_clear_whatever_the_order() {
+fn orca_without_an_agent_keeps_clear_in_any_order() {
     #[repr(align(8))]
     struct Room([u8; STAYA_ORCA_SIZE]);
     let mut orca = MaybeUninit::<StayaOrca>::uninit();
@@ -57,13 +58,13 @@ fn orca_alone_keeps_clear_whatever_the_order() {
         is_parked: 0,
         is_stranger: 0,
     };
-    // More than count, the nearest one last.
+    // More than are considered, with the nearest one last.
     let far: Vec<_> = (2..40).rev().map(|id| other(id, id as f32)).collect();
     let near: Vec<_> = far.iter().rev().copied().collect();
     let velocity = |all: &[StayaNearby]| {
         let (mut room, mut avoider, mut best) = (Room([0; STAYA_ORCA_SIZE]), null_mut(), [0.0f32; 3]);
         let wish = [1.0f32, 0.0, 0.0];
-        // SAFETY: all is there.
+        // SAFETY: all pointers are valid.
         unsafe {
             assert_eq!(staya_orca_defaults(orca.as_mut_ptr()), StayaStatus::Ok);
             let place = (&raw mut room.0).cast();
@@ -85,7 +86,7 @@ fn orca_alone_keeps_clear_whatever_the_order() {
 /// A formation on the grid, through C and through Rust, over the same land.
 #[cfg(all(feature = "grid", not(feature = "fixed"), not(feature = "small")))]
 #[test]
-fn a_formation_on_the_grid_is_that_of_rust() {
+fn a_formation_on_the_grid_equals_that_of_rust() {
     use crate::choices::{StayaLaw, StayaSafety};
     use crate::setup::{StayaCell, StayaEdge, staya_formation_from_graph};
     use staya_controller::agent::*;
@@ -106,7 +107,7 @@ fn a_formation_on_the_grid_is_that_of_rust() {
         (setup.law, setup.safety, setup.seed) = (StayaLaw::FormationOnGrid as u8, StayaSafety::None as u8, 5);
         let cells = places.map(|(x, y)| StayaCell { x, y });
         let graph = edges.map(|(a, b)| StayaEdge { a, b });
-        // SAFETY: all is there.
+        // SAFETY: all pointers are valid.
         let status =
             unsafe { staya_formation_from_graph(&mut setup.formation, cells.as_ptr(), 3, graph.as_ptr(), 2, own, 2) };
         assert_eq!(status, StayaStatus::Ok);
@@ -140,7 +141,7 @@ fn a_formation_on_the_grid_is_that_of_rust() {
             (inputs.inbox, inputs.inbox_bytes) = (heard.as_ptr(), heard.len());
             let agent: *mut StayaAgent = (&raw mut *memories[own]).cast();
             let mut digest = 0;
-            // SAFETY: all is there.
+            // SAFETY: all pointers are valid.
             unsafe {
                 assert_eq!(staya_step(agent, &inputs, &mut out), StayaStatus::Ok);
                 assert_eq!(staya_digest(agent, &mut digest), StayaStatus::Ok);

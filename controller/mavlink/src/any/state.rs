@@ -1,4 +1,5 @@
-//! A format's whole state. Which format it is tells no two swarms apart, so digests do not count it.
+//! Serializes a format's whole state. Digests do not include which format it is, since a whole
+//! swarm uses the same one.
 
 use super::AnyWire;
 use core::fmt;
@@ -8,7 +9,7 @@ use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use staya_controller::digest::uncounted;
 
-/// What digests do not count.
+/// A value that digests skip.
 #[derive(Serialize)]
 struct Uncounted<T: Serialize>(#[serde(with = "uncounted")] T);
 
@@ -33,7 +34,6 @@ impl<'de, S: Deserialize<'de>, G: Deserialize<'de>> Deserialize<'de> for AnyWire
     }
 }
 
-/// Reads the number of a format, then the format.
 struct Parts<S, G>(PhantomData<(S, G)>);
 
 impl<'de, S: Deserialize<'de>, G: Deserialize<'de>> Visitor<'de> for Parts<S, G> {

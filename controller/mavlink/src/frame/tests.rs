@@ -18,7 +18,7 @@ fn framed(data: &impl MessageData) -> Vec<u8, MAX_FRAME_LEN> {
 }
 
 #[test]
-fn what_is_encoded_is_found_again() {
+fn encoded_frames_are_found() {
     let bytes = framed(&goal(5));
     let frame = RawFrame::new(&bytes).unwrap();
     assert_eq!(frame.sender(), SENDER);
@@ -34,7 +34,7 @@ fn what_is_encoded_is_found_again() {
 }
 
 #[test]
-fn mavlink_core_reads_the_same() {
+fn mavlink_core_reads_the_same_message() {
     let bytes = framed(&goal(-1));
     let mut reader = MavlinkReader::new(bytes.as_slice());
     let read = reader.read_message::<MavMessage>(MavlinkVersion::V2);
@@ -44,7 +44,7 @@ fn mavlink_core_reads_the_same() {
 }
 
 #[test]
-fn zeros_at_the_end_are_left_out_and_come_back() {
+fn trailing_zeros_are_omitted_and_restored() {
     let empty = MISSION_COUNT_DATA::DEFAULT;
     let bytes = framed(&empty);
     assert_eq!(bytes.len(), 10 + 1 + 2);
@@ -68,13 +68,13 @@ fn no_known_message_has_the_extra_crc_of_unknown_ones() {
     }
 }
 
-/// A frame whose message nobody here knows.
+/// A frame with a message that the dialect does not have.
 fn foreign() -> [u8; 15] {
     [START_V2, 3, 0, 0, 1, 1, 1, 0x30, 0xFA, 0x00, 1, 2, 3, 9, 9]
 }
 
 #[test]
-fn foreign_message_is_a_frame_before_another_one_or_nothing() {
+fn foreign_message_is_a_frame_before_another_frame_or_the_end() {
     let mut bytes = std::vec::Vec::from(foreign());
     assert!(RawFrame::new(&bytes).is_some_and(|frame| !frame.is_known() && frame.message().is_none()));
     bytes.extend_from_slice(&framed(&goal(1)));
@@ -85,7 +85,7 @@ fn foreign_message_is_a_frame_before_another_one_or_nothing() {
 }
 
 #[test]
-fn what_claims_to_be_foreign_before_junk_is_none() {
+fn foreign_message_before_junk_is_rejected() {
     let mut bytes = std::vec::Vec::from(foreign());
     bytes.push(0);
     assert!(matches!(scan(&bytes, true), Scan::Nothing { junk: 16 }));
@@ -99,7 +99,7 @@ fn unknown_flag_is_refused() {
 }
 
 #[test]
-fn full_buffer_takes_nothing() {
+fn full_buffer_is_unchanged() {
     let len = framed(&goal(1)).len();
     let mut out = Vec::<u8, 32>::new();
     out.resize(32 - len + 1, 0).unwrap();
@@ -110,9 +110,9 @@ fn full_buffer_takes_nothing() {
 }
 
 proptest! {
-    /// Twenty frames between pieces of junk, whatever they are: all come out, in order.
+    /// Twenty frames between arbitrary bytes are all found, in order.
     #[test]
-    fn frames_are_found_again_after_junk(junk in vec(vec(any::<u8>().prop_filter("looks like a frame's start", |b| !matches!(*b, START_V1 | START_V2)), 0..40), 20)) {
+    fn frames_are_found_after_junk(junk in vec(vec(any::<u8>().prop_filter("looks like a frame's start", |b| !matches!(*b, START_V1 | START_V2)), 0..40), 20)) {
         let mut bytes = std::vec::Vec::new();
         for (x, junk) in (0..).zip(&junk) {
             bytes.extend_from_slice(junk);
@@ -125,7 +125,7 @@ proptest! {
         prop_assert_eq!(next_frame(&mut rest), None);
     }
 
-    /// A stream in pieces gives what it gives as a whole.
+    /// A stream in pieces gives the same frames as the whole stream.
     #[test]
     fn stream_in_pieces_loses_nothing(cuts in vec(1..40_usize, 1..30)) {
         let mut stream = std::vec::Vec::new();
@@ -150,9 +150,8 @@ proptest! {
         prop_assert_eq!((found, buffer.len()), (10, 0));
     }
 
-    /// No bit of a frame may change unnoticed.
     #[test]
-    fn flipped_bit_is_noticed(bit in 0..(8 * 21_usize)) {
+    fn flipped_bit_is_detected(bit in 0..(8 * 21_usize)) {
         let mut bytes = framed(&goal(77));
         prop_assume!(bit < 8 * bytes.len());
         bytes[bit >> 3] ^= 1 << (bit & 7);
@@ -161,7 +160,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_have_an_answer(bytes in vec(prop_oneof![Just(START_V2), Just(START_V1), any::<u8>()], 0..600)) {
+    fn arbitrary_bytes_do_not_panic(bytes in vec(prop_oneof![Just(START_V2), Just(START_V1), any::<u8>()], 0..600)) {
         let mut rest = bytes.as_slice();
         while let Some(frame) = next_frame(&mut rest) {
             let _ = (frame.message(), frame.signature());

@@ -20,7 +20,7 @@ fn said<W: Wire>(by: &mut W, sender: u32, sequence: u16) -> std::vec::Vec<u8> {
 }
 
 #[test]
-fn who_has_the_key_is_heard_once_and_nobody_else_is() {
+fn a_frame_with_the_key_is_accepted_once_and_others_never() {
     let frame = said(&mut wire(b"swarm", 10), 1, 0);
     let mut receiver = wire(b"swarm", 0);
     assert_eq!(receiver.decode(&frame).unwrap().header.sender, RobotId(1));
@@ -31,12 +31,12 @@ fn who_has_the_key_is_heard_once_and_nobody_else_is() {
     assert_eq!(receiver.decode(&plain), Err(DecodeError::Unsigned));
     let forged = said(&mut wire(b"guessed", 11), 1, 1);
     assert_eq!(receiver.decode(&forged), Err(DecodeError::Forged));
-    // Who does not sign hears who does.
+    // A receiver without signing accepts signed frames.
     assert!(Mavlink.decode(&frame).is_ok());
 }
 
 #[test]
-fn without_room_for_the_signature_nothing_is_said() {
+fn nothing_is_written_if_the_signature_does_not_fit() {
     let mut sender = wire(b"swarm", 10);
     let header = Header { boot: 1, sender: RobotId(1), sequence: 0 };
     let len = said(&mut sender, 1, 0).len();
@@ -55,7 +55,7 @@ fn without_room_for_the_signature_nothing_is_said() {
 }
 
 #[test]
-fn others_on_the_band_are_foreign_whether_they_sign_or_not() {
+fn other_systems_are_foreign_signed_or_not() {
     let mut heartbeat = Vec::<u8, 64>::new();
     encode(Sender::default(), &HEARTBEAT_DATA::default(), &mut heartbeat).unwrap();
     let mut receiver = wire(b"swarm", 0);
@@ -83,7 +83,7 @@ fn a_stream_with_signatures_splits_into_its_frames() {
 
 proptest! {
     #[test]
-    fn any_flipped_bit_is_refused(bit in 0_usize..8 * 80) {
+    fn every_flipped_bit_is_refused(bit in 0_usize..8 * 80) {
         let mut frame = said(&mut wire(b"swarm", 10), 1, 3);
         let bit = bit % (frame.len() * 8);
         frame[bit / 8] ^= 1 << (bit % 8);

@@ -4,7 +4,8 @@ use crate::frame::{MAX_FRAME_LEN, Sender, encode, encode_message};
 use heapless::Vec;
 use proptest::prelude::*;
 
-/// What pymavlink makes with the key 0, 1, 2, ... 31; tests/python/test_signing.py compares it with pymavlink.
+/// Frames made by pymavlink with the key 0, 1, 2, ... 31; tests/python/test_signing.py compares
+/// them with pymavlink.
 const GOLDEN: &str = include_str!("../../../../tests/golden/signed-frames.txt");
 const NOW: u64 = 37_000_000_000_000;
 
@@ -47,7 +48,7 @@ fn judged<const N: usize>(by: &mut Signing<N>, frame: &[u8]) -> Verdict {
 }
 
 #[test]
-fn frames_signed_here_are_those_of_pymavlink() {
+fn signed_frames_match_pymavlink() {
     let mut sender = Signing::<4>::new(key(), 3, NOW);
     let mut receiver = Signing::<4>::new(key(), 0, NOW - MINUTE);
     let mut stranger = Signing::<4>::new(Key::of_passphrase(b"another"), 0, 0);
@@ -70,7 +71,7 @@ fn frames_signed_here_are_those_of_pymavlink() {
 }
 
 #[test]
-fn a_signed_frame_keeps_message_and_checksum_sound() {
+fn a_signed_frame_keeps_its_message_and_a_valid_checksum() {
     let frame = signed(&mut Signing::<1>::new(key(), 0, 5), &heartbeat(1, 9));
     let raw = RawFrame::new(&frame).expect("the checksum covers the flag");
     assert!(raw.is_known());
@@ -78,7 +79,7 @@ fn a_signed_frame_keeps_message_and_checksum_sound() {
 }
 
 #[test]
-fn what_is_no_plain_frame_is_not_signed() {
+fn only_unsigned_frames_are_signed() {
     let mut signing = Signing::<1>::new(key(), 0, 5);
     let mut twice = signed(&mut signing, &heartbeat(1, 0));
     let mut v1 = [0xFE, 0, 0, 1, 1, 0, 0, 0];
@@ -121,7 +122,7 @@ fn a_new_stream_is_at_most_a_minute_old() {
 }
 
 #[test]
-fn timestamps_catch_up_with_those_received() {
+fn timestamps_catch_up_with_received_ones() {
     let (mut old, mut young) = (Signing::<2>::new(key(), 0, NOW), Signing::<2>::new(key(), 0, NOW - MONTH));
     let refused = signed(&mut young, &heartbeat(2, 0));
     assert_eq!(judged(&mut old, &refused), Verdict::Replayed);
@@ -129,7 +130,6 @@ fn timestamps_catch_up_with_those_received() {
     assert_eq!(judged(&mut young, &heard), Verdict::Authentic);
     let accepted = signed(&mut young, &heartbeat(2, 1));
     assert_eq!(judged(&mut old, &accepted), Verdict::Authentic);
-    // Not by who has another key.
     let mut liar = Signing::<2>::new(Key::of_passphrase(b"another"), 0, NOW + MINUTE);
     let before = young.timestamp();
     assert_eq!(judged(&mut young, &signed(&mut liar, &heartbeat(3, 0))), Verdict::Forged);
@@ -137,7 +137,7 @@ fn timestamps_catch_up_with_those_received() {
 }
 
 #[test]
-fn a_sender_that_starts_anew_as_told_is_heard_and_its_old_frames_are_not() {
+fn a_properly_restarted_sender_is_accepted_and_its_old_frames_are_not() {
     let mut receiver = Signing::<2>::new(key(), 0, 0);
     let mut sender = Signing::<2>::new(key(), 0, 100);
     let recorded: std::vec::Vec<_> = (0..40).map(|n| signed(&mut sender, &heartbeat(1, n))).collect();
@@ -154,7 +154,7 @@ fn a_sender_that_starts_anew_as_told_is_heard_and_its_old_frames_are_not() {
 }
 
 #[test]
-fn links_and_components_are_streams_of_their_own_and_a_full_table_refuses_new_ones() {
+fn links_and_components_are_separate_streams_and_a_full_table_refuses_new_ones() {
     let mut receiver = Signing::<2>::new(key(), 0, 0);
     for link in 0..2 {
         let frame = signed(&mut Signing::<1>::new(key(), link, 50), &heartbeat(1, 0));
@@ -173,9 +173,10 @@ fn the_state_does_not_hold_the_key() {
     assert_ne!(of(key()), staya_controller::digest::digest(&Signing::<2>::new(key(), 1, 3)));
 }
 
-/// The attack: one frame with the last timestamp, made by who has the key, recorded, and sent again after each restart by who does not have it.
+/// The attack: a frame with the last timestamp, made with the key, is recorded and replayed after
+/// each restart without the key.
 #[test]
-fn a_frame_of_the_far_future_mutes_nobody_and_shuts_nobody_out() {
+fn a_frame_of_the_far_future_silences_and_locks_out_no_robot() {
     let evil = signed(&mut Signing::<1>::new(key(), 0, LAST_TIMESTAMP), &heartbeat(7, 0));
     for clock in [None, Some(NOW)] {
         for _ in 0..3 {
@@ -195,7 +196,7 @@ fn a_frame_of_the_far_future_mutes_nobody_and_shuts_nobody_out() {
 }
 
 #[test]
-fn the_lead_is_a_minute_on_the_clock_a_month_without_one_or_as_set() {
+fn the_lead_is_a_minute_with_a_clock_a_month_without_or_as_set() {
     let with = |clock: Option<u64>, lead: Option<u64>| {
         let mut receiver = Signing::<2>::new(key(), 0, NOW);
         receiver.advance_to(clock.unwrap_or(0));
@@ -204,7 +205,7 @@ fn the_lead_is_a_minute_on_the_clock_a_month_without_one_or_as_set() {
             None => receiver,
         }
     };
-    // A clock that was never set is none; one that was put back counts as it is.
+    // A clock that was never set counts as absent; one that was set back counts as it is.
     for (clock, lead, last) in [
         (None, None, NOW + MONTH),
         (Some(0), None, NOW + MONTH),
@@ -226,9 +227,9 @@ fn the_lead_is_a_minute_on_the_clock_a_month_without_one_or_as_set() {
 }
 
 proptest! {
-    /// Whatever bit is flipped, and even if the checksum is made to fit again: the frame is not authentic.
+    /// With any bit flipped, even with a corrected checksum, the frame is not authentic.
     #[test]
-    fn any_flipped_bit_is_refused(bit in 0_usize..34 * 8, sequence: u8) {
+    fn every_flipped_bit_is_refused(bit in 0_usize..34 * 8, sequence: u8) {
         let mut frame = signed(&mut Signing::<2>::new(key(), 3, NOW), &heartbeat(1, sequence));
         let bit = bit % (frame.len() * 8);
         frame[bit / 8] ^= 1 << (bit % 8);
@@ -237,7 +238,7 @@ proptest! {
         }
         let end = frame.len() - SIGNATURE_LEN;
         let signature: [u8; SIGNATURE_LEN] = frame[end..].try_into().unwrap();
-        // As somebody without the key would do it: a sound frame under a signature of another one.
+        // An attack without the key: an intact frame with the signature of another one.
         let mut forged = heartbeat(1, sequence.wrapping_add(1));
         Signing::<2>::new(Key::new([0; 32]), 3, 0).sign(&mut forged).unwrap();
         forged.extend_from_slice(&signature).unwrap();

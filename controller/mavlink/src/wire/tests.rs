@@ -16,7 +16,6 @@ fn framed(header: Header, message: &Message) -> Bytes {
     out
 }
 
-/// A frame of `data`, whatever it says.
 fn raw(data: &impl MessageData) -> Bytes {
     let mut out = Vec::new();
     let sender = Sender { system: 7, component: COMPONENT, sequence: 0 };
@@ -103,14 +102,14 @@ fn any_message() -> impl Strategy<Value = Message> {
 
 proptest! {
     #[test]
-    fn every_message_comes_back_as_it_went(header in header(), message in any_message()) {
+    fn every_message_round_trips(header in header(), message in any_message()) {
         let bytes = framed(header, &message);
         prop_assert_eq!(split(&bytes), [bytes.as_slice()]);
         prop_assert_eq!(decode(&bytes), Ok(Frame { header, message, tag: None }));
     }
 
     #[test]
-    fn no_flipped_bit_is_believed(header in header(), message in any_message(), at in any::<u16>()) {
+    fn every_flipped_bit_is_detected(header in header(), message in any_message(), at in any::<u16>()) {
         let mut bytes = framed(header, &message);
         let bit = usize::from(at) % (8 * bytes.len());
         bytes[bit / 8] ^= 1 << (bit % 8);
@@ -120,7 +119,7 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_get_an_answer_and_none_is_lost(bytes in vec(any::<u8>(), 0..400)) {
+    fn arbitrary_bytes_do_not_panic_and_none_is_lost(bytes in vec(any::<u8>(), 0..400)) {
         let pieces = split(&bytes);
         for piece in &pieces {
             let _ = decode(piece);
@@ -129,9 +128,9 @@ proptest! {
         prop_assert_eq!(pieces.concat(), bytes);
     }
 
-    /// Random bytes hardly ever have the right sum: these do.
+    /// Random bytes hardly ever have the right checksum: these do.
     #[test]
-    fn any_payload_gets_an_answer(payload in vec(any::<u8>(), 0..=255), id in 0..8_u32) {
+    fn arbitrary_payloads_do_not_panic(payload in vec(any::<u8>(), 0..=255), id in 0..8_u32) {
         let id = 9_500_000 + id;
         let len = payload.len() as u8;
         let [a, b, c, _] = id.to_le_bytes();
@@ -168,7 +167,7 @@ fn goal(to: u32) -> Message {
 }
 
 #[test]
-fn numbers_that_are_no_systems_are_refused_and_nothing_is_written() {
+fn numbers_beyond_systems_are_refused_and_nothing_is_written() {
     let mut out = Bytes::new();
     let from = |sender: u32| Header { sender: RobotId(sender), ..HEADER };
     let mut refused = |header, message: &Message| {
@@ -185,7 +184,7 @@ fn numbers_that_are_no_systems_are_refused_and_nothing_is_written() {
 }
 
 #[test]
-fn fields_without_meaning_are_refused() {
+fn invalid_fields_are_refused() {
     let beacon = STAYA_BEACON_DATA::DEFAULT;
     let bodies = [
         raw(&STAYA_BEACON_DATA { mode: 7, ..beacon.clone() }),
@@ -200,7 +199,7 @@ fn fields_without_meaning_are_refused() {
 }
 
 #[test]
-fn what_others_say_is_foreign_and_what_is_no_frame_is_damage() {
+fn other_messages_are_foreign_and_other_bytes_are_damage() {
     let heartbeat = raw(&HEARTBEAT_DATA::DEFAULT);
     assert_eq!(decode(&heartbeat), Err(DecodeError::Foreign));
     let mut cut = framed(HEADER, &goal(1));

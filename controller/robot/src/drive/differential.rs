@@ -1,4 +1,4 @@
-//! Two driven wheels on one axle, and how they follow a velocity that points anywhere.
+//! Two driven wheels on one axle, and how they follow a velocity in any direction.
 
 use super::twist::{Kinematics, Twist};
 use staya_controller::agent::KinematicState;
@@ -14,7 +14,8 @@ pub struct Differential<S> {
 }
 
 impl<S: Scalar> Differential<S> {
-    /// `track_m`: distance between the points where the wheels touch the ground; `None` unless more than 0 and finite.
+    /// `track_m`: distance between the contact points of the wheels; `None` unless more than 0 and
+    /// finite.
     #[must_use]
     pub fn new(track_m: S) -> Option<Self> {
         let per_track = S::ONE.checked_div(track_m)?;
@@ -33,30 +34,36 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
     }
 }
 
-/// A robot that can only roll ahead and turn, made to follow any velocity by a point ahead of its axle.
+/// Lets a robot that can only roll ahead and turn follow any velocity, by controlling a point ahead
+/// of its axle.
 ///
-/// A point at distance D ahead of the axle's middle moves with v ahead and with D w to the side, so that any velocity of it is
-/// a pair (v, w): the usual feedback linearisation. J. Snape, J. van den Berg, S. Guy, D. Manocha 2010, "Smooth and
-/// collision-free navigation for multiple robots under differential-drive constraints" use it for ORCA: this "effective centre"
-/// is the robot as far as the controller is concerned, and then does exactly what ORCA assumes of it. Therefore
+/// A point at distance D ahead of the axle's middle moves with v ahead and with D w to the side, so
+/// any velocity of the point corresponds to a pair (v, w): the usual feedback linearisation. J.
+/// Snape, J. van den Berg, S. Guy, D. Manocha 2010, "Smooth and collision-free navigation for
+/// multiple robots under differential-drive constraints" use it for ORCA. For the controller this
+/// "effective centre" is the robot, and it behaves exactly as ORCA assumes. Therefore:
 ///
-/// - give the controller the state of that point ([`Self::state`]), not the axle's, and goals for that point;
-/// - the radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is that of the disc around the point that holds the body at any
-///   heading: [`Self::radius`], the body's own plus D;
-/// - the top speed is what the wheels can do in the worst direction: [`Self::max_speed`].
+/// - Give the controller the state of that point ([`Self::state`]) instead of the axle's, and goals
+///   for that point.
+/// - The radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is that of the disc around
+///   the point that holds the body at any heading: [`Self::radius`], the body's own plus D.
+/// - The top speed is that of the wheels in the worst direction: [`Self::max_speed`].
 ///
-/// D trades room for speed: half the track leaves 71 % of the wheels' speed; a small D takes little room, but the
-/// robot turns on the spot at the slightest change, and its top speed goes to zero. The way back leads over a turn: a robot that is sent
-/// straight back drives in reverse until anything disturbs it, and then swings round.
+/// D trades space for speed. Half the track leaves 71 % of the wheels' speed. A small D takes
+/// little space, but the robot turns on the spot at the slightest change, and its top speed
+/// approaches zero. Reversing leads through a turn: a robot sent straight back drives in reverse
+/// until any disturbance, and then swings round.
 ///
-/// The other way is to keep the centre and let the radius grow by how far the robot strays from the wished path while it turns:
-/// J. Alonso-Mora, A. Breitenmoser, M. Rufli, P. Beardsley, R. Siegwart 2010, "Optimal reciprocal collision avoidance for multiple
-/// non-holonomic robots" (NH-ORCA). It forbids velocities whose error would be larger, which our safety layer does not; so
-/// it is not offered.
+/// The alternative keeps the centre, and enlarges the radius by how far the robot strays from the
+/// preferred path while it turns: J. Alonso-Mora, A. Breitenmoser, M. Rufli, P. Beardsley, R.
+/// Siegwart 2010, "Optimal reciprocal collision avoidance for multiple non-holonomic robots"
+/// (NH-ORCA). It must forbid velocities with a larger error, which Staya's safety layer does not,
+/// so it is not available.
 ///
-/// What remains as a margin to add to the radius: latency and acceleration. With acceleration a of the point and a command that
-/// is late by t, allow for speed * t + speed^2 / (2 a) in directions that change at once; give the controller the same a
-/// as its `max_acceleration_mps2` and the second term is its own business.
+/// The radius still needs a margin for latency and acceleration. With acceleration a of the point
+/// and a command delay t, allow for speed * t + speed^2 / (2 a) in directions that change at once.
+/// If the controller knows a as its `max_acceleration_mps2`, it accounts for the second term
+/// itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LookAhead<S> {
@@ -65,23 +72,23 @@ pub struct LookAhead<S> {
 }
 
 impl<S: Scalar> LookAhead<S> {
-    /// With the point `ahead_m` ahead of the axle; `None` unless more than 0 and finite.
+    /// Places the point `ahead_m` ahead of the axle; `None` unless more than 0 and finite.
     #[must_use]
     pub fn new(ahead_m: S) -> Option<Self> {
         let per_ahead = S::ONE.checked_div(ahead_m)?;
         (ahead_m > S::ZERO && ahead_m.is_finite()).then_some(Self { ahead_m, per_ahead })
     }
 
-    /// What the robot at `heading_rad` (counter-clockwise from east) does so that the point goes with `velocity_mps` in the
-    /// world.
+    /// The motion of the robot at `heading_rad` (counter-clockwise from east) that moves the point
+    /// with `velocity_mps` in the world.
     #[must_use]
     pub fn twist(&self, velocity_mps: Vec2<S>, heading_rad: S) -> Twist<S> {
         let wish = Twist::holonomic(velocity_mps, heading_rad, S::ZERO);
         Twist { forward_mps: wish.forward_mps, left_mps: S::ZERO, turn_radps: wish.left_mps * self.per_ahead }
     }
 
-    /// The point's state, for the controller, from the axle's: it turns at `turn_radps`. A place that is not a number
-    /// stays the axle's.
+    /// The state of the point, for the controller, from the axle's state and its turn rate
+    /// `turn_radps`. If the position is not a number, it remains the axle's.
     #[must_use]
     pub fn state(&self, axle: &KinematicState<S>, heading_rad: S, turn_radps: S) -> KinematicState<S> {
         let (sin, cos) = heading_rad.sin_cos();
@@ -93,17 +100,18 @@ impl<S: Scalar> LookAhead<S> {
         }
     }
 
-    /// Radius of the disc around the point that holds a body of `body_radius_m` around the axle's middle at any heading, metres.
+    /// Radius of the disc around the point that holds a body of `body_radius_m` around the axle's
+    /// middle at any heading, metres.
     #[must_use]
     pub fn radius(&self, body_radius_m: S) -> S {
         body_radius_m + self.ahead_m
     }
 
-    /// The speed that the point can have in any direction with wheels that do `wheel_mps` at `track_m`: m/s. It is also the
-    /// factor for accelerations.
+    /// The speed that the point can have in any direction if the wheels can have `wheel_mps` at
+    /// `track_m`, m/s. Its ratio to the wheels' speed also applies to accelerations.
     ///
-    /// In a direction at angle t to the nose the faster wheel does u (cos t + k sin t) with k = track / (2 D), at most
-    /// u sqrt(1 + k^2).
+    /// In a direction at angle t to the nose the faster wheel moves at u (cos t + k sin t) with k =
+    /// track / (2 D), at most u sqrt(1 + k^2).
     #[must_use]
     pub fn max_speed(&self, wheel_mps: S, track_m: S) -> S {
         let k = track_m * S::HALF * self.per_ahead;

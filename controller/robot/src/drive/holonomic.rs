@@ -1,13 +1,15 @@
-//! Wheels that let a robot go any way: omni wheels on a circle, and mecanum wheels at the corners.
+//! Wheels that let a robot move in any direction: omni wheels on a circle, and mecanum wheels at
+//! the corners.
 
 use super::twist::{Kinematics, Twist};
 use staya_controller::scalar::Scalar;
 
-/// `W` omni wheels at equal angles on a circle, each rolling along it, numbered counter-clockwise; three or four.
+/// `W` omni wheels at equal angles on a circle, each rolling along it, numbered counter-clockwise;
+/// three or four.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Omni<S, const W: usize> {
-    /// Cosine and sine of where each wheel is, seen from the centre.
+    /// Cosine and sine of each wheel's angle, seen from the centre.
     places: [(S, S); W],
     radius_m: S,
     per_radius: S,
@@ -16,8 +18,8 @@ pub struct Omni<S, const W: usize> {
 impl<S: Scalar, const W: usize> Omni<S, W> {
     const ENOUGH: () = assert!(W >= 3 && W <= 16, "fewer wheels cannot go any way");
 
-    /// The first wheel is at `first_rad` from the nose (counter-clockwise), all are `radius_m` from the centre; `None`
-    /// unless this is more than 0 and both are finite.
+    /// The first wheel is at `first_rad` from the nose (counter-clockwise), all are `radius_m` from
+    /// the centre. `None` unless the radius is more than 0 and both are finite.
     #[must_use]
     pub fn new(first_rad: S, radius_m: S) -> Option<Self> {
         let () = Self::ENOUGH;
@@ -57,8 +59,8 @@ impl<S: Scalar, const W: usize> Kinematics<S, W> for Omni<S, W> {
     }
 }
 
-/// Four mecanum wheels: front left, front right, rear left, rear right. The rollers that touch the ground point
-/// to the middle (seen from above, all rollers that one sees make an X).
+/// Four mecanum wheels: front left, front right, rear left, rear right. The rollers that touch the
+/// ground point to the middle (seen from above, the visible rollers form an X).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mecanum<S> {
@@ -68,8 +70,8 @@ pub struct Mecanum<S> {
 }
 
 impl<S: Scalar> Mecanum<S> {
-    /// `wheel_base_m`: between the axles; `track_m`: between left and right wheels; `None` unless their sum is more
-    /// than 0 and finite.
+    /// `wheel_base_m`: between the axles; `track_m`: between left and right wheels; `None` unless
+    /// their sum is more than 0 and finite.
     #[must_use]
     pub fn new(wheel_base_m: S, track_m: S) -> Option<Self> {
         let arm_m = (wheel_base_m + track_m) * S::HALF;

@@ -1,26 +1,27 @@
-//! From a body's motion to rim speeds that the motors can follow.
+//! Converts a body's motion to rim speeds that the motors can follow.
 
 use super::twist::{Kinematics, Twist};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Duration;
 
-/// What the wheels can do.
+/// The capabilities of the wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits<S> {
-    /// Top rim speed, m/s: what the slowest motor does under load with an old battery, or the swarm's picture of the
-    /// robot is wrong.
+    /// Top rim speed, m/s. Use that of the slowest motor under load with an old battery; otherwise
+    /// the controller's model of the robot is wrong.
     pub speed_mps: S,
-    /// How fast a rim may change its speed, m/s^2, before it slips or the supply gives in; [`Scalar::MAX`]: at once.
+    /// How fast a rim may change its speed, m/s^2, before it slips or the supply fails;
+    /// [`Scalar::MAX`]: at once.
     pub acceleration_mps2: S,
 }
 
-/// Keeps rim speeds within limits without bending the motion.
+/// Keeps rim speeds within limits without distorting the motion.
 ///
-/// - Too fast: all wheels slow down by the same factor, so that a robot that goes any way keeps its direction, and one
-///   that cannot keeps its curve.
-/// - Too sudden: all wheels make the same part of their change, the largest that every one can make.
-/// - A motion that is not finite counts as standing still, which is reached within the acceleration.
+/// - Too fast: all wheels slow down by the same factor, so that a holonomic robot keeps its
+///   direction, and any other keeps its curve.
+/// - Too sudden: all wheels make the same fraction of their change, the largest that all can make.
+/// - A motion that is not finite counts as a stop, which respects the acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixer<S, K, const W: usize> {
     kinematics: K,
@@ -29,7 +30,8 @@ pub struct Mixer<S, K, const W: usize> {
 }
 
 impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
-    /// A robot that stands; `None` unless both limits are more than 0 and the speed finite.
+    /// Starts with a stationary robot; `None` unless both limits are more than 0 and the speed is
+    /// finite.
     #[must_use]
     pub fn new(kinematics: K, limits: Limits<S>) -> Option<Self> {
         let Limits { speed_mps: speed, acceleration_mps2: acceleration } = limits;
@@ -37,8 +39,8 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         sensible.then_some(Self { kinematics, limits, rims_mps: [S::ZERO; W] })
     }
 
-    /// The rim speeds for the next `span`, m/s. Call it as often as the motors are set; a span of 0 or less changes
-    /// nothing where acceleration is limited. O(W).
+    /// The rim speeds for the next `span`, m/s. Call it as often as the motors are set; a span of 0
+    /// or less changes nothing if acceleration is limited. O(W).
     #[must_use]
     pub fn mix(&mut self, twist: &Twist<S>, span: Duration) -> [S; W] {
         let wish = self.slowed(self.kinematics.wheels(twist));
@@ -59,7 +61,8 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         self.rims_mps
     }
 
-    /// Stands at once, whatever the limits say: for emergencies, and when the motors were off.
+    /// Sets all speeds to 0 at once, regardless of the limits: for emergencies, and when the motors
+    /// were off.
     pub fn stop(&mut self) {
         self.rims_mps = [S::ZERO; W];
     }
@@ -70,14 +73,13 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         &self.kinematics
     }
 
-    /// Within the speed.
     fn slowed(&self, rims_mps: [S; W]) -> [S; W] {
         let top = self.limits.speed_mps;
         let mut rims = rims_mps.iter();
         match rims.try_fold(S::ZERO, |most, rim| finite_max(most, *rim)) {
             Some(most) if most <= top => rims_mps,
             Some(most) => match top.checked_div(most) {
-                // Rounding must not lead over the limit.
+                // Rounding must not exceed the limit.
                 Some(factor) => rims_mps.map(|rim| (rim * factor).clamp(-top, top)),
                 None => [S::ZERO; W],
             },
@@ -86,7 +88,7 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
     }
 }
 
-/// The larger magnitude; `None` when the new one is not finite.
+/// The larger magnitude; `None` if the new one is not finite.
 fn finite_max<S: Scalar>(most: S, value: S) -> Option<S> {
     value.is_finite().then(|| most.max(value.abs()))
 }

@@ -6,10 +6,10 @@
 //!   --Wheels (Calibration)--> signed duty --Motor--> embedded-hal's PWM and pins
 //! ```
 //!
-//! Directions: x ahead, y to the left, turns counter-clockwise seen from above. A wheel's speed is that of its rim,
-//! positive when it drives the robot ahead (omni wheels: counter-clockwise round the robot). Nothing here measures: who
-//! wants the wheels to keep their speed under load closes a loop around each motor, with the mixer's speeds as its set
-//! points.
+//! Directions: x ahead, y to the left, turns counter-clockwise seen from above. A wheel's speed is
+//! that of its rim, positive when it drives the robot ahead (omni wheels: counter-clockwise around
+//! the robot). This module does not measure speeds. To keep the wheels' speed under load, close a
+//! loop around each motor with the mixer's speeds as set points.
 
 mod differential;
 mod holonomic;

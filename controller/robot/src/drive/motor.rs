@@ -1,31 +1,31 @@
-//! One motor behind a bridge.
+//! One motor driven by a bridge.
 
 use core::fmt;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::pwm::SetDutyCycle;
 
-/// A motor at full power: duties are on [-[`FULL`], [`FULL`]].
+/// Full power: duties are in [-[`FULL`], [`FULL`]].
 pub const FULL: i16 = i16::MAX;
 
-/// A motor that turns both ways.
+/// A motor that turns in both directions.
 pub trait Motor {
-    /// What its pins can report.
+    /// The error that its pins can report.
     type Error;
 
-    /// Sets the duty, [`FULL`] being full power ahead.
+    /// Sets the duty; [`FULL`] is full power ahead.
     ///
     /// # Errors
     /// That of the pins; the duty is then unknown.
     fn set(&mut self, duty: i16) -> Result<(), Self::Error>;
 }
 
-/// What went wrong at a [`SignMagnitude`] or at [`TwoPins`].
+/// The error of a [`SignMagnitude`] or [`TwoPins`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum MotorError<P, D> {
-    /// At the PWM channel.
+    /// Of the PWM channel.
     Pwm(P),
-    /// At a direction pin.
+    /// Of a direction pin.
     Pin(D),
 }
 
@@ -40,8 +40,8 @@ impl<P: fmt::Debug, D: fmt::Debug> fmt::Display for MotorError<P, D> {
 
 impl<P: fmt::Debug, D: fmt::Debug> core::error::Error for MotorError<P, D> {}
 
-/// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN mode), TB9051, Cytron
-/// MDD.
+/// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN
+/// mode), TB9051, Cytron MDD.
 #[derive(Clone, Debug)]
 pub struct SignMagnitude<P, D> {
     pwm: P,
@@ -49,13 +49,13 @@ pub struct SignMagnitude<P, D> {
 }
 
 impl<P: SetDutyCycle, D: OutputPin> SignMagnitude<P, D> {
-    /// A motor on these pins; nothing is set yet.
+    /// Creates a motor on these pins without setting them.
     #[must_use]
     pub const fn new(pwm: P, direction: D) -> Self {
         Self { pwm, direction }
     }
 
-    /// The pins back.
+    /// Returns the pins.
     #[must_use]
     pub fn release(self) -> (P, D) {
         (self.pwm, self.direction)
@@ -67,7 +67,8 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
 
     fn set(&mut self, duty: i16) -> Result<(), Self::Error> {
         let power = scaled(duty, self.pwm.max_duty_cycle());
-        // Without power while the direction changes: half a period of the wrong one is a jerk.
+        // Power must be off while the direction changes: half a period in the wrong direction is a
+        // jerk.
         let pwm = |result: Result<(), P::Error>| result.map_err(MotorError::Pwm);
         pwm(self.pwm.set_duty_cycle(0))?;
         self.direction.set_state((duty >= 0).into()).map_err(MotorError::Pin)?;
@@ -75,8 +76,8 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
     }
 }
 
-/// A PWM channel for the power and two pins for the direction (high, low: ahead; both low: coast), as on L298N and
-/// TB6612.
+/// A PWM channel for the power and two pins for the direction (high, low: ahead; both low: coast),
+/// as on L298N and TB6612.
 #[derive(Clone, Debug)]
 pub struct TwoPins<P, A, B> {
     pwm: P,
@@ -85,7 +86,7 @@ pub struct TwoPins<P, A, B> {
 }
 
 impl<P: SetDutyCycle, A: OutputPin, B: OutputPin<Error = A::Error>> TwoPins<P, A, B> {
-    /// A motor on these pins; nothing is set yet.
+    /// Creates a motor on these pins without setting them.
     #[must_use]
     pub const fn new(pwm: P, ahead: A, back: B) -> Self {
         Self { pwm, ahead, back }
@@ -106,8 +107,8 @@ impl<P: SetDutyCycle, A: OutputPin, B: OutputPin<Error = A::Error>> Motor for Tw
     }
 }
 
-/// A PWM channel for each direction, of one kind, as on DRV8833 and DRV8871 (IN/IN mode): the other one stays low, and
-/// between pulses the motor coasts.
+/// A PWM channel for each direction, of one type, as on DRV8833 and DRV8871 (IN/IN mode). The idle
+/// channel stays low, and between pulses the motor coasts.
 #[derive(Clone, Debug)]
 pub struct HBridge<P> {
     ahead: P,
@@ -115,13 +116,13 @@ pub struct HBridge<P> {
 }
 
 impl<P: SetDutyCycle> HBridge<P> {
-    /// A motor on these channels; nothing is set yet.
+    /// Creates a motor on these channels without setting them.
     #[must_use]
     pub const fn new(ahead: P, back: P) -> Self {
         Self { ahead, back }
     }
 
-    /// The channels back.
+    /// Returns the channels.
     #[must_use]
     pub fn release(self) -> (P, P) {
         (self.ahead, self.back)
@@ -140,7 +141,6 @@ impl<P: SetDutyCycle> Motor for HBridge<P> {
     }
 }
 
-/// The duty's magnitude on [0, `max`], rounded to nearest.
 fn scaled(duty: i16, max: u16) -> u16 {
     let full = u32::from(FULL.unsigned_abs());
     let power = u32::from(duty.unsigned_abs()).min(full);

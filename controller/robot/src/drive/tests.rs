@@ -22,7 +22,7 @@ fn near(a: &Twist<f64>, b: &Twist<f64>, tolerance: f64) -> bool {
 }
 
 #[test]
-fn wheels_turn_as_on_the_drawing() {
+fn wheels_turn_in_the_expected_directions() {
     let two = Differential::new(0.2).unwrap();
     assert_eq!(two.wheels(&twist([0.5, 0.0, 1.0])), [0.4, 0.6]);
     assert_eq!(two.wheels(&twist([0.0, 9.0, 0.0])), [0.0, 0.0], "it cannot go sideways");
@@ -30,7 +30,8 @@ fn wheels_turn_as_on_the_drawing() {
     assert_eq!(four.wheels(&twist([1.0, 0.0, 0.0])), [1.0; 4]);
     assert_eq!(four.wheels(&twist([0.0, 1.0, 0.0])), [-1.0, 1.0, 1.0, -1.0]);
     assert_eq!(four.wheels(&twist([0.0, 0.0, 1.0])), [-0.25, 0.25, -0.25, 0.25]);
-    // The first of three at the nose: it turns the robot, and does nothing for going ahead.
+    // The first of three is at the nose: it turns the robot, and does not contribute to moving
+    // ahead.
     let three = Omni::<f64, 3>::new(0.0, 0.1).unwrap();
     let [nose, left, right] = three.wheels(&twist([1.0, 0.0, 0.0]));
     let half = 3f64.sqrt() / 2.0;
@@ -41,7 +42,7 @@ fn wheels_turn_as_on_the_drawing() {
 }
 
 #[test]
-fn senseless_measures_are_refused() {
+fn invalid_dimensions_are_refused() {
     let two = Differential::new(0.2).unwrap();
     let mixer = |speed_mps, acceleration_mps2| {
         let limits = Limits { speed_mps, acceleration_mps2 };
@@ -60,7 +61,7 @@ fn senseless_measures_are_refused() {
 }
 
 #[test]
-fn commands_without_a_velocity_stand() {
+fn commands_without_a_velocity_stop() {
     assert_eq!(wished_velocity(&Command::<f32>::Hold), Vec2::ZERO);
     let moves = heapless::Vec::from_slice(&[staya_controller::grid::Dir::East]).unwrap();
     assert_eq!(wished_velocity(&Command::<f32>::Move(moves)), Vec2::ZERO);
@@ -88,7 +89,7 @@ fn angles_wrap_to_the_half_open_interval() {
 }
 
 #[test]
-fn too_fast_keeps_the_curve_and_what_is_not_a_number_stands() {
+fn excessive_speed_keeps_the_curve_and_nan_stops() {
     let mut mixer = Mixer::new(Differential::new(0.2).unwrap(), at_once(0.5)).unwrap();
     assert_eq!(mixer.mix(&twist([0.9, 0.0, 1.0]), SPAN), [0.4, 0.5]);
     for bad in [f64::NAN, f64::INFINITY, f64::MAX] {
@@ -109,7 +110,7 @@ fn speed_builds_up_within_the_acceleration_and_the_emergency_stop_does_not_wait(
     assert_eq!(mixer.mix(&ahead, Duration::ZERO), [0.2, 0.2]);
     assert_eq!(mixer.mix(&ahead, Duration::from_millis(-9)), [0.2, 0.2]);
     assert_eq!(mixer.mix(&ahead, Duration::MAX), [1.0, 1.0]);
-    // What is not a number brakes as hard as it may.
+    // A motion that is not a number brakes as hard as permitted.
     let nonsense = twist::<f32>([0.0; 3]);
     let nonsense = Twist { turn_radps: f32::NAN, ..nonsense };
     let rims = mixer.mix(&nonsense, tenth);
@@ -132,7 +133,7 @@ fn a_robot_sent_sideways_turns_and_one_sent_back_reverses() {
 }
 
 #[test]
-fn the_point_ahead_swings_when_the_robot_turns() {
+fn the_point_ahead_moves_when_the_robot_turns() {
     let ahead = LookAhead::new(0.5f64).unwrap();
     let axle = KinematicState { position: Position::from_mm([1000, 2000, 3]), velocity_mps: Vec3::new(0.1, 0.0, 0.0) };
     let point = ahead.state(&axle, 0.0, 2.0);
@@ -165,7 +166,7 @@ fn duties_skip_the_dead_band_and_round_symmetrically() {
 }
 
 #[test]
-fn rims_go_round_with_their_wheels() {
+fn rim_speeds_follow_from_turns() {
     assert!((rim_speed(0.03f64, 100.0, 60.0) - 0.314_159_265).abs() < 1e-8);
     assert_eq!(rim_speed(0.03f32, 100.0, 0.0), 0.0);
 }
@@ -191,14 +192,14 @@ proptest! {
     }
 
     #[test]
-    fn saturation_slows_down_and_bends_nothing(parts in any::<[i8; 3]>(), top in 0.1f64..3.0) {
+    fn saturation_slows_down_without_distortion(parts in any::<[i8; 3]>(), top in 0.1f64..3.0) {
         let wish = twist(parts.map(|part| f64::from(part) / 20.0));
         let kinematics = Omni::<f64, 4>::new(0.5, 0.2).unwrap();
         let mut mixer = Mixer::new(kinematics, at_once(top)).unwrap();
         let rims = mixer.mix(&wish, SPAN);
         prop_assert!(rims.iter().all(|rim| rim.abs() <= top));
         let got = mixer.kinematics().twist(&rims);
-        // The same motion, some factor of at most 1 slower.
+        // The same motion, slower by one factor.
         let length = |t: &Twist<f64>| t.forward_mps.abs() + t.left_mps.abs() + t.turn_radps.abs();
         let factor = if length(&wish) > 0.0 { length(&got) / length(&wish) } else { 1.0 };
         prop_assert!(factor <= 1.0 + 1e-12);
@@ -213,7 +214,7 @@ proptest! {
     }
 
     #[test]
-    fn no_rim_changes_faster_than_it_may_whatever_the_bits(
+    fn no_rim_exceeds_its_acceleration_for_any_bits(
         bits in proptest::collection::vec(any::<[u32; 3]>(), 1..20),
         spans in proptest::collection::vec(-100_000i32..100_000, 20),
     ) {
@@ -233,7 +234,7 @@ proptest! {
     }
 
     #[test]
-    fn mirrored_wishes_mirror_the_wheels(v in any::<[i8; 2]>(), heading in -3.0f64..3.0) {
+    fn mirrored_motions_mirror_the_wheels(v in any::<[i8; 2]>(), heading in -3.0f64..3.0) {
         let v = Vec2::new(f64::from(v[0]) / 100.0, f64::from(v[1]) / 100.0);
         let mirrored = Vec2::new(v.x, -v.y);
         let (ahead, two) = (LookAhead::new(0.1).unwrap(), Differential::new(0.2).unwrap());
@@ -249,8 +250,8 @@ proptest! {
     }
 
     #[test]
-    fn the_point_ahead_goes_exactly_as_told(angle in -3.2f64..3.2, heading in -3.2f64..3.2, d in 0.03f64..0.5) {
-        // At the promised speed no direction saturates, and the point's velocity is the wished one.
+    fn the_point_ahead_has_exactly_the_demanded_velocity(angle in -3.2f64..3.2, heading in -3.2f64..3.2, d in 0.03f64..0.5) {
+        // At the promised speed no direction saturates, and the point has the demanded velocity.
         let ahead = LookAhead::new(d).unwrap();
         let speed = ahead.max_speed(0.6, 0.2);
         let (sin, cos) = Scalar::sin_cos(angle);
@@ -268,7 +269,7 @@ proptest! {
     }
 
     #[test]
-    fn a_holonomic_body_goes_the_world_velocity_at_any_heading(v in any::<[i8; 2]>(), heading in -7.0f64..7.0) {
+    fn a_holonomic_body_has_the_world_velocity_at_any_heading(v in any::<[i8; 2]>(), heading in -7.0f64..7.0) {
         let v = Vec2::new(f64::from(v[0]), f64::from(v[1]));
         let seen = Twist::holonomic(v, heading, 0.0);
         let (sin, cos) = Scalar::sin_cos(heading);
@@ -285,7 +286,6 @@ proptest! {
     }
 }
 
-/// Motors on mocked pins.
 mod pins {
     use super::*;
     use embedded_hal_mock::eh1::MockError;
@@ -333,7 +333,7 @@ mod pins {
     }
 
     #[test]
-    fn two_pins_say_ahead_back_and_coast() {
+    fn two_pins_encode_ahead_back_and_coast() {
         for (duty, ahead, back, power) in [
             (FULL, State::High, State::Low, u16::MAX),
             (-FULL, State::Low, State::High, u16::MAX),
@@ -350,14 +350,13 @@ mod pins {
     }
 
     #[test]
-    fn of_a_bridge_the_idle_side_goes_off_first() {
+    fn the_idle_side_of_a_bridge_is_switched_off_first() {
         let idle = Pwm::new(&[PwmStep::set_duty_cycle(0)]);
         let mut motor = HBridge::new(idle, pwm(999, &[999]));
         motor.set(-FULL).unwrap();
         let (mut ahead, mut back) = motor.release();
         ahead.done();
         back.done();
-        // If it cannot, the other side stays off.
         let idle = Pwm::new(&[PwmStep::set_duty_cycle(0).with_error(failed())]);
         let mut motor = HBridge::new(Pwm::new(&[]), idle);
         assert_eq!(motor.set(FULL), Err(failed()));
@@ -367,11 +366,11 @@ mod pins {
     }
 
     #[test]
-    fn when_one_motor_fails_the_others_stand() {
+    fn if_one_motor_fails_the_others_stop() {
         let steps = |steps: &[PwmStep]| Pwm::new(steps);
         let max = || PwmStep::max_duty_cycle(100);
         let set = PwmStep::set_duty_cycle;
-        // Left: turns, then stands. Right: fails, and fails again. Third: stands.
+        // Left: turns, then stops. Right: fails, and fails again. Third: stops.
         let left = HBridge::new(steps(&[max(), set(50), max(), set(0)]), steps(&[set(0), set(0)]));
         let broken = || steps(&[set(0).with_error(failed()), set(0).with_error(failed())]);
         let right = HBridge::new(steps(&[]), broken());

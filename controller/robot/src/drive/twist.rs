@@ -1,10 +1,10 @@
-//! How a body moves, and what its wheels have to do with it.
+//! The motion of a body, and its relation to the wheels.
 
 use staya_controller::agent::Command;
 use staya_controller::geom::Vec2;
 use staya_controller::scalar::Scalar;
 
-/// How a body moves, seen from itself; also how it has moved in a span (metres and radians).
+/// The motion of a body in its own frame; also its displacement in a span (metres and radians).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Twist<S> {
@@ -17,8 +17,8 @@ pub struct Twist<S> {
 }
 
 impl<S: Scalar> Twist<S> {
-    /// For robots that go any way: world velocity `velocity_mps` at `heading_rad` (of the robot's nose, counter-clockwise from
-    /// east), while it turns at `turn_radps`, which is the caller's choice.
+    /// For holonomic robots: world velocity `velocity_mps` at `heading_rad` (of the robot's nose,
+    /// counter-clockwise from east), while it turns at `turn_radps`, which the caller may choose.
     #[must_use]
     pub fn holonomic(velocity_mps: Vec2<S>, heading_rad: S, turn_radps: S) -> Self {
         let (sin, cos) = heading_rad.sin_cos();
@@ -26,17 +26,18 @@ impl<S: Scalar> Twist<S> {
         Self { forward_mps: seen.x, left_mps: seen.y, turn_radps }
     }
 
-    /// No component is NaN or infinite.
+    /// Whether no component is NaN or infinite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.forward_mps.is_finite() && self.left_mps.is_finite() && self.turn_radps.is_finite()
     }
 }
 
-/// The world velocity that a command asks for, m/s: zero for [`Command::Hold`].
+/// The world velocity that a command demands, m/s; zero for [`Command::Hold`].
 ///
-/// Also zero for [`Command::Move`], which names cells; robots with wheels let a guidance law of the grid go by velocities with
-/// [`CellFollower`](staya_controller::agent::CellFollower).
+/// Also zero for [`Command::Move`], which names cells. Robots with wheels use
+/// [`CellFollower`](staya_controller::agent::CellFollower) to convert a guidance law of the grid to
+/// velocities.
 #[must_use]
 pub fn wished_velocity<S: Scalar>(command: &Command<S>) -> Vec2<S> {
     match command {
@@ -45,11 +46,11 @@ pub fn wished_velocity<S: Scalar>(command: &Command<S>) -> Vec2<S> {
     }
 }
 
-/// The same angle on (-pi, pi]; NaN stays.
+/// The same angle in (-pi, pi]; NaN remains NaN.
 #[must_use]
 pub fn wrap_angle<S: Scalar>(angle_rad: S) -> S {
     let turn = S::PI + S::PI;
-    // Most angles are in range already, and those keep their bits.
+    // Most angles are in range already, and keep their bits.
     if angle_rad > -S::PI && angle_rad <= S::PI {
         return angle_rad;
     }
@@ -64,11 +65,13 @@ pub fn wrap_angle<S: Scalar>(angle_rad: S) -> S {
     }
 }
 
-/// A way of standing on `W` wheels: linear both ways, so that it serves speeds and distances.
+/// An arrangement of `W` wheels. Both directions are linear, so it applies to speeds and distances.
 pub trait Kinematics<S, const W: usize> {
-    /// The rim speeds that make the body move so, m/s. What the body cannot do is left out.
+    /// The rim speeds for a motion of the body, m/s. Components that the body cannot have are
+    /// ignored.
     fn wheels(&self, twist: &Twist<S>) -> [S; W];
 
-    /// How the body moves when the rims do, in the sense of least squares if they contradict each other.
+    /// The motion of the body for given rim speeds, in the least-squares sense if they contradict
+    /// each other.
     fn twist(&self, rims_mps: &[S; W]) -> Twist<S>;
 }

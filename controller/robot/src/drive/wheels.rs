@@ -1,34 +1,34 @@
-//! All motors of a robot, and how rim speeds become duties.
+//! All motors of a robot, and the conversion of rim speeds to duties.
 
 use super::motor::{FULL, Motor};
 use staya_controller::scalar::Scalar;
 
-/// What a motor's duty does to its rim, measured on the robot.
+/// The relation of a motor's duty to its rim speed, measured on the robot.
 ///
-/// duty = `dead_duty` + (1 - `dead_duty`) * speed / `full_mps`, with the sign of the speed; below `still_mps` none at
-/// all.
+/// duty = `dead_duty` + (1 - `dead_duty`) * speed / `full_mps`, with the sign of the speed; zero
+/// below `still_mps`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Calibration<S> {
     /// Rim speed at full duty under the robot's weight, m/s ([`rim_speed`]); more than 0.
     pub full_mps: S,
-    /// The largest part of the full duty, on [0, 1), at which the wheel does not turn yet. Too large: the robot jerks
-    /// when it should creep.
+    /// The largest part of the full duty, in [0, 1), at which the wheel does not turn yet. If it is
+    /// too large, the robot jerks at low speed.
     pub dead_duty: S,
-    /// Speeds below are not worth a motor's noise, m/s: the dead band.
+    /// The dead band: lower speeds are not worth a motor's noise, m/s.
     pub still_mps: S,
-    /// The motor is mounted so that its ahead drives the robot back.
+    /// The motor is mounted so that its forward direction drives the robot back.
     pub is_inverted: bool,
 }
 
 impl<S: Scalar> Calibration<S> {
-    /// A motor that does `full_mps` at full duty, proportionally from 0 on.
+    /// A motor with the rim speed `full_mps` at full duty, and proportional below.
     #[must_use]
     pub const fn linear(full_mps: S) -> Self {
         Self { full_mps, dead_duty: S::ZERO, still_mps: S::ZERO, is_inverted: false }
     }
 
-    /// The duty for a rim speed; 0 for what is not a number.
+    /// The duty for a rim speed; 0 if that is not a number.
     #[must_use]
     pub fn duty(&self, rim_mps: S) -> i16 {
         self.power(rim_mps).map_or(0, |power| {
@@ -37,13 +37,12 @@ impl<S: Scalar> Calibration<S> {
         })
     }
 
-    /// The duty's magnitude; `None` for none.
     fn power(&self, rim_mps: S) -> Option<i16> {
         let speed = rim_mps.abs();
         if !(speed > self.still_mps && speed > S::ZERO && rim_mps.is_finite()) {
             return None;
         }
-        // A quotient beyond range is more than the motor can do.
+        // A quotient out of range is more than the motor can do.
         let part = speed.min(self.full_mps).checked_div(self.full_mps)?;
         let dead = self.dead_duty.clamp(S::ZERO, S::ONE);
         let power = dead + (S::ONE - dead) * part;
@@ -53,7 +52,8 @@ impl<S: Scalar> Calibration<S> {
     }
 }
 
-/// The speed of a rim, m/s, of a wheel of `radius_m` that turns `turns` times in `span_s` seconds; 0 when this is none.
+/// The rim speed, m/s, of a wheel of `radius_m` that turns `turns` times in `span_s` seconds; 0 if
+/// it is undefined.
 #[must_use]
 pub fn rim_speed<S: Scalar>(radius_m: S, turns: S, span_s: S) -> S {
     let way = (S::PI + S::PI) * radius_m * turns;
@@ -67,21 +67,21 @@ pub struct Wheels<S, M, const W: usize> {
 }
 
 impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
-    /// Motors and what was measured of each; nothing is set yet.
+    /// Takes motors with their calibrations, without setting them.
     #[must_use]
     pub const fn new(motors: [(M, Calibration<S>); W]) -> Self {
         Self { motors }
     }
 
-    /// Makes the rims turn so, m/s.
+    /// Drives the rims at these speeds, m/s.
     ///
     /// # Errors
-    /// The first motor's that failed; the others were then told to stand, because a robot with one wheel driven spins.
+    /// That of the first motor that failed. The others are then stopped, because a robot with one
+    /// driven wheel spins.
     pub fn turn(&mut self, rims_mps: &[S; W]) -> Result<(), M::Error> {
         let motors = self.motors.iter_mut().zip(rims_mps);
         for ((motor, calibration), rim) in motors {
             if let Err(error) = motor.set(calibration.duty(*rim)) {
-                // What else fails has been said.
                 let _ = self.stop();
                 return Err(error);
             }
@@ -89,10 +89,10 @@ impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
         Ok(())
     }
 
-    /// No power to any motor, each one tried.
+    /// Switches off all motors; tries each of them.
     ///
     /// # Errors
-    /// The first motor's that failed.
+    /// That of the first motor that failed.
     pub fn stop(&mut self) -> Result<(), M::Error> {
         let mut result = Ok(());
         for (motor, _) in &mut self.motors {
@@ -101,7 +101,7 @@ impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
         result
     }
 
-    /// The motors back.
+    /// Returns the motors.
     #[must_use]
     pub fn release(self) -> [M; W] {
         self.motors.map(|(motor, _)| motor)

@@ -9,12 +9,12 @@ use embedded_io_async::{Read, Write};
 
 /// Over the two halves of an asynchronous line, for example `PacketLink::<_>::new((rx, tx))`.
 impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize> PacketLink<(R, W), F, IN, OUT> {
-    /// Moves bytes both ways until it is cancelled: let it run beside the wait for the next step, for example
-    /// `select(ticker.next(), link.serve()).await`. Errors of the line are counted, what they spoiled is forgotten, and
-    /// after each one other tasks have their turn.
+    /// Moves bytes both ways until it is cancelled. Run it beside the wait for the next step, for
+    /// example `select(ticker.next(), link.serve()).await`. Errors of the line are counted, damaged
+    /// bytes are dropped, and after each error other tasks may run.
     ///
-    /// Reading and writing must stand being cancelled without losing bytes, as buffered UARTs do (those with a ring
-    /// that an interrupt or a DMA fills).
+    /// Reading and writing must be cancellable without losing bytes, as in buffered UARTs (with a
+    /// ring that an interrupt or a DMA fills).
     pub async fn serve(&mut self) -> Infallible {
         let Self { line: (reader, writer), receiver, sender } = self;
         let hear = async {

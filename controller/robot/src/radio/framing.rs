@@ -1,33 +1,35 @@
-//! What receiving and sending need to know of a wire format.
+//! The properties of a wire format that receiver and sender need.
 
 use staya_controller::wire::{MAX_FRAME_LEN, Postcard, decode};
 
-/// How the frames of a wire format follow each other on a line. An agent and its link name the same format; frames that
-/// are sealed with a key are framed as [`Postcard`]'s, signed ones as MAVLink's.
+/// How the frames of a wire format follow each other on a line.
+///
+/// An agent and its link name the same format. Frames sealed with a key have the framing of
+/// [`Postcard`], signed ones that of MAVLink.
 pub trait Framing {
-    /// The byte that ends each frame and occurs nowhere else, if the format has one.
+    /// The byte that ends each frame and does not occur elsewhere, if the format has one.
     const DELIMITER: Option<u8>;
-    /// Bytes of the longest frame, its delimiter included.
+    /// Length of the longest frame in bytes, including its delimiter.
     const LONGEST: usize;
 
-    /// What received bytes begin with. Bounded work: O([`Self::LONGEST`]).
+    /// Classifies the beginning of the received bytes. Bounded work: O([`Self::LONGEST`]).
     fn first(bytes: &[u8]) -> Piece;
 
-    /// Takes the next frame off whole frames, its delimiter included; `None` when nothing is left.
+    /// Removes the next frame from whole frames, with its delimiter; `None` when nothing is left.
     fn next_frame<'a>(frames: &mut &'a [u8]) -> Option<&'a [u8]>;
 }
 
-/// A piece of what came over a line, and its bytes.
+/// A piece of the bytes received over a line, and its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Piece {
-    /// A sound frame that a robot's controller understands.
+    /// An intact frame that a robot's controller understands.
     Frame(usize),
-    /// Nothing, or something sound that is for others.
+    /// Nothing, or intact data for other receivers.
     Other(usize),
     /// Noise, damage, another version of the format.
     Noise(usize),
-    /// The beginning of a frame, or no byte at all: the rest is to come.
+    /// The beginning of a frame, or no byte at all: the rest has yet to arrive.
     Begun,
 }
 
@@ -64,8 +66,8 @@ mod mavlink {
     use staya_mavlink::frame::{MAX_FRAME_LEN, Scan, next_frame, scan};
     use staya_mavlink::wire::{Mavlink, decode};
 
-    /// Nothing ends these frames: their headers say how long they are. MAVLink messages that are none of the swarm's
-    /// are [`Piece::Other`].
+    /// These frames have no delimiter: their headers hold their length. MAVLink messages that are
+    /// not the swarm's are [`Piece::Other`].
     impl Framing for Mavlink {
         const DELIMITER: Option<u8> = None;
         const LONGEST: usize = MAX_FRAME_LEN;

@@ -1,23 +1,25 @@
-//! Frames over a line, with and without waiting.
+//! Frames over a blocking or an asynchronous line.
 
 use super::{Counts, Framing, Receiver, Sender};
 use embedded_io::{Read, ReadReady, Write, WriteReady};
 use staya_controller::wire::Postcard;
 
-/// Bytes that one call moves at a time.
 pub(super) const PIECE: usize = 32;
 
-/// Frames of the wire format `F` over a line `U`. `IN` and `OUT`: bytes between two steps, and bytes that wait to be
-/// sent, `OUT` at least [`OUTBOX`](staya_controller::agent::OUTBOX).
+/// Frames of the wire format `F` over a line `U`. `IN` and `OUT` are the buffer sizes in bytes for
+/// reception between two steps and for transmission; `OUT` is at least
+/// [`OUTBOX`](staya_controller::agent::OUTBOX).
 ///
-/// Call [`Self::take`] once for each step and [`Self::send`] after it. In between something has to move the bytes:
+/// Call [`Self::take`] once for each step and [`Self::send`] after it. In between, the bytes must
+/// be moved:
 ///
-/// - over a line that can say whether it is ready (`embedded-io`), [`Self::pump`], which never waits. Call it at least
-///   as often as the HAL's own buffer fills up (at 115,200 baud a byte comes every 87 µs);
-/// - over the two halves of an asynchronous line (`embedded-io-async`, feature `async`), `serve`, beside the wait for
-///   the next step.
+/// - over a line that reports whether it is ready (`embedded-io`), by [`Self::pump`], which never
+///   waits. Call it at least as often as the HAL's own buffer fills up (at 115,200 baud a byte
+///   arrives every 87 µs);
+/// - over the two halves of an asynchronous line (`embedded-io-async`, feature `async`), by
+///   `serve`, beside the wait for the next step.
 ///
-/// HALs whose UART has neither use a [`Receiver`] and a [`Sender`] with what they have.
+/// If the HAL's UART has neither, use a [`Receiver`] and a [`Sender`] directly.
 #[derive(Clone, Debug)]
 pub struct PacketLink<U, F = Postcard, const IN: usize = 1024, const OUT: usize = 512> {
     pub(super) line: U,
@@ -26,13 +28,14 @@ pub struct PacketLink<U, F = Postcard, const IN: usize = 1024, const OUT: usize 
 }
 
 impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT> {
-    /// Over `line`, with nothing received and nothing to send.
+    /// Creates a link over `line` with empty buffers.
     #[must_use]
     pub const fn new(line: U) -> Self {
         Self { line, receiver: Receiver::new(), sender: Sender::new() }
     }
 
-    /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
+    /// The frames received since the last call, for
+    /// [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
     #[must_use]
     pub fn take(&mut self) -> &[u8] {
         self.receiver.take()
@@ -43,19 +46,19 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
         self.sender.send(outbox);
     }
 
-    /// What came in, and what went out.
+    /// The counts of reception and transmission.
     #[must_use]
     pub const fn counts(&self) -> (Counts, Counts) {
         (self.receiver.counts(), self.sender.counts())
     }
 
-    /// The line itself, to set it up anew; what is read or written here the link does not see.
+    /// The line itself, for setting it up again; the link does not see bytes read or written here.
     #[must_use]
     pub const fn line_mut(&mut self) -> &mut U {
         &mut self.line
     }
 
-    /// The line back.
+    /// Returns the line.
     #[must_use]
     pub fn release(self) -> U {
         self.line
@@ -66,12 +69,12 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
 where
     U: Read + ReadReady + Write + WriteReady,
 {
-    /// Moves what can be moved without waiting: in at most `IN` bytes (more would only push each other out), out what
-    /// is there.
+    /// Moves all bytes that can be moved without waiting. It reads at most `IN` bytes (more would
+    /// evict each other), and writes all queued bytes.
     ///
     /// # Errors
-    /// The line's first one. It is counted, what it spoiled is forgotten, and the link goes on at the next call: a
-    /// caller may ignore it.
+    /// The line's first error. It is counted, the damaged frame is dropped, and the link continues
+    /// at the next call, so a caller may ignore it.
     pub fn pump(&mut self) -> Result<(), U::Error> {
         let heard = self.hear();
         if heard.is_err() {

@@ -1,13 +1,13 @@
-//! Packets over a serial line: a UART, and behind it a radio modem or another robot's UART.
+//! Packets over a serial line: a UART, connected to a radio modem or to another robot's UART.
 //!
-//! The agent's packets are frames of its wire format: postcard's, which a zero byte ends ([`staya_controller::wire`]),
-//! or MAVLink's (feature `mavlink`). A [`Receiver`] makes frames of bytes, a [`Sender`] holds frames until the line
-//! takes them; neither knows any hardware, so that a radio with packets of its own (ESB, LoRa) feeds them too.
-//! [`PacketLink`] moves their bytes over `embedded-io` without ever waiting, or over `embedded-io-async` (feature
-//! `async`).
+//! The agent's packets are frames of its wire format: postcard's, which a zero byte ends
+//! ([`staya_controller::wire`]), or MAVLink's (feature `mavlink`). A [`Receiver`] extracts frames
+//! from bytes; a [`Sender`] holds frames until the line accepts them. Neither depends on hardware,
+//! so they also work with a radio that has its own packets (ESB, LoRa). [`PacketLink`] moves their
+//! bytes over `embedded-io` without ever waiting, or over `embedded-io-async` (feature `async`).
 //!
-//! When there is no room, the oldest frames go, whole ones only: of two beacons of a robot the later one is worth
-//! more, and who asked something asks again.
+//! When a buffer is full, the oldest whole frames are dropped: of two beacons of a robot the later
+//! one is worth more, and requests are repeated.
 
 #[cfg(feature = "async")]
 mod asynchronous;
@@ -26,15 +26,15 @@ pub use sender::Sender;
 use core::cell::Cell;
 use heapless::Vec;
 
-/// What happened on a line since the start; each count stays at its largest value.
+/// Counts of a line since the start; each saturates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counts {
-    /// Frames that went through.
+    /// Frames passed on.
     pub frames: u32,
-    /// Pieces that were no sound frame: noise, damage, another version of the format.
+    /// Pieces that were not an intact frame: noise, damage, another version of the format.
     pub refused: u32,
-    /// Sound frames that had to go because there was no room.
+    /// Intact frames that were dropped because the buffer was full.
     pub dropped: u32,
     /// Errors that the line reported.
     pub line_errors: u32,
@@ -44,12 +44,11 @@ impl Counts {
     const NONE: Self = Self { frames: 0, refused: 0, dropped: 0, line_errors: 0 };
 }
 
-/// So many more, up to the largest number.
 fn count(counter: &mut u32, more: usize) {
     *counter = counter.saturating_add(u32::try_from(more).unwrap_or(u32::MAX));
 }
 
-/// Takes `count` bytes out from `start` on. O(N).
+/// Removes `count` bytes from `start` on. O(N).
 fn remove<const N: usize>(bytes: &mut Vec<u8, N>, start: usize, count: usize) {
     let cells = Cell::from_mut(bytes.as_mut_slice()).as_slice_of_cells();
     let count = count.min(cells.len().saturating_sub(start));

@@ -1,24 +1,25 @@
-//! From bytes to frames.
+//! Extracts frames from bytes.
 
 use super::{Counts, Framing, Piece, count, remove};
 use core::marker::PhantomData;
 use heapless::Vec;
 
-/// Collects the swarm's frames from a stream of bytes until the next step asks for them.
+/// Collects the swarm's frames from a byte stream until the next step takes them.
 ///
-/// Only sound frames are kept: noise, damaged pieces and other versions of the format are counted and forgotten, what
-/// is for others is passed over (the agent judges the rest: late, repeated, its own). When `N` bytes do not hold all
-/// frames between two steps and the one that is coming, the oldest ones go. `N` is at least [`Framing::LONGEST`]: 60
-/// bytes of postcard, 280 of MAVLink. A beacon takes some 50, so that 1024 bytes hold the beacons of twenty robots.
+/// Only intact frames are kept. Noise, damaged pieces and other versions of the format are counted
+/// and dropped; frames for others are skipped. The agent judges the rest: late, repeated, its own.
+/// If `N` bytes cannot hold all frames between two steps and the incoming one, the oldest are
+/// dropped. `N` is at least [`Framing::LONGEST`]: 60 bytes for postcard, 280 for MAVLink. A beacon
+/// takes some 50, so 1024 bytes hold the beacons of twenty robots.
 #[derive(Clone, Debug)]
 pub struct Receiver<F, const N: usize> {
-    /// Whole frames, then what is coming.
+    /// Whole frames, then the incoming bytes.
     bytes: Vec<u8, N>,
-    /// Bytes of whole frames.
+    /// Length of the whole frames.
     whole: usize,
-    /// How many of them the last step got.
+    /// Length of those that the last step took.
     given: usize,
-    /// What is coming is of no use up to the next delimiter.
+    /// Bytes up to the next delimiter are unusable.
     is_skipping: bool,
     counts: Counts,
     framing: PhantomData<F>,
@@ -27,14 +28,14 @@ pub struct Receiver<F, const N: usize> {
 impl<F: Framing, const N: usize> Receiver<F, N> {
     const FITS: () = assert!(N >= F::LONGEST, "no room for one frame");
 
-    /// Without a byte.
+    /// Creates an empty receiver.
     #[must_use]
     pub const fn new() -> Self {
         let () = Self::FITS;
         Self { bytes: Vec::new(), whole: 0, given: 0, is_skipping: false, counts: Counts::NONE, framing: PhantomData }
     }
 
-    /// Takes bytes in as they come, cut anywhere. O(bytes x [`Framing::LONGEST`] + `N`).
+    /// Adds received bytes, in pieces of any length. O(bytes x [`Framing::LONGEST`] + `N`).
     pub fn push(&mut self, bytes: &[u8]) {
         let mut rest = bytes;
         while !rest.is_empty() {
@@ -47,7 +48,7 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
                 continue;
             }
             if self.bytes.len() == self.whole && F::DELIMITER == rest.first().copied() {
-                // It ends nothing.
+                // This delimiter does not end a frame.
                 rest = rest.get(1..).unwrap_or_default();
                 continue;
             }
@@ -58,41 +59,42 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
             }
             let room = N.saturating_sub(self.bytes.len());
             let (piece, later) = rest.split_at_checked(room).unwrap_or((rest, &[]));
-            // It fits.
             let _ = self.bytes.extend_from_slice(piece);
             rest = later;
             self.sort();
         }
     }
 
-    /// A packet from a radio that has packets of its own: frames whose last delimiter may be missing. What was begun
-    /// before it has no end any more.
+    /// Adds a packet of a radio that has its own packets: frames whose last delimiter may be
+    /// missing. An incomplete frame before it is dropped.
     pub fn push_packet(&mut self, packet: &[u8]) {
         self.end();
         self.push(packet);
         self.end();
     }
 
-    /// The line lost bytes (an overrun, a framing error): what was begun is of no use.
+    /// Reports that the line lost bytes (an overrun, a framing error): the incomplete frame is
+    /// unusable.
     pub fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
         self.cut_short();
     }
 
-    /// The frames since the last call, for [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
+    /// The frames received since the last call, for
+    /// [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
     pub fn take(&mut self) -> &[u8] {
         self.forget_given();
         self.given = self.whole;
         self.bytes.get(..self.whole).unwrap_or_default()
     }
 
-    /// What came so far.
+    /// The counts so far.
     #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Nothing more comes of what is begun.
+    /// Drops the incomplete frame, since its rest will not arrive.
     fn end(&mut self) {
         match F::DELIMITER {
             Some(delimiter) => self.push(&[delimiter]),
@@ -100,7 +102,7 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// Forgets what is begun, up to its delimiter if it has one.
+    /// Drops the incomplete frame, and skips to its delimiter if the format has one.
     fn cut_short(&mut self) {
         let is_begun = self.bytes.len() > self.whole;
         self.bytes.truncate(self.whole);
@@ -111,7 +113,7 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// The last step is over when something new comes.
+    /// Removes the frames of the last step, which is over when new bytes arrive.
     fn forget_given(&mut self) {
         let given = core::mem::take(&mut self.given);
         if given > 0 {
@@ -120,7 +122,7 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// The oldest frame goes. What is coming is never longer than the longest frame.
+    /// Drops the oldest frame. The incoming frame is never longer than the longest frame.
     fn make_room(&mut self) {
         let mut rest = self.bytes.get(..self.whole).unwrap_or_default();
         match F::next_frame(&mut rest) {
@@ -137,7 +139,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// Sorts out what has come.
     fn sort(&mut self) {
         loop {
             let coming = self.bytes.get(self.whole..).unwrap_or_default();

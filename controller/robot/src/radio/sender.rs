@@ -4,33 +4,34 @@ use super::{Counts, Framing, count, remove};
 use core::marker::PhantomData;
 use heapless::Vec;
 
-/// Holds what steps want sent until the line takes it.
+/// Holds frames until the line accepts them.
 ///
-/// When `N` bytes do not hold it all, the oldest frames go, but never the rest of one whose first bytes are on the
-/// line. Where frames have a delimiter, one goes before the first frame after a pause, so that what the receivers' idle
-/// lines picked up does not spoil it.
+/// If `N` bytes cannot hold all frames, the oldest are dropped, but never the rest of a frame that
+/// was partly sent. In formats with a delimiter, one is sent before the first frame after a pause,
+/// so that noise on the receivers' idle lines does not damage the frame.
 #[derive(Clone, Debug)]
 pub struct Sender<F, const N: usize> {
     bytes: Vec<u8, N>,
-    /// Bytes that are left of a frame whose first bytes are sent.
+    /// Remaining bytes of a frame that was partly sent.
     begun: usize,
-    /// What is begun is no whole frame: a delimiter by itself, or the end of a frame that failed.
+    /// The remaining bytes are not a whole frame: a single delimiter, or the end of a frame that
+    /// failed.
     is_cut: bool,
     counts: Counts,
     framing: PhantomData<F>,
 }
 
 impl<F: Framing, const N: usize> Sender<F, N> {
-    /// Bytes of a delimiter.
     const END: usize = F::DELIMITER.is_some() as usize;
 
-    /// With nothing to send.
+    /// Creates an empty sender.
     #[must_use]
     pub const fn new() -> Self {
         Self { bytes: Vec::new(), begun: 0, is_cut: false, counts: Counts::NONE, framing: PhantomData }
     }
 
-    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox). O(outbox + `N`) per frame.
+    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox). O(outbox
+    /// + `N`) per frame.
     pub fn send(&mut self, outbox: &[u8]) {
         let mut rest = outbox;
         while let Some(frame) = F::next_frame(&mut rest) {
@@ -40,13 +41,13 @@ impl<F: Framing, const N: usize> Sender<F, N> {
         }
     }
 
-    /// What the line should take next.
+    /// The bytes to send next.
     #[must_use]
     pub fn unsent(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// The line took the first `bytes` of [`Self::unsent`]. O(`N`).
+    /// Reports that the line accepted the first `bytes` of [`Self::unsent`]. O(`N`).
     pub fn sent(&mut self, bytes: usize) {
         let mut left = bytes.min(self.bytes.len());
         let mut at = 0_usize;
@@ -66,10 +67,11 @@ impl<F: Framing, const N: usize> Sender<F, N> {
         remove(&mut self.bytes, 0, at);
     }
 
-    /// The line failed: of a begun frame only the delimiter is left, which ends it for the receivers.
+    /// Reports that the line failed: only the delimiter of a partly sent frame is kept, which ends
+    /// it for the receivers.
     pub fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
-        // One of which only the end is left has been sent.
+        // If only the delimiter is left, the frame has been sent.
         if self.begun > Self::END {
             remove(&mut self.bytes, 0, self.begun.saturating_sub(Self::END));
             self.begun = Self::END;
@@ -78,7 +80,7 @@ impl<F: Framing, const N: usize> Sender<F, N> {
         }
     }
 
-    /// What was sent so far.
+    /// The counts so far.
     #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
@@ -86,7 +88,7 @@ impl<F: Framing, const N: usize> Sender<F, N> {
 
     fn queue(&mut self, frame: &[u8]) {
         if let (true, Some(delimiter)) = (self.bytes.is_empty(), F::DELIMITER) {
-            // Without room for it there is none for the frame.
+            // If it does not fit, neither does the frame.
             let _ = self.bytes.push(delimiter);
         }
         if self.begun.saturating_add(frame.len()) > N {
@@ -97,11 +99,10 @@ impl<F: Framing, const N: usize> Sender<F, N> {
             count(&mut self.counts.dropped, usize::from(oldest > Self::END));
             remove(&mut self.bytes, self.begun, oldest);
         }
-        // There is room now.
         let _ = self.bytes.extend_from_slice(frame);
     }
 
-    /// Bytes of the frame that begins at `start`; at least 1.
+    /// Length of the frame that begins at `start`; at least 1.
     fn frame_len(&self, start: usize) -> usize {
         let mut rest = self.bytes.get(start..).unwrap_or_default();
         F::next_frame(&mut rest).map_or(1, <[u8]>::len)

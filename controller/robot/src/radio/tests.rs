@@ -1,4 +1,4 @@
-//! The same for every wire format, then what only one of them has.
+//! Tests of all wire formats, then of single ones.
 
 mod lines;
 
@@ -12,7 +12,7 @@ use staya_controller::wire::{Ack, Header, Message, Postcard, Wire};
 use staya_mavlink::wire::Mavlink;
 use std::vec::Vec;
 
-/// A sound frame, its delimiter included; `sequence` tells it from others.
+/// An intact frame with its delimiter, identified by `sequence`.
 fn frame<F: Format>(sequence: u16) -> Vec<u8> {
     let mut out = heapless::Vec::<u8, 64>::new();
     let header = Header { boot: 1, sender: RobotId(7), sequence };
@@ -25,7 +25,7 @@ fn stream<F: Format>(sequences: impl IntoIterator<Item = u16>) -> Vec<u8> {
     sequences.into_iter().flat_map(frame::<F>).collect()
 }
 
-/// The sequence numbers of the frames in an inbox, each of which must be sound.
+/// The sequence numbers of the frames in an inbox; all must be intact.
 fn sequences<F: Format>(mut inbox: &[u8]) -> Vec<u16> {
     let (mut format, mut found) = (F::default(), Vec::new());
     while let Some(frame) = format.next_frame(&mut inbox) {
@@ -37,7 +37,7 @@ fn sequences<F: Format>(mut inbox: &[u8]) -> Vec<u16> {
 trait Format: Framing + Wire + Default {}
 impl<F: Framing + Wire + Default> Format for F {}
 
-/// Makes tests of functions: one for all formats.
+/// Creates one test per format from each function.
 macro_rules! in_each_format {
     ($($name:ident)*) => {$(
         #[test]
@@ -99,7 +99,7 @@ mod each {
         assert_eq!(sequences::<F>(receiver.take()), [1, 2, 4]);
         let counts = receiver.counts();
         assert_eq!((counts.frames, counts.dropped), (3, 0));
-        // Where nothing delimits noise it is counted in the pieces that it came in.
+        // Without a delimiter noise is counted in the pieces in which it arrived.
         assert!(counts.refused == 3 || F::DELIMITER.is_none() && counts.refused > 3);
     }
 
@@ -109,13 +109,13 @@ mod each {
         let most = ROOM / frame::<F>(0).len();
         receiver.push(&stream::<F>(0..100));
         let kept = sequences::<F>(receiver.take());
-        // One may have gone for the one that came last.
+        // One frame may have been dropped for the last one.
         assert!(kept.len() + 1 >= most, "{} of {most}", kept.len());
         let newest: Vec<u16> = (100 - kept.len() as u16..100).collect();
         assert_eq!(kept, newest);
         let counts = receiver.counts();
         assert_eq!((counts.frames, counts.dropped as usize), (100, 100 - kept.len()));
-        // What was given makes room without a loss.
+        // Frames already taken are removed without counting as dropped.
         receiver.push(&frame::<F>(100));
         assert_eq!(sequences::<F>(receiver.take()), [100]);
         assert_eq!(receiver.counts().dropped, counts.dropped);
@@ -125,7 +125,6 @@ mod each {
         let mut receiver = Receiver::<F, 512>::new();
         let whole = frame::<F>(5);
         receiver.push(&whole[..3]);
-        // A delimiter may be missing.
         let end = usize::from(F::DELIMITER.is_some());
         receiver.push_packet(&whole[..whole.len() - end]);
         receiver.push_packet(&stream::<F>([6, 7]));
@@ -149,7 +148,7 @@ mod each {
         let len = frame::<F>(0).len();
         let mut sender = Sender::<F, ROOM>::new();
         sender.send(&stream::<F>([0, 1]));
-        // Any delimiter that goes first, and three bytes of frame 0.
+        // The leading delimiter, if any, and three bytes of frame 0.
         sender.sent(usize::from(F::DELIMITER.is_some()) + 3);
         let rest = frame::<F>(0)[3..].to_vec();
         for sequence in 2..9 {
@@ -220,7 +219,6 @@ mod each {
         let mut link = PacketLink::<Uart, F, 512, 256>::new(uart);
         link.send(&stream::<F>([4, 5]));
         link.pump().unwrap();
-        // In the middle of a frame, both ways.
         link.line_mut().read_fails = true;
         link.line_mut().write_fails = true;
         assert_eq!(link.pump(), Err(ErrorKind::InvalidData));
@@ -237,8 +235,8 @@ mod each {
         assert_eq!(sequences::<F>(peer.take()), [5]);
     }
 
-    /// Whatever comes, in whatever pieces: only sound frames come out, as many as were counted, and the next one is
-    /// heard.
+    /// For any bytes in any pieces, only intact frames are returned, as many as were counted, and
+    /// the next frame is received.
     pub fn any_bytes_leave_the_inbox_sound<F: Format>() {
         let piece = prop_oneof![
             2 => proptest::collection::vec(any::<u8>(), 0..40),
@@ -282,20 +280,20 @@ mod each {
                     sender.line_error();
                 }
             }
-            // The last one, with a sound line.
+            // The last one, with a working line.
             let last = takes.len() as u16;
             sender.send(&frame::<F>(last));
             drain(&mut sender, &mut receiver, usize::MAX);
             let got = sequences::<F>(receiver.take());
             prop_assert!(got.windows(2).all(|pair| pair[0] < pair[1]), "{:?}", got);
             let (counts, refused) = (sender.counts(), receiver.counts().refused);
-            // Where nothing delimits frames, one that was cut may take the next one with it.
+            // Without delimiters a cut frame may take the next one with it.
             let is_exact = F::DELIMITER.is_some() || fails >= takes.len();
             let most_lost = usize::from(!is_exact);
             prop_assert!((got.len()..=got.len() + most_lost).contains(&(counts.frames as usize)));
             prop_assert!(!is_exact || got.last() == Some(&last));
             prop_assert_eq!(counts.frames + counts.dropped, takes.len() as u32 + 1);
-            // Only a frame that failed on the line arrives cut.
+            // Only a frame during which the line failed arrives cut.
             prop_assert!(refused == 0 || fails < takes.len());
         });
     }
@@ -305,7 +303,6 @@ mod each {
         use core::{future::Future, pin::pin, task::Context, task::Poll, task::Waker};
         let inbound = stream::<F>([1, 2, 3]);
         let mut reads: Vec<_> = inbound.chunks(4).map(|c| Ok(c.to_vec())).collect();
-        // Within the second frame an error, and a line that says it has ended.
         reads.insert(inbound.len() / 8, Err(ErrorKind::Other));
         reads.push(Ok(Vec::new()));
         let room = |len: usize| Ok(std::vec![0; len]);
@@ -315,7 +312,7 @@ mod each {
         link.send(&stream::<F>([4, 5]));
         let mut context = Context::from_waker(Waker::noop());
         for _ in 0..9 {
-            // Cancelled and begun anew, as at each step.
+            // Cancelled and restarted, as at each step.
             let mut serving = pin!(link.serve());
             let poll = serving.as_mut().poll(&mut context);
             assert!(matches!(poll, Poll::Pending));
@@ -328,7 +325,7 @@ mod each {
 }
 
 #[test]
-fn a_lost_delimiter_costs_the_two_frames_beside_it() {
+fn a_lost_delimiter_loses_the_two_adjacent_frames() {
     let mut receiver = Receiver::<Postcard, 256>::new();
     let mut bytes = stream::<Postcard>([1, 2, 3]);
     bytes.remove(frame::<Postcard>(1).len() - 1);
@@ -337,7 +334,7 @@ fn a_lost_delimiter_costs_the_two_frames_beside_it() {
 }
 
 #[test]
-fn a_zero_byte_goes_first_after_a_pause_and_not_between_frames() {
+fn a_zero_byte_is_sent_after_a_pause_and_not_between_frames() {
     let mut sender = Sender::<Postcard, 256>::new();
     sender.send(&stream::<Postcard>([1, 2]));
     sender.send(&stream::<Postcard>([3]));
@@ -348,7 +345,7 @@ fn a_zero_byte_goes_first_after_a_pause_and_not_between_frames() {
     assert_eq!(sender.counts().frames, 3);
     sender.send(&[]);
     assert!(sender.unsent().is_empty(), "nothing to say, nothing sent");
-    // It is no frame that could be lost.
+    // A single delimiter is not counted as a lost frame.
     let mut sender = Sender::<Postcard, 64>::new();
     for sequence in 0..10 {
         sender.send(&frame::<Postcard>(sequence));
@@ -359,7 +356,7 @@ fn a_zero_byte_goes_first_after_a_pause_and_not_between_frames() {
 }
 
 #[test]
-fn zero_bytes_cost_no_frame_where_there_is_no_room() {
+fn leading_zero_bytes_do_not_evict_frames() {
     const ROOM: usize = 84;
     let len = frame::<Postcard>(0).len();
     assert_eq!(ROOM % len, 0, "{len}");
@@ -373,7 +370,7 @@ fn zero_bytes_cost_no_frame_where_there_is_no_room() {
 
 #[cfg(feature = "mavlink")]
 #[test]
-fn other_messages_on_the_line_are_passed_over() {
+fn other_messages_on_the_line_are_skipped() {
     use staya_mavlink::{dialect::HEARTBEAT_DATA, frame};
     let mut heartbeat = heapless::Vec::<u8, 64>::new();
     let sender = frame::Sender { system: 1, component: 1, sequence: 0 };

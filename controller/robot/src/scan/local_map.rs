@@ -1,8 +1,9 @@
-//! What range scans have shown of the land near by, in cells.
+//! The land nearby as seen by range scans, in cells.
 //!
-//! Source of the rule: J. Borenstein, Y. Koren 1991, "Histogramic in-motion mapping for mobile robot obstacle avoidance" (HIMM): a hit
-//! adds 3 to its cell, what the beam crossed loses 1, on 0..=15. New here: a cell counts once per scan however many beams meet it,
-//! a hit wins over crossing beams, and what is not seen fades.
+//! Source of the rule: J. Borenstein, Y. Koren 1991, "Histogramic in-motion mapping for mobile
+//! robot obstacle avoidance" (HIMM): a hit adds 3 to its cell, a beam that crosses a cell subtracts
+//! 1, on 0..=15. Additions: a cell counts once per scan regardless of the number of beams, a hit
+//! wins over crossing beams, and evidence fades while it is not renewed.
 
 use super::Scan;
 use staya_controller::geom::Vec2;
@@ -14,36 +15,39 @@ use staya_controller::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MapParams {
-    /// What a scan with a hit in the cell adds. More: single wrong ranges become obstacles.
+    /// Added by a scan with a hit in the cell. With a larger value single wrong ranges become
+    /// obstacles.
     pub hit: u8,
-    /// What a scan with a beam through the cell, and no hit in it, takes away. Less: what left stays longer.
+    /// Subtracted by a scan with a beam through the cell and no hit in it. With a smaller value
+    /// obstacles that left remain longer.
     pub free: u8,
-    /// The most that is remembered: with `free`, how many scans clear a cell at most.
+    /// The maximum evidence; divided by `free`, the maximum number of scans that clear a cell.
     pub ceiling: u8,
-    /// From here on the cell is blocked; more than 0.
+    /// Evidence from which the cell is blocked; more than 0.
     pub blocked_at: u8,
-    /// Each time that this has passed, a cell loses one: what was seen once and not again is open after at most `ceiling` times this. More than 0; longer
-    /// remembers what is behind the robot, shorter forgets others that went away unseen.
+    /// Period after which a cell loses one point, so that a single observation fades after at most
+    /// `ceiling` periods. More than 0. A longer period remembers what is behind the robot; a
+    /// shorter one forgets robots that left unseen.
     pub fade_every: Duration,
-    /// Impassability of land of which nothing is known, 1..=255. [`BLOCKED`] would keep the robot from ever going where it has not looked.
+    /// Impassability of unknown land, 1..=255. With [`BLOCKED`] the robot would never enter cells
+    /// that it has not seen.
     pub ground: u8,
 }
 
 impl Default for MapParams {
-    /// HIMM's 3, 1 and 15; blocked by the second scan that says so; forgotten after 15 s unseen.
+    /// HIMM's 3, 1 and 15; blocked by the second scan with a hit; forgotten after 15 s unseen.
     fn default() -> Self {
         Self { hit: 3, free: 1, ceiling: 15, blocked_at: 6, fade_every: Duration::from_millis(1000), ground: 1 }
     }
 }
 
-/// What is known of one cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Known {
-    /// For an obstacle.
+    /// Evidence of an obstacle.
     evidence: u8,
     /// Impassability of the ground; [`BLOCKED`] for a cliff.
     ground: u8,
-    /// What this scan says.
+    /// The observation of this scan.
     news: News,
 }
 
@@ -54,10 +58,10 @@ enum News {
     Hit,
 }
 
-/// A square of `SIDE` by `SIDE` cells around the robot that goes along with it. Odd sides have the robot in the middle; 11 is what
-/// route guidance of default capacity looks at.
+/// A square of `SIDE` by `SIDE` cells around the robot, which moves with it. Odd sides have the
+/// robot in the middle; route guidance of default capacity uses 11.
 ///
-/// Four bytes for each cell. What leaves the square is forgotten.
+/// Four bytes per cell. Cells that leave the square are forgotten.
 #[derive(Clone, Debug)]
 pub struct LocalMap<const SIDE: usize = 11> {
     params: MapParams,
@@ -75,7 +79,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         SIDE as i16
     };
 
-    /// Around `own`, with nothing seen.
+    /// Creates a map around `own` without observations.
     #[must_use]
     pub const fn new(params: MapParams, own: Cell) -> Self {
         let known = Known { evidence: 0, ground: params.ground, news: News::None };
@@ -89,12 +93,14 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         }
     }
 
-    /// Takes a scan in, made at `now` by a robot whose reference point is at `place_m` in the world, at `heading_rad`. Hits of which
-    /// `is_robot` (place relative to the robot, metres along the world's axes) says so clear their beam and mark nothing.
+    /// Adds a scan made at `now` by a robot whose reference point is at `place_m` in the world, at
+    /// `heading_rad`. Hits for which `is_robot` (position relative to the robot, metres along the
+    /// world's axes) returns true clear their beam but mark nothing.
     ///
-    /// Beams are followed in steps of half a cell up to the square's edge, so that a cell that a beam only cuts at a corner may stay as it
-    /// was. False, and nothing is taken in, when the robot is off the grid. Bounded work: O(SIDE^2) for the cells, O(SIDE) and one call of
-    /// `is_robot` for each range.
+    /// Beams are followed in steps of half a cell up to the square's edge, so a cell that a beam
+    /// crosses only at a corner may be unchanged. Returns false without any change if the robot is
+    /// off the grid. Bounded work: O(SIDE^2) for the cells, O(SIDE) and one call of `is_robot` for
+    /// each range.
     pub fn observe<S: Scalar>(
         &mut self,
         frame: &GridFrame<S>,
@@ -110,7 +116,8 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         };
         self.follow(own);
         self.fade(now);
-        // From here on in cells from the square's corner: small numbers, whatever the place in the world.
+        // From here on in cells from the square's corner: small numbers, at any position in the
+        // world.
         let half = frame.cell_m * S::HALF;
         let corner_m = frame.center(self.origin) - Vec2::new(half, half);
         let robot = (place_m - corner_m) * per_cell;
@@ -127,8 +134,9 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         true
     }
 
-    /// What another sensor says of the ground in `cell`: impassability, or [`BLOCKED`] for a cliff. It holds until it is said otherwise or the cell leaves
-    /// the square, because ranges tell nothing of it. Whether the cell is in the square.
+    /// Sets the ground in `cell` from another sensor: impassability, or [`BLOCKED`] for a cliff.
+    /// The value is kept until it is set again or the cell leaves the square, since ranges do not
+    /// show the ground. Returns whether the cell is in the square.
     pub fn set_ground(&mut self, cell: Cell, ground: u8) -> bool {
         let Some(known) = self.at_mut(cell) else {
             return false;
@@ -162,8 +170,9 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         self.show();
     }
 
-    /// For [`OnGrid::window`](staya_controller::agent::OnGrid::window), and for walls
-    /// [`grid_walls`](staya_controller::obstacle::grid_walls). The robot's own cell is passable whatever the sensors say: it is there.
+    /// For [`OnGrid::window`](staya_controller::agent::OnGrid::window), and for walls by
+    /// [`grid_walls`](staya_controller::obstacle::grid_walls). The robot's own cell is always
+    /// passable, since the robot is there.
     #[must_use]
     pub fn window(&self) -> Option<Window<'_>> {
         let side = Self::SIDE_CELLS.cast_unsigned();
@@ -181,10 +190,11 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         self.known.get_mut(y)?.get_mut(x)
     }
 
-    /// The cells that a beam crosses are free; all in cells from the corner. `step` is half a cell long.
+    /// Marks the cells that a beam crosses as free; all in cells from the corner. `step` is half a
+    /// cell long.
     fn clear<S: Scalar>(&mut self, from: Vec2<S>, step: Vec2<S>, length: S) {
         let (mut place, mut gone) = (from, S::ZERO);
-        // A beam that goes on after so many steps has left the square.
+        // A beam that continues after this many steps has left the square.
         for _ in 0..SIDE.saturating_mul(4) {
             if !(gone < length && self.set(place, News::Free)) {
                 return;
@@ -194,7 +204,8 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         }
     }
 
-    /// Notes what this scan says of the cell at `place`, in cells from the corner; false beyond the square.
+    /// Stores this scan's observation of the cell at `place`, in cells from the corner; false
+    /// outside the square.
     fn set<S: Scalar>(&mut self, place: Vec2<S>, news: News) -> bool {
         let along = |at: S| usize::try_from(at.floor_to_i32()?).ok();
         let Some((x, y)) = along(place.x).zip(along(place.y)) else {
@@ -209,7 +220,6 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         true
     }
 
-    /// Makes evidence of what the scan said.
     fn judge(&mut self) {
         let params = self.params;
         for known in self.known.as_flattened_mut() {
@@ -223,7 +233,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         }
     }
 
-    /// Takes one from each cell for each span that has passed.
+    /// Subtracts one point from each cell for each period that has passed.
     fn fade(&mut self, now: Instant) {
         let Some(mut last) = self.faded else {
             self.faded = Some(now);
@@ -231,7 +241,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         };
         let every = self.params.fade_every;
         let mut loss: u8 = 0;
-        // After `ceiling` spans nothing is left to fade.
+        // After `ceiling` periods nothing is left to fade.
         while every > Duration::ZERO && now.since(last) >= every && loss < self.params.ceiling {
             last = last + every;
             loss = loss.saturating_add(1);
@@ -239,7 +249,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         if loss == 0 && now.since(last) >= Duration::ZERO {
             return;
         }
-        // After a long pause, or with a clock that was set back, time begins anew.
+        // After a long pause, or if the clock was set back, the period restarts.
         self.faded = Some(if loss == self.params.ceiling || loss == 0 { now } else { last });
         for known in self.known.as_flattened_mut() {
             known.evidence = known.evidence.saturating_sub(loss);

@@ -1,8 +1,9 @@
-//! From a range sensor to what the controller wants to see: a window of terrain, and obstacles.
+//! From a range sensor to the controller's inputs: a window of terrain, and obstacles.
 //!
-//! A [`Scan`] is what a turning lidar or a ring of sonar or infrared sensors measured. [`LocalMap`] remembers it as
-//! cells for guidance on the grid; [`outline`] makes walls and balls of it at once, for collision avoidance in the
-//! plane. Both leave out what is known to be another robot, whose packets say more about it.
+//! A [`Scan`] holds the measurements of a rotating lidar or a ring of sonar or infrared sensors.
+//! [`LocalMap`] stores them as cells for guidance on the grid; [`outline`] converts them directly
+//! to walls and balls, for collision avoidance in the plane. Both exclude known robots, whose
+//! packets are more precise.
 
 mod local_map;
 mod outline;
@@ -19,19 +20,20 @@ use staya_controller::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Scan<'a, S> {
-    /// Where the first one looks, counter-clockwise from the robot's nose.
+    /// Direction of the first range, counter-clockwise from the robot's nose.
     pub first_rad: S,
-    /// From one to the next; negative when the sensor turns clockwise.
+    /// Angle from one to the next; negative if the sensor turns clockwise.
     pub step_rad: S,
-    /// Metres. Those below [`Self::min_m`] and what is not a number are no measurement; those of [`Self::max_m`] or
-    /// more (also infinite ones) say that nothing is nearer than `max_m`.
+    /// Metres. Ranges below [`Self::min_m`] or not a number are invalid; those of [`Self::max_m`]
+    /// or more (also infinite ones) show that nothing is nearer than `max_m`.
     pub ranges_m: &'a [S],
-    /// The least range that means something.
+    /// The least valid range.
     pub min_m: S,
-    /// The range that the sensor sees for sure.
+    /// The range within which the sensor reliably detects objects.
     pub max_m: S,
-    /// Where the sensor is, seen from the robot's reference point (for two wheels with
-    /// [`LookAhead`](crate::drive::LookAhead): from the point ahead): x to the nose, y to the left, metres.
+    /// Position of the sensor relative to the robot's reference point (for two wheels with
+    /// [`LookAhead`](crate::drive::LookAhead): to the point ahead): x to the nose, y to the left,
+    /// metres.
     pub mount_m: Vec2<S>,
 }
 
@@ -39,18 +41,18 @@ pub struct Scan<'a, S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ray<S> {
-    /// Where the sensor is, metres.
+    /// Position of the sensor, metres.
     pub from_m: Vec2<S>,
-    /// Where it looks: length 1.
+    /// Direction of the beam: length 1.
     pub ahead: Vec2<S>,
-    /// How far it is free, metres.
+    /// Free distance, metres.
     pub free_m: S,
-    /// Whether something is there at the end.
+    /// Whether the beam ends at an object.
     pub is_hit: bool,
 }
 
 impl<S: Scalar> Ray<S> {
-    /// Where it ends, metres.
+    /// The end of the beam, metres.
     #[must_use]
     pub fn end_m(&self) -> Vec2<S> {
         self.from_m + self.ahead * self.free_m
@@ -58,8 +60,8 @@ impl<S: Scalar> Ray<S> {
 }
 
 impl<'a, S: Scalar> Scan<'a, S> {
-    /// What each range says, `None` for those that say nothing, of a robot at `heading_rad`. O(1) for each: one sine
-    /// and cosine.
+    /// Converts each range for a robot at `heading_rad`; `None` for invalid ranges. O(1) each: one
+    /// sine and cosine.
     pub fn rays(&self, heading_rad: S) -> impl Iterator<Item = Option<Ray<S>>> + 'a {
         let scan = *self;
         let (sin, cos) = heading_rad.sin_cos();
@@ -74,12 +76,12 @@ impl<'a, S: Scalar> Scan<'a, S> {
     }
 }
 
-/// Whether what is seen at `place_m`, relative to the robot at `own`, is one of the known neighbours: within `margin_m`
-/// of its ball, where its last packet leads it by `now`, gone on for at most `longest`. The margin covers how wrong
-/// that may be.
+/// Whether an object seen at `place_m`, relative to the robot at `own`, is a known neighbour:
+/// within `margin_m` of its ball, extrapolated from its last packet to `now`, but at most by
+/// `longest`. The margin covers the error of this extrapolation.
 ///
-/// For [`LocalMap::observe`] and [`outline`]: `|place| is_neighbor(agent.neighbors(), own, now, longest, place,
-/// margin)`. O(neighbours).
+/// For [`LocalMap::observe`] and [`outline`]: `|place| is_neighbor(agent.neighbors(), own, now,
+/// longest, place, margin)`. O(neighbours).
 #[must_use]
 pub fn is_neighbor<S: Scalar, P>(
     neighbors: &[Neighbor<S, P>],

@@ -1,8 +1,8 @@
 //! Walls and balls from one scan, for collision avoidance.
 //!
-//! Source: sleeve fitting, Z. Zhao, A. Saalfeld 1997, "Linear-time sleeve-fitting polyline simplification algorithms":
-//! from the first point of a wall the directions that pass all later points within the tolerance are an angle that only
-//! shrinks, so that each point costs the same.
+//! Source: sleeve fitting, Z. Zhao, A. Saalfeld 1997, "Linear-time sleeve-fitting polyline
+//! simplification algorithms". From the first point of a wall, the directions that pass all later
+//! points within the tolerance form an angle that only shrinks, so each point takes constant work.
 
 use super::{Ray, Scan};
 use heapless::Vec;
@@ -14,22 +14,23 @@ use staya_controller::scalar::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct OutlineParams<S> {
-    /// A wall may miss the hits that it stands for by so much, metres: some times the sensor's noise. Less: more walls
-    /// for the same land.
+    /// Maximum distance between a wall and its hits, metres: a few times the sensor's noise. A
+    /// smaller value gives more walls for the same land.
     pub tolerance_m: S,
-    /// Hits of neighbouring beams that are farther apart are two things, metres. No more than what the robot fits
-    /// through.
+    /// Hits of neighbouring beams that are farther apart belong to different objects, metres. At
+    /// most the width that the robot fits through.
     pub gap_m: S,
-    /// Radius of the ball for a hit that stands alone, metres: half the distance of beams at the range that matters.
-    /// More than 0.
+    /// Radius of the ball for a single hit, metres: half the distance of beams at the relevant
+    /// range. More than 0.
     pub point_m: S,
 }
 
-/// What the scan shows as obstacles relative to the robot, the nearest first, at most `K`: the farthest are left out.
-/// Hits that `is_robot` (place relative to the robot, metres along the world's axes) names are left out too.
+/// Converts a scan to obstacles relative to the robot, nearest first, at most `K`; the farthest are
+/// omitted. Hits for which `is_robot` (position relative to the robot, metres along the world's
+/// axes) returns true are omitted, too.
 ///
-/// The first and the last beam of a full turn are not joined. Bounded work: O(1) and one call of `is_robot` for each
-/// range, O(K) for each wall.
+/// The first and the last beam of a full turn are not joined. Bounded work: O(1) and one call of
+/// `is_robot` for each range, O(K) for each wall.
 #[must_use]
 pub fn outline<S: Scalar, const K: usize>(
     scan: &Scan<'_, S>,
@@ -42,7 +43,7 @@ pub fn outline<S: Scalar, const K: usize>(
     for ray in scan.rays(heading_rad) {
         let end = ray.filter(|ray| ray.is_hit).map(|ray: Ray<S>| ray.end_m());
         let Some(end) = end.filter(|end| !is_robot(*end)) else {
-            // A beam that says nothing, or goes through, parts what is left and right of it.
+            // An invalid or free beam separates the hits on its left and right.
             if let Some(wall) = wall.take() {
                 add(&mut nearest, wall.obstacle(params));
             }
@@ -56,7 +57,7 @@ pub fn outline<S: Scalar, const K: usize>(
                     sleeve
                 } else {
                     add(&mut nearest, sleeve.obstacle(params));
-                    // What goes on round a corner begins at the corner.
+                    // A wall that continues around a corner begins at the corner.
                     if is_near {
                         let mut next = Sleeve::at(sleeve.last);
                         let _ = next.extend(end, params.tolerance_m);
@@ -73,19 +74,19 @@ pub fn outline<S: Scalar, const K: usize>(
     }
     let mut obstacles = Vec::new();
     for (_, obstacle) in &nearest {
-        // There is room: both hold `K`. (`collect` would have a panic for the case that not.)
+        // It fits: both hold `K`. (`collect` would contain a panic for the other case.)
         let _ = obstacles.push(*obstacle);
     }
     obstacles
 }
 
-/// A wall that may grow.
 struct Sleeve<S> {
     first: Vec2<S>,
     last: Vec2<S>,
-    /// The rightmost and the leftmost direction that pass all points; `None` while all are at the first one.
+    /// The rightmost and the leftmost direction that pass all points; `None` while all are at the
+    /// first one.
     bounds: Option<[Vec2<S>; 2]>,
-    /// How far from the first one the farthest is.
+    /// Distance of the farthest point from the first.
     reach: S,
 }
 
@@ -94,7 +95,8 @@ impl<S: Scalar> Sleeve<S> {
         Self { first, last: first, bounds: None, reach: S::ZERO }
     }
 
-    /// Goes on to `point` if the wall to it passes all points between within `tolerance`; whether it did.
+    /// Extends the wall to `point` if the result passes all points between within `tolerance`;
+    /// returns whether it did.
     fn extend(&mut self, point: Vec2<S>, tolerance: S) -> bool {
         let way = point - self.first;
         let length = way.norm();
@@ -102,7 +104,7 @@ impl<S: Scalar> Sleeve<S> {
         let mut own = [way - aside, way + aside];
         if let Some([right, left]) = self.bounds {
             let is_within = right.det(way) >= S::ZERO && way.det(left) >= S::ZERO;
-            // One that came back would leave the farthest point out.
+            // A wall that came back would omit the farthest point.
             if !is_within || right.dot(way) < S::ZERO || length < self.reach {
                 return false;
             }
@@ -112,7 +114,7 @@ impl<S: Scalar> Sleeve<S> {
                 if own_left.det(left) > S::ZERO { own_left } else { left },
             ];
         }
-        // A point nearer than the tolerance bounds nothing.
+        // A point nearer than the tolerance gives no bound.
         if length > tolerance || self.bounds.is_some() {
             self.bounds = Some(own);
             self.reach = length;
@@ -129,7 +131,7 @@ impl<S: Scalar> Sleeve<S> {
     }
 }
 
-/// Puts an obstacle where it belongs by its distance; in a full list the farthest has no place.
+/// Inserts an obstacle by its distance; a full list drops the farthest.
 fn add<S: Scalar, const K: usize>(nearest: &mut Vec<(S, Obstacle<S>), K>, obstacle: Obstacle<S>) {
     let Some((_, distance)) = obstacle.nearest_point() else {
         return;

@@ -12,7 +12,7 @@ fn scan(first_rad: f64, step_rad: f64, ranges_m: &[f64]) -> Scan<'_, f64> {
     Scan { first_rad, step_rad, ranges_m, min_m: 0.05, max_m: 4.0, mount_m: Vec2::ZERO }
 }
 
-/// Around the robot's cell (10, 10), whose middle this is.
+/// The middle of the robot's cell (10, 10).
 fn middle() -> Vec2<f64> {
     FRAME.center(Cell::new(10, 10))
 }
@@ -25,7 +25,6 @@ fn look(map: &mut LocalMap, heading: f64, scan: &Scan<'_, f64>) {
     assert!(map.observe(&FRAME, middle(), heading, scan, NOW, |_| false));
 }
 
-/// Blocked cells, relative to the robot's.
 fn blocked<const SIDE: usize>(map: &LocalMap<SIDE>) -> Vec<(i16, i16)> {
     let window = map.window().unwrap();
     let cells = window.cells().iter().zip(0i16..);
@@ -44,7 +43,6 @@ fn the_second_hit_blocks_a_cell_and_the_beam_clears_it_when_it_is_gone() {
     assert_eq!(blocked(&map), [(3, 0)]);
     look(&mut map, 0.0, &scan(0.0, 0.0, &open));
     assert!(blocked(&map).is_empty());
-    // At the ceiling it takes ten scans.
     for _ in 0..50 {
         look(&mut map, 0.0, &scan(0.0, 0.0, &wall));
     }
@@ -56,7 +54,7 @@ fn the_second_hit_blocks_a_cell_and_the_beam_clears_it_when_it_is_gone() {
 }
 
 #[test]
-fn bearings_count_from_the_nose_and_wrap() {
+fn bearings_start_at_the_nose_and_wrap() {
     let quarter = core::f64::consts::FRAC_PI_2;
     let cases = [
         (0.0, quarter, (0, 3)),
@@ -68,7 +66,7 @@ fn bearings_count_from_the_nose_and_wrap() {
     for (heading, bearing, cell) in cases {
         let mut map = map();
         for _ in 0..2 {
-            // The second range of a sensor that turns so.
+            // The second range of a sensor in this orientation.
             look(&mut map, heading, &scan(0.0, bearing, &[f64::NAN, 1.5]));
         }
         assert_eq!(blocked(&map), [cell], "{heading} {bearing}");
@@ -76,7 +74,7 @@ fn bearings_count_from_the_nose_and_wrap() {
 }
 
 #[test]
-fn ranges_that_say_nothing_change_nothing() {
+fn invalid_ranges_change_nothing() {
     let mut map = map();
     for _ in 0..5 {
         look(&mut map, 0.0, &scan(0.0, 0.0, &[1.5]));
@@ -100,7 +98,7 @@ fn ranges_that_say_nothing_change_nothing() {
 #[test]
 fn a_hit_wins_over_the_beams_that_cross_its_cell() {
     let mut map = map();
-    // Two beams of almost the same direction: one ends in the cell, one goes on.
+    // Two beams of almost equal direction: one ends in the cell, one continues.
     for _ in 0..2 {
         look(&mut map, 0.0, &scan(0.0, 0.01, &[1.5, 3.0]));
         look(&mut map, 0.0, &scan(0.01, -0.01, &[3.0, 1.5]));
@@ -109,7 +107,7 @@ fn a_hit_wins_over_the_beams_that_cross_its_cell() {
 }
 
 #[test]
-fn other_robots_are_not_land() {
+fn other_robots_do_not_block_cells() {
     let mut map = map();
     let is_robot = |place: Vec2<f64>| (place - Vec2::new(1.5, 0.0)).norm() < 0.2;
     for _ in 0..9 {
@@ -120,7 +118,7 @@ fn other_robots_are_not_land() {
 }
 
 #[test]
-fn what_is_known_stays_where_it_is_when_the_robot_goes() {
+fn cells_stay_in_place_when_the_robot_moves() {
     let mut map = map();
     for _ in 0..2 {
         look(&mut map, 0.0, &scan(0.0, core::f64::consts::PI, &[1.5, 2.4]));
@@ -137,7 +135,7 @@ fn what_is_known_stays_where_it_is_when_the_robot_goes() {
 }
 
 #[test]
-fn what_is_not_seen_fades_also_across_the_clocks_wrap() {
+fn unseen_evidence_fades_even_if_the_clock_wraps() {
     let mut map = map();
     for _ in 0..9 {
         look(&mut map, 0.0, &scan(0.0, 0.0, &[1.5]));
@@ -150,7 +148,7 @@ fn what_is_not_seen_fades_also_across_the_clocks_wrap() {
     assert_eq!(blocked(&map), [(3, 0)]);
     wait(&mut map, 10_000);
     assert!(blocked(&map).is_empty(), "15 less 10 is below 6");
-    // A long pause takes all, and does not loop.
+    // A long pause clears everything, without a loop.
     for _ in 0..9 {
         look(&mut map, 0.0, &scan(0.0, 0.0, &[1.5]));
     }
@@ -159,7 +157,7 @@ fn what_is_not_seen_fades_also_across_the_clocks_wrap() {
 }
 
 #[test]
-fn ground_is_what_other_sensors_say_and_ranges_do_not_change_it() {
+fn ground_is_set_by_other_sensors_and_ranges_do_not_change_it() {
     let mut map = map();
     assert!(map.set_ground(Cell::new(12, 10), BLOCKED));
     assert!(map.set_ground(Cell::new(10, 12), 7));
@@ -174,14 +172,15 @@ fn ground_is_what_other_sensors_say_and_ranges_do_not_change_it() {
 }
 
 #[test]
-fn the_sensor_need_not_be_in_the_middle() {
+fn the_sensor_may_be_mounted_off_centre() {
     let mut map = map();
     let mut scan = scan(0.0, 0.0, &[1.0]);
     scan.mount_m = Vec2::new(0.5, 0.5);
     for _ in 0..2 {
         look(&mut map, core::f64::consts::FRAC_PI_2, &scan);
     }
-    // The nose is north: half a metre north and half a metre west of the middle, then a metre north.
+    // The nose is north: half a metre north and half a metre west of the middle, then a metre
+    // north.
     assert_eq!(blocked(&map), [(-1, 3)]);
 }
 
@@ -219,11 +218,11 @@ fn room<const N: usize>() -> [f64; N] {
 }
 
 #[test]
-fn a_room_is_its_walls_the_nearest_first() {
+fn a_room_becomes_its_walls_nearest_first() {
     let ranges = room::<360>();
     let scan = scan(0.0, core::f64::consts::TAU / 360.0, &ranges);
     let walls = outline::<_, 16>(&scan, 0.0, &OUTLINE, |_| false);
-    // Five: the scan begins in the middle of the east wall. Corners may cost a short one each.
+    // Five: the scan begins in the middle of the east wall. Each corner may add a short one.
     assert!((5..=9).contains(&walls.len()), "{walls:?}");
     let distances: Vec<f64> = walls.iter().map(|w| w.nearest_point().unwrap().1).collect();
     assert!(distances.is_sorted());
@@ -234,8 +233,8 @@ fn a_room_is_its_walls_the_nearest_first() {
 }
 
 #[test]
-fn a_gap_parts_two_walls_and_a_lone_hit_is_a_ball() {
-    // Ahead at 1 m: three beams, a gap, a lone one.
+fn a_gap_separates_two_walls_and_a_single_hit_is_a_ball() {
+    // Ahead at 1 m: three beams, a gap, a single one.
     let ranges = [1.0, 1.0, 1.0, 4.0, f64::NAN, 1.0];
     let scan = scan(-0.2, 0.1, &ranges);
     let found = outline::<_, 8>(&scan, 0.0, &OUTLINE, |_| false);
@@ -248,9 +247,9 @@ fn a_gap_parts_two_walls_and_a_lone_hit_is_a_ball() {
 }
 
 #[test]
-fn a_wall_does_not_leave_out_what_its_end_came_back_from() {
-    // Beams a fifth of a degree apart, almost along a wall: the second hit lies 25 cm behind the first, the third 15 cm
-    // before it.
+fn a_wall_includes_its_farthest_point() {
+    // Beams a fifth of a degree apart, almost along a wall: the second hit lies 25 cm behind the
+    // first, the third 15 cm before it.
     let ranges = [1.0, 1.25, 1.1];
     let scan = scan(0.0, 0.0035, &ranges);
     let found = outline::<_, 8>(&scan, 0.0, &OUTLINE, |_| false);
@@ -263,7 +262,7 @@ fn a_wall_does_not_leave_out_what_its_end_came_back_from() {
 }
 
 #[test]
-fn neighbours_are_where_their_last_word_leads_and_as_large_as_they_say() {
+fn neighbours_are_extrapolated_with_the_radius_they_sent() {
     let beacon = staya_controller::wire::Beacon {
         position_mm: [3_000, 1_000, 0],
         velocity_mmps: [500, 0, 0],
@@ -283,7 +282,7 @@ fn neighbours_are_where_their_last_word_leads_and_as_large_as_they_say() {
     assert!(!is_neighbor::<f32, ()>(&[], own, NOW, Duration::ZERO, Vec2::ZERO, 9.0));
 }
 
-/// How far the hit is away that what was found misses most.
+/// The greatest distance of a hit from the obstacles found.
 fn misses(found: &[Obstacle<f64>], scan: &Scan<'_, f64>, heading: f64) -> f64 {
     let hits = scan.rays(heading).flatten().filter(|ray| ray.is_hit);
     let gap = |obstacle: &Obstacle<f64>, end: Vec2<f64>| match *obstacle {
@@ -304,7 +303,6 @@ fn misses(found: &[Obstacle<f64>], scan: &Scan<'_, f64>, heading: f64) -> f64 {
 proptest! {
     #[test]
     fn walls_miss_no_hit_by_more_than_the_tolerance(ranges in proptest::collection::vec(0.06f64..5.0, 1..60), wobble in 0.0f64..2.0, heading in -4.0f64..4.0) {
-        // From noise to a smooth room.
         let room = room::<60>();
         let ranges: Vec<f64> = ranges.iter().zip(room).map(|(noise, room)| room + (noise - 2.5) * wobble * wobble * wobble / 50.0).collect();
         let scan = scan(0.1, core::f64::consts::TAU / 60.0, &ranges);

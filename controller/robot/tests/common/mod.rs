@@ -1,4 +1,4 @@
-//! Pins that the world can see.
+//! Pins that the simulated world can read.
 
 use core::convert::Infallible;
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};

@@ -20,7 +20,7 @@ fn cos_sin(angle: f64) -> [f64; 2] {
     [cos, sin]
 }
 
-/// A neighbour at this place that flies with speed 2 along `heading`.
+/// A neighbour at this position that flies with speed 2 along `heading`.
 fn flying<S: Scalar>(id: u32, x: f64, y: f64, heading: f64) -> Nearby<S> {
     let [cos, sin] = cos_sin(heading);
     near(id, [x, y, 0.0], [2.0 * cos, 2.0 * sin, 0.0])
@@ -37,7 +37,6 @@ fn alone_a_boid_keeps_its_heading() {
         let far = [flying(2, 150.001, 0.0, 1.0), flying(3, 0.0, -151.0, 1.0)];
         assert!(is_close(paper().turn(OWN, heading, &far), heading));
     }
-    // Exactly at `closest` counts.
     assert!(paper().turn(OWN, 0.0, &[flying(2, 0.0, 150.0, 1.0)]) > 0.0);
 }
 
@@ -56,8 +55,8 @@ fn far_neighbours_turn_it_by_two_largest_turns_at_most() {
 
 #[test]
 fn mean_of_headings_is_taken_on_the_circle() {
-    // +170 and -170 degrees are 180 in the mean, not 0; places are symmetric, so that only the
-    // heading counts. The listing would have turned left, too, from +175 down to 0.
+    // +170 and -170 degrees have the mean 180, not 0; positions are symmetric, so that only the
+    // heading counts. The listing would also have turned left, from +175 down to 0.
     let both = [flying(2, 50.0, 0.0, 3.0), flying(3, -50.0, 0.0, -3.0)];
     assert!(is_close(paper().turn(OWN, 3.1, &both), PI));
     assert!(is_close(paper().turn(OWN, -3.1, &both), PI), "on (-pi, pi]");
@@ -65,7 +64,6 @@ fn mean_of_headings_is_taken_on_the_circle() {
 
 #[test]
 fn cohesion_turns_to_the_middle_and_not_away() {
-    // Same heading: only the middle counts.
     let left = [flying(2, 0.0, 100.0, 0.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &left), 0.05));
     let right = [flying(2, 60.0, -100.0, 0.0), flying(3, -60.0, -50.0, 0.0)];
@@ -74,7 +72,7 @@ fn cohesion_turns_to_the_middle_and_not_away() {
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, -50.0, 0.0, 0.0)]), 0.05));
     let around = [flying(2, 50.0, 50.0, 0.0), flying(3, -50.0, -50.0, 0.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &around), 0.0));
-    // A neighbour that stands has no heading, but a place.
+    // A stationary neighbour has no heading, but a position.
     let stands = [near(2, [0.0, -90.0, 0.0], [0.0; 3])];
     assert!(is_close(paper().turn(OWN, 0.0, &stands), -0.05));
 }
@@ -88,7 +86,6 @@ fn crowded_boids_turn_away_from_the_heading_of_the_nearest() {
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 20.0, 0.0, -1.0)]), 0.02));
     // Exactly at `crowded` is not crowded: it turns to the other.
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 30.0, 0.0, 1.0)]), 0.0));
-    // Head on: both to the right.
     assert!(is_close(paper().turn(OWN, 0.0, &[near(2, [9.0, 0.0, 0.0], [-2.0, 0.0, 0.0])]), -0.02));
 }
 
@@ -97,7 +94,7 @@ fn boids_of_the_same_heading_turn_away_from_each_others_side() {
     let turn = |x, y| paper().turn(OWN, 0.0, &[near(2, [x, y, 0.0], [2.0, 0.0, 0.0])]);
     assert!(is_close(turn(3.0, 5.0), -0.02) && is_close(turn(-3.0, -5.0), 0.02));
     assert!(is_close(turn(5.0, 0.0), -0.02) && is_close(turn(-5.0, 0.0), 0.02));
-    // In one place: opposite ways, as `tie` says.
+    // In one place: opposite directions, by `tie`.
     let other = [near(1, [0.0; 3], [2.0, 0.0, 0.0])];
     let theirs = paper().turn(RobotId(2), 0.0, &other);
     assert!(is_close(turn(0.0, 0.0), -theirs));
@@ -106,7 +103,7 @@ fn boids_of_the_same_heading_turn_away_from_each_others_side() {
 }
 
 #[test]
-fn senseless_input_counts_nothing_and_the_answer_is_a_heading() {
+fn invalid_input_is_ignored_and_the_result_is_a_heading() {
     let good = flying(2, 0.0, 100.0, 0.5);
     let expected = paper().turn(OWN, 0.0, &[good]);
     for bad in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
@@ -121,7 +118,7 @@ fn senseless_input_counts_nothing_and_the_answer_is_a_heading() {
     }
     assert_eq!(paper().steer(OWN, Vec2::ZERO, &[]), Vec2::new(1.0, 0.0));
     assert_eq!(paper().steer(OWN, Vec2::new(0.0, 9.0), &[]), Vec2::new(0.0, 1.0));
-    // Parameters that make no sense: nobody counts, nothing turns.
+    // Invalid parameters: no neighbour counts, nothing turns.
     for bad in [f64::NAN, -1.0, 0.0] {
         let params = BoidsParams::new(bad, bad, bad, bad);
         assert!(is_close(params.turn(OWN, 0.7, &[flying(2, 0.0, 0.0, 0.0)]), 0.7));
@@ -132,11 +129,11 @@ fn senseless_input_counts_nothing_and_the_answer_is_a_heading() {
 }
 
 #[test]
-fn wide_turns_reach_what_is_behind() {
+fn wide_turns_reach_the_direction_behind() {
     for (limit, expected) in [(3.0, 3.0), (PI, PI - 0.05), (9.0, PI - 0.05), (2.0, 2.0)] {
         let params = BoidsParams::new(1.0, 150.0, limit, 0.0);
         let [x, y] = cos_sin(PI - 0.05);
-        // Both heading and place are there: two turns of 2 reach it as well.
+        // Heading and position both point there: two turns of 2 reach it as well.
         let behind = [near(2, [90.0 * x, 90.0 * y, 0.0], [x, y, 0.0])];
         let got = params.turn(OWN, 0.0, &behind);
         let twice = if limit < PI - 0.05 { PI - 0.05 } else { expected };
@@ -177,7 +174,7 @@ fn torus_has_no_edges() {
 }
 
 #[test]
-fn others_are_seen_at_the_image_that_is_nearest() {
+fn others_are_seen_at_their_nearest_image() {
     let torus = Torus { size_m: [800.0_f32, 600.0] };
     let place = |x, y| Position::from_mm([x, y, 7]);
     for (other, own, seen) in [
@@ -188,7 +185,6 @@ fn others_are_seen_at_the_image_that_is_nearest() {
         // Half a turn: each on its own side of the other.
         (place(500_000, 300_000), place(100_000, 0), place(500_000, 300_000)),
         (place(100_000, 0), place(500_000, 300_000), place(100_000, 0)),
-        // Places that differ by more than 32 bits hold.
         (place(i32::MAX, 0), place(i32::MIN, 0), place(i32::MAX, 0)),
     ] {
         assert_eq!(torus.image(other, own), seen, "{other:?} from {own:?}");
@@ -199,7 +195,7 @@ fn others_are_seen_at_the_image_that_is_nearest() {
     }
 }
 
-/// The rule in its own words, with angles: what `steer` must agree with.
+/// Reference implementation of the rule with angles, which `steer` must match.
 fn by_angles(heading: f64, others: &[Nearby<f64>]) -> f64 {
     let wrapped = |angle: f64| {
         let (sin, cos) = Scalar::sin_cos(angle);
@@ -263,7 +259,7 @@ fn order<S: Scalar>() -> f64 {
 }
 
 #[test]
-fn boids_come_to_fly_the_same_way_in_any_number_type() {
+fn boids_align_in_any_number_type() {
     for order in [order::<f32>(), order::<f64>(), order::<Q16>()] {
         assert!(order > 0.8, "{order}");
     }
@@ -285,14 +281,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
-    fn vectors_do_what_angles_would(heading in -3.1..3.1_f64, others in others()) {
+    fn vectors_agree_with_angles(heading in -3.1..3.1_f64, others in others()) {
         let got = paper().turn(OWN, heading, &others);
         prop_assert!(difference(got, by_angles(heading, &others)) < 1e-9);
         prop_assert!(difference(got, heading) < 0.1 + 1e-9);
     }
 
     #[test]
-    fn turning_and_mirroring_the_world_turns_and_mirrors_the_answer(
+    fn turning_and_mirroring_the_world_turns_and_mirrors_the_result(
         heading in -3.1..3.1_f64, by in -3.1..3.1_f64, others in others(),
     ) {
         let plain = paper().turn(OWN, heading, &others);
@@ -324,7 +320,8 @@ proptest! {
             let params = BoidsParams::<S>::paper(S::ONE);
             params.turn(OWN, number(heading), &others).to_f64()
         }
-        // Not where rounding decides: who is nearest or near enough, and what is straight behind.
+        // Excludes cases that rounding decides: which neighbour is nearest or near enough, and what
+        // is straight behind.
         let mut distances: Vec<_> = others.iter().map(|o| o.offset_m.norm()).collect();
         distances.sort_by(f64::total_cmp);
         prop_assume!(distances.iter().all(|d| (d - 150.0).abs() > 0.01 && (d - 30.0).abs() > 0.01));
@@ -338,7 +335,7 @@ proptest! {
     }
 
     #[test]
-    fn wrapped_places_and_shortest_ways_are_in_range(x in any::<f32>(), y in -9000.0..9000.0_f32, w in 0.1..900.0_f32) {
+    fn wrapped_positions_and_shortest_offsets_are_in_range(x in any::<f32>(), y in -9000.0..9000.0_f32, w in 0.1..900.0_f32) {
         fn holds<S: Scalar>(x: f64, y: f64, w: f64) -> Result<(), TestCaseError> {
             let Some(x) = S::from_f64(x) else { return Ok(()) };
             let (y, w) = (number::<S>(y), number::<S>(w));
@@ -355,7 +352,7 @@ proptest! {
     }
 
     #[test]
-    fn the_answer_is_a_unit_vector_whatever_the_bits(bits: [u32; 6], limits: [u32; 4]) {
+    fn the_result_is_a_unit_vector_for_any_bits(bits: [u32; 6], limits: [u32; 4]) {
         let f = bits.map(f32::from_bits);
         let [a, b, c, d] = limits.map(f32::from_bits);
         let other = Nearby { offset_m: vec3([0.0, 1.0, 0.0]), ..near(2, [0.0; 3], [0.0; 3]) };
@@ -372,12 +369,12 @@ proptest! {
 }
 
 #[test]
-fn strangers_are_not_followed_but_made_way_for() {
+fn strangers_are_avoided_but_not_followed() {
     let stranger = |y| Nearby { is_stranger: true, ..flying::<f64>(2, 0.0, y, PI / 2.0) };
     assert!(is_close(paper().turn(OWN, 0.0, &[stranger(100.0)]), 0.0));
     let crowded = flying(2, 0.0, 20.0, PI / 2.0);
     assert!(is_close(paper().turn(OWN, 0.0, &[stranger(20.0)]), paper().turn(OWN, 0.0, &[crowded])));
-    // Neither does one spoil the mean of the others.
+    // Nor does it affect the mean of the others.
     let friend = flying(3, 0.0, -100.0, -0.03);
     assert!(is_close(paper().turn(OWN, 0.0, &[stranger(100.0), friend]), paper().turn(OWN, 0.0, &[friend])));
 }

@@ -41,7 +41,7 @@ fn assert_close(got: V, expected: [f64; 3]) {
 }
 
 #[test]
-fn goal_pulls_with_its_gain_cut_to_the_speed() {
+fn goal_pulls_with_its_gain_limited_to_the_speed() {
     let far = goal(30.0, 40.0, 0.0);
     assert_close(wished([0.5, 0.0, 0.0], far, &[]), [0.6, 0.8, 0.0]);
     assert_close(wished([150.0, 0.0, 0.0], far, &[]), [1.2, 1.6, 0.0]);
@@ -53,7 +53,6 @@ fn goal_pulls_with_its_gain_cut_to_the_speed() {
 
 #[test]
 fn last_step_ends_on_the_goal() {
-    // A step is 2 m/s * 0.02 s = 0.04 m.
     for gain in [1.0, 150.0] {
         let got = wished([gain, 0.0, 0.0], goal(0.01, 0.0, 0.0), &[]);
         assert_close(got * 0.02, [0.01, 0.0, 0.0]);
@@ -80,14 +79,14 @@ fn repulsion_grows_with_the_square_and_is_held_below_half_the_least_distance() {
     {
         assert!((push(distance) - expected).abs() < 1e-9, "{distance}");
     }
-    // Sums over neighbours; negative attracts.
+    // Sums over neighbours; a negative gain attracts.
     let around = [at(10.0, 0.0), at(0.0, 10.0)];
     assert_close(wished([0.0, 0.0, 0.1], None, &around), [-0.2, -0.2, 0.0]);
     assert_close(wished([0.0, 0.0, -0.1], None, &around), [0.2, 0.2, 0.0]);
 }
 
 #[test]
-fn robots_in_one_place_go_opposite_ways() {
+fn robots_in_one_place_separate_in_opposite_directions() {
     let push = |own: u32, other: u32| {
         let own = Body { id: RobotId(own), ..body([0.0; 3]) };
         let coincident = near(other, [0.0; 3], [0.0; 3]);
@@ -107,7 +106,7 @@ fn three_rules_add_up_before_the_cut() {
 }
 
 #[test]
-fn senseless_input_moves_nobody() {
+fn invalid_input_gives_no_motion() {
     let good = params::<f64>([1.0, 1.0, 1.0]);
     let bad = [
         GoalParams { goal_gain: f64::NAN, ..good },
@@ -140,7 +139,7 @@ fn senseless_input_moves_nobody() {
 }
 
 #[test]
-fn goals_are_full_at_their_capacity_and_empty_ones_lead_nowhere() {
+fn goals_are_full_at_capacity_and_an_empty_list_has_no_destination() {
     let mut none = Goals::<0>::new();
     assert_eq!(none.push(HERE), Err(Full));
     assert_eq!((none.centroid(), none.current()), (None, None));
@@ -183,7 +182,6 @@ fn robot_goes_to_the_middle_then_to_the_goal_it_draws() {
     let index = goals.update(on_edge, 0.5, 1, robot).unwrap();
     assert_eq!(goals.stage(), Stage::Goal(index));
     assert_eq!(goals.current(), Some(goals.as_slice()[index]));
-    // It stays with it, and follows it when it moves.
     assert_eq!(goals.update(on_edge, 0.5, 1, robot), None);
     let moved = Position::from_mm([9, 9, 9]);
     assert!(goals.set_goal(index, moved));
@@ -195,7 +193,7 @@ fn robot_goes_to_the_middle_then_to_the_goal_it_draws() {
 }
 
 #[test]
-fn robots_draw_equal_shares_and_draw_anew_after_a_restart() {
+fn goals_are_chosen_uniformly_and_again_after_a_restart() {
     let mut all = Goals::<3>::new();
     for _ in 0..3 {
         all.push(HERE).unwrap();
@@ -215,7 +213,7 @@ fn robots_draw_equal_shares_and_draw_anew_after_a_restart() {
 }
 
 #[test]
-fn a_flock_gathers_in_the_middle_and_parts_to_its_three_goals() {
+fn a_flock_gathers_in_the_middle_and_splits_to_its_three_goals() {
     const STEP_S: f64 = 0.1;
     let params = GoalParams::<f64>::new(1.0, 1.0);
     let mut all = Goals::<3>::new();
@@ -267,7 +265,7 @@ fn answer<S: Scalar>(gains: [f64; 3], way: [f64; 2], seen: &[[f64; 2]]) -> V {
 
 proptest! {
     #[test]
-    fn turning_mirroring_and_order_change_nothing_else(
+    fn the_result_turns_and_mirrors_with_the_world_and_ignores_order(
         gains in [-2.0..2.0_f64, -2.0..2.0, -1.0..1.0], way in [-99..99_i32, -99..99], seen in seen(),
     ) {
         // A quarter turn and a mirror, so that the goal's millimetres turn exactly.
@@ -290,7 +288,7 @@ proptest! {
     fn f32_and_q16_agree_with_f64(
         gains in [0.1..1.0_f64, 0.1..1.0, 0.0..0.5], way in [1..99_i32, -99..99], seen in seen(),
     ) {
-        // The direction of a sum near 0 is anything.
+        // The direction of a sum near 0 is arbitrary.
         let (x, y) = seen.iter().fold((0.0, 0.0), |(x, y), v| (x + v[0], y + v[1]));
         prop_assume!(x * x + y * y > 1.0);
         prop_assume!(seen.iter().all(|[x, y]| ((x * x + y * y).sqrt() - 40.0).abs() > 0.001));
@@ -301,7 +299,7 @@ proptest! {
     }
 
     #[test]
-    fn the_answer_is_finite_and_no_faster_than_allowed_whatever_the_bits(bits: [u32; 9]) {
+    fn the_result_is_finite_and_within_the_speed_for_any_bits(bits: [u32; 9]) {
         let f = bits.map(f32::from_bits);
         let params = GoalParams { goal_gain: f[0], center_gain: f[1], repulsion_gain: f[2], ..params([0.0; 3]) };
         let other = Nearby { offset_m: Vec3::new(f[3], f[4], f[5]), ..near(2, [0.0; 3], [0.0; 3]) };
@@ -313,7 +311,7 @@ proptest! {
 }
 
 #[test]
-fn strangers_push_and_are_not_of_the_middle() {
+fn strangers_push_but_do_not_count_for_the_middle() {
     let stranger = |x, y| Nearby { is_stranger: true, ..at(x, y) };
     assert_eq!(wished([0.0, 1.0, 0.0], None, &[stranger(30.0, 0.0)]), V::ZERO);
     assert_eq!(wished([0.0, 1.0, 0.0], None, &[stranger(30.0, 0.0), at(0.0, 30.0)]).x, 0.0);

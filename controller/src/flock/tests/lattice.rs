@@ -48,7 +48,6 @@ fn sigma_norm_of_the_lattice_distances_is_that_of_the_formula() {
     assert!(is_close(sigma_norm(17.64).sigma, D_BETA));
     assert_eq!(sigma_norm(0.0).sigma, 0.0);
     assert_eq!(sigma_norm(0.0).slope, 1.0);
-    // sqrt(1 + 0.1 * 30) = 2.
     assert!(is_close(sigma_norm(30.0).sigma, 10.0) && is_close(sigma_norm(30.0).slope, 0.5));
 }
 
@@ -75,7 +74,7 @@ fn sigmoids_have_their_known_values_and_bounds() {
     assert_eq!(sigma_1(-Q16::MAX), -Q16::ONE);
     let c = sigmoid_shift(5.0, 10.0).unwrap();
     assert!(is_close(c, 0.353_553_390_593_273_8));
-    // Uneven: phi(0) is 0 all the same; bounds are -b and a.
+    // Uneven: phi(0) is 0 nevertheless; bounds are -b and a.
     assert!(phi(0.0, 5.0, 10.0, c).abs() < 1e-12);
     assert!(is_close(phi(-2.0, 5.0, 10.0, c), -8.910_264_284_766_406));
     assert!((phi(-1e9, 5.0, 10.0, c) + 10.0).abs() < 1e-6);
@@ -100,7 +99,8 @@ fn action_functions_vanish_where_the_paper_says() {
     assert!(at(0.0) < -1.98 && at(0.0) > -2.0);
 }
 
-/// Distances and c phi_alpha n_ij, c phi_beta n^ with c = 1: the paper's formulas, computed apart.
+/// Distances and c phi_alpha n_ij, c phi_beta n^ with c = 1: the paper's formulas, computed
+/// separately.
 const ALPHA_KNOWN: [(f64, f64); 3] =
     [(1.0, -4.754_848_738_066_416), (3.5, -11.462_445_668_060_493), (7.7, 0.625_252_368_520_888)];
 const BETA_KNOWN: [(f64, f64); 3] =
@@ -135,14 +135,13 @@ fn force_of_an_obstacle_has_its_known_values() {
         assert!((facing(&params, [0.0; 3], wall).x + expected).abs() < 1e-8);
     }
     assert_eq!(facing(&params, [0.0; 3], ball(7.2, 3.0)), V::ZERO, "exactly at d'");
-    // Algorithms 1 and 2 know no obstacles.
     for algorithm in [Algorithm::One, Algorithm::Two] {
         assert_eq!(facing(&bare(algorithm), [0.0; 3], ball(4.0, 3.0)), V::ZERO);
     }
 }
 
 #[test]
-fn beta_agents_have_the_places_and_velocities_of_the_lemma() {
+fn beta_agents_have_the_positions_and_velocities_of_the_lemma() {
     let v = Vec3::new(2.0, 3.0, 1.0);
     // A ball of radius 2 at distance 5: mu = 2/5, P keeps what is across.
     let agent = beta_agent(&ball(5.0, 2.0), v).unwrap();
@@ -152,7 +151,7 @@ fn beta_agents_have_the_places_and_velocities_of_the_lemma() {
     let plane = Obstacle::Plane { normal: Vec3::new(0.0, 0.0, 1.0), distance_m: 4.0 };
     let agent = beta_agent(&plane, v).unwrap();
     assert_eq!((agent.distance_m, agent.velocity_mps), (4.0, Vec3::new(2.0, 3.0, 0.0)));
-    // Beside a wall as at a plane, beyond its end as at a post.
+    // Beside a wall like a plane, beyond its end like a post.
     let wall = |y| Obstacle::Wall([Vec2::new(2.0, y), Vec2::new(2.0, y + 5.0)]);
     let agent = beta_agent(&wall(-1.0), v).unwrap();
     assert_eq!(agent.velocity_mps, Vec3::new(0.0, 3.0, 1.0));
@@ -162,20 +161,20 @@ fn beta_agents_have_the_places_and_velocities_of_the_lemma() {
 }
 
 #[test]
-fn whoever_is_inside_an_obstacle_is_pushed_out_along_its_normal() {
+fn a_robot_inside_an_obstacle_is_pushed_out_along_its_normal() {
     let params = LatticeParams::new(7.0);
-    // As hard as one unit in front of the border: 200 * 1.984 * 0.953.
+    // As strong as one unit in front of the border: 200 * 1.984 * 0.953.
     for depth in [0.0, 0.001, 1.0, 2.9] {
         let got = facing(&params, [0.0; 3], ball(3.0 - depth, 3.0));
         assert!(got.x < -350.0 && got.y == 0.0 && got.z == 0.0, "{depth} {got:?}");
         let plane = Obstacle::Plane { normal: Vec3::new(0.0, 1.0, 0.0), distance_m: -depth };
         assert!(facing(&params, [0.0; 3], plane).y > 350.0);
     }
-    // In the very centre: back where it came from.
+    // In the exact centre: back where it came from.
     let got = facing(&params, [0.0, 1.0, 0.0], ball(0.0, 3.0));
     assert!(got.y < -300.0 && got.is_finite(), "{got:?}");
     assert!(facing(&params, [0.0; 3], ball(0.0, 3.0)).x > 350.0);
-    // On a wall: to its left, in a wall that is a point: east.
+    // On a wall: to its left; in a wall that is a point: east.
     let wall = Obstacle::Wall([Vec2::new(-1.0, 0.0), Vec2::new(1.0, 0.0)]);
     assert!(facing(&params, [0.0; 3], wall).y > 350.0);
     assert!(facing(&params, [0.0; 3], Obstacle::Wall([Vec2::ZERO; 2])).x > 350.0);
@@ -210,7 +209,7 @@ fn reference_pulls_without_bound_in_algorithm_two_and_with_bound_in_three() {
     assert!((pull(Algorithm::Three) - expected).norm() < 1e-12);
 }
 
-/// The distance of two robots over the lattice's, 20 s after they stood so far from each other.
+/// The distance of two robots over the lattice's, 20 s after they were stationary at this distance.
 fn settled(params: &LatticeParams<f64>, start: f64) -> f64 {
     let spacing = params.spacing_m;
     let mut places = [V::ZERO, V::new(start * spacing, 0.0, 0.0)];
@@ -243,8 +242,8 @@ fn two_robots_settle_at_the_distance_of_the_lattice_at_any_size() {
             let distance = settled(&alone, start);
             assert!((distance - 1.0).abs() < 1e-6, "{start} {distance}");
         }
-        // From one place they shoot past each other's range; a reference brings them back, and
-        // its pull on both makes them a little closer.
+        // From one place they leave each other's range; a reference brings them back, and its pull
+        // on both makes them a little closer.
         for start in [0.0, 0.3, 2.0] {
             let distance = settled(&params, start);
             assert!((0.95..1.01).contains(&distance), "{spacing} {start} {distance}");
@@ -271,7 +270,7 @@ fn the_law_is_the_same_at_any_size() {
 }
 
 #[test]
-fn robots_in_one_place_go_opposite_ways() {
+fn robots_in_one_place_separate_in_opposite_directions() {
     let params = LatticeParams::new(0.5);
     let force = |own: u32, other: u32| {
         let own = Body { id: RobotId(own), ..body([0.0; 3]) };
@@ -279,14 +278,14 @@ fn robots_in_one_place_go_opposite_ways() {
     };
     assert_eq!(force(1, 2), -force(2, 1));
     assert!(force(1, 2).norm() > 1.0 && force(1, 2).z == 0.0);
-    // As everywhere the way of `tie`.
+    // In the direction of `tie`, as everywhere.
     let along = force(1, 2).normalized().unwrap().xy();
     assert!((along - tie(RobotId(1), RobotId(2))).norm() < 1e-12);
     assert_eq!(force(1, 1), V::ZERO, "oneself is nobody's neighbour");
 }
 
 #[test]
-fn what_is_not_a_number_contributes_nothing() {
+fn values_that_are_not_a_number_contribute_nothing() {
     let params = LatticeParams::new(7.0);
     let good = near(2, [5.0, 1.0, 0.0], [0.0; 3]);
     let own = body([1.0, 0.0, 0.0]);
@@ -314,7 +313,6 @@ fn what_is_not_a_number_contributes_nothing() {
             let params = LatticeParams { algorithm, ..params };
             assert_eq!(acceleration(&params, &own, &[good], &[], Some(&reference)), expected);
         }
-        // Own or other velocity unknown: the places still count.
         let mut blind = own;
         blind.velocity_mps.x = f64::NAN;
         let got = acceleration(&params, &blind, &[good], &[ball(4.0, 3.0)], None);
@@ -323,7 +321,7 @@ fn what_is_not_a_number_contributes_nothing() {
 }
 
 #[test]
-fn senseless_parameters_give_no_force() {
+fn invalid_parameters_give_no_force() {
     let good = LatticeParams::new(0.5);
     assert!(good.is_sound());
     let negative = Gain { position: -1.0, velocity: 1.0 };
@@ -356,7 +354,8 @@ fn strangers_push_and_do_nothing_else() {
         let other = Nearby { is_stranger, ..near(2, [x, 0.0, 0.0], velocity) };
         acceleration(&params, &body([0.0; 3]), &[other], &[], None)
     };
-    // Too near: the same push; farther than the spacing: no pull; and whatever it goes, nobody goes along.
+    // Too near: the same push; farther than the spacing: no pull; and at any velocity, no
+    // alignment.
     assert_eq!(of(true, 4.0, [0.0; 3]), of(false, 4.0, [0.0; 3]));
     assert!(of(false, 8.0, [0.0; 3]).x > 0.0);
     assert_eq!(of(true, 8.0, [0.0; 3]), V::ZERO);
@@ -379,7 +378,7 @@ fn strangers_in_the_way_turn_the_pull_of_the_reference_to_the_right() {
     }
     let [near, far] = [9.0, 20.0].map(|x| pulled([x, 0.0, 0.0]));
     assert!(near.y < far.y && far.y < 0.0 && near.x < far.x, "{near:?} {far:?}");
-    // A robot of the own flock is in nobody's way.
+    // A robot of the own flock does not cause a turn.
     let own = [super::near(2, [9.0, 0.0, 0.0], [0.0; 3])];
     assert_eq!(acceleration(&params, &body([0.0; 3]), &own, &[], Some(&reference)).y, 0.0);
     // However many there are, at most a quarter turn.
@@ -388,16 +387,17 @@ fn strangers_in_the_way_turn_the_pull_of_the_reference_to_the_right() {
     assert!(turned.x.abs() < 1e-9 && is_close(turned.y, -alone.x), "{turned:?}");
 }
 
-/// Two beside each other before a gap: the one nearer to the reference is pulled, the other one is not.
+/// Two robots side by side before a gap: the one nearer to the reference is pulled, the other is
+/// not.
 #[test]
-fn in_turn_nobody_presses_on_who_is_nearer_to_the_reference() {
+fn with_turns_no_robot_pushes_one_nearer_to_the_reference() {
     let params = LatticeParams { algorithm: Algorithm::ThreeInTurn, ..LatticeParams::new(7.0) };
     let reference = Reference { offset_m: Vec3::new(80.0, 0.0, 0.0), velocity_mps: Vec3::new(6.0, 0.0, 0.0) };
     let pulled = |params: &LatticeParams<f64>, others: &[Nearby<f64>], reference: &Reference<f64>| {
         let with = acceleration(params, &body([0.0; 3]), others, &[], Some(reference));
         with - acceleration(params, &body([0.0; 3]), others, &[], None)
     };
-    // Nor is anybody held back by who is behind: this one pulls without an order.
+    // A robot behind does not hold it back: without turns it would pull.
     let behind = near(2, [-8.0, 0.0, 0.0], [0.0; 3]);
     assert!(acceleration(&params, &body([0.0; 3]), &[behind], &[], None).x < -1.0);
     assert_eq!(
@@ -408,14 +408,12 @@ fn in_turn_nobody_presses_on_who_is_nearer_to_the_reference() {
     let three = LatticeParams { algorithm: Algorithm::Three, ..params };
     assert_eq!(alone, pulled(&three, &[], &reference));
     for (other, share) in [
-        // Ahead, from a spacing on to four fifths of one.
+        // Ahead, from one spacing down to four fifths of it.
         (near(2, [7.0, 0.0, 0.0], [0.0; 3]), 1.0),
         (near(2, [6.3, 0.0, 0.0], [0.0; 3]), 0.5),
         (near(2, [5.6, 0.0, 0.0], [0.0; 3]), 0.0),
         (near(2, [1.0, 0.0, 0.0], [0.0; 3]), 0.0),
-        // Behind.
         (near(2, [-3.5, 0.0, 0.0], [0.0; 3]), 1.0),
-        // Of another flock.
         (Nearby { is_stranger: true, ..near(2, [0.1, 6.9, 0.0], [0.0; 3]) }, 1.0),
     ] {
         let got = pulled(&params, &[other], &reference);
@@ -423,12 +421,12 @@ fn in_turn_nobody_presses_on_who_is_nearer_to_the_reference() {
         assert!(is_turned || (got - alone * share).norm() < 1e-9, "{other:?} {got:?}");
         assert!(!is_turned || got.norm() > 0.9 * alone.norm(), "{got:?}");
     }
-    // As near as the own place: the lower number goes first, and one of two always does.
+    // As near as the own position: the smaller number goes first, and one of two always does.
     let beside = Reference { offset_m: Vec3::new(80.0, 1.5, 0.0), ..reference };
     let other = |id| near(id, [0.0, 3.0, 0.0], [0.0; 3]);
     assert!(pulled(&params, &[other(2)], &beside).norm() > 0.9 * alone.norm());
     assert!(pulled(&params, &[other(0)], &beside).norm() < 1e-9);
-    // Past the reference nobody waits.
+    // Past the reference no robot waits.
     let past = Reference { offset_m: Vec3::new(-1.0, 0.0, 0.0), ..reference };
     assert_eq!(pulled(&params, &[other(2)], &past), pulled(&three, &[other(2)], &past));
 }

@@ -35,7 +35,7 @@ fn case(height: f64) -> impl Strategy<Value = Case> {
     })
 }
 
-/// The answer of the law for `case` seen through `view`, over d; computed in `S`.
+/// The result of the law for `case` seen through `view`, over d; computed in `S`.
 fn answer<S: Scalar>(spacing: f64, case: &Case, view: impl Fn([f64; 3]) -> [f64; 3]) -> V {
     let params = LatticeParams::new(number::<S>(spacing));
     let see = |v: [f64; 3]| view(v).map(|c| c * spacing);
@@ -65,7 +65,7 @@ proptest! {
     }
 
     #[test]
-    fn turning_and_mirroring_the_world_turns_and_mirrors_the_answer(case in case(1.0), angle in -3.1..3.1_f64) {
+    fn turning_and_mirroring_the_world_turns_and_mirrors_the_result(case in case(1.0), angle in -3.1..3.1_f64) {
         let (sin, cos) = Scalar::sin_cos(angle);
         let turn = |[x, y, z]: [f64; 3]| [x * cos - z * sin, y, x * sin + z * cos];
         let mirror = |[x, y, z]: [f64; 3]| [x, -y, z];
@@ -81,7 +81,7 @@ proptest! {
     }
 
     #[test]
-    fn order_of_neighbours_changes_rounding_only(case in case(1.0)) {
+    fn order_of_neighbours_changes_only_rounding(case in case(1.0)) {
         let params = LatticeParams::new(1.0);
         let others: Vec<_> = (2..).zip(&case.others).map(|(id, (o, v))| near(id, *o, *v)).collect();
         let reversed: Vec<_> = others.iter().rev().copied().collect();
@@ -101,7 +101,6 @@ proptest! {
     fn f32_q16_and_fast32_agree_with_f64(case in case(1.0)) {
         for spacing in [0.5, 7.0] {
             let plain = answer::<f64>(spacing, &case, |v| v);
-            // On the border of the obstacle the force jumps.
             let clear = vec3::<f64>(case.center).norm() - 0.7;
             prop_assume!(clear.abs() > 0.01 && vec3::<f64>(case.center).norm() > 0.01);
             let scale = plain.norm().max(10.0);
@@ -109,14 +108,14 @@ proptest! {
             let (single, fixed) = (answer::<f32>(spacing, &case, |v| v), answer::<Q16>(spacing, &case, |v| v));
             prop_assert!(error(single) < 1e-4, "{:?} {:?}", single, plain);
             prop_assert!(error(fixed) < 0.02, "{:?} {:?}", fixed, plain);
-            // A root that is off by 0.2 % is felt where the force of the obstacle sets in.
+            // A root that is off by 0.2 % matters where the force of the obstacle sets in.
             let fast = answer::<Fast32>(spacing, &case, |v| v);
             prop_assert!((fast - plain).norm() < 0.3 * plain.norm().max(50.0), "{:?} {:?}", fast, plain);
         }
     }
 
     #[test]
-    fn the_answer_is_finite_whatever_the_bits(bits: [u32; 12], spacing in 0.0..200.0_f32) {
+    fn the_result_is_finite_for_any_bits(bits: [u32; 12], spacing in 0.0..200.0_f32) {
         let f = bits.map(f32::from_bits);
         let v = |i: usize| Vec3::new(f[i], f[i + 1], f[i + 2]);
         let other = Nearby { offset_m: v(0), velocity_mps: v(3), ..near(2, [0.0; 3], [0.0; 3]) };

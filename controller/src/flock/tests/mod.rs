@@ -19,12 +19,10 @@ fn vec3<S: Scalar>([x, y, z]: [f64; 3]) -> Vec3<S> {
     Vec3::new(number(x), number(y), number(z))
 }
 
-/// A vector as f64, whatever its type.
 fn exact<S: Scalar>(v: Vec3<S>) -> Vec3<f64> {
     Vec3::new(v.x.to_f64(), v.y.to_f64(), v.z.to_f64())
 }
 
-/// Robot 1 with this velocity.
 fn body<S: Scalar>(velocity: [f64; 3]) -> Body<S> {
     Body {
         id: RobotId(1),

@@ -10,9 +10,10 @@ fn wanted(motion: ReferenceMotion<f64>, offset: [f64; 3]) -> f64 {
 }
 
 #[test]
-fn a_velocity_fades_behind_a_resting_reference_and_behind_no_other() {
+fn only_behind_a_resting_reference_the_velocity_fades() {
     let resting = ReferenceMotion::Resting(70.0);
-    // Before it and beside it all of it, behind it less with the way along the velocity alone.
+    // Before and beside the reference the full velocity, behind it less, depending only on the
+    // distance along the velocity.
     let expected = [(50.0, 6.0), (0.0, 6.0), (-35.0, 3.0), (-69.3, 0.06), (-70.0, 0.0), (-1e9, 0.0)];
     for (offset, speed) in expected {
         for side in [0.0, -400.0] {
@@ -25,7 +26,7 @@ fn a_velocity_fades_behind_a_resting_reference_and_behind_no_other() {
 }
 
 #[test]
-fn a_rest_without_a_way_is_at_the_reference_and_nonsense_moves_nobody() {
+fn a_resting_distance_of_zero_rests_at_the_reference_and_invalid_input_gives_zero() {
     for none in [0.0, -1.0, f64::NAN] {
         assert_eq!(wanted(ReferenceMotion::Resting(none), [-1.0, 0.0, 0.0]), 0.0);
         assert_eq!(wanted(ReferenceMotion::Resting(none), [1.0, 0.0, 0.0]), 6.0);
@@ -35,7 +36,7 @@ fn a_rest_without_a_way_is_at_the_reference_and_nonsense_moves_nobody() {
 }
 
 #[test]
-fn flags_of_before_have_the_digest_of_before() {
+fn boolean_flags_and_motions_have_equal_digests() {
     use crate::digest::digest;
     assert_eq!(digest(&ReferenceMotion::<f32>::Static), digest(&false));
     assert_eq!(digest(&ReferenceMotion::<f32>::Dynamic), digest(&true));

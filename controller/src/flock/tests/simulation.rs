@@ -24,15 +24,13 @@ struct Flock {
     reference: (V, V),
     reference_moves: bool,
     balls: Vec<Ball>,
-    /// Steps that news take, the share of them that is lost, and who draws which.
+    /// Delay in steps, share of lost states, and the generator that decides which are lost.
     delay: usize,
     loss: f64,
     rng: Rng,
-    /// Places and velocities before each step.
     past: Vec<(Vec<V>, Vec<V>)>,
     /// The step from which robot i knows robot j.
     heard: Vec<Vec<usize>>,
-    /// Least distance of two robots and least clearance of an obstacle so far.
     least_pair: f64,
     least_clearance: f64,
 }
@@ -41,7 +39,7 @@ fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * f64::from(rng.unit_q32()) / 4_294_967_296.0
 }
 
-/// A sample of the normal distribution by twelve uniform ones.
+/// A sample of the normal distribution from twelve uniform ones.
 fn normal(rng: &mut Rng, deviation: f64) -> f64 {
     ((0..12).map(|_| uniform(rng, 0.0, 1.0)).sum::<f64>() - 6.0) * deviation
 }
@@ -74,7 +72,8 @@ impl Flock {
         }
     }
 
-    /// Whom robot i has in range, as far as it knows: where each was bound for when it was heard last.
+    /// The robots in range of robot i, as far as it knows: each extrapolated from its last received
+    /// state.
     fn nearby(&mut self, i: usize, step_s: f64) -> Vec<Nearby<f64>> {
         let (range, own) = (self.params.range_m(), self.places[i]);
         let now = self.past.len() - 1;
@@ -130,7 +129,7 @@ impl Flock {
         }
     }
 
-    /// Groups of robots joined by distances below `range`.
+    /// Groups of robots connected by distances below `range`.
     fn components(&self, range: f64) -> usize {
         let mut group: Vec<usize> = (0..self.places.len()).collect();
         for i in 0..group.len() {
@@ -183,8 +182,8 @@ const SPLIT: [[f64; 3]; 6] = [
 ];
 const SQUEEZE: [[f64; 3]; 2] = [[150.0, 30.0, 25.0], [150.0, 100.0, 25.0]];
 
-/// 150 robots from the square [low, high]^2, at rest, through balls to beyond x = 230; the reference is static, as in
-/// the paper, and its velocity draws them on.
+/// 150 robots from the square [low, high]^2, at rest, through balls to beyond x = 230; the
+/// reference is static, as in the paper, and its velocity pulls them further.
 fn course(seed: u64, square: [f64; 2], goal: [f64; 3], speed: f64, matrix: &[[f64; 3]]) {
     const STEP_S: f64 = 0.02;
     let mut rng = Rng::new(seed);
@@ -198,7 +197,6 @@ fn course(seed: u64, square: [f64; 2], goal: [f64; 3], speed: f64, matrix: &[[f6
         steps += 1;
         assert!(steps < 5000, "not all through after 100 s");
         if steps == 100 {
-            // The random start has robots almost in one place.
             flock.least_pair = f64::MAX;
         }
     }
@@ -209,23 +207,23 @@ fn course(seed: u64, square: [f64; 2], goal: [f64; 3], speed: f64, matrix: &[[f6
 }
 
 #[test]
-fn all_150_robots_split_and_get_through_the_obstacles_unharmed() {
+fn all_150_robots_split_and_pass_the_obstacles_without_contact() {
     for seed in 0..2 {
         course(seed, [-40.0, 80.0], [200.0, 30.0, 0.0], 5.0, &SPLIT);
     }
 }
 
 #[test]
-fn all_150_robots_squeeze_through_the_passage_unharmed() {
+fn all_150_robots_pass_the_narrow_passage_without_contact() {
     for seed in 0..2 {
         course(seed, [0.0, 120.0], [230.0, 60.0, 0.0], 6.0, &SQUEEZE);
     }
 }
 
-/// A reference that moves gathers behind the obstacles who was parted by them; a static one leaves the parts side by
-/// side for long, since its bounded pull hardly has a part across.
+/// A moving reference gathers behind the obstacles the robots that they separated. A static one
+/// leaves the parts side by side for long, since its bounded pull hardly has a lateral component.
 #[test]
-fn parts_of_a_split_flock_are_one_again_behind_the_obstacles() {
+fn parts_of_a_split_flock_rejoin_behind_the_obstacles() {
     let mut rng = Rng::new(0);
     let start = places(150, || uniform(&mut rng, -40.0, 80.0));
     let reference = (vec3([20.0, 20.0, 0.0]), V::new(3.0, 0.0, 0.0));
@@ -245,8 +243,9 @@ fn parts_of_a_split_flock_are_one_again_behind_the_obstacles() {
     assert!(flock.deviation(8.4) < 0.005 && flock.least_clearance > 0.5 * 7.0);
 }
 
-/// The paper's free flock: algorithm 2, normal places, a moving reference. The paper does not tell its gains; with 50 and 1
-/// the lattice stands by iteration 150, and speeds agree to e2 some time later.
+/// The paper's free flock: algorithm 2, normally distributed positions, a moving reference. The
+/// paper does not state its gains; with 50 and 1 the lattice is complete by iteration 150, and
+/// speeds agree to e2 some time later.
 #[test]
 fn free_flock_of_150_is_one_lattice_by_iteration_150() {
     for seed in 1..3 {
@@ -274,7 +273,7 @@ fn free_flock_of_150_is_one_lattice_by_iteration_150() {
     }
 }
 
-/// Forty robots that follow a reference and hear of each other late: parts, K~ and E~ after 80 s.
+/// Forty robots that follow a reference and receive each other late: parts, K~ and E~ after 80 s.
 fn late(params: LatticeParams<f64>, delay: usize, loss: f64, step_s: f64, seed: u64) -> (usize, f64, f64) {
     let mut rng = Rng::new(seed);
     let start = places(40, || uniform(&mut rng, 0.0, 44.0));
@@ -289,7 +288,7 @@ fn late(params: LatticeParams<f64>, delay: usize, loss: f64, step_s: f64, seed: 
 }
 
 #[test]
-fn a_flock_stands_late_and_lost_news_with_the_gains_for_them_and_shakes_without() {
+fn a_flock_tolerates_late_and_lost_beacons_only_with_reduced_gains() {
     let params = LatticeParams::new(7.0);
     for (delay, loss, step_s) in [(2, 0.0, 0.05), (5, 0.0, 0.04), (0, 0.0, 0.2), (0, 0.3, 0.05), (2, 0.3, 0.05)] {
         let (delay_s, rate_hz) = (step_s * delay as f64, (1.0 - loss) / step_s);
@@ -297,13 +296,13 @@ fn a_flock_stands_late_and_lost_news_with_the_gains_for_them_and_shakes_without(
         assert_eq!(parts, 1, "{delay} {loss} {step_s}");
         assert!(mismatch < 0.05 && energy < 0.005, "K~ {mismatch}, E~ {energy} at {delay} {loss} {step_s}");
     }
-    // What the bound is for.
+    // The case that the bound prevents.
     let (_, shaking, _) = late(params, 2, 0.0, 0.05, 3);
     assert!(shaking > 1.0, "K~ {shaking}");
 }
 
 #[test]
-fn gains_that_bear_the_news_stay_and_others_bear_them_afterwards() {
+fn stable_gains_are_unchanged_and_others_become_stable() {
     let params = LatticeParams::<f64>::new(0.7);
     let oldest = params.oldest_news_s();
     assert_eq!(params.stable_for(0.0, 20.0), params);
@@ -317,7 +316,7 @@ fn gains_that_bear_the_news_stay_and_others_bear_them_afterwards() {
         assert!((softer.alpha.position / softer.gamma.position - 5.0).abs() < 1e-9);
         assert!(softer.beta == params.beta && softer.is_sound());
     }
-    // Who never hears anything is not pulled; whose gains are nothing bears all.
+    // Without beacons there is no pull; without gains any age is tolerated.
     assert_eq!(params.stable_for(0.0, 0.0).alpha.position, 0.0);
     assert!(LatticeParams { alpha: Gain { position: 0.0, velocity: 0.0 }, ..params }.oldest_news_s() > 1e9);
 }
@@ -341,10 +340,10 @@ fn fifty_robots_meet_in_space() {
     assert!(high - low > 14.0, "a body in space, not a layer");
 }
 
-/// Two beside each other before a gap for one, one more in their wedge and four behind, as they jam: see the head of
-/// `lattice.rs`.
+/// Two robots side by side before a gap for one, one more in their wedge and four behind, a jam:
+/// see the head of `lattice.rs`.
 #[test]
-fn those_who_stand_before_a_gap_for_one_pass_it_in_turn() {
+fn robots_before_a_gap_for_one_pass_it_in_turn() {
     let jam = [(139.1, 57.1), (139.1, 62.9), (132.9, 60.0), (132.7, 54.1), (132.7, 65.9), (127.3, 49.9), (127.3, 70.1)];
     let past = |algorithm| {
         let places = jam.map(|(x, y)| V::new(x, y, 0.0)).to_vec();

@@ -1,4 +1,4 @@
-//! What robots do does not hang on their size: with lengths and times in other units, the traces are the same.
+//! Scale invariance: traces are equal in other units of length and time.
 
 use super::*;
 use crate::orca::fixtures::rng_of;
@@ -6,15 +6,15 @@ use crate::robot::{Mode, RobotId};
 use proptest::prelude::*;
 use std::vec::Vec;
 
-/// Robots of radius 0.15 and speed 0.5 that decide 20 times in a unit of time, horizons 2 and 1: what the units are,
-/// metres and seconds.
+/// The units, in metres and seconds. Robots have radius 0.15 and speed 0.5, decide 20 times per
+/// unit of time, and use horizons 2 and 1.
 #[derive(Clone, Copy)]
 struct Units {
     length: f32,
     time: f32,
 }
 
-/// Where each robot is (in units of length) after each of `steps` steps.
+/// The positions of all robots (in units of length) after each of `steps` steps.
 fn trace(units: Units, ways: &[[Vec2<f32>; 2]], walls: &[[Vec2<f32>; 2]], steps: u32) -> Vec<Vec<Vec2<f32>>> {
     let Units { length, time } = units;
     let params =
@@ -67,14 +67,15 @@ fn trace(units: Units, ways: &[[Vec2<f32>; 2]], walls: &[[Vec2<f32>; 2]], steps:
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
-    fn in_other_units_of_length_and_time_robots_do_the_same(
-        // Powers of two, so that rounding is the same too: what crowds do hangs on the last bit.
+    fn traces_are_equal_in_other_units_of_length_and_time(
+        // Powers of two, so that rounding is identical: crowds amplify the last bit.
         length in -4_i32..6,
         time in -3_i32..4,
         starts in proptest::collection::vec((0.4_f32..2.5, -2.0_f32..2.0), 4),
         is_at_door: bool,
     ) {
-        // Each of them to where the next one, mirrored, starts: all cross, in the open or through a door for one.
+        // Each robot goes to where the next one, mirrored, starts: all paths cross, in the open or
+        // through a door for one.
         let mirrored = |(x, y): (f32, f32), side: f32| Vec2::new(x * side, y);
         let ways: Vec<_> = (0..4)
             .map(|k| {

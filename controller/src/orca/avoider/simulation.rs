@@ -1,4 +1,5 @@
-//! Swarms of avoiders with what a good radio gives: places and velocities of the present step, rounded to millimetres.
+//! Simulated swarms of avoiders with a perfect radio: current positions and velocities, rounded to
+//! millimetres.
 
 use super::*;
 use crate::geom::{Position, Vec3};
@@ -8,20 +9,17 @@ use std::vec::Vec;
 
 type V = [f64; 2];
 
-/// A run and what came of it.
 struct Run {
     radius_m: f64,
     step_s: f64,
     walls: Vec<[V; 2]>,
-    /// Where the ways of robots lead through if start and goal lie on different sides of it.
+    /// Paths lead through this door if start and goal lie on different sides of it.
     door_x: Option<f64>,
     robots: Vec<Robot>,
     time_s: f64,
-    /// Least distance of two robots' borders.
     clearance_m: f64,
-    /// Least distance of a robot's border to a wall.
     wall_clearance_m: f64,
-    /// Which way (eastwards?) robots went through the door, in their order.
+    /// The direction (eastwards?) of each passage through the door, in order.
     passed: Vec<bool>,
 }
 
@@ -77,7 +75,7 @@ impl Run {
         }
     }
 
-    /// Goes on until all have arrived or the time is over; how many have arrived.
+    /// Runs until all have arrived or the time is over; returns how many have arrived.
     fn until(&mut self, most_s: f64) -> usize {
         let arrived = |run: &Self| run.robots.iter().filter(|r| r.arrived_s.is_some()).count();
         let mut tick = 0;
@@ -172,7 +170,8 @@ fn noise(rng: &mut Rng, most: f64) -> f64 {
     (f64::from(rng.below(2001)) / 1000.0 - 1.0) * most
 }
 
-/// Robots on a circle, each to the opposite point: time of the slowest over the free time.
+/// Robots on a circle swap with the opposite robot. Returns the time of the slowest over the free
+/// time.
 fn swap(count: u32, noise_m: f64, seed: u64) -> f64 {
     let circle_m = (0.1 * f64::from(count)).max(2.0);
     let mut rng = Rng::keyed(seed, 1, count, 0);
@@ -202,7 +201,7 @@ fn robots_on_a_circle_swap_within_one_and_a_half_times_the_free_time() {
 }
 
 #[test]
-fn the_swap_does_not_hang_on_exact_places() {
+fn the_swap_does_not_depend_on_exact_positions() {
     for count in [4, 6, 8, 12, 16, 24] {
         for (noise_m, seed) in [(0.005, 1), (0.005, 2), (0.05, 1), (0.05, 2), (0.05, 3)] {
             let ratio = swap(count, noise_m, seed);
@@ -211,7 +210,8 @@ fn the_swap_does_not_hang_on_exact_places() {
     }
 }
 
-/// Two rooms with a door of `width_m` in a wall of `depth_m` between them; `each` robots of radius 0.3 m on both sides.
+/// Two rooms with a door of `width_m` in a wall of `depth_m` between them; `each` robots of radius
+/// 0.3 m on both sides.
 fn doorway(width_m: f64, depth_m: f64, each: u32, seed: u64) -> Run {
     let rows = each.div_ceil(4).max(5);
     let (far, half, side) = (8.0 + depth_m / 2.0, width_m / 2.0, f64::from(rows));
@@ -255,10 +255,10 @@ fn all_pass(width_m: f64, depth_m: f64, each: u32, within_s: f64) -> Run {
 }
 
 #[test]
-fn where_one_fits_two_crowds_take_turns() {
+fn two_crowds_take_turns_at_a_door_for_one() {
     for depth_m in [0.0, 0.2] {
         let run = all_pass(0.8, depth_m, 20, 400.0);
-        // Fair: as long as both sides wait, no direction goes on for long.
+        // Fair: while both sides wait, no direction passes for long.
         let both_wait = run.passed.iter().take(24);
         let east = both_wait.filter(|east| **east).count();
         assert!((8..=16).contains(&east), "{:?}", run.passed);
@@ -266,24 +266,24 @@ fn where_one_fits_two_crowds_take_turns() {
 }
 
 #[test]
-fn where_two_fit_two_crowds_pass_at_once() {
+fn two_crowds_pass_together_at_a_door_for_two() {
     let run = all_pass(1.3, 0.0, 20, 200.0);
     assert!(run.slowest_s() < 150.0, "{}", run.slowest_s());
 }
 
 #[test]
-fn one_robot_on_each_side_of_the_narrowest_door() {
+fn two_robots_swap_through_the_narrowest_door() {
     all_pass(0.7, 0.0, 1, 40.0);
     all_pass(0.7, 0.5, 1, 50.0);
 }
 
 #[test]
-fn a_crowd_of_which_nobody_sees_the_half_gets_through() {
+fn a_crowd_passes_although_each_robot_sees_less_than_half_of_it() {
     all_pass(1.0, 0.0, 30, 500.0);
 }
 
 #[test]
-fn in_a_passage_of_thirty_radii_that_is_too_narrow_for_two_directions_take_turns() {
+fn directions_take_turns_in_a_passage_of_thirty_radii() {
     for seed in [1, 2] {
         let mut run = doorway(0.8, 9.0, 4, seed);
         assert_eq!(run.until(200.0), 8, "seed {seed}");
@@ -292,14 +292,13 @@ fn in_a_passage_of_thirty_radii_that_is_too_narrow_for_two_directions_take_turns
 }
 
 #[test]
-fn whom_a_wall_bars_goes_to_the_door_from_afar_also_alone() {
+fn a_robot_behind_a_wall_heads_for_the_door_from_afar() {
     let mut run = doorway(1.0, 0.0, 1, 1);
     run.door_x = None;
     run.robots.truncate(1);
     run.robots[0].at = [-4.0, 4.5];
     run.robots[0].goal = [4.0, 4.5];
     assert_eq!(run.until(40.0), 1);
-    // Two doors one behind the other: first through the nearer one.
     for x in [3.2, 6.6] {
         run.walls.push([[x, -5.0], [x, -0.5]]);
         run.walls.push([[x, 0.5], [x, 5.0]]);

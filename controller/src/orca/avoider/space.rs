@@ -1,4 +1,4 @@
-//! In space: what differs from the plane, and that nothing else does.
+//! Properties of space, and its agreement with the plane.
 
 use super::*;
 use crate::orca::fixtures::{RADIUS_M, SPEED_MPS, STEP_S, body, rng_of, robot, vector};
@@ -15,7 +15,6 @@ fn xyz(at: V) -> [f64; 3] {
     [at.x, at.y, at.z]
 }
 
-/// A ball on the x axis.
 fn ball(x: f64, radius_m: f64) -> Obstacle<f64> {
     Obstacle::Ball { center_m: v(x, 0.0, 0.0), radius_m }
 }
@@ -24,7 +23,6 @@ fn floor(distance_m: f64) -> Obstacle<f64> {
     Obstacle::Plane { normal: v(0.0, 0.0, 1.0), distance_m }
 }
 
-/// One step with the usual parameters.
 fn fly<const K: usize>(
     body: &Body<f64>,
     wish: V,
@@ -37,14 +35,14 @@ fn fly<const K: usize>(
     solution.velocity_mps
 }
 
-/// What an obstacle forbids a robot of `radius_m` with this velocity.
 fn obstacle(own: V, obstacle: &Obstacle<f64>, radius_m: f64, horizon_s: f64) -> Option<HalfSpace<V>> {
     let params = AvoidParams { wall_horizon_s: horizon_s, margin_m: 0.0, ..AvoidParams::default() };
     let body = Body { radius_m, ..body(1, [0.0; 3]) };
     static_obstacle(&params, &body, own, obstacle)
 }
 
-/// Everybody to the place opposite through the origin; the time of the last one over the free time, and the least gap.
+/// All robots fly to the opposite point through the origin. Returns the time of the last one over
+/// the free time, and the least gap.
 fn swap(starts: &[V], most_s: f64) -> (Option<f64>, f64) {
     let goals: StdVec<_> = starts.iter().map(|&start| -start).collect();
     let (mut places, mut speeds) = (starts.to_vec(), std::vec![Vec3::ZERO; starts.len()]);
@@ -83,8 +81,7 @@ fn swap(starts: &[V], most_s: f64) -> (Option<f64>, f64) {
 }
 
 #[test]
-fn ways_that_all_cross_in_one_point_are_flown_without_a_touch() {
-    // Axes of the octahedron and of the cube, and a ring in the plane.
+fn paths_that_cross_in_one_point_are_flown_without_contact() {
     let mut stars: StdVec<StdVec<V>> = StdVec::new();
     let axis = |i: usize, sign: f64| {
         let mut components = [0.0; 3];
@@ -114,7 +111,7 @@ fn ways_that_all_cross_in_one_point_are_flown_without_a_touch() {
 }
 
 #[test]
-fn nobody_near_changes_nothing() {
+fn without_neighbours_the_wish_is_unchanged() {
     let wish = v(0.3, -0.1, 0.2);
     let own = body(1, xyz(wish));
     assert_eq!(fly::<8>(&own, wish, None, &[], &[]), wish);
@@ -123,8 +120,8 @@ fn nobody_near_changes_nothing() {
 }
 
 #[test]
-fn who_does_not_give_way_is_given_all_of_it() {
-    // He comes from the left; nothing leans for him.
+fn a_robot_that_does_not_give_way_gets_the_whole_correction() {
+    // It comes from the left and does not give way.
     let wish = v(0.5, 0.0, 0.0);
     let aside = |gives_way: bool| {
         let other = Nearby { gives_way, ..robot(2, [0.5, 0.6], [0.0, -0.5]) };
@@ -134,7 +131,7 @@ fn who_does_not_give_way_is_given_all_of_it() {
 }
 
 #[test]
-fn two_in_one_place_part() {
+fn two_robots_in_one_place_separate() {
     let go = |own: u32, other: u32| {
         let other = [robot(other, [0.0; 3], [0.0; 3])];
         fly::<8>(&body(own, [0.0; 3]), V::ZERO, None, &other, &[])
@@ -162,7 +159,7 @@ fn floors_balls_and_walls_limit_the_speed_towards_them() {
     assert!(touching.penetration(V::ZERO).abs() < 1e-12);
     let inside = obstacle(V::ZERO, &ball(0.0), 0.5, 2.0).unwrap();
     assert_eq!(inside.normal, v(0.0, 0.0, 1.0));
-    // However fast a robot climbs, a wall is there.
+    // Climbing does not help: walls have no top.
     let wall = Obstacle::Wall([Vec2::new(2.0, -5.0), Vec2::new(2.0, 5.0)]);
     let space = obstacle(v(3.0, 0.0, 9.0), &wall, 0.5, 1.0).unwrap();
     assert!((space.point.dot(space.normal) + 1.5).abs() < 1e-9 && space.normal.z == 0.0);
@@ -170,7 +167,8 @@ fn floors_balls_and_walls_limit_the_speed_towards_them() {
 
 #[test]
 fn of_many_obstacles_the_nearest_count() {
-    // Full speed ahead; a ball 0.5 m ahead is the last of the slice, all others are behind and farther off.
+    // Full speed ahead. A ball 0.5 m ahead is the last of the slice; all others are behind and
+    // farther away.
     let east = v(SPEED_MPS, 0.0, 0.0);
     for (behind, others) in [(32, 0), (17, 16)] {
         let mut obstacles: StdVec<_> = (0..behind).map(|k| ball(-1.0 - 0.01 * f64::from(k), 0.2)).collect();
@@ -184,13 +182,13 @@ fn of_many_obstacles_the_nearest_count() {
 }
 
 #[test]
-fn a_body_with_inertia_gets_the_best_that_it_can_reach() {
+fn a_body_with_inertia_gets_the_best_reachable_velocity() {
     let east = v(SPEED_MPS, 0.0, 0.0);
     let heavy = Body { max_acceleration_mps2: 1.0, ..body(1, xyz(east)) };
     let wall = Obstacle::Wall([Vec2::new(0.25, -1.0), Vec2::new(0.25, 1.0)]);
     let got = fly::<8>(&heavy, east, None, &[], &[wall]);
     assert!((got.x - 0.45).abs() < 1e-9, "{got:?}");
-    // It swerves as far as it can: of what is in reach the wish is not the best.
+    // It turns as far as it can: among the reachable velocities the preferred one is not the best.
     let ahead = [robot(2, [0.6, 0.05], [-0.5, 0.0])];
     let got = fly::<8>(&heavy, east, Some(V::ZERO), &ahead, &[]);
     assert!((got - east).norm() < 0.05 + 1e-9, "{got:?}");
@@ -198,19 +196,18 @@ fn a_body_with_inertia_gets_the_best_that_it_can_reach() {
 }
 
 #[test]
-fn the_margin_counts_towards_obstacles_too() {
+fn the_margin_applies_to_obstacles() {
     let params = AvoidParams { margin_m: 0.1, ..AvoidParams::default() };
     let mut avoider = Avoider::<f64, 8, _>::in_space(params);
     let down = v(0.0, 0.0, -SPEED_MPS);
     let own = body(1, xyz(down));
     let below = [floor(RADIUS_M + 0.3)];
     let got = avoider.velocity(&own, down, None, &[], &below, &mut rng_of(1, 1));
-    // 0.2 m in a second.
     assert!((got.velocity_mps.z + 0.2).abs() < 1e-9, "{got:?}");
 }
 
 #[test]
-fn out_of_the_very_centre_of_a_ball_leads_a_way() {
+fn a_robot_in_the_centre_of_a_ball_gets_out() {
     let centre = [ball(0.0, 0.2)];
     let up = fly::<8>(&body(1, [0.0; 3]), V::ZERO, None, &[], &centre);
     assert!((up - v(0.0, 0.0, SPEED_MPS)).norm() < 1e-9, "{up:?}");
@@ -239,7 +236,6 @@ fn obstacles_that_are_not_finite_forbid_nothing() {
     }
 }
 
-/// A vector in the plane with components up to `most`.
 fn flat(most: f64) -> impl Strategy<Value = [f64; 2]> {
     [-most..most, -most..most]
 }
@@ -258,7 +254,7 @@ fn flat_robots() -> impl Strategy<Value = StdVec<Nearby<f64>>> {
     })
 }
 
-/// Balls and upright planes and walls at the own height.
+/// Balls, vertical planes and walls at the own height.
 fn flat_obstacles(walls: usize) -> impl Strategy<Value = StdVec<Obstacle<f64>>> {
     let ball =
         (flat(2.0), 0.05..0.4_f64).prop_map(|(center, radius_m)| Obstacle::Ball { center_m: vector(center), radius_m });
@@ -279,19 +275,18 @@ fn flat_obstacles(walls: usize) -> impl Strategy<Value = StdVec<Obstacle<f64>>> 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
-    /// Where everything is at one height and nobody swerves (the goal is here), space is the plane: where the plane's
-    /// velocity violates nothing, it is the one in space too; and where robots alone forbid all that a body without
-    /// inertia could do, the least penetration is the same.
+    /// Compares space with the plane if everything is at one height and no robot turns aside (the
+    /// goal is here). If the plane's velocity violates nothing, space gives the same one. If robots
+    /// alone forbid all velocities of a body without inertia, the least penetration is the same.
     ///
-    /// Not more: obstacles that contradict each other are met halfway in space, where the plane obeys the nearest; and
-    /// of velocities that violate equally much, that in space may climb.
+    /// No more holds: contradictory obstacles are met halfway in space, where the plane obeys the
+    /// nearest, and of equally bad velocities the one in space may climb.
     #[test]
-    fn at_one_height_space_is_the_plane(
+    fn space_agrees_with_the_plane_at_one_height(
         own in flat(0.4),
         wish in flat(0.6),
         acceleration in prop_oneof![Just(f64::MAX), 0.5..8.0_f64],
         nearby in flat_robots(),
-        // Two walls may make a gap, where robots take turns.
         obstacles in flat_obstacles(1),
     ) {
         fn step<const K: usize>(
@@ -314,13 +309,12 @@ proptest! {
         }
         let own = Body { max_acceleration_mps2: acceleration, ..body(1, own) };
         step::<32>(&own, vector(wish), &nearby, &obstacles)?;
-        // Only the nearest count.
         step::<6>(&own, vector(wish), &nearby, &obstacles)?;
     }
 
-    /// To the bit, unless two are equally near.
+    /// Bit for bit, unless two are equally near.
     #[test]
-    fn the_order_of_obstacles_changes_nothing(
+    fn the_order_of_obstacles_does_not_matter(
         wish in flat(0.6),
         nearby in flat_robots(),
         obstacles in flat_obstacles(3),
@@ -340,9 +334,8 @@ proptest! {
         prop_assert_eq!(plane(&obstacles), plane(&other));
     }
 
-    /// Whoever obeys a ball's half-space does not touch it within the horizon.
     #[test]
-    fn whoever_obeys_a_ball_does_not_touch_it(
+    fn a_robot_that_obeys_a_ball_does_not_touch_it_within_the_horizon(
         center in [-4.0..4.0_f64, -4.0..4.0_f64, -4.0..4.0_f64],
         own in [-3.0..3.0_f64, -3.0..3.0_f64, -3.0..3.0_f64],
     ) {
@@ -358,7 +351,7 @@ proptest! {
     }
 
     #[test]
-    fn any_numbers_give_a_finite_velocity_within_the_speed(
+    fn any_input_gives_a_finite_velocity_within_the_speed_limit(
         bits in any::<[u32; 15]>(), gives_way: bool,
     ) {
         let [x, y, z, vx, vy, vz, wx, wy, wz, ox, oy, oz, r, gx, gy] = bits.map(f32::from_bits);
@@ -378,26 +371,25 @@ proptest! {
             let mut avoider = Avoider::<f32, 4, _>::in_space(AvoidParams::default());
             let got = avoider.velocity(&own, wish, goal, &[other], &[ball], &mut rng_of(1, 1));
             prop_assert!(got.velocity_mps.is_finite(), "{got:?}");
-            // A body that is too fast slows down first.
             prop_assert!(got.velocity_mps.norm() <= 0.5001 || acceleration < 10.0, "{got:?}");
         }
     }
 }
 
 #[test]
-fn what_is_above_counts_as_nearer_by_the_downwash_and_what_is_beside_does_not() {
+fn downwash_reduces_vertical_but_not_horizontal_distance() {
     let params = Params { horizon_s: 2.0, separation_s: STEP_S, share: 0.5 };
     let ball = |offset_m| MovingBall { offset_m, velocity_mps: V::ZERO, radii_m: 0.4, tie: V::ZERO };
     let forbids = |downwash: f64, own: V, offset_m: V| {
         let space = InSpace { downwash }.half_space(own, &ball(offset_m), &params).expect("sound");
         space.penetration(own)
     };
-    // A metre above: free as a ball for a climb of 0.1 m/s, in the way as an ellipsoid 1.2 m high.
+    // A metre above: a ball permits a climb of 0.1 m/s, an ellipsoid 1.2 m high does not.
     let (climb, above) = (v(0.0, 0.0, 0.1), v(0.0, 0.0, 1.0));
     assert!(forbids(1.0, climb, above) < 0.0 && forbids(3.0, climb, above) > 0.0);
     let (ahead, beside) = (v(0.4, 0.0, 0.0), v(1.0, 0.0, 0.0));
     assert!((forbids(1.0, ahead, beside) - forbids(3.0, ahead, beside)).abs() < 1e-12);
-    // Less than a ball, or nonsense, is a ball.
+    // Less than a ball, or an invalid value, is a ball.
     for nonsense in [0.0, -3.0, 0.5, f64::NAN] {
         assert_eq!(forbids(nonsense, climb, above), forbids(1.0, climb, above));
     }
@@ -412,7 +404,7 @@ proptest! {
         let lowered = |v: V| V::new(v.x, v.y, v.z / downwash);
         prop_assume!(lowered(offset).norm() > radii_m * 1.01);
         let ball = MovingBall { offset_m: offset, velocity_mps: V::ZERO, radii_m, tie: V::ZERO };
-        // Who does all of the correction and keeps to the border's point passes outside.
+        // A robot that does all of the correction and stays on the border passes outside.
         let params = Params { horizon_s: 2.0, separation_s: STEP_S, share: 1.0 };
         let space = InSpace { downwash }.half_space(own, &ball, &params).expect("sound");
         prop_assert!((space.normal.norm() - 1.0).abs() < 1e-9);

@@ -14,7 +14,7 @@ fn rng() -> Rng {
 }
 
 #[test]
-fn whoever_is_alone_does_as_it_wishes() {
+fn a_lone_robot_follows_its_wish() {
     let body = body(1, [0.1, 0.0]);
     let wish = Vec2::new(0.3, -0.2);
     let solution = avoider().velocity(&body, wish, None, &[], &[], &mut rng());
@@ -26,7 +26,7 @@ fn whoever_is_alone_does_as_it_wishes() {
 }
 
 #[test]
-fn robots_in_the_same_place_part_in_opposite_directions() {
+fn robots_in_the_same_place_separate_in_opposite_directions() {
     let go = |own: u32, other: u32| {
         avoider()
             .velocity(
@@ -45,8 +45,8 @@ fn robots_in_the_same_place_part_in_opposite_directions() {
 }
 
 #[test]
-fn who_does_not_give_way_is_given_all_the_way() {
-    // Head-on: with share 1 the own half-plane lies twice as far off.
+fn a_robot_that_does_not_give_way_gets_the_whole_correction() {
+    // Head-on: with share 1 the own half-plane lies twice as far away.
     let own = body(1, [0.5, 0.0]);
     let swerve = |gives_way| {
         let other = Nearby { gives_way, ..robot(2, [1.2, -0.01], [-0.5, 0.0]) };
@@ -70,7 +70,6 @@ fn walls_balls_and_planes_stop_a_robot_in_time() {
     for obstacle in obstacles {
         let solution =
             avoider().velocity(&body(1, [0.5, 0.0]), Vec2::new(0.5, 0.0), None, &[], &[obstacle], &mut rng());
-        // 0.25 m in one second.
         let ahead = solution.velocity_mps.x;
         assert!((0.2..0.2501).contains(&ahead), "{obstacle:?} {ahead}");
     }
@@ -81,18 +80,18 @@ fn walls_balls_and_planes_stop_a_robot_in_time() {
 }
 
 #[test]
-fn a_body_with_inertia_gets_what_it_can_reach() {
+fn a_body_with_inertia_gets_a_reachable_velocity() {
     let own = Body { max_acceleration_mps2: 1.0, ..body(1, [0.5, 0.0]) };
     let wall = Obstacle::Wall([Vec2::new(0.25, -1.0), Vec2::new(0.25, 1.0)]);
     let wish = Vec2::new(0.5, 0.0);
     let solution = avoider().velocity(&own, wish, None, &[], &[wall], &mut rng());
-    // 0.096 m/s are permitted (the margin is 4 mm), 0.45 are the least that it can have after 0.05 s.
+    // 0.096 m/s are permitted (the margin is 4 mm); it can have at least 0.45 after 0.05 s.
     assert!((solution.velocity_mps.x - 0.45).abs() < 1e-3, "{solution:?}");
     assert!((solution.penetration_mps - 0.354).abs() < 1e-3, "{solution:?}");
 }
 
 #[test]
-fn a_full_avoider_keeps_the_nearest_and_no_room_is_no_crash() {
+fn a_full_avoider_keeps_the_nearest_and_capacity_zero_works() {
     let others: [Nearby<f32>; 30] =
         core::array::from_fn(|k| robot(k as u32 + 2, [0.4 + 0.1 * k as f64, 0.0], [-0.5, 0.0]));
     let walls = [Obstacle::Wall([Vec2::new(-0.3, -1.0), Vec2::new(-0.3, 1.0)]); 30];
@@ -111,7 +110,7 @@ fn a_full_avoider_keeps_the_nearest_and_no_room_is_no_crash() {
 }
 
 #[test]
-fn fixed_point_robots_avoid_too() {
+fn fixed_point_robots_avoid_each_other() {
     let q = |x: f64| Q16::from_f64(x).unwrap();
     let own = Body::<Q16> {
         id: RobotId(1),
@@ -138,7 +137,7 @@ fn fixed_point_robots_avoid_too() {
 }
 
 #[test]
-fn who_goes_the_same_way_or_away_is_no_reason_to_lean() {
+fn robots_do_not_lean_for_robots_that_do_not_come_nearer() {
     let own = body(1, [0.4, 0.0]);
     let wish = Vec2::new(0.4, 0.0);
     let others =
@@ -159,12 +158,12 @@ fn a_robot_opposite_gets_its_turn_at_a_door() {
     let goes = |avoider: &mut Avoider<f32, 16>, other: Nearby<f32>| {
         avoider.velocity(&own, wish, goal, &[other], &walls, &mut rng()).velocity_mps.x > 0.05
     };
-    // Equally far: the smaller number. Nearer: whatever the number.
+    // Equally far: the smaller number. Nearer: any number.
     assert!(!goes(&mut avoider(), robot(4, [1.2, 0.0], [0.0, 0.0])));
     assert!(goes(&mut avoider(), robot(6, [1.2, 0.0], [0.0, 0.0])));
     assert!(!goes(&mut avoider(), robot(6, [1.1, 0.3], [0.0, 0.0])));
     assert!(goes(&mut avoider(), robot(4, [1.3, 0.2], [0.0, 0.0])));
-    // A turn that nobody takes passes on.
+    // An unused turn passes on.
     let mut waiting = avoider();
     let first = (0..200).find(|_| goes(&mut waiting, robot(4, [1.2, 0.0], [0.0, 0.0])));
     // Five to ten times 0.15 m at 0.5 m/s, in steps of 0.05 s.
@@ -173,7 +172,7 @@ fn a_robot_opposite_gets_its_turn_at_a_door() {
 
 proptest! {
     #[test]
-    fn whatever_the_bits_the_answer_is_finite_and_within_speed(
+    fn any_bits_give_a_finite_velocity_within_the_speed_limit(
         bits: [u32; 12],
         own_bits: [u32; 3],
     ) {
@@ -207,7 +206,6 @@ proptest! {
             for wish in [Vec2::new(f[0], f[5]), Vec2::new(0.3, 0.1)] {
                 let got = avoider.velocity(&own, wish, goal, &others, &obstacles, &mut rng());
                 prop_assert!(got.velocity_mps.is_finite() && got.penetration_mps.is_finite(), "{got:?}");
-                // A body that is too fast slows down first.
                 let is_bounded = got.velocity_mps.norm() < 0.501 || acceleration < 10.0;
                 prop_assert!(is_bounded, "{got:?}");
             }
@@ -215,7 +213,7 @@ proptest! {
     }
 
     #[test]
-    fn the_answer_is_permitted_if_anything_is(
+    fn the_result_is_permitted_if_any_velocity_is(
         places in proptest::collection::vec((-2.0_f64..2.0, -2.0_f64..2.0), 1..10),
         wish in (-0.5_f32..0.5, -0.5_f32..0.5),
     ) {

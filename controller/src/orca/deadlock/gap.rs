@@ -1,59 +1,56 @@
-//! Narrow places between walls, which robots must share.
+//! Finds narrow places between walls, which robots must share.
 
 use crate::geom::Vec2;
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
 
-/// A gap that the way to the goal leads through, relative to the robot: a door, or a short passage with a door's width.
+/// A gap on the path to the goal, relative to the robot: a door, or a short passage as wide as a
+/// door.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gap<S> {
-    /// Its middle, metres.
     pub(super) middle: Vec2<S>,
     /// Unit vector through it, towards the goal.
     pub(super) ahead: Vec2<S>,
     /// Half its width, metres.
     pub(super) half: S,
-    /// Half its depth, metres: 0 between walls without thickness.
+    /// Half its depth, metres; 0 between walls without thickness.
     pub(super) depth: S,
-    /// A wall bars the straight way.
+    /// A wall blocks the straight path.
     pub(super) is_only_way: bool,
 }
 
-/// Which gaps count.
 pub(super) struct Wanted<S> {
-    /// Least width, metres.
     pub(super) least_m: S,
-    /// Most width, metres.
     pub(super) most_m: S,
-    /// Longest passage, metres, of those that are not narrow.
+    /// Longest passage among gaps that are not narrow, metres.
     pub(super) deepest_m: S,
-    /// What is less wide is narrow, metres.
+    /// Gaps of less width are narrow, metres.
     pub(super) narrow_m: S,
     /// How far behind a gap it still counts, metres.
     pub(super) past_m: S,
 }
 
 impl<S: Scalar> Gap<S> {
-    /// A place relative to the robot as seen from the gap: x is how far behind it (negative: before it, 0:
-    /// in it, as if it had no depth), y how far to the right of its axis.
+    /// Converts a position relative to the robot into coordinates of the gap: x is how far behind
+    /// the gap (negative: before it, 0: in it, as if it had no depth), y how far to the right of
+    /// its axis.
     pub(super) fn place(&self, offset: Vec2<S>) -> Vec2<S> {
         let Vec2 { x, y } = self.turn(offset - self.middle);
         let beyond = (x.abs() - self.depth).max(S::ZERO);
         Vec2::new(if x < S::ZERO { -beyond } else { beyond }, y)
     }
 
-    /// A vector by its components ahead and to the right.
     pub(super) fn turn(&self, vector: Vec2<S>) -> Vec2<S> {
         Vec2::new(vector.dot(self.ahead), -self.ahead.det(vector))
     }
 
-    /// The way from the robot to a place as [`Gap::place`] gives it; one in the gap counts as before it.
+    /// The vector from the robot to a position as [`Gap::place`] returns it; a position in the gap
+    /// counts as before it.
     pub(super) fn way(&self, place: Vec2<S>) -> Vec2<S> {
         let depth = if place.x > S::ZERO { self.depth } else { -self.depth };
         self.middle + self.ahead * (place.x + depth) - self.ahead.perp() * place.y
     }
 
-    /// The gap between two ends of walls, towards `target`.
     fn between(a: Vec2<S>, b: Vec2<S>, target: Vec2<S>) -> Option<Self> {
         let across = (b - a).perp().normalized()?;
         let middle = (a + b) * S::HALF;
@@ -68,14 +65,14 @@ impl<S: Scalar> Gap<S> {
         (distance != S::ZERO).then_some(gap)
     }
 
-    /// Whether the robot is behind it, or beside it there.
+    /// Whether the robot is behind the gap, or beside it on that side.
     fn is_passed(&self, wanted: &Wanted<S>) -> bool {
         let own = self.place(Vec2::ZERO);
         own.x > wanted.past_m || own.x > S::ZERO && own.y.abs() > self.half
     }
 
-    /// Whether walls lead on both sides from this gap to another one in line, `way` off: where they do not, there is a
-    /// room between. It looks halfway.
+    /// Whether walls lead on both sides from this gap to another one in line, `way` away. If not,
+    /// there is a room in between. Checks the point halfway.
     fn is_walled(&self, way: Vec2<S>, obstacles: &[Obstacle<S>]) -> bool {
         let side = self.ahead.perp() * self.half;
         let halfway = self.middle + way * S::HALF;
@@ -84,14 +81,14 @@ impl<S: Scalar> Gap<S> {
             .all(|place| obstacles.iter().filter_map(|obstacle| distance(obstacle, place)).any(|near| near < self.half))
     }
 
-    /// Whether nothing stands in it: nothing is nearer to its middle than its sides are.
+    /// Whether the gap is free: no obstacle is nearer to its middle than its sides.
     fn is_clear(&self, obstacles: &[Obstacle<S>]) -> bool {
         let room = self.half - self.half * S::from_milli(1);
         obstacles.iter().filter_map(|obstacle| distance(obstacle, self.middle)).all(|distance| distance >= room)
     }
 
-    /// Joined with the other end of the same passage: one that is farther off than [`Wanted::deepest_m`] is if it is
-    /// narrow and there are walls all the way.
+    /// Joined with the other end of the same passage. An end farther away than
+    /// [`Wanted::deepest_m`] belongs to it if the passage is narrow and has walls all along.
     fn joined(self, other: &Self, wanted: &Wanted<S>, obstacles: &[Obstacle<S>]) -> Self {
         let way = other.middle - self.middle;
         let Vec2 { x, y } = self.turn(way);
@@ -108,11 +105,12 @@ impl<S: Scalar> Gap<S> {
     }
 }
 
-/// The gap on the shortest way to `target`, when a wall bars the straight way or it leads through a gap; also
-/// for a robot that is in it or just behind it.
+/// The gap on the shortest path to `target`, if a wall blocks the straight path or that leads
+/// through a gap; also for a robot in the gap or just behind it.
 ///
-/// The sides of a gap are ends of two walls with nothing else as near to their middle; gaps in line are the ends of one
-/// passage. O(walls^2), and O(obstacles) more for each pair of ends with the right distance.
+/// The sides of a gap are ends of two walls, and nothing else is as near to their middle; gaps in
+/// line are the ends of one passage. O(walls^2), and additional O(obstacles) for each pair of ends
+/// with the right distance.
 pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, wanted: &Wanted<S>) -> Option<Gap<S>> {
     let mut best: Option<(bool, S, Gap<S>)> = None;
     for_each_gap(obstacles, target, wanted, &mut |gap| {
@@ -120,7 +118,7 @@ pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, 
             return;
         }
         let detour = gap.middle.norm() + (target - gap.middle).norm();
-        // One behind another wall is not the next one.
+        // A gap behind another wall is not the next one.
         let is_hidden = walls(obstacles).any(|ends| crosses(gap.middle, ends));
         if best
             .is_none_or(|(was_hidden, least, _)| !is_hidden && was_hidden || is_hidden == was_hidden && detour < least)
@@ -153,7 +151,7 @@ fn for_each_gap<S: Scalar>(
     obstacles: &[Obstacle<S>],
     target: Vec2<S>,
     wanted: &Wanted<S>,
-    // Not generic, so that firmware has this once.
+    // Not generic, so that firmware contains this once.
     visit: &mut dyn FnMut(Gap<S>),
 ) {
     for (index, one) in walls(obstacles).enumerate() {
@@ -173,7 +171,6 @@ fn for_each_gap<S: Scalar>(
     }
 }
 
-/// Whether the way from the robot to `target` meets the segment.
 fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
     let along = b - a;
     let sides = (along.det(-a) > S::ZERO) != (along.det(target - a) > S::ZERO);
@@ -181,7 +178,7 @@ fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
     sides && ends
 }
 
-/// How far `from` is from an obstacle; `None` for planes, which have no end.
+/// The distance of an obstacle from `from`; `None` for planes, which have no end.
 fn distance<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Option<S> {
     let moved = match *obstacle {
         Obstacle::Wall([a, b]) => Obstacle::Wall([a - from, b - from]),

@@ -1,16 +1,19 @@
-//! The way out of symmetry and jams, which ORCA does not have: which wish to give to it so that nobody waits for ever.
+//! The rule against symmetry and jams, which ORCA lacks: it chooses the preferred velocity for ORCA
+//! so that no robot waits forever.
 //!
-//! - In the open robots pass each other on the right: while somebody is ahead, near, and coming nearer, the wish turns
-//!   to the right by a fixed angle ([`lean`]). Without it equal robots on a circle stop for ever in the middle; with it
-//!   they go round each other as in a roundabout. Who merely goes the same way is no reason to turn.
-//! - In narrow places they take turns: see [`right_of_way`].
-//! - Elsewhere who gets nowhere for long backs off a little: see [`patience`].
-//! - In space they lean to the right too, each somewhat up or down: see [`spread`](mod@spread).
+//! - In the open, robots pass each other on the right: while a robot is ahead, near, and coming
+//!   nearer, the wish turns to the right by a fixed angle ([`lean`]). Without it, equal robots on a
+//!   circle stop in the middle forever; with it, they circle as in a roundabout. A robot that moves
+//!   the same way does not trigger it.
+//! - In narrow places robots take turns: see [`right_of_way`].
+//! - Elsewhere a robot that makes no progress for long backs off a little: see [`patience`].
+//! - In space robots also lean to the right, each somewhat up or down: see [`spread`](mod@spread).
 //!
-//! Who has no goal, such as a flock, follows its wish: that others come nearer is no jam there.
+//! A robot without a goal, such as a member of a flock, follows its wish, since approaching robots
+//! are not a jam there.
 //!
-//! All of it changes the wish and never a constraint, so that ORCA's guarantee stands. It costs nothing where nobody is
-//! near.
+//! The rule changes the wish and never a constraint, so that ORCA's guarantee holds. It costs
+//! nothing if no robot is near.
 
 mod gap;
 mod patience;
@@ -27,13 +30,13 @@ use crate::geom::Vec2;
 use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
 
-/// Who is nearer than this is in the way, thousandths of the own radius.
+/// A robot nearer than this is in the way, thousandths of the own radius.
 const LEAN_WITHIN: i32 = 5_333;
-/// The same for fast robots: thousandths of the way within the horizon.
+/// The same distance for fast robots, thousandths of the path within the horizon.
 const LEAN_AHEAD: i32 = 800;
 
-/// The wish, turned to the right while a robot is ahead, near, and comes nearer; not as near to the `goal`, where it
-/// would circle. O(nearby).
+/// The wish, turned to the right while a robot is ahead, near, and coming nearer. Not applied near
+/// the `goal`, where the robot would circle. O(nearby).
 pub(super) fn lean<S: Scalar>(params: &AvoidParams<S>, situation: &Situation<'_, Vec2<S>>, goal: Vec2<S>) -> Vec2<S> {
     let Situation { wish, body, .. } = *situation;
     let ahead = body.max_speed_mps * params.horizon_s * S::from_milli(LEAN_AHEAD);

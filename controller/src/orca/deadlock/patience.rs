@@ -1,11 +1,12 @@
-//! Who gets nowhere for long backs off.
+//! A robot that makes no progress for long backs off.
 //!
-//! Robots that press on each other, each on the side where another one wants to pass, can stand so for ever: nobody
-//! takes more than half of a gap ([`Room`](crate::neighbor::Room)), and half of nothing is nothing. So who gets ahead
-//! by next to nothing gives up its wish for a short way, goes back or aside, and tries anew. Which way and how far is
-//! drawn, since two that did the same would meet again. (RVO2's examples disturb the wishes of all all the time, J. van
-//! den Berg, S. J. Guy, M. Lin, D. Manocha, "Reciprocal n-body collision avoidance", ISRR 2009; here only those of who
-//! is stuck.) Lengths are in own radii.
+//! Robots that push against each other, each on the side where the other wants to pass, can stand
+//! still forever: each takes at most half of a gap ([`Room`](crate::neighbor::Room)), and half of
+//! nothing is nothing. Therefore a robot with almost no progress gives up its wish for a short
+//! distance, moves back or aside, and tries again. Direction and distance are random, since two
+//! robots that did the same would meet again. RVO2's examples always disturb the wishes of all
+//! robots (J. van den Berg, S. J. Guy, M. Lin, D. Manocha, "Reciprocal n-body collision avoidance",
+//! ISRR 2009); here only stuck robots do this. Lengths are in own radii.
 
 use crate::geom::Vec2;
 use crate::orca::dimension::Situation;
@@ -13,26 +14,26 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Who gets ahead by less than this share of what it wishes is stuck, thousandths.
+/// A robot is stuck if its progress is below this share of its wish, thousandths.
 const STUCK: i32 = 150;
-/// How far to back off, to twice as far; thousandths of the own radius. Less does not let another one by.
+/// How far to back off, up to twice as far; thousandths of the own radius. A shorter distance does
+/// not let another robot pass.
 const BACK: i32 = 2_000;
 
-/// What a robot remembers of how it gets ahead.
+/// A robot's recent progress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Patience<S> {
-    /// The mean velocity of late, or the one to back off with, m/s; zero: nothing yet.
+    /// The recent mean velocity, or the one to back off with, m/s; zero at the start.
     course_mps: Vec2<S>,
-    /// How far to back off yet, own radii; 0: it goes where it wishes.
+    /// Remaining distance to back off, own radii; 0: it follows its wish.
     left: S,
 }
 
 impl<S: Scalar> Patience<S> {
-    /// Of a robot that has not moved yet.
     pub(in crate::orca) const NEW: Self = Self { course_mps: Vec2::ZERO, left: S::ZERO };
 
-    /// The wish, or the way back of one that got nowhere while it could have gone some four times `patience`, in own
-    /// radii. Constant work.
+    /// Returns the wish, or the velocity to back off with if the robot made no progress in the time
+    /// in which it could have moved some four times `patience` own radii. Constant work.
     pub(in crate::orca) fn wish(
         &mut self,
         situation: &Situation<'_, Vec2<S>>,
@@ -63,7 +64,7 @@ impl<S: Scalar> Patience<S> {
             return wish;
         }
         let mut share = || S::from_ratio(rng.below(1000).cast_signed(), 1000);
-        // Somewhere behind.
+        // A random direction behind.
         let (sin, cos) = (S::PI * (S::HALF + share())).sin_cos();
         let left = S::from_milli(BACK) * (S::ONE + share());
         *self = Self { course_mps: wish.rotate(cos, sin), left };
@@ -79,7 +80,7 @@ mod tests {
     use crate::scalar::Q16;
     use std::vec::Vec;
 
-    /// What it wishes in each of 1000 steps when it wishes to go east and gets so much of it.
+    /// The wishes in 1000 steps of a robot that wants to go east and achieves this share of it.
     fn wishes<S: Scalar>(share: S) -> Vec<Vec2<S>> {
         let (mut patience, mut rng) = (Patience::NEW, Rng::keyed(1, 2, 3, 4));
         let east = Vec2::new(S::HALF, S::ZERO);
@@ -97,7 +98,7 @@ mod tests {
         let east = Vec2::new(S::HALF, S::ZERO);
         let got = wishes(S::ZERO);
         let first = got.iter().position(|wish| *wish != east).unwrap();
-        // The mean falls to 15 % in 19 radii: 2.85 m.
+        // The mean falls to 15 % within 19 radii: 2.85 m.
         assert!((100..130).contains(&first), "{first}");
         let back = got[first..].iter().take_while(|wish| **wish != east).count();
         let radii = back as f64 * 0.5 * STEP_S / 0.15;
@@ -110,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn who_gets_nowhere_backs_off_and_tries_anew() {
+    fn a_stuck_robot_backs_off_and_tries_again() {
         backs_off::<f64>();
         backs_off::<f32>();
         backs_off::<Q16>();

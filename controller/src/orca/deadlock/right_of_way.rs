@@ -1,30 +1,35 @@
-//! Who goes through a gap, and who waits where.
+//! Decides which robot may pass a gap and where the others wait.
 //!
-//! ORCA alone jams in a door: everybody pushes, nobody can leave. This is the rule of robots whose way leads through
-//! the same gap (a door or a passage of any length), found by each for itself from the walls that it sees
-//! and the places, velocities and modes of others. Lengths are in own radii.
+//! ORCA alone jams in a door: all robots push, and none can leave. This rule applies to robots
+//! whose paths lead through the same gap (a door or a passage of any length). Each robot finds the
+//! gap on its own from the walls that it sees, and uses the positions, velocities and modes of the
+//! others. Lengths are in own radii.
 //!
-//! - Of the robots on one side the nearest to the gap is first, equal ones by number; only the first goes. The others
-//!   stand at a distance that grows with their rank, beside the lane that leads out of the gap, so that who comes out
-//!   gets away and nobody pushes. Who is parked is no part of it.
-//! - Nobody can count a long queue, since a robot knows its nearest neighbours only. So it is told on from each to the
-//!   next by where he stands: who has somebody before him that waits, waits behind him, [`QUEUE`] off, and makes room
-//!   for him. Such a queue is loose enough for those who come out, however many it has.
-//! - Where two robots fit side by side, each direction keeps to its right half of the gap, and both flow: nobody waits
-//!   in a queue there, and only short passages count.
-//! - Where only one fits, directions take turns, one robot each (in a long passage as many as come in the time in which
-//!   one goes through twice); after one has come out of the gap, it is the
-//!   turn of the first on that side. At the beginning the nearer one goes, of equal ones the smaller number. With
-//!   nobody waiting opposite, robots follow each other.
-//! - Who is in the gap goes on. If two meet in it, the one nearer to its way out goes on, and the other goes back
-//!   beside the lane, with those who follow it.
-//! - What robots see may differ, and some wait for another gap: when nobody has been in the gap, or has moved before
-//!   this robot, for a while (drawn by each robot for itself, longer for later ranks), whose turn it is no longer
-//!   counts.
-//! - A robot that a wall bars from its goal goes to the gap from as far as it sees it.
+//! - **Order.** On each side the robot nearest to the gap is first; equal distances are ordered by
+//!   number. Only the first robot goes. The others wait at a distance that grows with their rank,
+//!   beside the lane that leads out of the gap, so that robots coming out get away and none pushes.
+//!   Parked robots are ignored.
+//! - **Queue.** A robot knows only its nearest neighbours and cannot count a long queue. Therefore
+//!   the positions pass the queue on: a robot that has a waiting robot ahead waits behind it,
+//!   [`QUEUE`] away, and keeps clear of it. Such a queue is loose enough for robots coming out,
+//!   however long it is.
+//! - **Wide gaps.** If two robots fit side by side, each direction keeps to its right half of the
+//!   gap, and both flow. There is no queue, and only short passages count.
+//! - **Narrow gaps.** If only one robot fits, directions take turns, one robot each (in a long
+//!   passage as many as come within the time of two passages). After a robot has come out of the
+//!   gap, it is the turn of the first robot on that side. At the beginning the nearer robot goes,
+//!   of equal ones the smaller number. If no robot waits on the opposite side, robots follow each
+//!   other.
+//! - **Inside the gap.** A robot in the gap continues. If two meet in it, the one nearer to its
+//!   exit continues, and the other goes back beside the lane, with the robots that follow it.
+//! - **Timeout.** Robots may see different things, and some wait for another gap. If for a while no
+//!   robot was in the gap, and none before this robot moved, turns no longer count. Each robot
+//!   draws this time at random; later ranks wait longer.
+//! - **Distant gaps.** A robot that a wall separates from its goal heads for the gap as soon as it
+//!   sees it.
 //!
-//! So nobody waits for ever: a turn that is not taken passes on, and two that are taken at once are told apart in
-//! the gap by distance.
+//! Thus no robot waits forever: an unused turn passes on, and if two robots take a turn at once,
+//! their distances in the gap decide.
 
 use super::gap::{Gap, Wanted, gap_on_way};
 use crate::geom::Vec2;
@@ -33,95 +38,96 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Longest passage whose walls are not looked at between its ends, thousandths of the own radius.
+/// Longest passage whose walls are not checked between its ends, thousandths of the own radius.
 const DEEPEST: i32 = 8_000;
-/// Widest gap in which the rule holds; wider ones are open land.
+/// Widest gap in which the rule applies, thousandths of the own radius; wider ones are open space.
 const WIDEST: i32 = 9_000;
-/// Gaps farther off do not matter yet, unless a wall bars the straight way. Walls must be seen at least as far, since
-/// where sight ends, two walls of a corridor look like a gap.
+/// Gaps farther away are ignored, unless a wall blocks the straight path; thousandths of the own
+/// radius. Walls must be visible at least this far, since two walls of a corridor look like a gap
+/// where visibility ends.
 const WITHIN: i32 = 14_000;
-/// How far behind a gap one still goes straight on.
+/// How far behind a gap the robot still moves straight ahead, thousandths of the own radius.
 const PAST: i32 = 2_000;
-/// Play that two robots need to pass each other in a gap, beyond their diameters.
+/// Clearance that two robots need to pass each other in a gap, beyond their diameters, thousandths
+/// of the own radius.
 const PLAY: i32 = 150;
-/// How far from the gap one waits or comes out.
+/// Distance from the gap within which robots wait or come out, thousandths of the own radius.
 const YARD: i32 = 5_000;
-/// Who stands so near behind another one that waits goes no farther.
+/// A robot this near behind a waiting robot stops, thousandths of the own radius.
 const QUEUE: i32 = 3_500;
-/// Nearer than this to one that waits before him, he makes room.
+/// A robot nearer than this to the waiting robot ahead moves back, thousandths of the own radius.
 const APART: i32 = 3_000;
-/// For how long a direction keeps a passage while others wait opposite: while one could go so many times half its length.
+/// How long a direction keeps a passage while others wait opposite: the time to travel this many
+/// times half its length.
 const TURN: i32 = 4;
-/// Distances that differ by less are equal: the rounding of what robots know is the same for both but for this,
-/// millionths of the own radius.
+/// Distances that differ by less count as equal, millionths of the own radius. Both robots know the
+/// same rounded values, except for this difference.
 const TIE: i32 = 600;
-/// For how long more each rank leaves an empty gap alone, thousandths of the time in which one goes the own radius.
+/// Additional waiting time at an empty gap per rank, thousandths of the time to travel the own
+/// radius.
 const PATIENCE_OF_RANK: i32 = 1_667;
 
-/// What a robot remembers of the gap before it.
+/// The state of a robot at a gap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RightOfWay<S> {
-    /// Which way the last robot seen in the gap went: whether as this one wants to.
+    /// Whether the last robot seen in the gap moved in this robot's direction.
     last_went_ahead: Option<bool>,
-    /// For how long robots have gone that way since the direction changed: how far one could have gone, metres.
+    /// How long robots have moved that way since the direction changed, as the distance that one
+    /// could have travelled, metres.
     turn_m: S,
-    /// For how long nobody has been seen in it, and for how long this is not remarkable: how many own radii one could
-    /// have gone.
+    /// How long no robot has been seen in the gap, and the limit of that time; as distances that
+    /// one could have travelled, own radii.
     idle: Option<(S, S)>,
-    /// Whether it was allowed to go in the last step.
     goes: bool,
-    /// Whether it is at a gap for one.
     is_narrow: bool,
 }
 
-/// The gap, the robot and the others, seen from the gap.
+/// The gap, the robot and its neighbours, in the coordinates of the gap.
 struct Approach<'a, S: Scalar> {
     gap: Gap<S>,
     situation: &'a Situation<'a, Vec2<S>>,
-    /// The own place: see [`Gap::place`].
+    /// The own position: see [`Gap::place`].
     own: Vec2<S>,
     /// Two robots of the own size do not fit side by side.
     is_narrow: bool,
 }
 
-/// What others do at the gap.
 struct Traffic<S> {
-    /// How many on this side are nearer to the gap.
+    /// Number of robots on this side that are nearer to the gap.
     rank: i32,
-    /// Somebody in the gap goes ahead.
+    /// A robot in the gap moves in this robot's direction.
     ahead: bool,
-    /// Somebody in the gap comes against, or stands there with more right to it.
+    /// A robot in the gap comes towards this one, or stands there with priority.
     against: bool,
-    /// The next one ahead in the gap does not go ahead, and is nearer to its way out.
+    /// The next robot ahead in the gap does not move on, and is nearer to its exit.
     bars: bool,
-    /// Somebody is in the gap, or nearer to it on this side and moves.
+    /// A robot is in the gap, or nearer to it on this side and moving.
     flows: bool,
-    /// Somebody who waits is nearer to the gap, and right ahead.
+    /// A waiting robot is nearer to the gap, and directly ahead.
     is_behind: bool,
-    /// Where the nearest is of those who wait before this one and are too near.
+    /// Position of the nearest waiting robot that is before this one and too close.
     crowds: Option<Vec2<S>>,
-    /// Somebody is on the way out of the gap, on this side.
+    /// A robot is coming out of the gap on this side.
     comes_out: bool,
-    /// Somebody may be waiting opposite.
+    /// A robot may be waiting on the opposite side.
     opposite: bool,
-    /// One of those comes first by distance or number.
+    /// One of those has priority by distance or number.
     opposite_is_nearer: bool,
-    /// Radius of the largest robot.
     largest: S,
 }
 
 impl<S: Scalar> RightOfWay<S> {
-    /// Of a robot that is at no gap.
     pub(in crate::orca) const NEW: Self =
         Self { last_went_ahead: None, turn_m: S::ZERO, idle: None, goes: false, is_narrow: false };
 
-    /// Whether it waits at a gap.
     pub(in crate::orca) const fn waits(&self) -> bool {
         self.idle.is_some() && !self.goes
     }
 
-    /// The wish of a robot whose way leads through a gap, with others near by; `None` when it does not. An empty
-    /// gap is left to others for `patience` to twice as long: see [`DeadlockParams`](crate::orca::DeadlockParams).
+    /// The wish of a robot whose path leads through a gap, with others nearby; `None` otherwise.
+    ///
+    /// An empty gap is left to other robots for `patience` to twice as long: see
+    /// [`DeadlockParams`](crate::orca::DeadlockParams).
     pub(in crate::orca) fn wish(
         &mut self,
         situation: &Situation<'_, Vec2<S>>,
@@ -165,7 +171,7 @@ impl<S: Scalar> RightOfWay<S> {
         Some(way.normalized().map_or(Vec2::ZERO, |unit| unit * pace))
     }
 
-    /// Whether it was at a gap for one in the last step.
+    /// Whether it was at a gap for one robot in the last step.
     pub(in crate::orca) const fn takes_turns(&self) -> bool {
         self.is_narrow
     }
@@ -188,7 +194,8 @@ impl<S: Scalar> RightOfWay<S> {
             return true;
         }
         match self.last_went_ahead {
-            // The turn is theirs, unless it was given to this robot before it saw that, or the passage is worth more.
+            // It is the others' turn, unless this robot got its turn before it saw them, or the
+            // passage is long and the turn not yet over.
             Some(true) if traffic.ahead => self.turn_m < approach.gap.depth * S::from_i32(TURN),
             Some(true) => self.goes,
             Some(false) => !traffic.ahead,
@@ -218,18 +225,16 @@ impl<'a, S: Scalar> Approach<'a, S> {
         (is_near || is_narrow && gap.is_only_way).then_some(Self { gap, situation, own, is_narrow })
     }
 
-    /// A length in thousandths of the own radius.
     fn radii(&self, thousandths: i32) -> S {
         self.situation.body.radius_m * S::from_milli(thousandths)
     }
 
-    /// Whether robots can pass each other in the gap.
     fn has_lanes(&self, largest: S) -> bool {
         let two = self.situation.body.radius_m + largest;
         self.gap.half + self.gap.half >= two + two + self.radii(PLAY)
     }
 
-    /// How far to the right of the gap's axis to go through it.
+    /// Lateral position in the gap, to the right of its axis.
     fn lane(&self, has_lanes: bool) -> S {
         if has_lanes { self.gap.half * S::HALF } else { S::ZERO }
     }
@@ -248,12 +253,11 @@ impl<'a, S: Scalar> Approach<'a, S> {
             opposite_is_nearer: false,
             largest: self.situation.body.radius_m,
         };
-        // Slower than this is standing.
+        // Slower robots count as stationary.
         let slow = self.situation.body.max_speed_mps * S::from_milli(100);
         let tie = self.situation.body.radius_m * S::from_micro(TIE);
         let own_distance = self.own.norm();
         let own_along = self.gap.turn(-self.gap.middle).x;
-        // The nearest one ahead in the gap.
         let mut next = None;
         for other in self.situation.nearby {
             let is_parked = other.mode.is_parked();
@@ -271,7 +275,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
                 let stands_there = speed_ahead <= slow && place.x > S::ZERO && is_nearer;
                 traffic.against |= speed_ahead < -slow || stands_there;
                 let along = self.gap.turn(other.offset_m.xy() - self.gap.middle).x;
-                // How far each of them has to the middle, or less.
+                // Lower bounds of the distances to the middle.
                 let (own_rest, rest) = (-own_along, along);
                 let is_first = rest < own_rest - tie || rest <= own_rest + tie && other.id < self.situation.body.id;
                 let has_right = speed_ahead <= slow && is_first;
@@ -298,35 +302,31 @@ impl<'a, S: Scalar> Approach<'a, S> {
         traffic
     }
 
-    /// Takes note of one that waits before this robot.
     fn keep_queue(&self, offset: Vec2<S>, traffic: &mut Traffic<S>) {
         let distance = offset.norm();
         if distance >= self.radii(QUEUE) {
             return;
         }
         traffic.is_behind |= offset.dot(self.gap.middle) > S::ZERO;
-        // The nearest comes first.
         if distance < self.radii(APART) && traffic.crowds.is_none() {
             traffic.crowds = Some(offset);
         }
     }
 
-    /// Where to go next on the way through.
+    /// The next waypoint on the path through the gap.
     fn way_through(&self, has_lanes: bool) -> Vec2<S> {
         let lane = self.lane(has_lanes);
         let play = self.gap.half - self.situation.body.radius_m;
         if self.own.x > S::ZERO {
-            // Out, and to the right.
             Vec2::new(self.radii(4_000), lane + self.radii(300))
         } else if self.own.x < S::ZERO && (self.own.y - lane).abs() > play.max(self.radii(300)) {
-            // Into the lane first.
             Vec2::new(-self.radii(800), lane)
         } else {
             Vec2::new(self.radii(2_000), lane)
         }
     }
 
-    /// Where to wait; `None`: here.
+    /// The place to wait; `None`: here.
     fn place_to_wait(&self, traffic: &Traffic<S>, has_lanes: bool) -> Option<Vec2<S>> {
         let radius = self.situation.body.radius_m;
         let own = self.own;
@@ -336,7 +336,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         let is_in_lane = own.y.abs() < edge + radius && own.x > -self.radii(YARD);
         if is_in_lane && !has_lanes {
             return Some(if own.x > -self.radii(1_300) {
-                // Back out of the gap.
                 Vec2::new(-self.radii(2_500), spot.y)
             } else {
                 Vec2::new(own.x, spot.y + radius * S::HALF * side)
@@ -346,7 +345,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
             let unit = offset.normalized().unwrap_or_default();
             return Some(self.gap.place(offset - unit * self.radii(APART)));
         }
-        // As many robots as the rank says find room in a quarter of this disc.
+        // A quarter of this disc has space for as many robots as the rank.
         let room = radius * (S::from_milli(6_500) * S::from_i32(traffic.rank)).sqrt();
         let goes_on = !traffic.is_behind && (spot - own).norm() >= room;
         goes_on.then_some(spot)

@@ -25,7 +25,7 @@ fn worked_example_of_the_paper_to_1e_6() {
 
 #[test]
 fn head_on_robots_are_sent_to_opposite_sides() {
-    // Ahead 10 m, closing at 2 m/s, a little to the left: pass on the right.
+    // 10 m ahead, closing at 2 m/s, a little to the left: pass on the right.
     let plane = |offset: V, own: V| half_plane(own, &ball(offset, -own, 1.0), &params(20.0, 0.5)).unwrap();
     let ours = plane(v(10.0, 0.1), v(1.0, 0.0));
     let theirs = plane(v(-10.0, -0.1), v(-1.0, 0.0));
@@ -40,7 +40,6 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     let p = params(2.0, 0.5);
     let overlapping = half_plane(V::ZERO, &ball(v(0.5, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(-1.0, 0.0));
-    // 0.5 m of overlap in 0.05 s, half of it ours.
     assert!((overlapping.point.x + 5.0).abs() < 1e-9);
     let tied = |tie: V| {
         let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
@@ -55,7 +54,7 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
 }
 
 #[test]
-fn what_is_not_finite_gives_no_half_plane() {
+fn non_finite_input_gives_no_half_plane() {
     let p = params(2.0, 0.5);
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(half_plane(v(bad, 0.0), &ball(v(3.0, 0.0), V::ZERO, 1.0), &p).is_none());
@@ -75,7 +74,8 @@ fn speed_limit_and_preference_alone() {
     assert!((fast - v(0.6, 0.8)).norm() < 1e-12);
 }
 
-/// Walls that share a corner give the same half-plane twice; rounding between the two is no contradiction.
+/// Walls that share a corner give the same half-plane twice; rounding between the two must not
+/// contradict.
 #[test]
 fn copies_of_a_half_plane_change_nothing() {
     let mut differing = 0;
@@ -94,9 +94,8 @@ fn copies_of_a_half_plane_change_nothing() {
 }
 
 #[test]
-fn opposite_walls_are_met_halfway_and_hard_ones_not_at_all() {
+fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     let plane = |x: f64, nx: f64| HalfPlane { point: v(x, 0.0), normal: v(nx, 0.0) };
-    // x >= 0.5 and x <= -0.3 contradict each other.
     let planes = [plane(0.5, 1.0), plane(-0.3, -1.0)];
     let soft = solve::<_, 4>(&planes, 0, V::ZERO, 1.0);
     assert!((soft.velocity_mps.x - 0.1).abs() < 1e-9, "{soft:?}");
@@ -105,7 +104,7 @@ fn opposite_walls_are_met_halfway_and_hard_ones_not_at_all() {
     assert!((hard.velocity_mps.x - 0.5).abs() < 1e-9, "{hard:?}");
 }
 
-/// Half-planes of neighbours around a robot, as they occur.
+/// Realistic half-planes of neighbours around a robot.
 fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {
     let pair = || (-2.0_f64..2.0, -2.0_f64..2.0).prop_map(|(x, y)| v(x, y));
     let others = proptest::collection::vec((pair(), pair(), 0.1_f64..1.0), 0..10);
@@ -120,7 +119,6 @@ fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {
     })
 }
 
-/// The best of many velocities in the disc: least penetration first, then nearest.
 fn oracle(planes: &[HalfPlane<f64>], preferred: V, speed: f64) -> (f64, f64) {
     let steps = 120;
     let mut best = (f64::MAX, f64::MAX);
@@ -142,7 +140,7 @@ fn oracle(planes: &[HalfPlane<f64>], preferred: V, speed: f64) -> (f64, f64) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// No velocity of a fine grid is clearly better than the answer.
+    /// No velocity of a fine grid is clearly better than the result.
     #[test]
     fn answer_is_the_best_within_the_disc((planes, _, preferred) in crowd()) {
         let speed = 1.5;
@@ -187,7 +185,6 @@ proptest! {
         }
     }
 
-    /// If both do their share of the change, they do not meet within the horizon.
     #[test]
     fn pair_that_obeys_does_not_meet_within_the_horizon(
         x in 1.1_f64..6.0,
@@ -222,8 +219,8 @@ proptest! {
             };
             let params = Params { horizon_s: S::TWO, separation_s: s(0.05), share: S::HALF };
             let plane = half_plane(Vec2::new(S::HALF, S::HALF), &other, &params).unwrap();
-            // The border may jump from leg to leg for a velocity on the axis of the cone; the change
-            // that is asked for does not: compare how far the own velocity is from the border.
+            // For a velocity on the axis of the cone the border may jump from leg to leg, but the
+            // demanded change does not: compare the distance of the own velocity from the border.
             let own = plane.penetration(Vec2::new(S::HALF, S::HALF)).to_f64();
             (own - exact.penetration(v(0.5, 0.5))).abs()
         }
@@ -233,9 +230,10 @@ proptest! {
 }
 
 proptest! {
-    /// By squares and by angles the change is the same; the normal too, unless two ways out are equally long.
+    /// By squares and by angles the change is the same; the normal too, unless two exits are
+    /// equally long.
     #[test]
-    fn both_ways_to_leave_the_cone_agree(
+    fn both_methods_to_leave_the_cone_agree(
         p in (-9.0_f64..9.0, -9.0_f64..9.0),
         v in (-3.0_f64..3.0, -3.0_f64..3.0),
         r in 0.1_f64..2.0,
@@ -263,7 +261,7 @@ fn shortest_vectors_still_give_half_planes() {
     let tiny = [0.0, 1e-30, 1e-23, 1e-20, 1e-15, 1e-10];
     for (reach, off) in tiny.iter().flat_map(|reach| tiny.map(|off| (*reach, off))) {
         let disc = |offset_m: Vec2<f32>, radii_m: f32| ball(offset_m, Vec2::ZERO, radii_m);
-        // A relative velocity that points at the disc's centre but for `off`, and robots of hardly any size.
+        // A relative velocity that points at the disc's centre except for `off`, and tiny robots.
         let own = Vec2::new(500.0 - off, off);
         let far = half_plane(own, &disc(Vec2::new(1000.0, 0.0), 1.0), &params);
         let small = half_plane(own, &disc(Vec2::new(reach * 3.0, 0.0), reach), &params);

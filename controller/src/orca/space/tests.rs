@@ -33,7 +33,8 @@ fn worked_example_of_the_paper_holds_in_any_plane() {
 
 #[test]
 fn robots_that_fly_exactly_at_each_other_turn_to_opposite_sides() {
-    // Far within the cone, on its axis: level to the right, one above the other to either side.
+    // Far inside the cone, on its axis: level to the right; if one is above the other, to either
+    // side.
     for (offset, side) in [
         (v(10.0, 0.0, 0.0), v(0.0, -1.0, 0.0)),
         (v(0.0, 0.0, 10.0), v(1.0, 0.0, 0.0)),
@@ -52,7 +53,6 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     let p = params(2.0, 0.5);
     let overlapping = half_space(V::ZERO, &ball(v(0.0, 0.0, 0.5), V::ZERO, 1.0), &p).unwrap();
     assert_eq!(overlapping.normal, v(0.0, 0.0, -1.0));
-    // 0.5 m of overlap in 0.05 s, half of it ours.
     assert!((overlapping.point.z + 5.0).abs() < 1e-9);
     let tied = |tie: V| {
         let other = MovingBall { tie, ..ball(V::ZERO, V::ZERO, 1.0) };
@@ -63,7 +63,7 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
 }
 
 #[test]
-fn what_is_not_finite_gives_nothing_and_never_spreads() {
+fn non_finite_input_gives_no_constraint_and_never_spreads() {
     let p = params(2.0, 0.5);
     for bad in [f64::NAN, f64::INFINITY] {
         let spoilt = v(1.0, bad, 0.0);
@@ -80,7 +80,6 @@ fn what_is_not_finite_gives_nothing_and_never_spreads() {
     }
     let thin = ball(v(3.0, 0.0, 0.0), V::ZERO, f64::NAN);
     assert_eq!(half_space(V::ZERO, &thin, &p), None);
-    // A speed that is none stops.
     for speed in [0.0, -1.0, f64::NAN] {
         let stopped = solve::<_, 4>(&[], 0, v(1.0, 1.0, 1.0), speed);
         assert_eq!(stopped.velocity_mps, V::ZERO);
@@ -88,7 +87,7 @@ fn what_is_not_finite_gives_nothing_and_never_spreads() {
 }
 
 #[test]
-fn opposite_half_spaces_are_met_halfway_and_hard_ones_not_at_all() {
+fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     let space = |z: f64, nz: f64| HalfSpace { point: v(0.3, -0.7, z), normal: v(0.0, 0.0, nz) };
     let spaces = [space(0.5, 1.0), space(-0.3, -1.0)];
     let soft = solve::<_, 4>(&spaces, 0, V::ZERO, 1.0);
@@ -96,10 +95,9 @@ fn opposite_half_spaces_are_met_halfway_and_hard_ones_not_at_all() {
     assert!((soft.penetration_mps - 0.4).abs() < 1e-9);
     let hard = solve::<_, 4>(&spaces, 1, V::ZERO, 1.0);
     assert!((hard.velocity_mps.z - 0.5).abs() < 1e-9, "{hard:?}");
-    // Contradictions among the hard ones are shared as well.
+    // Contradictions among hard constraints are shared as well.
     let torn = solve::<_, 4>(&spaces, 2, V::ZERO, 1.0);
     assert!((torn.penetration_mps - 0.4).abs() < 1e-9, "{torn:?}");
-    // Beyond the capacity: not there.
     let one = solve::<_, 1>(&spaces, 0, V::ZERO, 1.0);
     assert_eq!(one.velocity_mps, v(0.0, 0.0, 0.5));
 }
@@ -108,10 +106,10 @@ fn vector(most: f64) -> impl Strategy<Value = V> {
     (-most..most, -most..most, -most..most).prop_map(|(x, y, z)| v(x, y, z))
 }
 
-/// Half-spaces of neighbours around a robot, as they occur.
+/// Realistic half-spaces of neighbours around a robot.
 fn crowd() -> impl Strategy<Value = (Vec<HalfSpace<V>>, V)> {
     let others = proptest::collection::vec((vector(1.0), vector(2.0), 0.1..1.0_f64), 0..10);
-    // In about one of five nothing is permitted.
+    // In about one of five cases no velocity is permitted.
     let spread = 0.5..4.0_f64;
     (others, spread, vector(2.0), vector(2.0)).prop_map(|(others, spread, own, preferred)| {
         let spaces = others
@@ -125,8 +123,9 @@ fn crowd() -> impl Strategy<Value = (Vec<HalfSpace<V>>, V)> {
     })
 }
 
-/// The nearest permitted velocity: the best of all points where the distance to `preferred` can have its
-/// minimum, on zero to three of the borders and on the ball. `None` when nothing is permitted.
+/// The nearest permitted velocity: the best of all points where the distance to `preferred` can
+/// have its minimum, on zero to three of the borders and on the ball. `None` if no velocity is
+/// permitted.
 fn nearest_permitted(spaces: &[HalfSpace<V>], preferred: V, speed: f64) -> Option<f64> {
     let mut candidates = Vec::from([preferred, preferred.clamp_norm(speed)]);
     let onto_ball = |foot: V, flat: V| {
@@ -159,7 +158,6 @@ fn nearest_permitted(spaces: &[HalfSpace<V>], preferred: V, speed: f64) -> Optio
     permitted.map(|at| (at - preferred).norm()).min_by(f64::total_cmp)
 }
 
-/// The least penetration over a grid of velocities in the ball.
 fn least_penetration(spaces: &[HalfSpace<V>], speed: f64) -> f64 {
     let steps = 16;
     let axis = || (-steps..=steps).map(|i| speed * f64::from(i) / f64::from(steps));
@@ -199,7 +197,7 @@ proptest! {
     }
 
     #[test]
-    fn hard_half_spaces_are_kept_where_the_others_contradict_them(
+    fn hard_half_spaces_are_obeyed_if_others_contradict_them(
         (spaces, preferred) in crowd(),
         hard in 0_usize..3,
     ) {
@@ -242,7 +240,6 @@ proptest! {
         }
     }
 
-    /// If both do their share of the change, they do not meet within the horizon.
     #[test]
     fn pair_that_obeys_does_not_meet_within_the_horizon(
         offset in vector(4.0),
@@ -262,9 +259,9 @@ proptest! {
         prop_assert!(least > 1.0 - 1e-6, "{least}");
     }
 
-    /// In one horizontal plane: the same half-planes, and where there is a velocity, the same one.
+    /// In one horizontal plane: the same half-planes, and the same velocity if there is one.
     #[test]
-    fn in_one_plane_it_is_what_the_plane_says(
+    fn space_agrees_with_the_plane_in_one_plane(
         others in proptest::collection::vec((vector(4.0), vector(2.0), 0.1_f64..1.0), 0..10),
         own in vector(2.0),
         preferred in vector(2.0),
@@ -314,8 +311,8 @@ proptest! {
             (v(x.to_f64(), y.to_f64(), z.to_f64()), found.penetration_mps.to_f64())
         }
         let exact = solve::<_, 10>(&spaces, 0, preferred, 1.5);
-        // Borders that are nearly parallel move a corner far; what it violates, they do not, until what is left of
-        // their angle is rounding.
+        // Nearly parallel borders move a corner far, but not the penetration, until only rounding
+        // is left of their angle.
         let sine = |one: &HalfSpace<V>, two: &HalfSpace<V>| one.normal.cross(two.normal).norm();
         let mut pairs = spaces.iter().enumerate().flat_map(|(i, one)| spaces[..i].iter().map(move |two| (one, two)));
         let q16 = if pairs.any(|(one, two)| sine(one, two) < 0.02) { 0.1 } else { 0.02 };

@@ -1,36 +1,39 @@
-//! The table, made at compile time.
+//! The voxel table, computed at compile time.
 
-/// Length of a stored normal, and what sines of levels count in: powers of two that every scalar can tell apart.
+/// Length of a stored normal, and denominator of the levels' sines: powers of two, exact in every
+/// scalar type.
 pub(super) const ONE: i32 = 1 << 14;
 
-/// The local geometry of the velocity obstacle: for some sines of its half angle, in some directions from its disc's
-/// centre.
+/// The local geometry of the velocity obstacle, sampled over the sine of its half angle and the
+/// direction from its disc's centre.
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityObstacleTable {
     /// Sines of the half angle, ascending from 0 to 1, in 1 / 2^14.
     pub(super) sines: &'static [u16],
-    /// Directions in each level: equal steps of x / (x + y) from square to the axis to straight back.
+    /// Directions in each level: equal steps of x / (x + y), from perpendicular to the axis to
+    /// straight back.
     pub(super) directions: usize,
-    /// The outward normal at the border nearest to the points in a direction, in 1 / 2^14; by level, then by direction.
-    /// Components along the axis, turned round to be positive, and across it.
+    /// The outward normals at the border nearest to the points in a direction, in 1 / 2^14; by
+    /// level, then by direction. The components are along the axis, negated to be positive, and
+    /// across it.
     pub(super) normals: &'static [[i16; 2]],
 }
 
 impl VelocityObstacleTable {
-    /// Bytes of the table.
+    /// Size of the table in bytes.
     #[must_use]
     pub const fn bytes(&self) -> usize {
         size_of_val(self.sines) + size_of_val(self.normals)
     }
 
-    /// Nodes: levels and directions.
+    /// Number of levels and directions.
     #[must_use]
     pub const fn shape(&self) -> [usize; 2] {
         [self.sines.len(), self.directions]
     }
 }
 
-/// ORCA's table, of at most 2 KiB, as a source of half-planes.
+/// ORCA's table of at most 2 KiB, as a source of half-planes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct VoxelTable2k;
 
@@ -38,7 +41,7 @@ const LEVELS: usize = 20;
 const DIRECTIONS: usize = 25;
 
 impl VoxelTable2k {
-    /// The table.
+    /// The table of velocity obstacles.
     pub const TABLE: VelocityObstacleTable = {
         const LEGS: [[i16; 2]; LEVELS] = legs();
         static SINES: [u16; LEVELS] = sines(&LEGS);
@@ -47,10 +50,11 @@ impl VoxelTable2k {
     };
 }
 
-/// The normal of the left leg in each level, from square to the axis (far away) to straight back (touching).
+/// The normal of the left leg in each level, from perpendicular to the axis (far away) to straight
+/// back (touching).
 ///
-/// The half angles are twice the arc tangents of equal steps, which lie denser towards a right angle. A level's sine is
-/// that of the rounded normal.
+/// The half angles are twice the arc tangents of equal steps, which are denser towards a right
+/// angle. The sine of a level is that of its rounded normal.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
 const fn legs() -> [[i16; 2]; LEVELS] {
     let mut legs = [[0; 2]; LEVELS];
@@ -64,7 +68,7 @@ const fn legs() -> [[i16; 2]; LEVELS] {
     legs
 }
 
-/// The sine of each level, rounded down: of cones that are no wider than the stored normals are for.
+/// The sine of each level, rounded down: the cone must not be wider than the stored normals allow.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
 const fn sines(legs: &[[i16; 2]; LEVELS]) -> [u16; LEVELS] {
     let mut sines = [0; LEVELS];
@@ -103,11 +107,11 @@ const fn rounded(x: f64) -> i16 {
     (x + 0.5) as i16
 }
 
-/// The square root by Newton's method: std's is not for compile time.
+/// The square root by Newton's method; std's is not available at compile time.
 const fn root(x: f64) -> f64 {
     let mut root = 0.5 * (x + 1.0);
     let mut step = 0;
-    // Enough for 0.1 to 10^10, where a step more changes nothing.
+    // Enough for 0.1 to 10^10, where another step changes nothing.
     while step < 24 {
         root = 0.5 * (root + x / root);
         step += 1;

@@ -62,7 +62,7 @@ fn looked_up(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     half_plane_from_table(own, other, &PARAMS).unwrap()
 }
 
-/// As [`half_plane_from_table`] with the nearest direction of the level below.
+/// Like [`half_plane_from_table`], with the nearest direction of the level below.
 fn single_node(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     let table = VoxelTable2k::TABLE;
     let (ahead, distance) = (other.offset_m.normalized().unwrap(), other.offset_m.norm());
@@ -104,7 +104,7 @@ fn worked_example_of_the_paper_within_the_tables_error() {
 }
 
 #[test]
-fn overlap_nonsense_and_the_discs_centre_are_as_in_the_analytic_form() {
+fn overlap_invalid_input_and_the_discs_centre_match_the_analytic_form() {
     let both = |own: V, other: &MovingBall<V>, params: &Params<f64>| {
         (half_plane_from_table(own, other, params), half_plane(own, other, params))
     };
@@ -150,7 +150,8 @@ fn stored_normals_lie_between_backwards_and_the_leg() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
-    /// Nothing of the velocity obstacle is permitted, and both robots of a pair get opposite half-planes.
+    /// No velocity of the velocity obstacle is permitted, and the robots of a pair get opposite
+    /// half-planes.
     #[test]
     fn every_half_plane_forbids_the_whole_obstacle(seed: u64) {
         let (own, other) = sample(&mut Rng::new(seed));
@@ -170,7 +171,6 @@ proptest! {
         prop_assert!((plane.normal + theirs.normal).norm() < 1e-9);
     }
 
-    /// The demanded change is never less than the least one.
     #[test]
     fn never_demands_less_than_the_analytic_form(seed: u64) {
         let (own, other) = sample(&mut Rng::new(seed));
@@ -179,7 +179,7 @@ proptest! {
         prop_assert!(found >= exact - 1e-6, "{found} < {exact}");
     }
 
-    /// Inside of the obstacle the R-function is positive and a change is demanded; outside neither.
+    /// Inside the obstacle the R-function is positive and a change is demanded; outside neither.
     #[test]
     fn signs_agree_with_the_r_function(seed: u64) {
         let (own, other) = sample(&mut Rng::new(seed));

@@ -13,18 +13,18 @@ fn v(x: f64, y: f64) -> V {
 #[test]
 fn walls_ahead_beside_and_touching() {
     let forward = v(1.0, 0.0);
-    // A wall 2 m ahead across the way, radius 0.5, 1 s: at most 1.5 m/s towards it.
+    // A wall 2 m ahead across the path, radius 0.5, 1 s: at most 1.5 m/s towards it.
     let ahead = wall(forward, [v(2.0, -5.0), v(2.0, 5.0)], 0.5, 1.0).unwrap();
     assert!((ahead.point.dot(ahead.normal) + 1.5).abs() < 1e-9, "{ahead:?}");
     assert!((ahead.normal - v(-1.0, 0.0)).norm() < 1e-9);
-    // A wall along the way at 1 m to the left: sideways at most 0.5 m/s.
+    // A wall along the path at 1 m to the left: sideways at most 0.5 m/s.
     let beside = wall(forward, [v(-50.0, 1.0), v(50.0, 1.0)], 0.5, 1.0).unwrap();
     assert!((beside.normal - v(0.0, -1.0)).norm() < 1e-9);
     assert!(beside.penetration(v(1.0, 0.49)) < 0.0 && beside.penetration(v(1.0, 0.51)) > 0.0);
     // Touching: no nearer.
     let touching = wall(forward, [v(0.5, -1.0), v(0.5, 1.0)], 0.5, 1.0).unwrap();
     assert_eq!((touching.point, touching.normal), (V::ZERO, v(-1.0, 0.0)));
-    // A wall of no length is a post.
+    // A wall of length zero is a post.
     let post = wall(v(3.0, 0.1), [v(2.0, 0.0); 2], 0.5, 10.0).unwrap();
     assert!(post.normal.y > 0.9, "pass on the left leg {post:?}");
     assert!(wall(forward, [v(f64::NAN, 0.0), v(1.0, 1.0)], 0.5, 1.0).is_none());
@@ -33,10 +33,10 @@ fn walls_ahead_beside_and_touching() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whoever obeys a wall's half-plane does not touch it within the horizon, and who would not
-    /// have touched it is hardly changed.
+    /// A robot that obeys a wall's half-plane does not touch it within the horizon, and a robot
+    /// that would not have touched it is hardly affected.
     #[test]
-    fn whoever_obeys_a_wall_does_not_touch_it(
+    fn a_robot_that_obeys_a_wall_does_not_touch_it(
         a in (-4.0_f64..4.0, -4.0_f64..4.0),
         b in (-4.0_f64..4.0, -4.0_f64..4.0),
         own in (-3.0_f64..3.0, -3.0_f64..3.0),

@@ -1,26 +1,25 @@
-//! What is known of the land beyond the window, and what exits cost by it.
+//! Knowledge of the land beyond the window, and the exit costs that follow from it.
 
 use super::{CostField, Query};
 use crate::cost::{Cost, EXCLUDED};
 use crate::grid::{Cell, DIAGONAL};
 use crate::land::Outlook;
 
-/// What is known of what lies beyond the window.
 #[derive(Clone, Copy, Default)]
 pub(in crate::route) struct Beyond<'a> {
-    /// What the ways from some cells cost at least.
+    /// Lower bounds of the cost from some cells.
     pub learned: &'a [(Cell, Cost)],
-    /// What the land is like there.
+    /// The land there, from the map.
     pub land: Option<&'a Outlook<'a>>,
 }
 
 impl<const CELLS: usize> CostField<CELLS> {
-    /// Makes every border cell an exit, priced by its distance to the target (eq. 10) and what is known of the land
-    /// there, or by what was learned if that is more.
+    /// Makes every border cell an exit, priced by its distance to the target (eq. 10) and the known
+    /// land there, or by the learned cost if that is higher.
     pub(super) fn offer_border(&mut self, query: &Query<'_>, beyond: &Beyond<'_>) {
         let Query { params, target, .. } = *query;
         let distance = |cell: Cell| cell.distance(target, params.norm);
-        // Where prices would leave the range of costs, all are less by the least of them.
+        // If prices would leave the range of costs, the least of them is subtracted from all.
         let size = u32::from(self.width) + u32::from(self.height);
         let farthest = (query.from_cell.chebyshev(target) + size) * DIAGONAL;
         let base =

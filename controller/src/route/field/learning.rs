@@ -1,4 +1,4 @@
-//! The search that learns from what it finds; see [`Router`](crate::route::Router).
+//! The search that learns from its result; see [`Router`](crate::route::Router).
 
 use super::{CostField, Query, Unreachable};
 use crate::cost::{Cost, Weights};
@@ -6,9 +6,10 @@ use crate::grid::Cell;
 use crate::route::{LearnedCosts, RouteParams};
 
 impl<const CELLS: usize> CostField<CELLS> {
-    /// Weights of the eight moves, as [`CostField::weights`] has them for land without robots and visits, on the window
-    /// that was loaded; and learns from it what the ways from the cells in sight cost at least, the straight way
-    /// costing `easiest` times its length. O(L w h), L being the cells of the memory.
+    /// Weights of the eight moves on the loaded window, as [`CostField::weights`] returns them for
+    /// land without robots and visits. Learns from the search a lower bound of the cost from each
+    /// visible cell; the straight path costs `easiest` times its length. O(L w h) with a memory of
+    /// L cells.
     ///
     /// # Errors
     /// As for [`CostField::weights`].
@@ -41,7 +42,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         Ok(weights)
     }
 
-    /// The search of [`CostField::learn`], of every cell.
+    /// The search of [`CostField::learn`], over every cell.
     #[inline(never)]
     fn solve_learning(
         &mut self,

@@ -1,41 +1,41 @@
-//! The queue of a search: cells in a ring of buckets by their costs (Dial 1969), each bucket a list through arrays.
+//! The queue of a search: cells in a ring of buckets by cost (Dial 1969), each bucket a linked list
+//! in arrays.
 
-/// Buckets in the ring; a power of two.
 pub(super) const RING: u32 = 64;
-/// End of a list, and "in no bucket". Zero, so that a queue of zeros is an empty one.
+/// End of a list, and "in no bucket". Zero, so that a zeroed queue is an empty one.
 const NIL: u16 = 0;
-/// How many cells can be told apart.
 pub(super) const MOST_CELLS: usize = u16::MAX as usize;
 
-/// What the lists call a cell: its number and one.
+/// The name of a cell in the lists: its number plus one.
 const fn name(cell: usize) -> u16 {
     cell.wrapping_add(1) as u16
 }
 
-/// The number behind a name; beyond all cells for [`NIL`].
+/// The number of a name; beyond all cells for [`NIL`].
 const fn cell(name: u16) -> usize {
     (name as usize).wrapping_sub(1)
 }
 
-/// Cells 0 to `CELLS` - 1, each in one bucket or none. A bucket has any number; those 64 apart are one. 5 bytes a cell.
+/// Cells 0 to `CELLS` - 1, each in one bucket or none. Bucket numbers are unlimited; those 64 apart
+/// are one bucket. 5 bytes per cell.
 #[derive(Clone, Debug)]
 pub(super) struct Queue<const CELLS: usize> {
     next: [u16; CELLS],
     previous: [u16; CELLS],
-    /// Bucket that holds the cell and one, or `NIL` if none.
+    /// The bucket that holds the cell plus one, or `NIL`.
     bucket: [u8; CELLS],
     heads: [u16; RING as usize],
-    /// Which buckets are not empty.
+    /// The buckets that are not empty.
     occupied: u64,
 }
 
 impl<const CELLS: usize> Queue<CELLS> {
-    /// Empty; all zeros, so that a firmware's takes no flash.
+    /// Empty; all zeros, so that it takes no flash in firmware.
     pub(super) const fn new() -> Self {
         Self { next: [0; CELLS], previous: [0; CELLS], bucket: [0; CELLS], heads: [0; RING as usize], occupied: 0 }
     }
 
-    /// Takes the first `used` cells out of it, and others are not in it. O(used).
+    /// Removes the first `used` cells; no other cells may be in the queue. O(used).
     pub(super) fn clear(&mut self, used: usize) {
         for bucket in self.bucket.iter_mut().take(used) {
             *bucket = NIL as u8;
@@ -48,8 +48,8 @@ impl<const CELLS: usize> Queue<CELLS> {
         self.occupied == 0
     }
 
-    /// The number of the first bucket with a cell, from number `at` on, as if the ring were endless. For a queue that is
-    /// not empty.
+    /// The number of the first bucket with a cell, from number `at` on, in an endless numbering of
+    /// the ring. The queue must not be empty.
     pub(super) const fn next_from(&self, at: u32) -> u32 {
         at.saturating_add(self.occupied.rotate_right(at & (RING - 1)).trailing_zeros())
     }
@@ -58,7 +58,6 @@ impl<const CELLS: usize> Queue<CELLS> {
         self.bucket.get(cell).is_some_and(|&bucket| u16::from(bucket) != NIL)
     }
 
-    /// All cells in it, bucket by bucket.
     pub(super) fn iter(&self) -> impl Iterator<Item = usize> + '_ {
         let heads = self.heads.iter().copied().filter(|&head| head != NIL);
         let cells = heads.flat_map(|head| {
@@ -67,7 +66,7 @@ impl<const CELLS: usize> Queue<CELLS> {
         cells.map(cell)
     }
 
-    /// Puts a cell that is in no bucket into the one of this number.
+    /// Inserts a cell that is in no bucket into the bucket of this number.
     #[inline]
     pub(super) fn link(&mut self, at: usize, bucket: u32) {
         let slot = bucket & (RING - 1);
@@ -90,7 +89,6 @@ impl<const CELLS: usize> Queue<CELLS> {
         self.occupied |= 1 << slot;
     }
 
-    /// Takes a cell out of its bucket, if it is in one.
     #[inline]
     pub(super) fn unlink(&mut self, at: usize) {
         let Some(of) = self.bucket.get_mut(at) else {
@@ -118,7 +116,6 @@ impl<const CELLS: usize> Queue<CELLS> {
         }
     }
 
-    /// Takes a cell out of the bucket of this number.
     #[inline]
     pub(super) fn pop(&mut self, bucket: u32) -> Option<usize> {
         let head = self.heads.get((bucket & (RING - 1)) as usize).copied().filter(|&head| head != NIL)?;
@@ -133,7 +130,7 @@ mod tests {
     use std::vec::Vec;
 
     #[test]
-    fn cells_leave_by_the_numbers_of_their_buckets() {
+    fn cells_leave_in_the_order_of_their_buckets() {
         let mut queue = Queue::<8>::new();
         assert!(queue.is_empty());
         assert!(!queue.holds(0) && queue.iter().next().is_none());

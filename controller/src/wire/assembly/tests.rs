@@ -9,7 +9,7 @@ const TO: RobotId = RobotId(7);
 
 type Assembler = TemplateAssembler<F>;
 
-/// A template whose every field says which one it is.
+/// A template whose fields all identify it by `mark`.
 fn template(mark: u8, len: usize) -> Template<F> {
     let entry =
         |k: usize| TemplateEntry { offset: Cell::new(k as i16, mark.into()), id: RobotId(k as u32), hops: 1 + k as u8 };
@@ -21,7 +21,7 @@ fn parts(version: u8, template: &Template<F>) -> StdVec<TemplateAssignment> {
     TemplateAssignment::split(TO, version, *slot, *offset, entries).unwrap().collect()
 }
 
-/// Puts every part in and returns what came out.
+/// Puts all parts and returns the templates that were completed.
 fn put_all<'a>(
     assembler: &mut Assembler,
     parts: impl IntoIterator<Item = &'a TemplateAssignment>,
@@ -45,7 +45,7 @@ fn templates_of_every_size_survive_splitting() {
 }
 
 #[test]
-fn splitter_refuses_what_no_assembler_could_take() {
+fn split_refuses_templates_that_no_assembler_accepts() {
     let entry = TemplateEntry { hops: 1, ..NO_ENTRY };
     let split =
         |entries: &[TemplateEntry]| TemplateAssignment::split(TO, 0, 0, Cell::default(), entries).map(Iterator::count);
@@ -55,7 +55,7 @@ fn splitter_refuses_what_no_assembler_could_take() {
 }
 
 #[test]
-fn largest_template_of_all_comes_through() {
+fn largest_template_is_reassembled() {
     let entries: StdVec<_> =
         (0..MAX_TEMPLATE).map(|k| TemplateEntry { offset: Cell::new(k as i16, 0), id: RobotId(1), hops: 1 }).collect();
     let mut assembler = TemplateAssembler::<MAX_TEMPLATE>::new();
@@ -66,7 +66,7 @@ fn largest_template_of_all_comes_through() {
 }
 
 #[test]
-fn template_one_larger_than_the_capacity_is_refused_by_its_every_part() {
+fn every_part_of_a_template_one_over_capacity_is_refused() {
     let sent = template(3, F);
     let parts = parts(1, &sent);
     let mut small = TemplateAssembler::<{ F - 1 }>::new();
@@ -85,7 +85,7 @@ fn robot_without_neighbours_needs_no_capacity() {
 }
 
 #[test]
-fn impossible_parts_are_named_and_change_nothing() {
+fn invalid_parts_return_their_error_and_change_nothing() {
     let sent = template(3, 5);
     let parts = parts(1, &sent);
     let mut assembler = Assembler::new();
@@ -142,7 +142,7 @@ fn impossible_parts_are_named_and_change_nothing() {
 }
 
 #[test]
-fn last_part_that_comes_again_shorter_is_a_contradiction() {
+fn shorter_repeat_of_the_last_part_is_a_contradiction() {
     let parts = parts(1, &template(3, 4));
     let mut assembler = Assembler::new();
     assembler.put(&parts[1]).unwrap();
@@ -162,7 +162,7 @@ fn newer_version_replaces_unfinished_and_finished_ones() {
         assert_eq!(whole.len(), usize::from(finished));
         let new_parts = parts(0, &new);
         assert_eq!(put_all(&mut assembler, &new_parts[..1]), []);
-        // What is late of the old one neither completes it nor disturbs the new one.
+        // Late parts of the old version neither complete it nor disturb the new one.
         assert_eq!(put_all(&mut assembler, &old_parts), []);
         assert_eq!(put_all(&mut assembler, &new_parts[1..]), [new]);
         assert_eq!(put_all(&mut assembler, &old_parts), []);
@@ -171,7 +171,7 @@ fn newer_version_replaces_unfinished_and_finished_ones() {
 }
 
 #[test]
-fn forgotten_sender_may_count_from_anywhere() {
+fn any_version_is_accepted_after_forget() {
     let sent = template(3, 4);
     let mut assembler = Assembler::new();
     assert_eq!(put_all(&mut assembler, &parts(9, &sent)).len(), 1);
@@ -182,7 +182,7 @@ fn forgotten_sender_may_count_from_anywhere() {
 }
 
 #[test]
-fn its_bytes_are_as_documented() {
+fn assembler_has_its_documented_size() {
     assert_eq!(size_of::<TemplateEntry>(), 12);
     assert_eq!(size_of::<TemplateAssembler<24>>(), 12 * 24 + 24);
 }
@@ -205,7 +205,7 @@ proptest! {
         let parts = parts(version, &sent);
         let mut assembler = Assembler::new();
         let mut missing = (0..parts.len()).collect::<std::collections::BTreeSet<_>>();
-        // Whatever the order leaves out comes in the end.
+        // The parts missing from `order` follow at the end.
         let drawn = order.iter().map(|index| index.index(parts.len()));
         for part in drawn.chain(0..parts.len()) {
             let completes = missing.remove(&part) && missing.is_empty();
@@ -214,10 +214,10 @@ proptest! {
         }
     }
 
-    /// Up to 100 versions in a row, their parts late, repeated and lost: only whole templates come
-    /// out, each as it was sent, and never an older one after a newer one.
+    /// Up to 100 successive versions with late, repeated and lost parts: only whole templates come
+    /// out, each as sent, and never an older one after a newer one.
     #[test]
-    fn any_mix_of_versions_gives_only_templates_that_were_sent(
+    fn any_mix_of_versions_returns_only_templates_that_were_sent(
         start: u8,
         sent in vec(any_template(), 1..100),
         order in vec((0..100_usize, any::<prop::sample::Index>()), 0..400),
@@ -237,17 +237,18 @@ proptest! {
                 finished = Some(count);
             }
         }
-        // The newest always gets through in the end, if it has not yet.
+        // The newest version always gets through at the end, if it has not before.
         if let Some(count) = newest.filter(|_| newest != finished) {
             let whole = put_all(&mut assembler, &of(count));
             prop_assert_eq!(whole, [sent[count].clone()]);
         }
     }
 
-    /// Parts of any content whatever, few enough versions and numbers to meet: what comes out never
-    /// mixes versions, and every entry is one that a part of that version brought to that place.
+    /// Parts with arbitrary content and so few versions and numbers that they often collide. The
+    /// result never mixes versions, and each of its entries was sent for that place in a part of
+    /// that version.
     #[test]
-    fn any_parts_get_an_answer_and_never_mix(
+    fn arbitrary_parts_never_panic_or_mix_versions(
         start: u8,
         stream in vec((0..3_u8, 0..5_u8, 0..5_u8, 0..2_u8, vec(0..3_u8, 0..=TEMPLATE_PART)), 0..60),
     ) {

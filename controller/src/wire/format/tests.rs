@@ -5,19 +5,19 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 
 #[test]
-fn a_format_that_keeps_nothing_adds_nothing_to_a_digest() {
+fn a_format_without_state_adds_nothing_to_a_digest() {
     assert_eq!(size_of::<Postcard>(), 0);
     assert_eq!(digest(&(1_u8, Postcard)), digest(&1_u8));
 }
 
-/// Bytes with many zeros: what a stream of frames looks like to the one that splits it.
+/// Bytes with many zeros, as the splitter sees a stream of frames.
 fn stream() -> impl Strategy<Value = std::vec::Vec<u8>> {
     vec(prop_oneof![Just(0), 0..4_u8], 0..40)
 }
 
 proptest! {
     #[test]
-    fn postcard_splits_as_frames_does(bytes in stream()) {
+    fn postcard_splits_a_stream_like_frames(bytes in stream()) {
         let mut rest = bytes.as_slice();
         let mut split = std::vec::Vec::new();
         while let Some(frame) = Postcard.next_frame(&mut rest) {
@@ -30,7 +30,7 @@ proptest! {
     }
 
     #[test]
-    fn postcard_reads_what_it_wrote(
+    fn postcard_decodes_its_own_frames(
         said in vec((arbitrary::header(), arbitrary::message()), 1..4)
     ) {
         let mut bytes = Vec::<u8, 256>::new();

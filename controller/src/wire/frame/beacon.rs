@@ -1,5 +1,7 @@
-//! Beacons without a deserialiser: most frames of a swarm are this one message, and a host with many robots spends most
-//! of its time on it. What postcard makes of the bytes that [`read`] takes is the same (a test compares them).
+//! Decodes beacons without a deserializer.
+//!
+//! Most frames of a swarm are beacons, and a host that runs many robots spends most of its time on
+//! decoding them. [`read`] returns exactly what postcard would (a test compares both).
 
 use super::{Header, Message};
 use crate::fixint::Fixed;
@@ -8,14 +10,15 @@ use crate::robot::{Mode, RobotId};
 use crate::time::Instant;
 use crate::wire::Beacon;
 
-/// The modes by their numbers on the wire.
+/// The modes, indexed by their number on the wire.
 const MODES: [Mode; 7] =
     [Mode::Idle, Mode::Forming, Mode::Cruise, Mode::Hold, Mode::Arrived, Mode::Fault, Mode::Passive];
-/// The number of [`Message::Beacon`].
 const BEACON: u8 = 0;
 
-/// Header and beacon of a frame's `body`; `None` for anything else, sound or not, and for numbers from 2^28 on: postcard
-/// judges them.
+/// Decodes header and beacon from a frame's `body`.
+///
+/// Returns `None` for anything else, valid or not, and for numbers from 2^28 on: those are left to
+/// postcard.
 pub(super) fn read(body: &[u8]) -> Option<(Header, Message)> {
     let mut rest = body;
     let [boot] = take(&mut rest)?;
@@ -58,7 +61,7 @@ fn cell(rest: &mut &[u8]) -> Option<Cell> {
     Some(Cell::new(fixed::<i16, 2>(rest)?, fixed::<i16, 2>(rest)?))
 }
 
-/// A robot's number in groups of 7 bits, four at most.
+/// Decodes a robot number in groups of 7 bits, at most four of them.
 fn number(rest: &mut &[u8]) -> Option<RobotId> {
     let mut number = 0;
     for shift in [0, 7, 14, 21] {

@@ -16,7 +16,7 @@ const LAST: RobotId = MAX_TAGGED_ROBOT;
 const FAR: Cell = Cell::new(i16::MIN, i16::MAX);
 const HEADER: Header = Header { boot: 7, sender: RobotId(12), sequence: 0x0102 };
 
-/// [`beacon`] under [`HEADER`], packed, summed and stuffed by hand from the format's description.
+/// [`beacon`] under [`HEADER`], encoded by hand from the description of the format.
 const GOLDEN_BEACON: [u8; 48] = [
     0x06, 0x03, 0x07, 0x0C, 0x02, 0x01, 0x04, 0x40, 0x42, 0x0F, 0x03, 0x39, 0x30, 0x01, 0x05, 0x5A, 0xFD, 0xFF, 0xFF,
     0x01, 0x01, 0x01, 0x02, 0xFA, 0x01, 0x01, 0x04, 0xFF, 0xFF, 0x96, 0x02, 0x03, 0x0A, 0xFE, 0xFF, 0x03, 0x90, 0x01,
@@ -39,7 +39,6 @@ fn beacon() -> Message {
     })
 }
 
-/// The longest message of each kind with its bound.
 fn longest() -> [(Message, usize); 6] {
     let entry = TemplateEntry { offset: FAR, id: LAST, hops: u8::MAX };
     [
@@ -100,7 +99,7 @@ fn encoded(header: Header, message: &Message, tag: Option<[u8; TAG_LEN]>) -> Std
     out.to_vec()
 }
 
-/// Whether a frame with a tag has room for the numbers of these robots.
+/// Whether the robot numbers fit into a tagged frame.
 fn fits(header: Header, message: &Message) -> bool {
     let leader = match message {
         Message::Beacon(beacon) => beacon.leader,
@@ -109,7 +108,7 @@ fn fits(header: Header, message: &Message) -> bool {
     header.sender.max(leader) <= MAX_TAGGED_ROBOT
 }
 
-/// A sound frame, without delimiter, around any content.
+/// Makes a valid frame, without delimiter, of any content.
 fn seal(content: &[u8]) -> StdVec<u8> {
     let mut content = content.to_vec();
     content.extend(CRC.checksum(&content).to_le_bytes());
@@ -118,20 +117,19 @@ fn seal(content: &[u8]) -> StdVec<u8> {
     content
 }
 
-/// Version, header and message, without tag and CRC.
 fn content(version: u8, header: Header, message: &Message) -> StdVec<u8> {
     let mut buffer = [0; MAX_FRAME_LEN];
     postcard::to_slice(&(version, header, message), &mut buffer).unwrap().to_vec()
 }
 
 #[test]
-fn the_bytes_of_a_beacon_are_these() {
+fn a_beacon_encodes_to_the_golden_bytes() {
     let frame = encoded(HEADER, &beacon(), None);
     assert_eq!(frame, GOLDEN_BEACON);
 }
 
 #[test]
-fn the_crc_is_the_catalogue_s_x25() {
+fn the_crc_matches_the_x25_check_value() {
     assert_eq!(CRC.checksum(b"123456789"), 0x906E);
 }
 
@@ -147,16 +145,16 @@ fn the_longest_message_of_each_kind_reaches_its_bound() {
 }
 
 #[test]
-fn frames_fit_the_radios_they_are_made_for() {
+fn frames_fit_into_the_packets_of_common_radios() {
     assert_eq!(Beacon::MAX_FRAME_LEN, 60);
     assert_eq!(Request::MAX_FRAME_LEN - TAG_LEN, 22);
-    // One more entry would not fit, be it with a tag or with large numbers.
+    // One more entry would not fit, neither with a tag nor with large robot numbers.
     assert_eq!(TemplateAssignment::MAX_FRAME_LEN, 48);
     const { assert!(TemplateAssignment::MAX_FRAME_LEN + CELL + 5 + 1 > 57) };
 }
 
 #[test]
-fn an_outbox_without_room_stays_as_it_was() {
+fn a_full_outbox_is_unchanged() {
     let frame = encoded(HEADER, &beacon(), None);
     let mut out = heapless::Vec::<u8, 100>::new();
     for used in 0..=100 {
@@ -176,7 +174,7 @@ fn an_outbox_without_room_stays_as_it_was() {
 }
 
 #[test]
-fn nobody_can_neither_send_nor_be_heard() {
+fn robot_zero_can_neither_send_nor_be_received() {
     let header = Header { sender: RobotId::NOBODY, ..HEADER };
     let mut out = Outbox::new();
     let result = encode(header, &beacon(), &mut out);
@@ -187,7 +185,7 @@ fn nobody_can_neither_send_nor_be_heard() {
 }
 
 #[test]
-fn each_fault_has_its_answer() {
+fn each_fault_returns_its_error() {
     assert_eq!(decode(&[]), Err(DecodeError::Empty));
     assert_eq!(decode(&[1; MAX_FRAME_LEN - 1]), Err(DecodeError::Crc));
     assert_eq!(decode(&[1; MAX_FRAME_LEN]), Err(DecodeError::TooLong));
@@ -207,7 +205,7 @@ fn each_fault_has_its_answer() {
 }
 
 #[test]
-fn every_foreign_version_is_named() {
+fn every_foreign_version_is_reported() {
     for version in (0..128).filter(|version| *version != VERSION) {
         for flag in [0, TAGGED] {
             let frame = seal(&content(version | flag, HEADER, &beacon()));
@@ -230,7 +228,7 @@ fn an_unknown_value_in_a_field_is_refused() {
 }
 
 #[test]
-fn the_tag_covers_everything_before_it_and_is_handed_out() {
+fn the_tag_covers_everything_before_it_and_is_returned() {
     let tag = [0, 0, 7, 0, 1, 2, 0, 9];
     let frame = encoded(HEADER, &beacon(), Some(tag));
     let sealed = content(VERSION | TAGGED, HEADER, &beacon());
@@ -250,7 +248,7 @@ fn the_tag_covers_everything_before_it_and_is_handed_out() {
 }
 
 #[test]
-fn large_numbers_of_robots_are_refused_in_frames_with_a_tag() {
+fn large_robot_numbers_are_refused_in_tagged_frames() {
     let large = RobotId(MAX_TAGGED_ROBOT.0 + 1);
     let from = |sender| Header { sender, ..HEADER };
     let Message::Beacon(known) = beacon() else { panic!("a beacon") };
@@ -275,7 +273,7 @@ fn a_stream_splits_at_zeros_and_keeps_the_last_piece() {
 }
 
 #[test]
-fn a_cut_frame_is_refused_at_every_length_and_one_that_lost_its_delimiter_is_not() {
+fn a_cut_frame_is_refused_at_every_length_but_a_lost_delimiter_is_accepted() {
     let frame = encoded(HEADER, &beacon(), Some([9; TAG_LEN]));
     let whole = frame.len() - 1;
     assert!(decode(&frame[..whole]).is_ok());
@@ -285,7 +283,7 @@ fn a_cut_frame_is_refused_at_every_length_and_one_that_lost_its_delimiter_is_not
     }
 }
 
-/// The messages of a stream in which some bits are wrong, and how many frames were refused.
+/// The messages in a stream with flipped bits, and the number of rejected frames.
 fn received(stream: &[u8]) -> (StdVec<Frame>, usize) {
     let mut refused = 0;
     let read = frames(stream).filter_map(|frame| decode(frame).map_err(|_| refused += 1).ok());
@@ -296,14 +294,14 @@ fn flip(bytes: &mut [u8], bit: usize) {
     bytes[bit >> 3] ^= 1 << (bit & 7);
 }
 
-/// Where COBS' own bytes and the delimiter are.
+/// The positions of COBS' own bytes and of the delimiter.
 fn links(frame: &[u8]) -> StdVec<usize> {
     let next = |at: &usize| Some(usize::from(frame[*at])).filter(|step| *step != 0).map(|step| at + step);
     core::iter::successors(Some(0), next).collect()
 }
 
 #[test]
-fn every_single_flipped_bit_of_every_kind_of_message_is_found() {
+fn every_single_bit_error_in_every_message_is_detected() {
     let messages = longest().map(|(message, _)| message);
     for message in messages.into_iter().chain([beacon()]) {
         for tag in [None, Some([0; TAG_LEN])] {
@@ -318,7 +316,7 @@ fn every_single_flipped_bit_of_every_kind_of_message_is_found() {
 }
 
 #[test]
-fn every_pair_of_flipped_bits_is_found_unless_it_moves_a_zero() {
+fn every_two_bit_error_is_detected_unless_it_moves_a_zero() {
     let frame = encoded(HEADER, &beacon(), None);
     let links = links(&frame);
     assert_eq!(links.len(), 17);
@@ -340,9 +338,9 @@ fn every_pair_of_flipped_bits_is_found_unless_it_moves_a_zero() {
 }
 
 #[test]
-fn of_noise_behind_the_crc_one_in_65536_passes_and_fewer_parse() {
-    // Damage that the polynomial promises nothing about: 8 to 23 bits anywhere. Expected to pass
-    // the CRC: 400,000 / 65,536 = 6.
+fn one_in_65536_random_errors_passes_the_crc_and_fewer_parse() {
+    // Damage beyond the guarantees of the polynomial: 8 to 23 bits anywhere. Expected to pass the
+    // CRC: 400,000 / 65,536 = 6.
     let mut rng = Rng::new(1);
     let mut accepted = 0;
     let mut passed = 0;
@@ -368,7 +366,7 @@ fn of_noise_behind_the_crc_one_in_65536_passes_and_fewer_parse() {
     assert!(accepted + passed <= 20, "{accepted} accepted, {passed} passed");
 }
 
-/// What the deserialiser makes of a body, if it is a whole one.
+/// Decodes a body with the deserializer; `None` unless it is complete.
 #[cfg(feature = "host")]
 fn by_postcard(body: &[u8]) -> Option<(Header, Message)> {
     let (read, trailing) = postcard::take_from_bytes::<(Header, Message)>(body).ok()?;
@@ -377,7 +375,7 @@ fn by_postcard(body: &[u8]) -> Option<(Header, Message)> {
 
 #[cfg(feature = "host")]
 #[test]
-fn numbers_of_more_than_28_bits_are_left_to_postcard() {
+fn robot_numbers_of_more_than_28_bits_are_left_to_postcard() {
     for (sender, is_read) in [(1, true), ((1 << 28) - 1, true), (1 << 28, false), (u32::MAX, false)] {
         let header = Header { sender: RobotId(sender), ..HEADER };
         let body = &content(VERSION, header, &beacon())[1..];
@@ -389,7 +387,7 @@ fn numbers_of_more_than_28_bits_are_left_to_postcard() {
 #[cfg(feature = "host")]
 proptest! {
     #[test]
-    fn a_beacon_is_what_postcard_makes_of_it(
+    fn the_beacon_decoder_agrees_with_postcard(
         header in header(),
         message in message(),
         hits in vec((any::<prop::sample::Index>(), any::<u8>()), 0..3),
@@ -421,7 +419,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_sent_is_received(
+    fn a_decoded_frame_equals_the_encoded_one(
         header in header(), message in message(), tag in any::<Option<[u8; TAG_LEN]>>()
     ) {
         let tag = tag.filter(|_| fits(header, &message));
@@ -441,7 +439,7 @@ proptest! {
     }
 
     #[test]
-    fn a_stream_gives_its_messages_in_order_whatever_lies_between(
+    fn a_stream_returns_its_messages_in_order_despite_bytes_in_between(
         sent in vec((header(), message()), 0..5),
         noise in vec(vec(any::<u8>(), 0..100), 5),
     ) {
@@ -457,19 +455,19 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_get_an_answer(bytes in vec(any::<u8>(), 0..200)) {
+    fn arbitrary_bytes_do_not_panic(bytes in vec(any::<u8>(), 0..200)) {
         for piece in frames(&bytes).chain([&bytes[..]]) {
             prop_assert!(decode(piece).is_err());
         }
     }
 
     #[test]
-    fn any_sound_content_gets_an_answer(bytes in vec(any::<u8>(), 0..80), kind in 0..7_u8) {
+    fn arbitrary_content_with_a_valid_crc_does_not_panic(bytes in vec(any::<u8>(), 0..80), kind in 0..7_u8) {
         let mut likely = StdVec::from([VERSION, 0, 1, 0, 0, kind]);
         likely.extend(&bytes);
         for content in [bytes, likely] {
             if let Ok(frame) = decode(&seal(&content)) {
-                // What is believed can be said again.
+                // An accepted message can be encoded again.
                 let tag = frame.tag.filter(|_| fits(frame.header, &frame.message));
                 let frame = Frame { tag, ..frame };
                 let again = encoded(frame.header, &frame.message, frame.tag);
@@ -479,7 +477,7 @@ proptest! {
     }
 
     #[test]
-    fn stuffing_leaves_no_zero_and_is_undone(content in vec(0..3_u8, 0..=MAX_CONTENT)) {
+    fn stuffing_removes_all_zeros_and_is_reversible(content in vec(0..3_u8, 0..=MAX_CONTENT)) {
         let mut stuffed = content.clone();
         let first = stuff(&mut stuffed);
         prop_assert!(first != 0 && !stuffed.contains(&0));
@@ -489,7 +487,7 @@ proptest! {
 }
 
 #[test]
-fn errors_name_the_number_and_the_remedy() {
+fn error_texts_contain_the_number_and_the_remedy() {
     let text = std::format!("{}", DecodeError::Version(7));
     assert_eq!(text, std::format!("the frame is of version 7, not {VERSION}; update the older side"));
     let text = std::format!("{}", EncodeError::Robot(RobotId(70_000)));

@@ -9,7 +9,7 @@ const MEMORY: Duration = Duration::from_millis(5_000);
 const OWN: RobotId = RobotId(9);
 const A: RobotId = RobotId(2);
 const B: RobotId = RobotId(3);
-/// A start from which the clock wraps within each test.
+/// A start time from which the clock wraps within each test.
 const START: Instant = Instant::from_micros(u32::MAX - 150_000);
 
 fn after(millis: i32) -> Instant {
@@ -24,7 +24,7 @@ fn request(origin: RobotId, number: u8, kind: RequestKind, valid_ms: u16) -> Req
     Request { to: OWN, origin, number, kind, valid_ms }
 }
 
-/// Receives a request that its sender asks for itself; gives (accepted, new).
+/// Receives a request that its sender makes for itself; returns (accepted, new).
 fn receive<const S: usize>(
     orders: &mut Orders<S>,
     sender: RobotId,
@@ -44,7 +44,7 @@ const REPEATED: (bool, bool) = (true, false);
 const REFUSED: (bool, bool) = (false, false);
 
 #[test]
-fn a_stop_stands_for_its_time_and_its_repeats_do_not_prolong_it() {
+fn a_stop_lasts_for_its_validity_and_repeats_do_not_prolong_it() {
     let mut orders = Orders::<2>::new(MEMORY);
     assert!(!orders.is_stopped(START));
     assert_eq!(receive(&mut orders, A, 7, Stop, START), NEW);
@@ -52,7 +52,7 @@ fn a_stop_stands_for_its_time_and_its_repeats_do_not_prolong_it() {
     assert_eq!(orders.stopped_until(after(900)), Some(after(1_000)));
     assert!(orders.is_stopped(after(999)));
     assert!(!orders.is_stopped(after(1_000)));
-    // A late repeat does not revive it, a new one does.
+    // A late repeat does not renew the stop; a new request does.
     assert_eq!(receive(&mut orders, A, 7, Stop, after(2_000)), REPEATED);
     assert!(!orders.is_stopped(after(2_000)));
     assert_eq!(receive(&mut orders, A, 8, Stop, after(2_000)), NEW);
@@ -62,7 +62,7 @@ fn a_stop_stands_for_its_time_and_its_repeats_do_not_prolong_it() {
 #[test]
 fn resume_lifts_the_stop_of_its_own_origin_only() {
     let mut orders = Orders::<4>::new(MEMORY);
-    // A stops for itself and passes on the stop of B; B stops too, directly.
+    // A asks for itself and passes on the stop of B; B also asks directly.
     for (sender, origin, number) in [(A, A, 1), (A, B, 2), (B, B, 1)] {
         let stop = request(origin, number, Stop, 1_000);
         assert!(orders.receive(frame(sender, 0), &stop, START).is_new);
@@ -75,13 +75,13 @@ fn resume_lifts_the_stop_of_its_own_origin_only() {
 }
 
 #[test]
-fn the_last_stop_that_stands_decides_when_it_ends() {
+fn the_robot_is_stopped_until_the_last_active_stop_ends() {
     let mut orders = Orders::<2>::new(MEMORY);
     let long = request(A, 1, Stop, u16::MAX);
     assert!(orders.receive(frame(A, 0), &long, START).is_new);
     assert_eq!(receive(&mut orders, B, 1, Stop, START), NEW);
     assert_eq!(orders.stopped_until(START), Some(after(65_535)));
-    // Longer than the memory for requests, which keeps no stop from standing.
+    // Longer than requests are remembered; the stop remains in force nevertheless.
     assert!(orders.is_stopped(after(65_534)));
     assert!(!orders.is_stopped(after(65_535)));
     let none = request(B, 2, Stop, 0);
@@ -97,14 +97,13 @@ fn a_stop_that_comes_after_the_resume_sent_later_is_ignored() {
         assert_eq!(receive(&mut orders, A, resume, Resume, START), NEW);
         assert_eq!(receive(&mut orders, A, number, Stop, after(10)), REFUSED);
         assert!(!orders.is_stopped(after(10)));
-        // Redirection is another matter.
         assert_eq!(receive(&mut orders, A, number, Redirect, after(10)), NEW);
         assert_eq!(receive(&mut orders, A, number, Redirect, after(20)), REPEATED);
     }
 }
 
 #[test]
-fn late_ends_where_wrapped_begins() {
+fn a_number_more_than_32_behind_counts_as_new() {
     for (behind, expected) in [(0, REPEATED), (1, REFUSED), (32, REFUSED), (33, NEW)] {
         let mut orders = Orders::<1>::new(MEMORY);
         receive(&mut orders, A, 20, Resume, START);
@@ -114,7 +113,7 @@ fn late_ends_where_wrapped_begins() {
 }
 
 #[test]
-fn a_repeat_is_forgotten_with_the_memory_and_remembered_as_long_as_it_is_heard() {
+fn a_request_is_remembered_until_its_repeats_cease() {
     let mut orders = Orders::<1>::new(MEMORY);
     assert_eq!(receive(&mut orders, A, 1, Redirect, START), NEW);
     assert_eq!(receive(&mut orders, A, 1, Redirect, after(4_999)), REPEATED);
@@ -123,7 +122,7 @@ fn a_repeat_is_forgotten_with_the_memory_and_remembered_as_long_as_it_is_heard()
 }
 
 #[test]
-fn a_rebooted_sender_is_believed_with_any_number_and_its_old_orders_can_be_forgotten() {
+fn a_restarted_sender_may_use_any_number_and_its_old_requests_can_be_dropped() {
     let mut orders = Orders::<3>::new(MEMORY);
     let stop = request(A, 5, Stop, 1_000);
     assert!(orders.receive(frame(A, 0), &stop, START).is_new);
@@ -137,7 +136,7 @@ fn a_rebooted_sender_is_believed_with_any_number_and_its_old_orders_can_be_forgo
 }
 
 #[test]
-fn full_lines_give_way_unless_they_hold_a_stop() {
+fn entries_without_a_stop_are_evicted_when_the_table_is_full() {
     let mut none = Orders::<0>::new(MEMORY);
     assert_eq!(receive(&mut none, A, 1, Stop, START), REFUSED);
     assert_eq!(receive(&mut none, A, 2, Resume, START), REPEATED);
@@ -146,7 +145,7 @@ fn full_lines_give_way_unless_they_hold_a_stop() {
     let mut orders = Orders::<2>::new(MEMORY);
     assert_eq!(receive(&mut orders, A, 1, Stop, START), NEW);
     assert_eq!(receive(&mut orders, A, 2, Redirect, after(1)), NEW);
-    // The redirection makes room, though it was heard last.
+    // The redirection is evicted, although it was received last.
     assert_eq!(receive(&mut orders, B, 1, Stop, after(2)), NEW);
     let full = orders.clone();
     let third = RobotId(4);
@@ -161,7 +160,7 @@ fn full_lines_give_way_unless_they_hold_a_stop() {
 }
 
 #[test]
-fn of_two_lines_without_a_stop_the_staler_makes_room() {
+fn of_two_entries_without_a_stop_the_staler_is_evicted() {
     let mut orders = Orders::<2>::new(MEMORY);
     receive(&mut orders, A, 1, Resume, START);
     receive(&mut orders, B, 1, Resume, after(1));
@@ -171,8 +170,8 @@ fn of_two_lines_without_a_stop_the_staler_makes_room() {
     assert_eq!(receive(&mut orders, B, 1, Resume, after(5)), NEW);
 }
 
-/// A radio between two robots: per packet it loses, doubles and delays, so that packets overtake
-/// each other.
+/// A radio link between two robots that loses, duplicates and delays packets, so that packets
+/// overtake each other.
 struct Radio {
     rng: Rng,
     loss_percent: u32,
@@ -195,25 +194,26 @@ impl Radio {
     }
 }
 
-/// One request in the model: what it was, and what became of it.
+/// One request in the model and its fate.
 struct Asked {
     kind: RequestKind,
     valid_ms: i32,
     sends: u32,
     delivered: Option<i32>,
-    /// Acknowledged, replaced or expired: how often.
+    /// How often it was acknowledged, replaced or expired.
     ends: u32,
     expired: bool,
 }
 
-/// A robot asks another at random for 20 s over `radio`; both sides are compared with a model that
-/// knows each request by its place in the order of asking. Gives how many expired.
+/// A robot makes random requests to another for 20 s over `radio`. Both sides are compared with a
+/// model that identifies each request by its position in the order of asking. Returns how many
+/// expired.
 fn converse(mut radio: Radio, start: Instant) -> u32 {
     let retry = Retry::default();
     let mut requests = Requests::<4>::new(A, 3, retry);
     let mut orders = Orders::<4>::new(MEMORY);
     let mut asked: StdVec<Asked> = StdVec::new();
-    // The places of the requests on their way, by number.
+    // Position of each pending request, indexed by number.
     let mut places = [usize::MAX; 256];
     let (mut to_b, mut to_a) = (StdVec::new(), StdVec::new());
     let mut decisive: Option<usize> = None;
@@ -294,7 +294,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn whatever_the_radio_does_each_request_acts_once_and_the_last_one_stands(
+    fn over_any_radio_each_request_acts_once_and_the_last_one_prevails(
         seed in any::<u64>(), start in any::<u32>(), loss_percent in 0..=100_u32,
         longest_ms in 1..600_u32,
     ) {
@@ -303,7 +303,7 @@ proptest! {
     }
 
     #[test]
-    fn over_a_radio_that_loses_nothing_no_request_expires(
+    fn over_a_lossless_radio_no_request_expires(
         seed in any::<u64>(), longest_ms in 1..90_u32,
     ) {
         let radio = Radio { rng: Rng::new(seed), loss_percent: 0, longest_ms };

@@ -5,7 +5,7 @@ use std::vec::Vec as StdVec;
 const OWN: RobotId = RobotId(1);
 const A: RobotId = RobotId(2);
 const B: RobotId = RobotId(3);
-/// A start from which the clock wraps within each test.
+/// A start time from which the clock wraps within each test.
 const START: Instant = Instant::from_micros(u32::MAX - 150_000);
 
 fn after(millis: i32) -> Instant {
@@ -16,7 +16,6 @@ fn requests<const P: usize>() -> Requests<P> {
     Requests::new(OWN, 0, Retry::default())
 }
 
-/// An acknowledgement of request `number` of [`requests`].
 fn ack(number: u8) -> Ack {
     Ack { to: OWN, boot: 0, number, accepted: true }
 }
@@ -55,7 +54,7 @@ fn a_request_is_sent_at_once_and_then_once_per_interval() {
 }
 
 #[test]
-fn an_unanswered_request_is_sent_as_often_as_allowed_and_then_expires() {
+fn an_unacknowledged_request_expires_after_all_attempts() {
     for attempts in [0, 1, 2, 5] {
         let retry = Retry { attempts, ..Retry::default() };
         let mut requests = Requests::<1>::new(OWN, 0, retry);
@@ -75,7 +74,7 @@ fn a_request_expires_with_its_validity_but_not_before_its_first_send() {
     let mut requests = requests::<1>();
     for valid_ms in [0, 300] {
         requests.ask(A, OWN, Stop, valid_ms, START).unwrap();
-        // Polled late: still sent, once, and given up at once.
+        // Polled late: it is still sent once, and then abandoned at once.
         let late = poll(&mut requests, after(400));
         assert_eq!(late.len(), 2);
         assert!(matches!(late.as_slice(), [Due::Send(_), Due::Expired(_)]));
@@ -103,7 +102,7 @@ fn an_acknowledgement_ends_its_request_and_no_other() {
 }
 
 #[test]
-fn asking_the_same_again_changes_nothing_and_the_opposite_replaces_it() {
+fn a_repeated_request_changes_nothing_and_its_opposite_replaces_it() {
     let mut requests = requests::<3>();
     let stop = requests.ask(A, OWN, Stop, 1_000, START).unwrap();
     poll(&mut requests, START);
@@ -114,14 +113,14 @@ fn asking_the_same_again_changes_nothing_and_the_opposite_replaces_it() {
     assert_eq!(requests.len(), 1);
     assert_eq!(sent(&poll(&mut requests, after(60))), [resume]);
     assert_eq!(requests.acknowledged(A, &ack(stop)), None);
-    // Another matter, another robot and another origin are other requests.
+    // Another matter, another robot or another origin makes another request.
     requests.ask(A, OWN, Redirect, 1_000, after(60)).unwrap();
     requests.ask(A, B, Stop, 1_000, after(60)).unwrap();
     assert_eq!(requests.len(), 3);
 }
 
 #[test]
-fn a_full_buffer_refuses_new_matters_and_still_replaces() {
+fn a_full_table_refuses_new_matters_but_still_replaces() {
     let mut none = requests::<0>();
     assert_eq!(none.ask(A, OWN, Stop, 1, START), Err(AskError::Full));
     assert_eq!(none.poll(START), None);
@@ -136,7 +135,7 @@ fn a_full_buffer_refuses_new_matters_and_still_replaces() {
 }
 
 #[test]
-fn a_number_on_its_way_is_not_given_again_when_numbers_wrap() {
+fn a_pending_number_is_not_reused_when_numbers_wrap() {
     let mut requests = requests::<2>();
     let kept = requests.ask(A, OWN, Stop, 1_000, START).unwrap();
     let mut previous = kept;
@@ -162,7 +161,7 @@ fn an_acknowledgement_for_another_boot_or_robot_ends_nothing() {
 }
 
 #[test]
-fn as_many_requests_as_there_can_be_have_different_numbers() {
+fn the_maximum_number_of_requests_have_different_numbers() {
     let mut requests = requests::<128>();
     let mut numbers: StdVec<u8> =
         (1..=128).map(|to| requests.ask(RobotId(to), OWN, Stop, 1_000, START).unwrap()).collect();
@@ -174,7 +173,7 @@ fn as_many_requests_as_there_can_be_have_different_numbers() {
 }
 
 #[test]
-fn a_careless_retry_policy_still_ends() {
+fn polling_ends_with_an_extreme_retry_policy() {
     for interval in [Duration::ZERO, Duration::from_micros(-5), Duration::MAX] {
         let retry = Retry { attempts: 255, interval };
         let mut requests = Requests::<1>::new(OWN, 0, retry);

@@ -14,7 +14,6 @@ fn master() -> Master {
     Master::new(&Key::of_passphrase(b"the operator's"))
 }
 
-/// A robot that starts with the key of a generation.
 fn robot(id: u32, generation: u16, starts: u32) -> Sealed<8> {
     let ring = Ring::of_generation(generation, &master().seed(generation)).with_own(&master().own_key(RobotId(id)));
     Sealed::with_ring(ring, RobotId(id), starts).unwrap()
@@ -51,7 +50,7 @@ fn goal(to: u32) -> Message {
 }
 
 #[test]
-fn a_seed_comes_back_for_its_robot_and_its_generation_only() {
+fn a_seed_can_be_unwrapped_only_by_its_robot_and_for_its_generation() {
     let own = |id| Mac::new(&master().own_key(RobotId(id)));
     let wrapped = master().seed(5).wrap(&own(3), 5);
     assert_eq!(Seed::unwrap(&own(3), 5, &wrapped), Some(master().seed(5)));
@@ -64,7 +63,7 @@ fn a_seed_comes_back_for_its_robot_and_its_generation_only() {
             assert_eq!(Seed::unwrap(&own(3), 5, &damaged), None, "byte {at}");
         }
     }
-    // Nothing that was made of the master is the same twice.
+    // All keys derived from the master differ.
     let keys =
         [master().own_key(RobotId(1)), master().own_key(RobotId(2)), master().seed(1).key(1), master().seed(2).key(2)];
     for (at, key) in keys.iter().enumerate() {
@@ -74,9 +73,9 @@ fn a_seed_comes_back_for_its_robot_and_its_generation_only() {
     assert_eq!(std::format!("{:?}", master().seed(1)), "Seed(secret)");
 }
 
-/// The whole course, with the third robot left out.
+/// A complete key change that excludes the third robot.
 #[test]
-fn who_is_not_sent_the_new_key_is_out_once_the_others_have_rolled() {
+fn a_robot_without_the_new_key_is_excluded_after_the_change() {
     let mut operator = operator();
     let mut robots = [robot(1, 0, 0), robot(2, 0, 0), robot(3, 0, 0)];
     let mut sequence = 0;
@@ -94,7 +93,7 @@ fn who_is_not_sent_the_new_key_is_out_once_the_others_have_rolled() {
             assert!(matches!(read(&mut robots[at], &frame), Ok(Message::Key(_))));
             assert_eq!(robots[at].held(), Some((1, phase)));
             assert_eq!(read(&mut robots[1 - at], &frame), Err(DecodeError::Foreign), "somebody else's");
-            // In every order of the two, they hear each other.
+            // The two robots receive each other at every step of the key change.
             assert_eq!((hears(&mut robots, 0, 1), hears(&mut robots, 1, 0)), (Ok(()), Ok(())), "{phase:?} {id}");
         }
         let out = Err(DecodeError::Forged);
@@ -105,9 +104,9 @@ fn who_is_not_sent_the_new_key_is_out_once_the_others_have_rolled() {
     }
 }
 
-/// The strongest thing that an insider can do: speak as the operator.
+/// The strongest attack by an insider: orders in the name of the operator.
 #[test]
-fn orders_are_the_operators_alone() {
+fn only_the_operator_can_give_orders() {
     let mut operator = operator();
     let (mut insider, mut listener) = (robot(1, 0, 0), robot(2, 0, 0));
     for (n, to) in [2, 0].into_iter().enumerate() {
@@ -118,15 +117,15 @@ fn orders_are_the_operators_alone() {
     operator.say(RobotId(2), &goal(2), &mut out).unwrap();
     assert_eq!(read(&mut listener, &out), Ok(goal(2)));
     assert_eq!(read(&mut listener, &out), Err(DecodeError::Replayed));
-    // Robots' own requests and answers are the swarm's business.
+    // Robots may still send requests and acknowledgements to each other.
     let ack = Message::Ack(Ack { to: RobotId(2), boot: 0, number: 1, accepted: true });
     let frame = said(&mut insider, 1, 7, &ack);
     assert_eq!(read(&mut listener, &frame), Ok(ack));
 }
 
-/// Who has the key can use up the numbers of others; not those of the next key.
+/// An attacker with the key can use up the counters of other robots, but not those of the next key.
 #[test]
-fn numbers_that_an_insider_used_up_are_back_with_the_next_key() {
+fn counters_used_up_by_an_insider_are_free_with_the_next_key() {
     let mut operator = operator();
     let (mut sender, mut listener) = (robot(1, 0, 0), robot(2, 0, 0));
     let mut insider = robot(3, 0, 1000);
@@ -140,12 +139,12 @@ fn numbers_that_an_insider_used_up_are_back_with_the_next_key() {
 }
 
 #[test]
-fn a_robot_that_was_off_takes_one_message() {
+fn a_robot_that_was_off_needs_one_message() {
     let mut operator = operator();
     let mut late = robot(1, 0, 4);
     assert!(read(&mut late, &key(&mut operator, 1, 7, KeyPhase::Forget)).is_ok());
     assert_eq!((late.held(), late.ring().generation()), (Some((7, KeyPhase::Forget)), 7));
-    // What it stores is what it needs at its next start.
+    // The stored seed is all it needs at its next start.
     let [Some((generation, seed)), None] = late.ring().seeds() else {
         panic!("one seed");
     };
@@ -157,7 +156,7 @@ fn a_robot_that_was_off_takes_one_message() {
 }
 
 #[test]
-fn the_operator_believes_a_robot_only_under_its_own_key() {
+fn the_operator_accepts_a_report_only_under_the_robots_own_key() {
     let mut operator = operator();
     let mut first = robot(1, 3, 0);
     let held = |to| Message::KeyHeld(KeyHeld { to, generation: 3, phase: KeyPhase::Forget });
@@ -174,27 +173,27 @@ fn the_operator_believes_a_robot_only_under_its_own_key() {
 }
 
 proptest! {
-    /// Key frames get lost, come twice, late, in another order, damaged, for others, and robots start anew in the middle with what they had
-    /// stored, or with nothing: a robot's generation never goes back while it runs, what it holds was sent to it, and when the operator has said
-    /// the last phase again to all, they hear each other, and not who was left out.
+    /// Key frames are lost, repeated, delayed, reordered, damaged and misdirected; robots restart
+    /// in between with their stored keys or with none. The generation of a running robot never goes
+    /// back, and each key that it holds was sent to it. After the operator repeats the last phase
+    /// to all, these robots receive each other, but not the excluded one.
     #[test]
-    fn a_rollover_ends_whatever_happens(steps in vec((0_u32..3, 1_u16..4, 0_u8..3, any::<u8>(), 0_usize..400), 0..60)) {
+    fn a_key_change_completes_despite_faults(steps in vec((0_u32..3, 1_u16..4, 0_u8..3, any::<u8>(), 0_usize..400), 0..60)) {
         let mut operator = operator();
         let mut robots: Vec<Sealed<8>> = (1..=3).map(|id| robot(id, 0, 0)).collect();
         let mut recorded = Vec::<Bytes>::new();
         let mut starts = 0;
         for (index, generation, phase, fate, at) in steps {
             let phase = [KeyPhase::Hear, KeyPhase::Speak, KeyPhase::Forget][usize::from(phase)];
-            // The third one is left out from generation 1 on.
+            // The third robot is excluded from generation 1 on.
             if index < 2 {
                 recorded.push(key(&mut operator, index + 1, generation, phase));
             }
             let wire = &mut robots[index as usize];
             let before = wire.held().unwrap().0;
             match fate % 8 {
-                // Lost.
                 0 => {}
-                // Starts anew with what it stored, or with its first key.
+                // Restarts with its stored keys, or with its first key.
                 1 | 2 => {
                     starts += 1;
                     let [stored, _] = wire.ring().seeds();
@@ -202,7 +201,6 @@ proptest! {
                     *wire = robot(index + 1, stored, starts);
                     continue;
                 }
-                // Damaged.
                 3 => {
                     if let Some(frame) = recorded.last() {
                         let mut frame = frame.clone();
@@ -212,7 +210,7 @@ proptest! {
                         prop_assert_eq!(wire.held().unwrap().0, before);
                     }
                 }
-                // Any frame that was ever sent, in time or not, and to anybody.
+                // Any frame that was ever sent, at any time and to any robot.
                 _ => {
                     if let Some(frame) = recorded.get(recorded.len().saturating_sub(1 + at % 8)) {
                         let _ = read(wire, frame);

@@ -26,7 +26,6 @@ fn goal() -> Message {
     Message::Goal(super::super::GoalAssignment { to: RobotId(2), version: 4, target: crate::grid::Cell::new(-3, 8) })
 }
 
-/// A frame without its delimiter.
 fn said<W: Wire>(by: &mut W, header: Header) -> StdVec<u8> {
     let mut out = Vec::<u8, 64>::new();
     by.encode(header, &goal(), &mut out).unwrap();
@@ -34,7 +33,7 @@ fn said<W: Wire>(by: &mut W, header: Header) -> StdVec<u8> {
     out.to_vec()
 }
 
-/// What lies under COBS, and the same the other way; plain loops, from the paper.
+/// Removes the COBS encoding; like [`stuffed`], plain loops written from the paper.
 fn unstuffed(frame: &[u8]) -> StdVec<u8> {
     let mut content = StdVec::new();
     let mut rest = frame;
@@ -55,13 +54,14 @@ fn stuffed(content: &[u8]) -> StdVec<u8> {
 }
 
 #[test]
-fn the_bytes_of_a_sealed_frame_are_these() {
+fn a_sealed_frame_has_the_golden_bytes() {
     let frame = said(&mut sealed(5), header(12, 0x0102));
     let content = unstuffed(&frame);
     let (body, crc) = content.split_at(content.len() - 2);
     assert_eq!(X25.checksum(body).to_le_bytes(), crc);
     let (text, code) = body.split_at(body.len() - 4);
-    // version | tagged, boot, sender, sequence, goal: kind, to, version, x, y (zigzag); epoch 5 << 12.
+    // version | tagged, boot, sender, sequence, goal: kind, to, version, x, y (zigzag); epoch 5 <<
+    // 12.
     assert_eq!(text, [0x83, 3, 12, 2, 1, 4, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0]);
     assert_eq!(code, &Mac::new(&key()).of(&[text])[..4]);
     let plain = said(&mut Postcard, header(12, 0x0102));
@@ -69,7 +69,7 @@ fn the_bytes_of_a_sealed_frame_are_these() {
 }
 
 #[test]
-fn who_has_the_key_is_heard_once_and_nobody_else_is() {
+fn a_frame_with_the_key_is_accepted_once_and_others_never() {
     let frame = said(&mut sealed(0), header(1, 0));
     let mut receiver = sealed(0);
     let heard = receiver.decode(&frame).unwrap();
@@ -82,12 +82,12 @@ fn who_has_the_key_is_heard_once_and_nobody_else_is() {
     let forged = said(&mut stranger, header(1, 1));
     assert_eq!(receiver.decode(&forged), Err(DecodeError::Forged));
     assert_eq!(stranger.decode(&frame), Err(DecodeError::Forged));
-    // What was refused has moved no counter.
+    // The rejected frames did not advance any counter.
     assert!(receiver.decode(&said(&mut sealed(0), header(1, 1))).is_ok());
 }
 
 #[test]
-fn frames_that_overtake_each_other_are_heard_once_each() {
+fn reordered_frames_are_each_accepted_once() {
     let mut sender = sealed(0);
     let frames: StdVec<_> = (0..40).map(|n| said(&mut sender, header(1, n))).collect();
     let mut receiver = sealed(0);
@@ -114,7 +114,7 @@ fn the_sequence_wraps_into_the_epoch() {
 }
 
 #[test]
-fn a_start_has_so_many_frames_and_starts_end() {
+fn frames_per_start_and_starts_are_limited() {
     let mut sender = sealed(0);
     let mut out = Vec::<u8, 64>::new();
     for _ in 1..1 << WRAP_BITS {
@@ -128,7 +128,7 @@ fn a_start_has_so_many_frames_and_starts_end() {
     let before = out.clone();
     let end = sender.encode(header(1, 0), &goal(), &mut out);
     assert_eq!((end, &out), (Err(EncodeError::Exhausted), &before));
-    // The next start's first counter is greater than all of these.
+    // The first counter of the next start exceeds all of these.
     let mut receiver = sealed(0);
     let first = said(&mut sealed(1), header(1, 0));
     let last = before.strip_suffix(&[0]).unwrap();
@@ -138,7 +138,7 @@ fn a_start_has_so_many_frames_and_starts_end() {
 }
 
 #[test]
-fn a_sender_that_starts_anew_is_heard_and_what_was_recorded_before_is_not() {
+fn a_restarted_sender_is_accepted_and_its_old_frames_are_not() {
     let mut receiver = sealed(0);
     let mut sender = sealed(4);
     let recorded: StdVec<_> = (100..110).map(|n| said(&mut sender, header(1, n))).collect();
@@ -149,13 +149,13 @@ fn a_sender_that_starts_anew_is_heard_and_what_was_recorded_before_is_not() {
     for frame in &recorded {
         assert_eq!(receiver.decode(frame), Err(DecodeError::Replayed));
     }
-    // Its memory was lost: refused until its starts are counted past the last one.
+    // Its memory was lost: rejected until its starts are counted past the last one.
     let forgotten = said(&mut sealed(0), header(1, 0));
     assert_eq!(receiver.decode(&forgotten), Err(DecodeError::Replayed));
 }
 
 #[test]
-fn a_receiver_that_starts_anew_believes_recorded_frames_only_until_it_hears_the_sender_or_if_it_stored_nothing() {
+fn a_restarted_receiver_without_memory_accepts_old_frames_until_it_receives_a_live_one() {
     let mut sender = sealed(4);
     let recorded: StdVec<_> = (0..3).map(|n| said(&mut sender, header(1, n))).collect();
     let live = said(&mut sender, header(1, 100));
@@ -201,16 +201,16 @@ fn a_full_table_refuses_new_senders_and_an_attacker_cannot_fill_it() {
     assert!(receiver.decode(&said(&mut sealed(0), header(2, 1))).is_ok());
 }
 
-/// A frame of any epoch, as who has the key can make it.
+/// A frame of any epoch, as an attacker with the key can make it.
 fn said_in(epoch: u32, header: Header) -> StdVec<u8> {
     let mut by = sealed(0);
     by.epochs.epoch = epoch;
     said(&mut by, header)
 }
 
-/// The attack: one frame of the last epoch, recorded, and sent again after each start of the receiver.
+/// The attack: a recorded frame of the last epoch is replayed after each start of the receiver.
 #[test]
-fn a_frame_of_the_last_epoch_shuts_nobody_out() {
+fn a_frame_of_the_last_epoch_locks_no_sender_out() {
     let evil = said_in(u32::MAX, header(1, u16::MAX));
     for starts in 0..3 {
         let mut receiver = sealed(starts);
@@ -219,13 +219,13 @@ fn a_frame_of_the_last_epoch_shuts_nobody_out() {
             assert_eq!(receiver.decode(&evil), Err(DecodeError::Ahead));
             assert!(receiver.decode(&said(&mut sender, header(1, n))).is_ok());
         }
-        // Nor is its sender's next life.
+        // The next start of its sender is not locked out either.
         assert!(receiver.decode(&said(&mut sealed(3), header(1, 0))).is_ok());
     }
 }
 
 #[test]
-fn senders_are_believed_a_reach_ahead_of_themselves_of_the_listener_or_of_the_mission() {
+fn starts_are_accepted_up_to_the_limit_ahead_of_sender_receiver_or_mission() {
     let last = |starts: u32| said_in((starts + REACH_STARTS) << WRAP_BITS, header(1, 0));
     let beyond = |starts: u32| said_in((starts + REACH_STARTS) << WRAP_BITS, header(1, 1));
     let mut stranger = sealed(5);
@@ -239,9 +239,9 @@ fn senders_are_believed_a_reach_ahead_of_themselves_of_the_listener_or_of_the_mi
     assert!(known.decode(&said(&mut sealed(700), header(1, 0))).is_ok());
     assert_eq!(known.decode(&beyond(700)), Err(DecodeError::Ahead));
     assert!(known.decode(&last(700)).is_ok());
-    // The owner's remedy for who was shut out.
+    // The owner's remedy for a sender that was locked out.
     assert!(known.decode(&said(&mut sealed(701 + REACH_STARTS), header(1, 0))).is_ok());
-    // The last start there is has no beyond.
+    // No start lies beyond the last one.
     let mut end = sealed((1 << 20) - 1);
     assert!(end.decode(&said_in(u32::MAX, header(1, 0))).is_ok());
 }
@@ -253,14 +253,14 @@ fn the_state_does_not_hold_the_key() {
     assert_ne!(digest(&sealed(1)), digest(&sealed(2)));
 }
 
-/// With a sum that fits, as an attacker makes it.
+/// Appends a valid checksum, as an attacker would.
 fn summed(body: &[u8]) -> StdVec<u8> {
     stuffed(&[body, &X25.checksum(body).to_le_bytes()].concat())
 }
 
 proptest! {
     #[test]
-    fn any_flipped_bit_is_refused(bit in 0_usize..8 * 64, starts in 0_u32..REACH_STARTS) {
+    fn every_flipped_bit_is_refused(bit in 0_usize..8 * 64, starts in 0_u32..REACH_STARTS) {
         let frame = said(&mut sealed(starts), header(12, 0x0102));
         let mut content = unstuffed(&frame);
         content.truncate(content.len() - 2);
@@ -268,7 +268,7 @@ proptest! {
         let bit = bit % (content.len() * 8);
         content[bit / 8] ^= 1 << (bit % 8);
         prop_assert!(sealed(0).decode(&summed(&content)).is_err());
-        // Nor is a bit on the air.
+        // A flipped bit in the transmitted frame is detected, too.
         let mut frame = frame;
         let bit = bit % (frame.len() * 8);
         frame[bit / 8] ^= 1 << (bit % 8);
@@ -276,7 +276,7 @@ proptest! {
     }
 
     #[test]
-    fn sealed_reads_what_it_wrote_and_a_plain_reader_too(
+    fn sealed_and_plain_decoders_read_a_sealed_frame(
         spoken in (arbitrary::header(), arbitrary::message())
     ) {
         let (header, message) = spoken;
@@ -295,7 +295,7 @@ proptest! {
         }
     }
 
-    /// Whatever an attacker makes of what it has heard, in whatever order: nothing is heard twice.
+    /// Whatever frames an attacker replays in whatever order, no frame is accepted twice.
     #[test]
     fn any_replay_is_refused(order in vec(0_usize..20, 0..100)) {
         let mut sender = sealed(0);

@@ -8,7 +8,7 @@ fn frame(boot: u8, sequence: u16) -> Header {
     Header { boot, sender: RobotId(1), sequence }
 }
 
-/// A window after these frames of boot 0.
+/// A window that received these frames of boot 0.
 fn after(sequences: &[u16]) -> SequenceWindow {
     let mut window = SequenceWindow::new();
     for sequence in sequences {
@@ -18,7 +18,7 @@ fn after(sequences: &[u16]) -> SequenceWindow {
 }
 
 #[test]
-fn the_first_frame_is_new_whatever_its_numbers() {
+fn the_first_frame_is_always_new() {
     for (boot, sequence) in [(0, 0), (0, u16::MAX), (255, 0), (255, 1 << 15)] {
         let mut window = SequenceWindow::new();
         assert_eq!(window.check(frame(boot, sequence)), Arrival::New);
@@ -27,7 +27,7 @@ fn the_first_frame_is_new_whatever_its_numbers() {
 }
 
 #[test]
-fn the_window_is_as_long_as_its_span() {
+fn the_window_has_its_documented_length() {
     for newest in [31, 32, 1000, u16::MAX, 0, 5] {
         let back = |k: u16| frame(0, newest.wrapping_sub(k));
         let mut window = after(&[newest]);
@@ -40,7 +40,7 @@ fn the_window_is_as_long_as_its_span() {
 }
 
 #[test]
-fn a_jump_clears_what_it_leaves_behind_and_nothing_else() {
+fn a_jump_clears_only_the_numbers_it_leaves_behind() {
     let numbers: [u16; 3] = [10, 11, 12];
     for jump in [1, 19, 31, 32, 33, 20_000] {
         let mut window = after(&numbers);
@@ -57,7 +57,7 @@ fn a_jump_clears_what_it_leaves_behind_and_nothing_else() {
 }
 
 #[test]
-fn a_rebooted_sender_is_heard_at_once_and_its_past_is_refused() {
+fn a_rebooted_sender_is_accepted_at_once_and_its_old_frames_are_refused() {
     let mut window = after(&[500, 501]);
     assert_eq!(window.check(frame(1, 0)), Arrival::Rebooted);
     assert_eq!(window.check(frame(1, 0)), Arrival::Duplicate);
@@ -65,12 +65,12 @@ fn a_rebooted_sender_is_heard_at_once_and_its_past_is_refused() {
     assert_eq!(window.check(frame(1, 1)), Arrival::New);
     assert_eq!(window.check(frame(2, 9)), Arrival::Rebooted);
     assert_eq!(window.check(frame(1, 2)), Arrival::PreviousBoot);
-    // Two boots back is one more than the window remembers.
+    // The window remembers only one earlier boot.
     assert_eq!(window.check(frame(0, 503)), Arrival::Rebooted);
 }
 
 #[test]
-fn what_is_accepted_and_what_is_latest() {
+fn accepted_and_latest_arrivals() {
     use Arrival::{Duplicate, New, OutOfOrder, PreviousBoot, Rebooted, TooOld};
     for (arrival, accepted, latest) in [
         (New, true, true),
@@ -85,7 +85,7 @@ fn what_is_accepted_and_what_is_latest() {
     }
 }
 
-/// What the window should say, with a memory that is neither short nor wraps.
+/// A reference model whose memory is unlimited and does not wrap.
 #[derive(Default)]
 struct Model {
     seen: BTreeSet<i64>,
@@ -109,10 +109,10 @@ impl Model {
 }
 
 proptest! {
-    /// Each step sends the next frame after some lost ones, and delivers that or one up to 99 back:
-    /// drops, duplicates, reordering and any number of wraps.
+    /// Each step skips some frames and delivers the next one, or one up to 99 before it: losses,
+    /// duplicates, reordering and any number of wraps.
     #[test]
-    fn the_window_agrees_with_a_model_that_forgets_nothing(
+    fn the_window_agrees_with_an_unlimited_model(
         start in any::<u16>(),
         steps in vec((prop_oneof![4 => 0..3_i64, 1 => 0..40_i64, 1 => 0..30_000_i64], 0..100_i64), 1..300),
     ) {

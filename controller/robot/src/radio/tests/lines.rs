@@ -1,4 +1,4 @@
-//! Lines of which the test says when they are ready and when they fail.
+//! Lines whose readiness and errors the test controls.
 
 use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
 #[cfg(feature = "async")]
@@ -6,12 +6,11 @@ pub use halves::half;
 use std::collections::VecDeque;
 use std::vec::Vec;
 
-/// A UART of which the test says when it is ready and when it fails.
 #[derive(Default)]
 pub struct Uart {
     pub inbound: VecDeque<u8>,
     pub outbound: Vec<u8>,
-    /// Bytes that it takes before it is busy.
+    /// Bytes that it accepts before it is busy.
     pub room: usize,
     pub read_fails: bool,
     pub write_fails: bool,
@@ -73,7 +72,7 @@ mod halves {
     use std::collections::VecDeque;
     use std::vec::Vec;
 
-    /// Half of a line: ready as long as there is something, then pending.
+    /// Half of a line: ready while bytes are left, then pending.
     pub struct Half {
         script: VecDeque<Result<Vec<u8>, ErrorKind>>,
         heard: Vec<u8>,

@@ -1,4 +1,4 @@
-//! Walls of the grid, obeyed.
+//! Robots that obey the walls of the grid.
 
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, GridFrame, Window};
@@ -12,9 +12,8 @@ use std::vec::Vec;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// On any land a robot that takes of its wish what the walls permit stays off every blocked cell.
     #[test]
-    fn whoever_obeys_the_walls_never_enters_a_blocked_cell(seed: u64, share in 0_u32..60) {
+    fn a_robot_that_obeys_the_walls_never_enters_a_blocked_cell(seed: u64, share in 0_u32..60) {
         let mut rng = Rng::new(seed);
         let side = 12_u16;
         let edge = [0, side - 1];
@@ -24,7 +23,7 @@ proptest! {
                 if is_edge || rng.below(100) < share { BLOCKED } else { 1 }
             })
             .collect();
-        // It starts in the middle, on free land.
+        // It starts in the middle, on a free cell.
         bytes[usize::from(6 * side + 6)] = 1;
         let frame = GridFrame { origin_m: Vec2::ZERO, cell_m: 1.0 };
         let window = Window::new(&bytes, Cell::new(0, 0), side, side).unwrap();
