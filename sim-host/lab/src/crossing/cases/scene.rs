@@ -49,8 +49,8 @@ fn in_rows(index: u32, row: u32, count: u32) -> [f64; 2] {
 }
 
 impl Plan {
-    /// Builds the scenario of one run of a case.
     #[must_use]
+    /// Builds the scenario of one run of a case.
     pub fn scenario(&self, case: Case, seed: u64) -> Scenario {
         let count = self.robots.unwrap_or_else(|| case.robots());
         let (starts, solids) = match case {
@@ -213,7 +213,6 @@ fn before_wall(index: u32, count: u32) -> [f64; 2] {
     [2.5 + along * 1.3, side * 1.6]
 }
 
-/// Two crowds and a wall with doors for one robot.
 fn door(count: u32, doors: &[f64]) -> (Vec<Start>, Vec<Solid>) {
     let mut starts = Vec::new();
     for index in 0..count {
