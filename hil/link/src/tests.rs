@@ -53,7 +53,6 @@ pub fn in_plane() -> Setup {
     }
 }
 
-/// A robot on the grid with this search radius.
 pub fn on_grid(radius: u8) -> (Setup, Task) {
     let params = RouteParams { radius, ..RouteParams::default() };
     let setup = Setup {

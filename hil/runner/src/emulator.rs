@@ -126,7 +126,6 @@ fn listen(mut stderr: ChildStderr, complaints: &Mutex<String>) {
 }
 
 impl Emulator {
-    /// Process id.
     pub fn id(&self) -> u32 {
         self.child.id()
     }

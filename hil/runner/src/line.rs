@@ -20,7 +20,6 @@ pub struct LineFaults {
     pub seed: u64,
 }
 
-/// Frames in transit in one direction.
 #[derive(Debug)]
 pub struct Line {
     faults: LineFaults,
@@ -88,7 +87,6 @@ impl Line {
         self.on_the_way.front().map(|(due, _)| *due)
     }
 
-    /// Bytes that have arrived.
     pub fn pop(&mut self, now_us: u64) -> Option<Vec<u8>> {
         let (due_us, _) = self.on_the_way.front()?;
         if *due_us > now_us {
@@ -103,7 +101,6 @@ fn q32(probability: f64) -> u32 {
     (probability * 4_294_967_296.0) as u32
 }
 
-/// Whole microseconds of a duration.
 pub fn micros(span: Duration) -> u64 {
     u64::try_from(span.as_micros()).unwrap_or(u64::MAX)
 }

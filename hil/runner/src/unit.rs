@@ -23,17 +23,12 @@ const REQUEST: usize = 16_384;
 
 #[derive(Debug)]
 enum Phase {
-    /// Identifying itself.
     Greeting,
-    /// Being configured.
     Configuring,
-    /// Idle.
     Ready,
     /// Stepping; the shadow has already decided.
     Stepping(Box<Expected>),
-    /// Restarting on request.
     Restarting,
-    /// Failed for good.
     Failed,
 }
 
@@ -44,7 +39,6 @@ struct Expected {
     sent_us: u64,
 }
 
-/// One device of a fleet.
 pub struct Unit {
     config: DeviceConfig,
     channel: Channel,
@@ -69,7 +63,6 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Creates a unit and greets its device.
     pub fn new(config: DeviceConfig, channel: Channel, options: &Options, now_us: u64) -> Self {
         let robot = config.setup.agent.id.0;
         let faults = config.faults;
@@ -102,7 +95,6 @@ impl Unit {
         self.config.setup.agent.id.0
     }
 
-    /// Process id of an emulated device.
     pub fn process(&self) -> Option<u32> {
         self.channel.emulator.as_ref().map(|emulator| emulator.id())
     }
@@ -119,7 +111,6 @@ impl Unit {
         self.phase = Phase::Greeting;
     }
 
-    /// Assigns another robot.
     pub fn assign(&mut self, setup: Setup, task: Option<Task>, now_us: u64) {
         if matches!(self.phase, Phase::Failed) {
             return;

@@ -116,7 +116,6 @@ impl Scene {
         self.inbox.extend(out);
     }
 
-    /// Adds a ball at this distance.
     pub fn see(&mut self, distance_m: f32) {
         self.obstacles.push(Obstacle::Ball { center_m: Vec3::new(0.0, distance_m, 0.0), radius_m: 0.1 });
     }
@@ -143,15 +142,11 @@ pub fn now(tick: u32) -> Instant {
 /// Misbehaviour of a device at these steps, counted over its whole life.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mischief {
-    /// Restarts.
     pub resets_at: Option<u32>,
-    /// Falls silent.
     pub silent_at: Option<u32>,
-    /// Closes the line.
     pub leaves_at: Option<u32>,
 }
 
-/// Starts a device in a thread and returns the channel to it.
 pub fn device<B: Controller + Send + 'static, const N: usize>(
     new: fn() -> B,
     part: &'static str,

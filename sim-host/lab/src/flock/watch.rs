@@ -49,9 +49,7 @@ pub struct Verdict {
     pub alpha_from: Option<usize>,
     /// Iteration from which all robots are connected until the end.
     pub connected_from: Option<usize>,
-    /// Largest number of components at any time.
     pub most_parts: usize,
-    /// Components at the end.
     pub parts: usize,
     /// C at the end.
     pub connectivity: f64,
@@ -115,7 +113,6 @@ impl Run {
     }
 }
 
-/// All robots at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frame {
     pub tick: u32,
@@ -132,7 +129,6 @@ fn behind_m(solids: &[Solid]) -> Option<f64> {
     solids.iter().filter_map(end).reduce(f64::max)
 }
 
-/// Measures a run tick by tick.
 pub struct Watch {
     spacing_m: f64,
     radius_m: f64,
@@ -175,7 +171,6 @@ impl Watch {
         }
     }
 
-    /// Measures all robots after a tick.
     pub fn look(&mut self, tick: u32, robots: &mut dyn Iterator<Item = RobotRow>) {
         self.places_m.clear();
         self.velocities_mps.clear();
@@ -186,7 +181,6 @@ impl Watch {
         self.measure(tick);
     }
 
-    /// Measures places and velocities after a tick.
     pub fn see(&mut self, tick: u32, places_m: &[[f64; 3]], velocities_mps: &[[f64; 3]]) {
         self.places_m.clear();
         self.velocities_mps.clear();
@@ -229,7 +223,6 @@ impl Watch {
         }
     }
 
-    /// Returns the results at the end.
     pub fn finish(mut self, hash: u64) -> Run {
         let is_past = |place: &&[f64; 3]| self.behind_m.is_some_and(|x| place[0] > x);
         self.run.past = self.places_m.iter().filter(is_past).count();

@@ -25,12 +25,10 @@ const RADII: [f64; 2] = [1.0, 3.0];
 /// Draws of a place before the area counts as full.
 const TRIES: u32 = 1000;
 
-/// Initial scene of a run.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Robots with their goals.
     pub starts: Vec<Start>,
-    /// Obstacles.
     pub solids: Vec<Solid>,
     goals_m: Vec<[f64; 3]>,
     velocity_mps: [f64; 3],
@@ -73,7 +71,6 @@ impl Scene {
         })
     }
 
-    /// Places of the goals after a tick, metres.
     #[must_use]
     pub fn goals_at(&self, tick: u32) -> Vec<[f64; 3]> {
         let after = |place_m: [f64; 3], since: u32| {
@@ -100,7 +97,6 @@ pub fn way(setting: &Setting) -> f64 {
     MIDDLE[0] - setting.arrival()
 }
 
-/// Middle of some goals, metres.
 pub fn middle_m(goals_m: &[[f64; 3]]) -> [f64; 3] {
     let mean = |axis: usize| goals_m.iter().map(|goal| goal[axis]).sum::<f64>() / goals_m.len() as f64;
     [mean(0), mean(1), 0.0]

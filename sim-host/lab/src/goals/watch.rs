@@ -88,7 +88,6 @@ pub struct Way {
     pub spread: f64,
 }
 
-/// All robots at one moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     pub tick: u32,
@@ -96,7 +95,6 @@ pub struct Frame {
     pub velocities_mps: Vec<[f64; 2]>,
 }
 
-/// Measures a run tick by tick.
 pub struct Watch<'a> {
     scene: &'a Scene,
     arrival_m: f64,
@@ -142,7 +140,6 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Measures all robots after a tick.
     pub fn look(&mut self, tick: u32, places_m: Vec<[f64; 2]>, velocities_mps: Vec<[f64; 2]>) {
         let goals_m = self.scene.goals_at(tick);
         let middle_m = middle_m(&goals_m);
@@ -205,7 +202,6 @@ impl<'a> Watch<'a> {
         self.looks += 1;
     }
 
-    /// Returns the results at the end.
     pub fn finish(mut self, hash: u64) -> Run {
         let looks = f64::from(self.looks);
         self.run.way = (self.looks > 0).then(|| Way {

@@ -22,7 +22,6 @@ pub struct Faults {
     pub delay_us: u32,
 }
 
-/// One direction of the line.
 pub struct Line {
     pub faults: Faults,
     rng: Rng,
@@ -69,7 +68,6 @@ impl Line {
     }
 }
 
-/// A host, a device and the line between them.
 pub struct Bench<B> {
     pub port: Port<16384>,
     pub session: Session<B, LARGE>,

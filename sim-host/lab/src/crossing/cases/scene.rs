@@ -213,7 +213,6 @@ fn before_wall(index: u32, count: u32) -> [f64; 2] {
     [2.5 + along * 1.3, side * 1.6]
 }
 
-/// Two crowds and a wall with doors for one robot.
 fn door(count: u32, doors: &[f64]) -> (Vec<Start>, Vec<Solid>) {
     let mut starts = Vec::new();
     for index in 0..count {

@@ -13,9 +13,7 @@ const MOST: u32 = 1_000_000;
 /// A field and its values.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// The field.
     pub field: Field,
-    /// Values in order.
     pub values: Vec<Value>,
     /// Line in the plan.
     pub line: usize,
@@ -29,7 +27,6 @@ pub struct Axis {
 /// All fields that a plan varies or sets.
 #[derive(Debug, Default)]
 pub struct Axes {
-    /// Axes, in the order of columns.
     pub axes: Vec<Axis>,
     /// Groups of axes that advance together.
     pub groups: Vec<Range<usize>>,
@@ -43,7 +40,6 @@ struct Entry<'a> {
     value: &'a toml::Value,
 }
 
-/// Reads all axes and settings of a plan.
 pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError> {
     let mut all = Axes::default();
     let root = source.root();
