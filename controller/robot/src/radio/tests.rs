@@ -50,27 +50,27 @@ macro_rules! in_each_format {
 }
 
 in_each_format! {
-    frames_cut_anywhere_come_out_whole_and_once
-    noise_and_damage_cost_nothing_but_what_they_hit
-    the_newest_frames_stay_when_there_is_no_room
-    packets_of_a_radio_end_what_was_begun
-    after_a_line_error_only_the_frame_in_between_is_gone
-    a_frame_that_is_on_the_line_is_finished_before_older_news_goes
-    a_frame_that_the_line_cut_does_not_spoil_the_next
-    a_sender_without_room_drops_and_goes_on
-    the_link_moves_what_it_can_and_never_waits
+    frames_cut_anywhere_are_returned_whole_and_once
+    noise_and_damage_lose_only_the_damaged_frames
+    a_full_receiver_keeps_the_newest_frames
+    a_packet_of_a_radio_drops_an_incomplete_frame
+    a_line_error_loses_only_the_frame_in_between
+    a_partly_sent_frame_is_finished_when_older_frames_are_dropped
+    a_frame_cut_by_the_line_does_not_damage_the_next
+    a_full_sender_drops_frames_and_continues
+    the_link_never_waits
     one_call_takes_no_more_than_its_buffer
-    errors_of_the_line_cost_one_frame_each_way_and_are_told
-    any_bytes_leave_the_inbox_sound
-    whatever_the_line_takes_when_receivers_get_a_subsequence
+    errors_of_the_line_lose_one_frame_each_way_and_are_reported
+    any_bytes_leave_the_inbox_intact
+    receivers_get_a_subsequence_at_any_speed_of_the_line
 }
 #[cfg(feature = "async")]
-in_each_format! { both_ways_go_on_beside_each_other_and_past_errors }
+in_each_format! { both_directions_run_concurrently_and_past_errors }
 
 mod each {
     use super::*;
 
-    pub fn frames_cut_anywhere_come_out_whole_and_once<F: Format>() {
+    pub fn frames_cut_anywhere_are_returned_whole_and_once<F: Format>() {
         let mut receiver = Receiver::<F, 512>::new();
         let bytes = stream::<F>(0..5);
         for (first, rest) in (0..bytes.len()).map(|at| bytes.split_at(at)) {
@@ -83,7 +83,7 @@ mod each {
         }
     }
 
-    pub fn noise_and_damage_cost_nothing_but_what_they_hit<F: Format>() {
+    pub fn noise_and_damage_lose_only_the_damaged_frames<F: Format>() {
         let mut receiver = Receiver::<F, 512>::new();
         let end = F::DELIMITER.unwrap_or(0);
         receiver.push(&[0xFF, 0x13, end, end, end]);
@@ -103,7 +103,7 @@ mod each {
         assert!(counts.refused == 3 || F::DELIMITER.is_none() && counts.refused > 3);
     }
 
-    pub fn the_newest_frames_stay_when_there_is_no_room<F: Format>() {
+    pub fn a_full_receiver_keeps_the_newest_frames<F: Format>() {
         const ROOM: usize = 300;
         let mut receiver = Receiver::<F, ROOM>::new();
         let most = ROOM / frame::<F>(0).len();
@@ -121,7 +121,7 @@ mod each {
         assert_eq!(receiver.counts().dropped, counts.dropped);
     }
 
-    pub fn packets_of_a_radio_end_what_was_begun<F: Format>() {
+    pub fn a_packet_of_a_radio_drops_an_incomplete_frame<F: Format>() {
         let mut receiver = Receiver::<F, 512>::new();
         let whole = frame::<F>(5);
         receiver.push(&whole[..3]);
@@ -132,7 +132,7 @@ mod each {
         assert_eq!(receiver.counts().refused, 1);
     }
 
-    pub fn after_a_line_error_only_the_frame_in_between_is_gone<F: Format>() {
+    pub fn a_line_error_loses_only_the_frame_in_between<F: Format>() {
         let mut receiver = Receiver::<F, 512>::new();
         let whole = frame::<F>(1);
         receiver.push(&whole[..5]);
@@ -143,7 +143,7 @@ mod each {
         assert_eq!(receiver.counts().line_errors, 1);
     }
 
-    pub fn a_frame_that_is_on_the_line_is_finished_before_older_news_goes<F: Format>() {
+    pub fn a_partly_sent_frame_is_finished_when_older_frames_are_dropped<F: Format>() {
         const ROOM: usize = 64;
         let len = frame::<F>(0).len();
         let mut sender = Sender::<F, ROOM>::new();
@@ -165,7 +165,7 @@ mod each {
         assert!(sender.unsent().is_empty());
     }
 
-    pub fn a_frame_that_the_line_cut_does_not_spoil_the_next<F: Format>() {
+    pub fn a_frame_cut_by_the_line_does_not_damage_the_next<F: Format>() {
         let mut sender = Sender::<F, 128>::new();
         sender.send(&stream::<F>([1, 2]));
         let mut line = sender.unsent()[..5].to_vec();
@@ -178,7 +178,7 @@ mod each {
         assert_eq!((sender.counts().dropped, sender.counts().line_errors), (1, 1));
     }
 
-    pub fn a_sender_without_room_drops_and_goes_on<F: Format>() {
+    pub fn a_full_sender_drops_frames_and_continues<F: Format>() {
         let mut sender = Sender::<F, 8>::new();
         sender.send(&stream::<F>([1, 2]));
         assert_eq!(sender.counts().dropped, 2);
@@ -187,7 +187,7 @@ mod each {
         assert!(sender.unsent().is_empty());
     }
 
-    pub fn the_link_moves_what_it_can_and_never_waits<F: Format>() {
+    pub fn the_link_never_waits<F: Format>() {
         let mut link = PacketLink::<Uart, F, 300, 128>::new(Uart::default());
         link.pump().unwrap();
         link.send(&stream::<F>([1, 2]));
@@ -213,7 +213,7 @@ mod each {
         assert!(before - uart.inbound.len() < 300 + 5 && uart.calls <= 300);
     }
 
-    pub fn errors_of_the_line_cost_one_frame_each_way_and_are_told<F: Format>() {
+    pub fn errors_of_the_line_lose_one_frame_each_way_and_are_reported<F: Format>() {
         let (whole, next) = (frame::<F>(1), stream::<F>([2, 3]));
         let uart = Uart { inbound: whole[..6].to_vec().into(), room: 4, ..Uart::default() };
         let mut link = PacketLink::<Uart, F, 512, 256>::new(uart);
@@ -237,7 +237,7 @@ mod each {
 
     /// For any bytes in any pieces, only intact frames are returned, as many as were counted, and
     /// the next frame is received.
-    pub fn any_bytes_leave_the_inbox_sound<F: Format>() {
+    pub fn any_bytes_leave_the_inbox_intact<F: Format>() {
         let piece = prop_oneof![
             2 => proptest::collection::vec(any::<u8>(), 0..40),
             1 => proptest::collection::vec(prop_oneof![Just(0xFD_u8), Just(0xFE), Just(0), Just(1)], 0..300),
@@ -264,7 +264,7 @@ mod each {
         });
     }
 
-    pub fn whatever_the_line_takes_when_receivers_get_a_subsequence<F: Format>() {
+    pub fn receivers_get_a_subsequence_at_any_speed_of_the_line<F: Format>() {
         let takes = proptest::collection::vec(0_usize..40, 1..60);
         proptest!(|(takes in takes, fails in 0_usize..60)| {
             let (mut sender, mut receiver) = (Sender::<F, 64>::new(), Receiver::<F, 4096>::new());
@@ -299,7 +299,7 @@ mod each {
     }
 
     #[cfg(feature = "async")]
-    pub fn both_ways_go_on_beside_each_other_and_past_errors<F: Format>() {
+    pub fn both_directions_run_concurrently_and_past_errors<F: Format>() {
         use core::{future::Future, pin::pin, task::Context, task::Poll, task::Waker};
         let inbound = stream::<F>([1, 2, 3]);
         let mut reads: Vec<_> = inbound.chunks(4).map(|c| Ok(c.to_vec())).collect();
