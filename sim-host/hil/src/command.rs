@@ -22,7 +22,7 @@ pub struct HilCommand {
     #[command(flatten)]
     hil: HilArgs,
     /// Use the guidance law of the crate in this folder: builds its program and runs it with these
-    /// arguments (see docs/own.md).
+    /// arguments (see docs/project.md).
     #[arg(long = "crate", value_name = "DIR")]
     folder: Option<PathBuf>,
 }
@@ -45,7 +45,7 @@ impl HilCommand {
 fn run_crate(folder: &Path) -> Result<Ended> {
     let manifest = folder.join("Cargo.toml");
     if !manifest.is_file() {
-        bail!("--crate {}: Cargo.toml is missing; give the folder of a crate as in docs/own.md", folder.display());
+        bail!("--crate {}: Cargo.toml is missing; give the folder of a crate as in docs/project.md", folder.display());
     }
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);

@@ -29,7 +29,7 @@
 //! }
 //! ```
 //!
-//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. See docs/own.md.
+//! Its firmware, in the same package, is `staya_firmware::lockstep!(East);`. See docs/project.md.
 
 pub mod cli;
 mod command;

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// Options of additional outputs.
 #[derive(Args, Clone, Debug)]
-#[command(next_help_heading = "Additional files; docs/recordings.md")]
+#[command(next_help_heading = "Additional files; docs/tour.md")]
 pub struct AlsoArgs {
     /// Record positions in each tick, for `staya page`; replaces the file.
     #[arg(long, value_name = "FILE")]
