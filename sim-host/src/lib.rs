@@ -1,4 +1,4 @@
-#![doc = include_str!("../README.md")]
+//! The library of the program `staya`: its commands, and how it finds the programs of other commands.
 
 pub mod cli;
 pub mod page;

@@ -180,7 +180,7 @@ impl World {
         }
     }
 
-    /// Appends a body that comes from another rank; [`World::put`] sets its position.
+    /// Appends a body that comes from another rank; `World::put` sets its position.
     pub fn admit(&mut self, id: RobotId) {
         self.bodies.push(Body::at_rest(id, NOWHERE));
     }
