@@ -78,9 +78,8 @@ mod tests {
     fn staya_describes_commands_as_their_programs_do() {
         let programs = programs();
         let own = programs.iter().flat_map(Command::get_subcommands).filter(|command| !command.is_hide_set());
-        let mut own: Vec<_> = own
-            .map(|command| (command.get_name().to_owned(), command.get_about().map(ToString::to_string)))
-            .collect();
+        let mut own: Vec<_> =
+            own.map(|command| (command.get_name().to_owned(), command.get_about().map(ToString::to_string))).collect();
         let told = PROGRAMS.iter().flat_map(|program| program.commands);
         let mut told: Vec<_> = told.map(|(name, about)| ((*name).to_owned(), Some((*about).to_owned()))).collect();
         own.sort();
