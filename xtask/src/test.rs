@@ -17,8 +17,9 @@ const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 pub fn run(s: &mut Session, extent: Extent) {
     let repo = &s.repo;
     let options: &[&str] = if extent == Extent::All { &["--include-ignored"] } else { &[] };
-    // Examples are compiled by `check`; doc tests are a command of their own for cargo.
-    let arguments = ["test", "--locked", "--workspace", "--no-fail-fast", "--lib", "--bins", "--tests"];
+    // A test runs the examples; doc tests are a command of their own for cargo.
+    let kinds = ["--lib", "--bins", "--tests", "--examples"];
+    let arguments = [&["test", "--locked", "--workspace", "--no-fail-fast"][..], &kinds].concat();
     let mut build = repo.cargo(&arguments);
     build.arg("--no-run");
     s.report.command("tests on the host, compiled", build);

@@ -1772,9 +1772,7 @@ StayaStatus staya_assign_waypoint(struct StayaAgent *agent,
  * Gives the robot a target cell: for the laws that cross land in cells. In a formation the cell of
  * the top leader suffices.
  */
-StayaStatus staya_assign_cell(struct StayaAgent *agent,
-                              int16_t x,
-                              int16_t y);
+StayaStatus staya_assign_cell(struct StayaAgent *agent, int16_t x, int16_t y);
 
 /**
  * Returns the robot's activity: StayaMode.
@@ -1794,15 +1792,13 @@ StayaStatus staya_neighbors(const struct StayaAgent *agent,
  * A hash of the agent's whole state, the same on every machine. Agents with equal hashes behave
  * identically from then on.
  */
-StayaStatus staya_digest(const struct StayaAgent *agent,
-                         uint64_t *digest);
+StayaStatus staya_digest(const struct StayaAgent *agent, uint64_t *digest);
 
 /**
  * Moves a position by a vector in metres, rounded to millimetres, saturating. For odometry, and
  * for bodies in a simulation.
  */
-StayaStatus staya_move(int32_t position_mm[3],
-                       const float way_m[3]);
+StayaStatus staya_move(int32_t position_mm[3], const float way_m[3]);
 
 /**
  * Writes the parameters of ORCA that suit most robots.
@@ -1906,18 +1902,14 @@ StayaStatus staya_parameter_range(uint32_t parameter, float *least, float *great
  * Returns the present value of a parameter (StayaParameter). `STAYA_STATUS_PARAMETER` if this
  * robot's law and layer do not have it.
  */
-StayaStatus staya_get_parameter(const struct StayaAgent *agent,
-                                uint32_t parameter,
-                                float *value);
+StayaStatus staya_get_parameter(const struct StayaAgent *agent, uint32_t parameter, float *value);
 
 /**
  * Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER` if this
  * robot does not have it, or if the value is out of range or contradicts other parameters; then
  * nothing changes.
  */
-StayaStatus staya_set_parameter(struct StayaAgent *agent,
-                                uint32_t parameter,
-                                float value);
+StayaStatus staya_set_parameter(struct StayaAgent *agent, uint32_t parameter, float value);
 
 /**
  * Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon
@@ -1926,10 +1918,7 @@ StayaStatus staya_set_parameter(struct StayaAgent *agent,
  * `radius_m` is that of the ball around the body, metres; `tick_us` the time from one step to the
  * next, microseconds. `staya_init` checks them.
  */
-StayaStatus staya_setup_defaults(struct StayaSetup *setup,
-                                 uint32_t id,
-                                 float radius_m,
-                                 int32_t tick_us);
+StayaStatus staya_setup_defaults(struct StayaSetup *setup, uint32_t id, float radius_m, int32_t tick_us);
 
 /**
  * Writes the paper's values of the lattice for a spacing, metres, as in a setup's defaults.
@@ -1940,9 +1929,7 @@ StayaStatus staya_lattice_defaults(struct StayaLattice *lattice, float spacing_m
  * Reduces the gains as far as required if beacons are `delay_s` old when they arrive and come
  * `rate_hz` times per second. Stiffer gains make the lattice oscillate and break apart.
  */
-StayaStatus staya_lattice_soften(struct StayaLattice *lattice,
-                                 float delay_s,
-                                 float rate_hz);
+StayaStatus staya_lattice_soften(struct StayaLattice *lattice, float delay_s, float rate_hz);
 
 /**
  * Fills in the place number `own` of a formation, given the cells of all places in any common

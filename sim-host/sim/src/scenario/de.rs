@@ -156,7 +156,7 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
                 Some((name, value)) => visitor.visit_enum(Variant { name: name.get_ref(), value: Some(value) }),
                 None => Err(Error::custom("an empty table")),
             },
-            _ => Err(Error::custom("expected a word, or a table with one entry")),
+            _ => Err(Error::custom("expected a string, or a table with one entry")),
         };
         read.map_err(|error| error.at(span))
     }
