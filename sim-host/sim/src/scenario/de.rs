@@ -90,7 +90,7 @@ impl<'a> MapAccess<'a> for Entries<'a, '_> {
 
     fn next_value_seed<V: DeserializeSeed<'a>>(&mut self, seed: V) -> Result<V::Value, Error> {
         let value = self.value.take().ok_or_else(|| Error::custom("a value without a key"))?;
-        seed.deserialize(Node(value))
+        seed.deserialize(Node(value)).map_err(|error| error.at(value.span()))
     }
 }
 
@@ -100,7 +100,10 @@ impl<'a> SeqAccess<'a> for Elements<'a, '_> {
     type Error = Error;
 
     fn next_element_seed<T: DeserializeSeed<'a>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
-        self.0.next().map(|value| seed.deserialize(Node(value))).transpose()
+        let Some(value) = self.0.next() else {
+            return Ok(None);
+        };
+        seed.deserialize(Node(value)).map(Some).map_err(|error| error.at(value.span()))
     }
 
     fn size_hint(&self) -> Option<usize> {
