@@ -64,12 +64,8 @@ fn the_table_is_reproducible_and_readable() {
     let arguments = ["orca", "table", "--pairs", "500", "--seed", "7"];
     let table = json(&arguments);
     assert_eq!(table, json(&arguments));
-    let sizes = table["sizes"].as_array().expect("sizes");
-    let limits = [2048, 8192, 16_384, 65_536];
-    assert_eq!(sizes.len(), limits.len());
-    for (size, limit) in sizes.iter().zip(limits) {
-        assert!(size["bytes"].as_u64().expect("bytes") <= limit);
-    }
+    assert!(table["bytes"].as_u64().is_some_and(|bytes| bytes <= 2048), "{table}");
+    assert!(table["distance"]["max"].as_f64().is_some_and(|error| (1e-6..0.1).contains(&error)), "{table}");
     let shown = String::from_utf8(staya(&arguments).stdout).expect("UTF-8");
-    assert!(shown.contains("500 pairs, seed 7") && shown.lines().count() == 7, "{shown}");
+    assert!(shown.contains("500 pairs, seed 7") && shown.lines().count() == 4, "{shown}");
 }
