@@ -36,6 +36,11 @@ pub fn make_empty(folder: &Path) -> Result<(), String> {
     make(folder)
 }
 
+/// Removes a folder that is empty.
+pub fn remove_empty(folder: &Path) -> Result<(), String> {
+    named(folder, fs::remove_dir(folder))
+}
+
 /// Copies a file, and makes the folder that it goes to. A program that runs cannot be written to,
 /// but another one can take its name.
 pub fn copy(from: &Path, to: &Path) -> Result<(), String> {

@@ -72,7 +72,9 @@ fn make_is_there(repo: &Repo) -> Result<(), String> {
 /// The folder of a project that was just made.
 fn make(repo: &Repo, kind: &str, options: &[&str]) -> Result<PathBuf, String> {
     let folder = repo.target.join("new").join(format!("pack-{kind}"));
+    // `staya new` makes the folder itself.
     files::make_empty(&folder)?;
+    files::remove_empty(&folder)?;
     let mut new = repo.command(repo.program("debug", MAIN));
     run_command_line(new.args(["new", "--quiet"]).args(options).arg("--staya").arg(&repo.root).arg(&folder))?;
     Ok(folder)
