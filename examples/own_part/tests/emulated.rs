@@ -5,10 +5,10 @@
 use clap::Parser;
 use patrol::Patrol;
 use serde::{Deserialize, Serialize};
-use staya_console::Global;
+use staya_console::{Global, WatchArgs};
 use staya_controller::agent::*;
 use staya_controller::rand::Rng;
-use staya_hil::{DeviceArgs, Own, Package, WatchArgs, package};
+use staya_hil::{DeviceArgs, Own, Package, package};
 use staya_link::own::LinkedLaw;
 use staya_sim::engine::OwnLaw;
 use staya_sim::scenario::{Overrides, Scenario};
