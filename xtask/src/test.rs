@@ -17,9 +17,7 @@ const SEED: (&str, &str) = ("PROPTEST_RNG_SEED", "1");
 pub fn run(s: &mut Session, extent: Extent) {
     let repo = &s.repo;
     let options: &[&str] = if extent == Extent::All { &["--include-ignored"] } else { &[] };
-    // A test runs the examples; doc tests are a command of their own for cargo.
-    let kinds = ["--lib", "--bins", "--tests", "--examples"];
-    let arguments = [&["test", "--locked", "--workspace", "--no-fail-fast"][..], &kinds].concat();
+    let arguments = ["test", "--locked", "--workspace", "--no-fail-fast"];
     let mut build = repo.cargo(&arguments);
     build.arg("--no-run");
     s.report.command("tests on the host, compiled", build);
@@ -34,8 +32,6 @@ pub fn run(s: &mut Session, extent: Extent) {
     // Tests wait more than they compute, the clients' most of all.
     let firmware = (extent == Extent::All).then(|| crate::firmware::begin(s)).flatten();
     s.report.part("tests on the host", || counted(&mut tests, ""));
-    let mut examples = s.repo.cargo(&["test", "--locked", "--workspace", "--doc"]);
-    s.report.part("code in documentation", || counted(&mut examples, ""));
     crate::python::clients(s, None, extent);
     if extent == Extent::Short {
         crate::project::run(s, extent);
