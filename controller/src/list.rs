@@ -7,12 +7,12 @@ use heapless::{LenType, Vec};
 /// way, whom one hears. On a part its room is there from the start; on a host with many robots only what is in it takes memory. It is
 /// written as [`heapless::Vec`] is.
 #[cfg(all(not(feature = "host"), any(feature = "route", feature = "wire")))]
-pub(crate) type Seldom<T, const N: usize> = heapless::Vec<T, N>;
+pub(crate) type SparseVec<T, const N: usize> = heapless::Vec<T, N>;
 #[cfg(feature = "host")]
-pub(crate) use seldom::Seldom;
+pub(crate) use sparse_vec::SparseVec;
 
 #[cfg(feature = "host")]
-mod seldom;
+mod sparse_vec;
 
 /// Adds items as long as there is room; what has none is dropped.
 pub(crate) fn extend<T, L: LenType, const N: usize>(list: &mut Vec<T, N, L>, items: impl IntoIterator<Item = T>) {

@@ -18,11 +18,11 @@ pub struct RobotId(pub u32);
 
 impl RobotId {
     /// No particular robot; as a receiver, all robots.
-    pub const NOBODY: Self = Self(0);
+    pub const NONE: Self = Self(0);
 
-    /// Whether this is not [`RobotId::NOBODY`].
+    /// Whether this is not [`RobotId::NONE`].
     #[must_use]
-    pub const fn is_somebody(self) -> bool {
+    pub const fn is_some(self) -> bool {
         self.0 != 0
     }
 
@@ -42,20 +42,20 @@ impl RobotId {
 
     /// The id under which a second robot with this id is known; no robot uses it itself.
     #[must_use]
-    pub const fn double(self) -> Self {
+    pub const fn duplicate(self) -> Self {
         Self(self.0 | DOUBLE)
     }
 
     /// The shared id, if this is a duplicate id.
     #[must_use]
-    pub const fn doubled(self) -> Option<Self> {
+    pub const fn duplicate_of(self) -> Option<Self> {
         if self.0 & DOUBLE == 0 { None } else { Some(Self(self.0 & !DOUBLE)) }
     }
 }
 
 impl fmt::Display for RobotId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.doubled() {
+        match self.duplicate_of() {
             None if self.is_local() => write!(f, "seen {}", self.0 - FIRST_LOCAL),
             None => write!(f, "{}", self.0),
             Some(first) => write!(f, "{} (the second one)", first.0),

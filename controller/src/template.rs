@@ -29,7 +29,7 @@ pub struct TemplateEntry {
     /// Desired cell difference, neighbour minus own robot.
     #[serde(with = "fixint")]
     pub offset: Cell,
-    /// The robot that should be there; [`RobotId::NOBODY`] if any robot may be.
+    /// The robot that should be there; [`RobotId::NONE`] if any robot may be.
     pub id: RobotId,
     /// Geodesic distance from the own place in the graph of the formation, 1..=rho.
     pub hops: u8,

@@ -1,18 +1,18 @@
 //! `staya run SCENARIO`: one run with its results and pictures.
 
-mod also;
 mod checkpoint;
+mod outputs;
 
-pub use also::Observer;
-use also::{Also, AlsoArgs};
 use anyhow::{Context as _, Result, anyhow};
 use checkpoint::{CheckpointArgs, Checkpoints};
 use clap::Args;
+pub use outputs::Observer;
+use outputs::{OutputArgs, RunOutputs};
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, WatchArgs, print, print_json};
 use staya_plot::{motion_pictures, run_pictures};
 use staya_record::recording::RecordingError;
 use staya_sim::checkpoint::{Checkpoint, Place};
-use staya_sim::engine::{Moment, Outcome, Unable, simulate, simulate_from};
+use staya_sim::engine::{Moment, Outcome, StartError, simulate, simulate_from};
 use staya_sim::expected::Expected;
 use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::Scenario;
@@ -38,7 +38,7 @@ pub struct RunArgs {
     #[command(flatten)]
     checkpoint: CheckpointArgs,
     #[command(flatten)]
-    also: AlsoArgs,
+    outputs: OutputArgs,
     #[command(flatten)]
     page: WatchArgs,
 }
@@ -56,7 +56,7 @@ impl RunArgs {
     /// Path of the MCAP file, and ticks between its moments.
     #[must_use]
     pub fn mcap(&self) -> Option<(&Path, u32)> {
-        self.also.mcap()
+        self.outputs.mcap()
     }
 
     /// Options of the live page.
@@ -83,7 +83,7 @@ impl RunArgs {
         let stop = Stop::on_ctrl_c()?;
         let from = self.checkpoint.from.as_ref().map(|path| Checkpoint::open(path, &scenario)).transpose()?;
         if let Some(from) = &from
-            && self.also.begins_anew()
+            && self.outputs.begins_anew()
         {
             eprintln!("the files of --record and --mcap start after tick {}", from.tick());
         }
@@ -95,7 +95,7 @@ impl RunArgs {
         let observers = observers(self, &scenario)?;
         let task =
             Task { scenario: &scenario, out: &out, keeps_robots: !self.no_trace, from, checkpoints, stop: &stop };
-        let summary = run(task, &self.also, observers, global)?;
+        let summary = run(task, &self.outputs, observers, global)?;
         if global.json {
             print_json(&summary)?;
         } else {
@@ -123,11 +123,11 @@ struct Task<'a> {
 
 /// Runs a scenario and writes all results to its folder. Earlier results stay until the new ones
 /// are complete.
-fn run(task: Task<'_>, also: &AlsoArgs, observers: Vec<Box<dyn Observer>>, global: &Global) -> Result<Summary> {
-    let also = Also::begin(also, task.scenario, observers)?;
+fn run(task: Task<'_>, outputs: &OutputArgs, observers: Vec<Box<dyn Observer>>, global: &Global) -> Result<Summary> {
+    let outputs = RunOutputs::begin(outputs, task.scenario, observers)?;
     let out = task.out;
     let results = Results::begin(out)?;
-    let whole = run_into(task, results.dir(), also, global).and_then(|summary| {
+    let whole = run_into(task, results.dir(), outputs, global).and_then(|summary| {
         write_summary(results.dir(), &summary)?;
         Ok(summary)
     });
@@ -147,7 +147,7 @@ fn run(task: Task<'_>, also: &AlsoArgs, observers: Vec<Box<dyn Observer>>, globa
 }
 
 /// Writes the results except `summary.json` to `dir`, which later becomes the results folder.
-fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> Result<Summary> {
+fn run_into(task: Task<'_>, dir: &Path, mut outputs: RunOutputs<'_>, global: &Global) -> Result<Summary> {
     let Task { scenario, out, keeps_robots, mut from, mut checkpoints, stop } = task;
     // A checkpoint without the robots' lines cannot continue them.
     let keeps_robots = keeps_robots && from.as_ref().is_none_or(Checkpoint::keeps_robots);
@@ -157,7 +157,7 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
     };
     let began = Instant::now();
     let (outcome, history) =
-        simulate_recorded(scenario, recorder, &mut also, from.as_ref(), checkpoints.as_mut(), stop, global)?;
+        simulate_recorded(scenario, recorder, &mut outputs, from.as_ref(), checkpoints.as_mut(), stop, global)?;
     let wall_seconds = from.map_or(0.0, |from| from.wall_seconds()) + began.elapsed().as_secs_f64();
     let edges = scenario.numbered_edges();
     let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
@@ -168,20 +168,20 @@ fn run_into(task: Task<'_>, dir: &Path, mut also: Also<'_>, global: &Global) -> 
         Some(setup) => motion_pictures(scenario, setup, &history, dir)?,
     };
     files.extend(pictures.iter().map(|file| out.join(file.strip_prefix(dir).unwrap_or(file))));
-    files.extend(also.paths());
+    files.extend(outputs.paths());
     let mut summary = Summary::new(scenario, &outcome, files);
     summary.version = staya_console::VERSION;
     summary.arrivals = summary.arrivals.filter(|_| keeps_robots);
     summary.wall_seconds = wall_seconds;
     summary.interrupted = stop.is_requested();
-    also.finish(&summary, &history)?;
+    outputs.finish(&summary, &history)?;
     Ok(summary)
 }
 
 fn simulate_recorded(
     scenario: &Scenario,
     mut recorder: Recorder,
-    also: &mut Also<'_>,
+    outputs: &mut RunOutputs<'_>,
     from: Option<&Checkpoint>,
     mut checkpoints: Option<&mut Checkpoints>,
     stop: &Stop,
@@ -193,12 +193,12 @@ fn simulate_recorded(
     let mut expected = Expected::new(scenario.ticks);
     let mut watch = |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
         let robots = robots.inspect(|robot| expected.see(robot));
-        let done = if !also.wants_rows() {
+        let done = if !outputs.wants_rows() {
             recorder.tick(moment.row, robots).map_err(Into::into)
         } else {
             let rows: Vec<_> = robots.collect();
             let done = recorder.tick(moment.row, rows.iter().copied()).map_err(Into::into);
-            done.and_then(|()| also.tick(moment, &rows))
+            done.and_then(|()| outputs.tick(moment, &rows))
         };
         if let Err(error) = done {
             failed = Some(error);
@@ -216,14 +216,14 @@ fn simulate_recorded(
     let outcome = match from {
         None => simulate(scenario, watch).context("the robots cannot be placed; change their starts")?,
         Some(from) => simulate_from(scenario, from.state(), &mut watch).map_err(|unable| match unable {
-            Unable::State(error) => from.refused(error).into(),
+            StartError::State(error) => from.refused(error).into(),
             misplaced => anyhow!(misplaced).context("the robots cannot be placed"),
         })?,
     };
     progress.finish();
     match failed {
         Some(error) => {
-            also.flush();
+            outputs.flush();
             Err(error)
         }
         None => Ok((outcome, recorder.finish()?)),

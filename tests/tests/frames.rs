@@ -44,9 +44,9 @@ fn messages() -> [(&'static str, Message, &'static str); 9] {
     };
     let request = Request { to: TO, origin: RobotId(9), number: 7, kind: RequestKind::Redirect, valid_ms: 2_000 };
     let ack = Ack { to: TO, boot: 3, number: 7, accepted: true };
-    let goal = GoalAssignment { to: RobotId::NOBODY, version: 0, target: Cell::new(24, -21) };
+    let goal = GoalAssignment { to: RobotId::NONE, version: 0, target: Cell::new(24, -21) };
     let place = WaypointAssignment {
-        to: RobotId::NOBODY,
+        to: RobotId::NONE,
         version: 1,
         index: 2,
         position_mm: [1, -2, 3],

@@ -138,7 +138,7 @@ enum StayaStatus
     /**
      * The robot's number is 0; numbers begin at 1.
      */
-    STAYA_STATUS_NOBODY = 6,
+    STAYA_STATUS_NO_ROBOT = 6,
     /**
      * A number that must be above 0, or finite, is not.
      */
@@ -392,15 +392,15 @@ enum StayaWait
     /**
      * Its leader or its followers have not arrived yet.
      */
-    STAYA_WAIT_FORMATION = 1,
+    STAYA_WAIT_TEAM = 1,
     /**
      * A request to stop.
      */
-    STAYA_WAIT_REQUEST = 2,
+    STAYA_WAIT_STOPPED = 2,
     /**
      * Only land or walls block its route.
      */
-    STAYA_WAIT_WAY = 3,
+    STAYA_WAIT_ROUTE = 3,
     /**
      * It does not know where others are, since it does not receive them.
      */
@@ -412,11 +412,11 @@ enum StayaWait
     /**
      * Other robots are in its way.
      */
-    STAYA_WAIT_OTHERS = 6,
+    STAYA_WAIT_ROBOTS = 6,
     /**
      * Another robot occupies its goal; it has arrived beside it.
      */
-    STAYA_WAIT_PLACE = 7,
+    STAYA_WAIT_GOAL_TAKEN = 7,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -522,16 +522,16 @@ enum StayaEventKind
     /**
      * No robot is received any more.
      */
-    STAYA_EVENT_KIND_NOBODY_HEARD = 8,
+    STAYA_EVENT_KIND_CONTACT_LOST = 8,
     /**
      * Two robots have the number `robot`.
      */
     STAYA_EVENT_KIND_DUPLICATE_ID = 9,
     /**
-     * A beacon of `robot` exceeds the limits of `claims`; `after`: 0 number, 1 radius, 2 speed, 3
+     * A beacon of `robot` exceeds the limits of `plausibility`; `after`: 0 number, 1 radius, 2 speed, 3
      * position.
      */
-    STAYA_EVENT_KIND_OVERCLAIMED = 10,
+    STAYA_EVENT_KIND_IMPLAUSIBLE = 10,
     /**
      * The robot stopped sending: its counters are used up, and it needs a new key.
      */
@@ -1254,23 +1254,23 @@ typedef struct StayaSetup {
     /**
      * Largest radius accepted in a beacon, metres; FLT_MAX: any.
      */
-    float claims_max_radius_m;
+    float plausibility_max_radius_m;
     /**
      * Highest speed accepted in a beacon, m/s; FLT_MAX: any, and positions are not checked.
      */
-    float claims_max_speed_mps;
+    float plausibility_max_speed_mps;
     /**
      * Additional tolerance between two positions of a robot, metres.
      */
-    float claims_slack_m;
+    float plausibility_slack_m;
     /**
      * How long a robot that has jumped must send consistent positions, microseconds.
      */
-    int32_t claims_settle_us;
+    int32_t plausibility_settle_us;
     /**
      * The greatest number of any robot.
      */
-    uint32_t claims_last_id;
+    uint32_t plausibility_last_id;
     /**
      * ORCA, in the plane and in space.
      */
@@ -1502,21 +1502,21 @@ typedef struct StayaOutputs {
      */
     uint16_t refused_no_room;
     /**
-     * Beacons with a number beyond `claims_last_id`.
+     * Beacons with a number beyond `plausibility_last_id`.
      */
-    uint16_t overclaimed_numbers;
+    uint16_t implausible_numbers;
     /**
      * Beacons with too large a radius.
      */
-    uint16_t overclaimed_radii;
+    uint16_t implausible_radii;
     /**
      * Beacons with too high a speed.
      */
-    uint16_t overclaimed_speeds;
+    uint16_t implausible_speeds;
     /**
      * Beacons with a position that the robot cannot have reached yet.
      */
-    uint16_t overclaimed_places;
+    uint16_t implausible_places;
     /**
      * Length of `outbox`.
      */

@@ -11,7 +11,7 @@ use crate::status::{Checked, StayaStatus, answer};
 use crate::{NEIGHBORS, Number, OBSTACLES};
 use core::ffi::c_void;
 use heapless::Vec;
-use staya_controller::agent::{Agent, Command, Outputs, Overclaims, Refused, Task, WAYPOINTS, Waypoint};
+use staya_controller::agent::{Agent, Command, ImplausibleCounts, Outputs, Refused, Task, WAYPOINTS, Waypoint};
 use staya_controller::geom::Position;
 use staya_controller::grid::Cell;
 use staya_controller::neighbor::Neighbor;
@@ -60,7 +60,7 @@ const fn no_outputs() -> Outputs<Number> {
         received: 0,
         rejected: 0,
         refused: Refused { unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
-        overclaims: Overclaims { numbers: 0, radii: 0, speeds: 0, jumps: 0 },
+        implausible: ImplausibleCounts { numbers: 0, radii: 0, speeds: 0, jumps: 0 },
         outbox: Vec::new(),
         events: Vec::new(),
         call_again: Instant::from_micros(0),

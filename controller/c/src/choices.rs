@@ -101,19 +101,19 @@ pub enum StayaWait {
     /// It does not wait.
     Nothing = 0,
     /// Its leader or its followers have not arrived yet.
-    Formation = 1,
+    Team = 1,
     /// A request to stop.
-    Request = 2,
+    Stopped = 2,
     /// Only land or walls block its route.
-    Way = 3,
+    Route = 3,
     /// It does not know where others are, since it does not receive them.
     Radio = 4,
     /// Others go first through a door.
     Turn = 5,
     /// Other robots are in its way.
-    Others = 6,
+    Robots = 6,
     /// Another robot occupies its goal; it has arrived beside it.
-    Place = 7,
+    GoalTaken = 7,
 }
 
 /// A move from a cell: compass directions, as in `moves` and `heading`.
@@ -161,12 +161,12 @@ pub enum StayaEventKind {
     /// `robot` has restarted.
     NeighborRebooted = 7,
     /// No robot is received any more.
-    NobodyHeard = 8,
+    ContactLost = 8,
     /// Two robots have the number `robot`.
     DuplicateId = 9,
-    /// A beacon of `robot` exceeds the limits of `claims`; `after`: 0 number, 1 radius, 2 speed, 3
+    /// A beacon of `robot` exceeds the limits of `plausibility`; `after`: 0 number, 1 radius, 2 speed, 3
     /// position.
-    Overclaimed = 10,
+    Implausible = 10,
     /// The robot stopped sending: its counters are used up, and it needs a new key.
     Muted = 11,
 }
@@ -268,13 +268,13 @@ impl From<Option<Wait>> for StayaWait {
     fn from(wait: Option<Wait>) -> Self {
         match wait {
             None => Self::Nothing,
-            Some(Wait::Formation) => Self::Formation,
-            Some(Wait::Request) => Self::Request,
-            Some(Wait::Way) => Self::Way,
+            Some(Wait::Team) => Self::Team,
+            Some(Wait::Stopped) => Self::Stopped,
+            Some(Wait::Route) => Self::Route,
             Some(Wait::Radio) => Self::Radio,
             Some(Wait::Turn) => Self::Turn,
-            Some(Wait::Others) => Self::Others,
-            Some(Wait::Place) => Self::Place,
+            Some(Wait::Robots) => Self::Robots,
+            Some(Wait::GoalTaken) => Self::GoalTaken,
         }
     }
 }
@@ -307,9 +307,9 @@ impl From<&Event> for StayaEventKind {
             Event::NeighborLost(_) => Self::NeighborLost,
             Event::NeighborEvicted(_) => Self::NeighborEvicted,
             Event::NeighborRebooted(_) => Self::NeighborRebooted,
-            Event::NobodyHeard => Self::NobodyHeard,
+            Event::ContactLost => Self::ContactLost,
             Event::DuplicateId(_) => Self::DuplicateId,
-            Event::Overclaimed { .. } => Self::Overclaimed,
+            Event::Implausible { .. } => Self::Implausible,
             Event::Muted => Self::Muted,
         }
     }

@@ -138,14 +138,14 @@ pub struct StayaOutputs {
     pub refused_replayed: u16,
     /// Of those: from senders that do not fit into the table.
     pub refused_no_room: u16,
-    /// Beacons with a number beyond `claims_last_id`.
-    pub overclaimed_numbers: u16,
+    /// Beacons with a number beyond `plausibility_last_id`.
+    pub implausible_numbers: u16,
     /// Beacons with too large a radius.
-    pub overclaimed_radii: u16,
+    pub implausible_radii: u16,
     /// Beacons with too high a speed.
-    pub overclaimed_speeds: u16,
+    pub implausible_speeds: u16,
     /// Beacons with a position that the robot cannot have reached yet.
-    pub overclaimed_places: u16,
+    pub implausible_places: u16,
     /// Length of `outbox`.
     pub outbox_bytes: u16,
     /// StayaCommand.
@@ -267,13 +267,13 @@ impl StayaEvent {
             }
             Event::TargetMoved { from, to } => Self { before_xy: from.into(), after_xy: to.into(), ..about },
             Event::RequestExpired { to, kind } => Self { robot: to.0, after: choices::request(kind), ..about },
-            Event::Overclaimed { id, claim } => Self { robot: id.0, after: choices::claim(claim), ..about },
+            Event::Implausible { id, claim } => Self { robot: id.0, after: choices::claim(claim), ..about },
             Event::NeighborFound(id)
             | Event::NeighborLost(id)
             | Event::NeighborEvicted(id)
             | Event::NeighborRebooted(id)
             | Event::DuplicateId(id) => Self { robot: id.0, ..about },
-            Event::NoRoute | Event::NobodyHeard | Event::Muted => about,
+            Event::NoRoute | Event::ContactLost | Event::Muted => about,
         }
     }
 }
@@ -302,10 +302,10 @@ impl StayaOutputs {
         self.refused_forged = out.refused.forged;
         self.refused_replayed = out.refused.replayed;
         self.refused_no_room = out.refused.no_room;
-        self.overclaimed_numbers = out.overclaims.numbers;
-        self.overclaimed_radii = out.overclaims.radii;
-        self.overclaimed_speeds = out.overclaims.speeds;
-        self.overclaimed_places = out.overclaims.jumps;
+        self.implausible_numbers = out.implausible.numbers;
+        self.implausible_radii = out.implausible.radii;
+        self.implausible_speeds = out.implausible.speeds;
+        self.implausible_places = out.implausible.jumps;
         for (to, event) in self.events.iter_mut().zip(&out.events) {
             *to = StayaEvent::of(event);
             self.event_count = self.event_count.saturating_add(1);

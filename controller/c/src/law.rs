@@ -117,8 +117,8 @@ impl Teamwork for Law {
         each!(self, law => law.redirect());
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        each!(self, law => law.assign_template(part, is_anew))
+    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+        each!(self, law => law.assign_template(part, is_restarted))
     }
 
     fn goal_offset(&self) -> Cell {

@@ -26,8 +26,8 @@ use crate::status::{Checked, StayaStatus, answer};
 use staya_controller::agent::FlySafety;
 #[cfg(feature = "push-out")]
 use staya_controller::agent::PushOutSafety;
-use staya_controller::agent::{AgentConfig, OrcaSafety, Silence, Unguarded, WaypointGuidance};
-use staya_controller::neighbor::{Ages, Claims};
+use staya_controller::agent::{AgentConfig, ContactLossPolicy, OrcaSafety, Unguarded, WaypointGuidance};
+use staya_controller::neighbor::{Ages, PlausibilityLimits};
 #[cfg(feature = "space")]
 use staya_controller::orca::InSpace;
 use staya_controller::robot::RobotId;
@@ -100,15 +100,15 @@ pub struct StayaSetup {
     /// only for robots that may be alone.
     pub alone_mps: f32,
     /// Largest radius accepted in a beacon, metres; FLT_MAX: any.
-    pub claims_max_radius_m: f32,
+    pub plausibility_max_radius_m: f32,
     /// Highest speed accepted in a beacon, m/s; FLT_MAX: any, and positions are not checked.
-    pub claims_max_speed_mps: f32,
+    pub plausibility_max_speed_mps: f32,
     /// Additional tolerance between two positions of a robot, metres.
-    pub claims_slack_m: f32,
+    pub plausibility_slack_m: f32,
     /// How long a robot that has jumped must send consistent positions, microseconds.
-    pub claims_settle_us: i32,
+    pub plausibility_settle_us: i32,
     /// The greatest number of any robot.
-    pub claims_last_id: u32,
+    pub plausibility_last_id: u32,
     /// ORCA, in the plane and in space.
     pub orca: StayaOrca,
     /// Push-out.
@@ -150,7 +150,7 @@ impl StayaSetup {
         self.beacon_period_us = config.beacon_period.as_micros();
         self.stale_after_us = config.ages.stale_after.as_micros();
         self.lost_after_us = config.ages.expire_after.as_micros();
-        self.remember_us = config.silence.remember.as_micros();
+        self.remember_us = config.contact_loss.remember.as_micros();
         self.stop_valid_us = config.stop_valid.as_micros();
         self.retry_interval_us = config.retry.interval.as_micros();
         self.retry_attempts = config.retry.attempts;
@@ -158,12 +158,12 @@ impl StayaSetup {
         self.speed_mps = 0.5;
         self.tolerance_m = 0.05;
         self.max_acceleration_mps2 = config.max_acceleration_mps2;
-        self.alone_mps = config.silence.alone_mps;
-        self.claims_max_radius_m = config.claims.max_radius_m;
-        self.claims_max_speed_mps = config.claims.max_speed_mps;
-        self.claims_slack_m = config.claims.slack_m;
-        self.claims_settle_us = config.claims.settle.as_micros();
-        self.claims_last_id = config.claims.last.0;
+        self.alone_mps = config.contact_loss.alone_mps;
+        self.plausibility_max_radius_m = config.plausibility.max_radius_m;
+        self.plausibility_max_speed_mps = config.plausibility.max_speed_mps;
+        self.plausibility_slack_m = config.plausibility.slack_m;
+        self.plausibility_settle_us = config.plausibility.settle.as_micros();
+        self.plausibility_last_id = config.plausibility.last.0;
         self.safety = StayaSafety::Orca as u8;
         self.orca = StayaOrca::defaults();
         self.push_out.min_distance_m = 1.5 * diameter_m;
@@ -180,7 +180,7 @@ impl StayaSetup {
             return Err(StayaStatus::Version);
         }
         if self.id == 0 {
-            return Err(StayaStatus::Nobody);
+            return Err(StayaStatus::NoRobot);
         }
         let times = [self.beacon_period_us, self.stale_after_us, self.lost_after_us, self.retry_interval_us];
         if self.tick_us <= 0 || times.iter().any(|time| *time <= 0) {
@@ -202,13 +202,13 @@ impl StayaSetup {
             ages: Ages { stale_after: us(self.stale_after_us), expire_after: us(self.lost_after_us) },
             retry: Retry { attempts: self.retry_attempts, interval: us(self.retry_interval_us) },
             stop_valid: us(self.stop_valid_us),
-            silence: Silence { remember: us(self.remember_us), alone_mps: self.alone_mps },
-            claims: Claims {
-                max_radius_m: self.claims_max_radius_m,
-                max_speed_mps: self.claims_max_speed_mps,
-                slack_m: self.claims_slack_m,
-                settle: us(self.claims_settle_us),
-                last: RobotId(self.claims_last_id),
+            contact_loss: ContactLossPolicy { remember: us(self.remember_us), alone_mps: self.alone_mps },
+            plausibility: PlausibilityLimits {
+                max_radius_m: self.plausibility_max_radius_m,
+                max_speed_mps: self.plausibility_max_speed_mps,
+                slack_m: self.plausibility_slack_m,
+                settle: us(self.plausibility_settle_us),
+                last: RobotId(self.plausibility_last_id),
             },
             flock: self.flock,
         };

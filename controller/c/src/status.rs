@@ -21,7 +21,7 @@ pub enum StayaStatus {
     /// The structure was not filled by `staya_setup_defaults` of this version of the header.
     Version = 5,
     /// The robot's number is 0; numbers begin at 1.
-    Nobody = 6,
+    NoRobot = 6,
     /// A number that must be above 0, or finite, is not.
     Number = 7,
     /// A field that selects one of several choices has an invalid number.
@@ -50,7 +50,7 @@ impl StayaStatus {
         Self::MemorySize,
         Self::NotThere,
         Self::Version,
-        Self::Nobody,
+        Self::NoRobot,
         Self::Number,
         Self::Choice,
         Self::NotBuilt,
@@ -76,7 +76,7 @@ impl StayaStatus {
             Self::Version => {
                 (c"STAYA_STATUS_VERSION", c"call staya_setup_defaults first; header and library must be of one version")
             }
-            Self::Nobody => (c"STAYA_STATUS_NOBODY", c"0 is nobody's number: robots are 1 and up"),
+            Self::NoRobot => (c"STAYA_STATUS_NO_ROBOT", c"0 is not a robot id: use 1 and up"),
             Self::Number => (c"STAYA_STATUS_NUMBER", c"a number that must be above 0, or finite, is not"),
             Self::Choice => (c"STAYA_STATUS_CHOICE", c"a field that names one of several has another number"),
             Self::NotBuilt => (c"STAYA_STATUS_NOT_BUILT", c"the library was built without it: see its features"),

@@ -102,7 +102,7 @@ pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
 }
 
 /// The largest number of a robot. Numbers from 2^31 on are reserved for
-/// [duplicates](RobotId::double).
+/// [duplicates](RobotId::duplicate).
 #[must_use]
 pub const fn max_robot(format: Format, has_key: bool) -> RobotId {
     match format {

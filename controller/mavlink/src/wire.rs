@@ -86,13 +86,13 @@ pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
 /// Appends a message as one unsigned MAVLink 2 frame and returns its length.
 ///
 /// # Errors
-/// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NOBODY`], [`EncodeError::Robot`]
+/// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NONE`], [`EncodeError::Robot`]
 /// if a robot number is above 255, [`EncodeError::Full`] if the frame does not fit. Nothing is
 /// written in these cases.
 ///
 /// Bounded work: O(bytes of the frame).
 pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
-    if !header.sender.is_somebody() {
+    if !header.sender.is_some() {
         return Err(EncodeError::NoSender);
     }
     let sender = Sender {
@@ -260,7 +260,7 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
         _ => return Err(DecodeError::Foreign),
     };
     let header = Header { boot, sender: robot(raw.sender().system), sequence };
-    if !header.sender.is_somebody() {
+    if !header.sender.is_some() {
         return Err(DecodeError::NoSender);
     }
     Ok(Frame { header, message, tag: None })
@@ -371,7 +371,7 @@ fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
     Ok((data.boot, data.sequence, Message::Template(part)))
 }
 
-/// The system of a robot number; 0 for [`RobotId::NOBODY`].
+/// The system of a robot number; 0 for [`RobotId::NONE`].
 fn system(id: RobotId) -> Result<u8, EncodeError> {
     u8::try_from(id.0).map_err(|_| EncodeError::Robot(id))
 }

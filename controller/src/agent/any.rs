@@ -89,8 +89,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         each!(self, law => law.note_stop(is_asked));
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        each!(self, law => law.assign_template(part, is_anew))
+    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+        each!(self, law => law.assign_template(part, is_restarted))
     }
 
     fn goal_offset(&self) -> Cell {

@@ -67,8 +67,8 @@ impl<S, G: Teamwork> Teamwork for CellFollower<S, G> {
         self.last = None;
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        self.law.assign_template(part, is_anew)
+    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+        self.law.assign_template(part, is_restarted)
     }
 
     fn goal_offset(&self) -> Cell {

@@ -130,9 +130,9 @@ fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
     let stays = matches!(action, Action::Stay);
     Decision {
         action,
-        status: Status { waits_for: stays.then_some(Wait::Request), recovers: !stays, ..Status::default() },
+        status: Status { waits_for: stays.then_some(Wait::Stopped), recovers: !stays, ..Status::default() },
         target: goal,
-        leader: RobotId::NOBODY,
+        leader: RobotId::NONE,
         slot: 0,
         asks: heapless::Vec::new(),
     }

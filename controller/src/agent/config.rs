@@ -1,7 +1,7 @@
 //! The configuration with which the agent of one robot starts.
 
-use super::Silence;
-use crate::neighbor::{Ages, Claims};
+use super::ContactLossPolicy;
+use crate::neighbor::{Ages, PlausibilityLimits};
 use crate::robot::RobotId;
 use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
@@ -42,9 +42,9 @@ pub struct AgentConfig<S> {
     /// request costs.
     pub stop_valid: Duration,
     /// The reaction to lost contact.
-    pub silence: Silence<S>,
+    pub contact_loss: ContactLossPolicy<S>,
     /// Limits on the values that other robots may report.
-    pub claims: Claims<S>,
+    pub plausibility: PlausibilityLimits<S>,
     /// The own flock. A robot that [flocks](crate::flock) treats members of other flocks as
     /// obstacles only. Flock 0 is the flock of all robots that belong to none.
     ///
@@ -69,8 +69,8 @@ impl<S: Scalar> AgentConfig<S> {
             ages: self.ages,
             retry: self.retry,
             stop_valid: self.stop_valid,
-            silence: self.silence.cast(),
-            claims: self.claims.cast(),
+            contact_loss: self.contact_loss.cast(),
+            plausibility: self.plausibility.cast(),
             flock: self.flock,
         }
     }
@@ -96,8 +96,8 @@ impl<S: Scalar> AgentConfig<S> {
             ages: Ages { stale_after: tick.saturating_mul(4), expire_after: tick.saturating_mul(30) },
             retry: Retry { attempts: 5, interval: tick.saturating_mul(3) },
             stop_valid: tick.saturating_mul(12),
-            silence: Silence::DEFAULT,
-            claims: Claims::ANY,
+            contact_loss: ContactLossPolicy::DEFAULT,
+            plausibility: PlausibilityLimits::ANY,
             flock: 0,
         }
     }

@@ -3,14 +3,14 @@
 //! differences from the paper.
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use super::move_history::{MoveHistory, PATIENCE, on_grid, reachable_goal};
 use super::route_guidance::GridWorkspace;
-use super::travel::{PATIENCE, Travel, on_grid, reachable_goal};
 use super::tunable::Tunable;
 use super::{OnGrid, Parameter, Wait};
 use crate::cost::Weights;
 use crate::formation::{
-    Anchor, Footprint, FormationParams, Found, GraphDistance, Member, NextMove, Pace, Ranks, Recovery, Seen, Steering,
-    blended, def, distances, find_leader, find_neighbors, graph_distance, should_stay,
+    Anchor, Footprint, FormationParams, Found, GapClosing, GraphDistance, Member, NextMove, PaceControl, Recovery,
+    Seen, Steering, blended, def, distances, find_leader, find_neighbors, graph_distance, should_stay,
 };
 use crate::grid::{Cell, Dir, Window};
 use crate::list;
@@ -46,11 +46,11 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     sharpness: Sharpness,
     /// The assigned template; [`Self::view`] is the one in use.
     template: Template<F>,
-    ranks: Ranks,
+    ranks: GapClosing,
     assembler: TemplateAssembler<F>,
     router: Router<M, L>,
-    travel: Travel,
-    pace: Pace,
+    travel: MoveHistory,
+    pace: PaceControl,
     leader: RobotId,
     leader_offset: Cell,
     /// Consecutive decisions with another robot in the place of a neighbour.
@@ -93,12 +93,12 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             formation,
             sharpness: Sharpness::Greedy,
             template,
-            ranks: Ranks::new(),
+            ranks: GapClosing::new(),
             assembler: TemplateAssembler::new(),
             router: Router::new(),
-            travel: Travel::new(),
-            pace: Pace::new(),
-            leader: RobotId::NOBODY,
+            travel: MoveHistory::new(),
+            pace: PaceControl::new(),
+            leader: RobotId::NONE,
             leader_offset: Cell::new(0, 0),
             crowded: 0,
             has_asked: false,
@@ -154,7 +154,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             let named = view.entries.iter().find(|e| e.id == robot.id);
             let offset = match named {
                 Some(entry) => Cell::default() - entry.offset,
-                None if !robot.leader.is_somebody() => view.offset,
+                None if !robot.leader.is_some() => view.offset,
                 None if robot.id == self.leader => self.leader_offset,
                 None => return None,
             };
@@ -167,7 +167,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     /// chooses it only at t = 0).
     fn choose_leader<S>(&mut self, input: &GuidanceInput<'_, S>, found: &Found<F>) {
         let leader = find_leader(input.id, &found.members);
-        if leader.is_somebody() || input.neighbor(self.leader).is_none() {
+        if leader.is_some() || input.neighbor(self.leader).is_none() {
             self.leader = leader;
         }
         // A place for any robot does not determine whose place it is.
@@ -294,7 +294,7 @@ fn comes_after<S>(input: &GuidanceInput<'_, S>, other: RobotId, leader: RobotId)
     let chain = successors(Some((other, leader)), |&(id, leader)| {
         heard(leader).filter(|next| leader != input.id && next.id < id).map(|next| (next.id, next.leader))
     });
-    chain.last().is_some_and(|(_, leader)| leader.is_somebody())
+    chain.last().is_some_and(|(_, leader)| leader.is_some())
 }
 
 fn holders<S>(neighbors: &[Neighbor<S>]) -> impl Iterator<Item = (RobotId, u8)> + Clone {
@@ -312,16 +312,16 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K> Team
         self.travel.redirect();
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        if is_anew {
+    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+        if is_restarted {
             self.assembler.forget();
         }
         match self.assembler.put(part) {
             Ok(Some(template)) => {
                 self.template = template;
-                self.ranks = Ranks::new();
-                self.pace = Pace::new();
-                self.leader = RobotId::NOBODY;
+                self.ranks = GapClosing::new();
+                self.pace = PaceControl::new();
+                self.leader = RobotId::NONE;
                 (self.waited, self.behind) = (0, 0);
                 true
             }
@@ -404,7 +404,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             let waits = self.pace.update(&self.formation, behind.max().unwrap_or(0));
             self.waited = if waits { self.waited.saturating_add(1) } else { 0 };
             let is_bearable = self.waited <= self.formation.patience;
-            status.waits_for = (waits && is_bearable).then_some(Wait::Formation);
+            status.waits_for = (waits && is_bearable).then_some(Wait::Team);
             if goes_alone && core::mem::take(&mut self.has_asked) {
                 list::extend(&mut asks, Some(Ask { to: leader, kind: RequestKind::Resume }));
             }
@@ -417,11 +417,11 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             stays = false;
         }
         let alternatives = if self.travel.is_jammed() { Dir::MOVES.len() } else { ALTERNATIVES };
-        let mut moves = Travel::order(&weights, self.sharpness, alternatives, rng);
+        let mut moves = MoveHistory::order(&weights, self.sharpness, alternatives, rng);
         if status.waits_for.is_some() && self.formation.recovery == Recovery::Def {
             let towards = def(cell, &found.members);
             status.recovers = towards != Dir::Stay;
-            status.waits_for = (!status.recovers).then_some(Wait::Formation);
+            status.waits_for = (!status.recovers).then_some(Wait::Team);
             moves = list::collect(status.recovers.then_some(towards));
         }
         if stays {

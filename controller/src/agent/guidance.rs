@@ -156,7 +156,7 @@ pub trait Teamwork {
     /// well stores the flag.
     fn note_stop(&mut self, _is_asked: bool) {}
 
-    /// Handles a part of a formation template. Returns whether it was accepted. `is_anew`: the
+    /// Handles a part of a formation template. Returns whether it was accepted. `is_restarted`: the
     /// sender changed or restarted.
     fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
         false
@@ -194,8 +194,8 @@ macro_rules! pass_on {
             $inside.note_stop(is_asked);
         }
 
-        fn assign_template(&mut $self, part: &TemplateAssignment, is_anew: bool) -> bool {
-            $inside.assign_template(part, is_anew)
+        fn assign_template(&mut $self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+            $inside.assign_template(part, is_restarted)
         }
 
         fn goal_offset(&$self) -> Cell {
@@ -364,7 +364,7 @@ impl<S> Action<S> {
 pub struct Status {
     /// It is at its goal, or beside its occupied goal.
     pub is_at_goal: bool,
-    /// The reason to stand still and wait; [`Wait::Place`] if it arrived beside its occupied goal.
+    /// The reason to stand still and wait; [`Wait::GoalTaken`] if it arrived beside its occupied goal.
     pub waits_for: Option<Wait>,
     /// No exit of the window is reachable.
     pub is_stuck: bool,

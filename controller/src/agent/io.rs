@@ -100,17 +100,17 @@ pub enum Event {
     NeighborEvicted(RobotId),
     /// The clock or the sequence number of a neighbour restarted.
     NeighborRebooted(RobotId),
-    /// All neighbours are lost. [`Silence`](super::Silence) determines the reaction.
-    NobodyHeard,
+    /// All neighbours are lost. [`ContactLossPolicy`](super::ContactLossPolicy) determines the reaction.
+    ContactLost,
     /// Two robots use this id, which is the own id or that of a neighbour. Give one of them another
     /// id.
     ///
     /// Reported once, and again if the robot is found again after it was lost. The second robot is
-    /// avoided under the id [`RobotId::double`], and is reported as lost under that id.
+    /// avoided under the id [`RobotId::duplicate`], and is reported as lost under that id.
     DuplicateId(RobotId),
-    /// A robot reported a value beyond [`AgentConfig::claims`](super::AgentConfig::claims).
+    /// A robot reported a value beyond [`AgentConfig::plausibility`](super::AgentConfig::plausibility).
     /// Reported when it begins; for ids that no robot has, once per step.
-    Overclaimed {
+    Implausible {
         /// The sender.
         id: RobotId,
         /// The implausible value.
@@ -150,10 +150,10 @@ impl Refused {
     }
 }
 
-/// Counts of beacons with values beyond [`AgentConfig::claims`](super::AgentConfig::claims).
+/// Counts of beacons with values beyond [`AgentConfig::plausibility`](super::AgentConfig::plausibility).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Overclaims {
+pub struct ImplausibleCounts {
     /// Ids that no robot has; the beacon was refused.
     pub numbers: u16,
     /// Radii that were reduced to the limit.
@@ -164,7 +164,7 @@ pub struct Overclaims {
     pub jumps: u16,
 }
 
-impl Overclaims {
+impl ImplausibleCounts {
     pub(super) fn count(&mut self, claim: Claim) {
         let count = match claim {
             Claim::Number => &mut self.numbers,
@@ -183,7 +183,7 @@ impl Overclaims {
 pub struct Outputs<S> {
     /// The motion of the body.
     pub command: Command<S>,
-    /// The cause if the robot does not advance; [`Wait::Place`] if it has arrived beside its
+    /// The cause if the robot does not advance; [`Wait::GoalTaken`] if it has arrived beside its
     /// occupied goal.
     pub wait: Option<Wait>,
     /// Frames of the inbox that were accepted: valid, not duplicates, from other robots.
@@ -195,7 +195,7 @@ pub struct Outputs<S> {
     /// The rejected frames that failed authentication.
     pub refused: Refused,
     /// Received beacons with implausible values.
-    pub overclaims: Overclaims,
+    pub implausible: ImplausibleCounts,
     /// Bytes to send: frames of the agent's wire format. Each postcard frame ends with a zero byte.
     pub outbox: Vec<u8, OUTBOX>,
     /// Events of this step; if more than [`EVENTS`] occur, the first ones.
@@ -210,7 +210,7 @@ impl<S> Outputs<S> {
         (self.command, self.wait) = (Command::Hold, None);
         (self.received, self.rejected) = (0, 0);
         self.refused = Refused::default();
-        self.overclaims = Overclaims::default();
+        self.implausible = ImplausibleCounts::default();
         self.outbox.clear();
         self.events.clear();
         self.call_again = Instant::default();

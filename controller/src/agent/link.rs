@@ -1,13 +1,13 @@
 //! The radio link of an agent: decodes received frames and encodes frames to send.
 
-use super::double::Said;
+use super::contact_loss::ContactState;
+use super::duplicate_id::EchoFilter;
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
-use super::silence::Company;
 use super::{AgentConfig, CellState, Last, Waypoint};
 use crate::geom::{Position, Torus, Vec3};
 use crate::grid::Cell;
 use crate::land::LandPatch;
-use crate::neighbor::{Ages, Claims, LossEstimate, Neighbor, NeighborTable, Put, Suspects};
+use crate::neighbor::{Ages, LossEstimate, Neighbor, NeighborTable, PlausibilityFilter, PlausibilityLimits, Put};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
@@ -18,8 +18,8 @@ use crate::wire::{
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
+mod identity;
 mod sight;
-mod who;
 
 /// Capacity of requests that wait for an acknowledgement.
 const PENDING: usize = 4;
@@ -27,14 +27,14 @@ const WAYPOINTS: usize = 4;
 /// Capacity of requests received from other robots.
 const ORDERS: usize = 8;
 
-pub(super) enum News<S> {
+pub(super) enum Received<S> {
     /// A request to choose another direction.
     Redirect,
     /// A stop or resume request to pass on to the own leader.
     PassOn(Request),
-    /// A part of a template for this robot. `is_anew` is true if the sender changed or restarted,
+    /// A part of a template for this robot. `is_restarted` is true if the sender changed or restarted,
     /// so that its version numbers start anywhere.
-    Template { part: TemplateAssignment, is_anew: bool },
+    Template { part: TemplateAssignment, is_restarted: bool },
     /// A goal for the top leader of this robot's formation.
     Goal(Cell),
     /// A patch of another robot's map.
@@ -48,10 +48,10 @@ pub(super) struct Link<S, const N: usize, W, P> {
     wire: W,
     header: Header,
     /// The last frames sent, to recognise echoes.
-    said: Said,
+    said: EchoFilter,
     pub(super) table: NeighborTable<S, N, P>,
-    pub(super) company: Company,
-    suspects: Suspects,
+    pub(super) contact: ContactState,
+    suspects: PlausibilityFilter,
     loss: LossEstimate,
     windows: Vec<(RobotId, SequenceWindow), N>,
     requests: Requests<PENDING>,
@@ -72,12 +72,12 @@ pub(super) struct Link<S, const N: usize, W, P> {
 /// The context in which frames are received: own position, the time at which arriving frames were
 /// sent, the top speed of other robots (if known), their beacon period, plausibility limits, and
 /// the robots that a full table must keep.
-pub(super) struct Listener<'a, S> {
+pub(super) struct ReceiveContext<'a, S> {
     pub(super) position: Position,
     pub(super) heard_at: Instant,
     pub(super) fastest_mps: Option<S>,
     pub(super) period: Duration,
-    pub(super) claims: &'a Claims<S>,
+    pub(super) plausibility: &'a PlausibilityLimits<S>,
     pub(super) needs: &'a dyn Fn(RobotId) -> bool,
 }
 
@@ -86,10 +86,10 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         Self {
             wire,
             header: Header { boot, sender: id, sequence: 0 },
-            said: Said::new(),
+            said: EchoFilter::new(),
             table: NeighborTable::new(ages),
-            company: Company::Unknown,
-            suspects: Suspects::new(),
+            contact: ContactState::Never,
+            suspects: PlausibilityFilter::new(),
             loss: LossEstimate::new(),
             windows: Vec::new(),
             requests: Requests::new(id, boot, retry),
@@ -173,9 +173,9 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         &mut self,
         bytes: &[u8],
         now: Instant,
-        listener: &Listener<'_, S>,
+        listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
-    ) -> Option<News<S>> {
+    ) -> Option<Received<S>> {
         let frame = match self.wire.decode(bytes) {
             // Frames of other systems on the same band count as neither received nor rejected.
             Err(DecodeError::Foreign) => return None,
@@ -217,9 +217,9 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         id: RobotId,
         arrival: Arrival,
         now: Instant,
-        listener: &Listener<'_, S>,
+        listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
-    ) -> Option<News<S>> {
+    ) -> Option<Received<S>> {
         let Header { sender, .. } = frame.header;
         let is_mine = |to: RobotId| to == self.header.sender;
         match frame.message {
@@ -235,8 +235,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 self.say_early(&Message::Ack(answer.ack), out);
                 match request.kind {
                     _ if !answer.is_new => {}
-                    RequestKind::Redirect => return Some(News::Redirect),
-                    RequestKind::Stop | RequestKind::Resume => return Some(News::PassOn(request)),
+                    RequestKind::Redirect => return Some(Received::Redirect),
+                    RequestKind::Stop | RequestKind::Resume => return Some(Received::PassOn(request)),
                 }
             }
             Message::Ack(ack) if is_mine(ack.to) => {
@@ -245,26 +245,26 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             }
             Message::Template(part) if is_mine(part.to) => {
                 let [_, commander, _] = &mut self.commanders;
-                let is_anew = is_another(commander, frame.header);
-                return Some(News::Template { part, is_anew });
+                let is_restarted = is_another(commander, frame.header);
+                return Some(Received::Template { part, is_restarted });
             }
-            Message::Goal(goal) if is_mine(goal.to) || !goal.to.is_somebody() => {
+            Message::Goal(goal) if is_mine(goal.to) || !goal.to.is_some() => {
                 let [commander, _, _] = &mut self.commanders;
                 if is_another(commander, frame.header) {
                     self.goal.forget();
                 }
                 if self.goal.admit(goal.version) {
-                    return Some(News::Goal(goal.target));
+                    return Some(Received::Goal(goal.target));
                 }
             }
-            Message::Waypoint(said) if is_mine(said.to) || !said.to.is_somebody() => {
+            Message::Waypoint(said) if is_mine(said.to) || !said.to.is_some() => {
                 let [_, _, commander] = &mut self.commanders;
                 if is_another(commander, frame.header) {
                     self.waypoints = [Newest::new(); WAYPOINTS];
                 }
                 let newest = self.waypoints.get(usize::from(said.index))?;
                 if newest.is_news(said.version) {
-                    return Some(News::Waypoint {
+                    return Some(Received::Waypoint {
                         index: said.index,
                         version: said.version,
                         waypoint: Waypoint {
@@ -275,7 +275,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                     });
                 }
             }
-            Message::Land(patch) => return Some(News::Land(patch)),
+            Message::Land(patch) => return Some(Received::Land(patch)),
             Message::Payload(bytes) if size_of::<P>() > 0 && arrival.is_latest() => self.table.tell(id, bytes.get()),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
@@ -293,13 +293,13 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         mut neighbor: Neighbor<S, P>,
         header: Header,
         now: Instant,
-        listener: &Listener<'_, S>,
+        listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
     ) {
         let id = neighbor.id;
         neighbor.position = self.image(neighbor.position, listener.position);
-        self.cut(&mut neighbor, listener.claims, out);
-        self.company = Company::Heard(neighbor.heard);
+        self.cut(&mut neighbor, listener.plausibility, out);
+        self.contact = ContactState::InContact(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);
         if let Put::Evicted(evicted) = put {
             self.windows.retain(|(id, _)| *id != evicted);
@@ -310,7 +310,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             let _ = window.check(header);
             // Cannot fail: there are as many windows as entries.
             let _ = self.windows.push((id, window));
-            report(out, id.doubled().map_or(Event::NeighborFound(id), Event::DuplicateId));
+            report(out, id.duplicate_of().map_or(Event::NeighborFound(id), Event::DuplicateId));
         }
     }
 

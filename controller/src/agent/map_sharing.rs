@@ -4,7 +4,7 @@ use super::guidance::{BadInput, Decision, Guidance, GuidanceInput, Teamwork, pas
 use super::{Parameter, Surroundings, Waypoint};
 use crate::grid::Cell;
 use crate::land::{FarLand, LandMap, LandPatch, MapParams};
-use crate::list::Seldom;
+use crate::list::SparseVec;
 use crate::neighbor::Tracker;
 use crate::rand::Rng;
 use crate::robot::RobotId;
@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 pub struct MapSharing<G, const T: usize> {
     inside: G,
     #[serde(with = "counted_if_shared")]
-    map: Seldom<Map<T>, 1>,
+    map: SparseVec<Map<T>, 1>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -74,11 +74,14 @@ impl Progress {
 
 /// Serialisation of the map; digests omit a map that does not exist.
 mod counted_if_shared {
-    use super::{Map, Seldom};
+    use super::{Map, SparseVec};
     use serde::{Deserialize, Deserializer};
     use serde::{Serialize, Serializer};
 
-    pub(super) fn serialize<const T: usize, Z: Serializer>(map: &Seldom<Map<T>, 1>, to: Z) -> Result<Z::Ok, Z::Error> {
+    pub(super) fn serialize<const T: usize, Z: Serializer>(
+        map: &SparseVec<Map<T>, 1>,
+        to: Z,
+    ) -> Result<Z::Ok, Z::Error> {
         match map.first() {
             None => crate::digest::uncounted::serialize(map, to),
             Some(_) => map.serialize(to),
@@ -87,8 +90,8 @@ mod counted_if_shared {
 
     pub(super) fn deserialize<'de, const T: usize, D: Deserializer<'de>>(
         from: D,
-    ) -> Result<Seldom<Map<T>, 1>, D::Error> {
-        Seldom::deserialize(from)
+    ) -> Result<SparseVec<Map<T>, 1>, D::Error> {
+        SparseVec::deserialize(from)
     }
 }
 
@@ -96,7 +99,7 @@ impl<G, const T: usize> MapSharing<G, T> {
     /// Wraps `inside` with a map kept according to `params`, or without a map if `None`.
     #[must_use]
     pub fn new(inside: G, params: Option<MapParams>) -> Self {
-        let mut map = Seldom::new();
+        let mut map = SparseVec::new();
         if let Some(params) = params {
             // Cannot fail: the capacity is 1.
             let _ = map.push(Map { land: LandMap::new(), params, progress: Progress::default() });

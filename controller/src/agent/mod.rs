@@ -102,17 +102,19 @@
 
 mod any;
 mod any_world;
-mod beside;
 mod cell_follower;
 mod commanded;
 mod config;
-mod double;
+mod contact_loss;
+mod duplicate_id;
 mod flock_guidance;
 mod formation_guidance;
+mod goal_occupancy;
 mod guidance;
 mod io;
 mod link;
 mod map_sharing;
+mod move_history;
 mod neighbor_tracking;
 mod orca_safety;
 mod other_safety;
@@ -122,12 +124,10 @@ mod published_formation;
 mod route_guidance;
 mod safety;
 mod setup;
-mod silence;
 mod state;
 mod step;
 mod surroundings;
 mod task;
-mod travel;
 mod tunable;
 mod wait;
 mod waypoint;
@@ -141,13 +141,14 @@ pub use any_world::AnyWorld;
 pub use cell_follower::CellFollower;
 pub use commanded::{Commanded, Wish};
 pub use config::AgentConfig;
+pub use contact_loss::ContactLossPolicy;
 pub use flock_guidance::{BoidsGuidance, GOALS, GoalFlockGuidance, LatticeGuidance};
 pub use formation_guidance::{FormationGuidance, FormationInPlane};
 pub use guidance::{
     Action, Ask, BadInput, Decision, Destination, Guidance, GuidanceInput, Roams, Status, Teamwork, ToAny, ToCells,
     ToWaypoints,
 };
-pub use io::{AnyInputs, Command, EVENTS, Event, Inputs, KinematicState, OUTBOX, Outputs, Overclaims, Refused};
+pub use io::{AnyInputs, Command, EVENTS, Event, ImplausibleCounts, Inputs, KinematicState, OUTBOX, Outputs, Refused};
 pub use map_sharing::MapSharing;
 pub use neighbor_tracking::NeighborTracking;
 pub use orca_safety::{FlySafety, OrcaSafety};
@@ -158,7 +159,6 @@ pub use published_formation::PublishedFormation;
 pub use route_guidance::{GridWorkspace, RouteGuidance};
 pub use safety::{Safety, SafetyInput, Unguarded};
 pub use setup::{AnyAgent, BoidsSetup, GuidanceKind, GuidanceSetup, RouteSetup, SafetyKind, SafetySetup, Setup, Task};
-pub use silence::Silence;
 pub use surroundings::{AnySurroundings, CellState, InCell, InCells, InPlane, OnGrid, Surroundings};
 pub use task::WrongTask;
 pub use wait::Wait;
@@ -283,7 +283,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 },
                 target: Cell::new(0, 0),
                 cell: Cell::new(0, 0),
-                leader: RobotId::NOBODY,
+                leader: RobotId::NONE,
                 heading: Dir::Stay,
                 slot: 0,
             },

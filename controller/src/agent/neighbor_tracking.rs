@@ -5,7 +5,7 @@ use super::{Agent, KinematicState, Outputs, Parameter, Safety, Waypoint};
 use crate::geom::Position;
 use crate::grid::Cell;
 use crate::land::LandPatch;
-use crate::list::{self, Seldom};
+use crate::list::{self, SparseVec};
 use crate::neighbor::{Sighted, Sighting, TrackParams, Tracker};
 use crate::rand::Rng;
 use crate::robot::RobotId;
@@ -25,17 +25,17 @@ use serde::{Deserialize, Serialize};
 pub struct NeighborTracking<S: Scalar, G> {
     inside: G,
     #[serde(with = "counted_if_it_sees")]
-    tracker: Seldom<Tracker<S>, 1>,
+    tracker: SparseVec<Tracker<S>, 1>,
 }
 
 /// Serialisation of the tracker; digests omit a tracker that does not exist.
 mod counted_if_it_sees {
-    use super::{Scalar, Seldom, Tracker};
+    use super::{Scalar, SparseVec, Tracker};
     use serde::{Deserialize, Deserializer};
     use serde::{Serialize, Serializer};
 
     pub(super) fn serialize<S: Scalar, Z: Serializer>(
-        tracker: &Seldom<Tracker<S>, 1>,
+        tracker: &SparseVec<Tracker<S>, 1>,
         to: Z,
     ) -> Result<Z::Ok, Z::Error> {
         match tracker.first() {
@@ -46,8 +46,8 @@ mod counted_if_it_sees {
 
     pub(super) fn deserialize<'de, S: Scalar, D: Deserializer<'de>>(
         from: D,
-    ) -> Result<Seldom<Tracker<S>, 1>, D::Error> {
-        Seldom::deserialize(from)
+    ) -> Result<SparseVec<Tracker<S>, 1>, D::Error> {
+        SparseVec::deserialize(from)
     }
 }
 
@@ -55,7 +55,7 @@ impl<S: Scalar, G> NeighborTracking<S, G> {
     /// Wraps `inside` with a tracker, or without one if `params` is `None`.
     #[must_use]
     pub fn new(inside: G, params: Option<TrackParams<S>>) -> Self {
-        let mut tracker = Seldom::new();
+        let mut tracker = SparseVec::new();
         if let Some(params) = params {
             // Cannot fail: the capacity is 1.
             let _ = tracker.push(Tracker::new(params));
@@ -91,7 +91,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             return;
         }
         let Self { config, guidance, link, last, .. } = self;
-        let is_needed = |id: &RobotId| *id == last.leader || *id == config.id.double() || guidance.needs(*id);
+        let is_needed = |id: &RobotId| *id == last.leader || *id == config.id.duplicate() || guidance.needs(*id);
         let needed: Vec<RobotId, N> = list::collect(link.table.iter().map(|known| known.id).filter(is_needed));
         if let Some(tracker) = guidance.tracker() {
             link.see(tracker, position, &needed, config.flock, now, out);

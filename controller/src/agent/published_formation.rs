@@ -20,8 +20,8 @@
 //!   The missing and the surplus robots are asked to choose another direction (item 6).
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
+use super::move_history::{on_grid, reachable_goal};
 use super::route_guidance::GridWorkspace;
-use super::travel::{on_grid, reachable_goal};
 use super::tunable::Tunable as _;
 use super::{OnGrid, Parameter, Wait};
 use crate::cost::{Gain, Weights};
@@ -78,7 +78,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
             assembler: TemplateAssembler::new(),
             visits: VisitMemory::new(),
             here: None,
-            leader: RobotId::NOBODY,
+            leader: RobotId::NONE,
             has_chosen: false,
             detour: None,
             has_asked: false,
@@ -189,7 +189,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         let is_found = |id: RobotId| found.members.iter().any(|member| member.seen.id == id);
         let mut missing = self.template.entries.iter().map(|entry| entry.id);
         let missing = missing.find(|&id| input.neighbor(id).is_some() && !is_found(id));
-        let surplus = Some(found.surplus).filter(|id| id.is_somebody());
+        let surplus = Some(found.surplus).filter(|id| id.is_some());
         [surplus, missing].map(|to| to.map(|to| Ask { to, kind: RequestKind::Redirect }))
     }
 }
@@ -207,14 +207,14 @@ impl<const CELLS: usize, const M: usize, const F: usize> Teamwork for PublishedF
         self.is_stopped = is_asked;
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        if is_anew {
+    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+        if is_restarted {
             self.assembler.forget();
         }
         let Ok(whole) = self.assembler.put(part) else { return false };
         if let Some(template) = whole {
             self.template = template;
-            (self.leader, self.has_chosen) = (RobotId::NOBODY, false);
+            (self.leader, self.has_chosen) = (RobotId::NONE, false);
             self.detour = None;
         }
         true
@@ -288,12 +288,12 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         let sum = sum_of_deviations(cell + self.choice.offset(), &found.members);
         let is_leader = input.neighbors.iter().any(|other| other.leader == input.id);
         let (ask, goes_on) = self.keep((cell, target), (is_leader, sum), &found);
-        let ask = ask.filter(|_| self.leader.is_somebody()).map(|kind| Ask { to: self.leader, kind });
+        let ask = ask.filter(|_| self.leader.is_some()).map(|kind| Ask { to: self.leader, kind });
         list::extend(&mut decision.asks, ask);
         list::extend(&mut decision.asks, self.ask_others(input, &found).into_iter().flatten());
         let stands = self.is_stopped && !goes_on;
         decision.status = Status {
-            waits_for: stands.then_some(Wait::Request),
+            waits_for: stands.then_some(Wait::Stopped),
             recovers: !stands,
             is_off_place: self.detour.is_some(),
             ..decision.status

@@ -1,7 +1,7 @@
 //! Routing of a single robot to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
-use super::travel::{Travel, on_grid, reachable_goal};
+use super::move_history::{MoveHistory, on_grid, reachable_goal};
 use super::tunable::Tunable as _;
 use super::{OnGrid, Parameter};
 use crate::cost::{Gain, Weights};
@@ -49,7 +49,7 @@ pub struct RouteGuidance<const CELLS: usize, const M: usize, const L: usize = 0>
     replan: Replan,
     sharpness: Sharpness,
     router: Router<M, L>,
-    travel: Travel,
+    travel: MoveHistory,
 }
 
 impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M, L> {
@@ -61,7 +61,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
             replan: Replan::EachCell,
             sharpness: Sharpness::Greedy,
             router: Router::new(),
-            travel: Travel::new(),
+            travel: MoveHistory::new(),
         }
     }
 
@@ -113,7 +113,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         }
         // The robot that sent the request may be in the preferred direction, so vary the choice.
         let sharpness = if is_redirected { Sharpness::HalvedPer(Gain::ONE) } else { self.sharpness };
-        Some(Travel::order(&weights, sharpness, 8, rng))
+        Some(MoveHistory::order(&weights, sharpness, 8, rng))
     }
 }
 

@@ -33,7 +33,7 @@ pub trait Safety<S: Scalar> {
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
     /// Returns how the balls of silent neighbours grow. With `None` the layer ignores silent
-    /// neighbours: the agent then neither limits velocities to the [`Room`](crate::neighbor::Room)
+    /// neighbours: the agent then neither limits velocities to the [`GapLimit`](crate::neighbor::GapLimit)
     /// nor stops when contact is lost.
     fn inflation(&self) -> Option<StalenessInflation<S>> {
         None

@@ -1,7 +1,7 @@
 //! One step of an agent. Start with [`Agent::step_into`].
 
-use super::link::{Listener, News, beacon, report};
-use super::silence::Company;
+use super::contact_loss::ContactState;
+use super::link::{ReceiveContext, Received, beacon, report};
 use super::wait::is_hindered;
 use super::{
     Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs, Outputs, Safety,
@@ -10,7 +10,7 @@ use super::{
 use crate::body::Body;
 use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
-use crate::neighbor::{Nearby, Room, add_lost, nearest};
+use crate::neighbor::{GapLimit, Nearby, add_lost, nearest};
 use crate::rand::Rng;
 use crate::robot::Mode;
 use crate::scalar::Scalar;
@@ -99,39 +99,39 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
         let fastest_mps = safety.inflation().map(|inflation| inflation.growth_mps);
         let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
-        let remember = if keeps_clear { config.silence.remember } else { Duration::ZERO };
+        let remember = if keeps_clear { config.contact_loss.remember } else { Duration::ZERO };
         let radio = (config.beacon_period, config.latency);
         let own = inputs.state.position;
         link.expire(own, now, radio, remember, out);
         let have_left = link.table.is_empty() && link.table.lost().is_empty();
-        if keeps_clear && link.company.passes(now, have_left, config) {
-            report(out, Event::NobodyHeard);
+        if keeps_clear && link.contact.passes(now, have_left, config) {
+            report(out, Event::ContactLost);
         }
         let mut inbox = inputs.inbox;
         while let Some(bytes) = link.next_frame(&mut inbox) {
-            let listener = Listener {
+            let listener = ReceiveContext {
                 position: own,
                 heard_at,
                 fastest_mps,
                 period: config.beacon_period,
-                claims: &config.claims,
-                needs: &|id| id == leader || id == config.id.double() || guidance.needs(id),
+                plausibility: &config.plausibility,
+                needs: &|id| id == leader || id == config.id.duplicate() || guidance.needs(id),
             };
             match link.hear(bytes, now, &listener, out) {
                 None => {}
-                Some(News::Redirect) => guidance.redirect(),
-                Some(News::Land(patch)) => guidance.hear_land(&patch),
+                Some(Received::Redirect) => guidance.redirect(),
+                Some(Received::Land(patch)) => guidance.hear_land(&patch),
                 // A goal on the grid does not apply to a robot with another kind of goal.
-                Some(News::Goal(_)) if !guidance.goes_to_cells() => {}
-                Some(News::Goal(top)) => {
+                Some(Received::Goal(_)) if !guidance.goes_to_cells() => {}
+                Some(Received::Goal(top)) => {
                     *goal = Some(Goal::Formation(top));
                     last.target = top + guidance.goal_offset();
                 }
                 // A refused template is dropped; its sender is not notified.
-                Some(News::Template { part, is_anew }) => {
-                    let _ = guidance.assign_template(&part, is_anew);
+                Some(Received::Template { part, is_restarted }) => {
+                    let _ = guidance.assign_template(&part, is_restarted);
                 }
-                Some(News::Waypoint { index, version, waypoint }) => {
+                Some(Received::Waypoint { index, version, waypoint }) => {
                     let is_of_use = guidance.assign_waypoint(index, &waypoint);
                     if is_of_use {
                         link.placed(index, version);
@@ -139,12 +139,12 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 }
                 // A request beyond the capacity is lost: a stop is requested again, and an old one
                 // expires.
-                Some(News::PassOn(request)) => drop(pass_on.push(request)),
+                Some(Received::PassOn(request)) => drop(pass_on.push(request)),
             }
         }
         // Passed on at the end, when requests acknowledged in this step have freed their entries.
         for request in &pass_on {
-            if leader.is_somebody() && leader != request.origin {
+            if leader.is_some() && leader != request.origin {
                 let valid = Duration::from_millis(request.valid_ms.into());
                 link.ask(leader, request.origin, request.kind, valid, now);
             }
@@ -214,12 +214,12 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         if status.is_stuck && !situation.is_stuck {
             report(out, Event::NoRoute);
         }
-        let leads = !decision.leader.is_somebody();
+        let leads = !decision.leader.is_some();
         situation.is_passive = matches!(decision.action, Action::Release);
         situation.is_at_goal = status.is_at_goal;
         situation.is_stuck = status.is_stuck;
         situation.is_off_place = status.is_off_place;
-        let (is_left, stays) = (self.is_left(), matches!(status.waits_for, Some(wait) if wait != Wait::Place));
+        let (is_left, stays) = (self.is_left(), matches!(status.waits_for, Some(wait) if wait != Wait::GoalTaken));
         let situation = &mut self.last.situation;
         situation.is_stopped = stays || is_left || (leads && is_stopped && !status.recovers);
         self.last.target = decision.target;
@@ -230,7 +230,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
 
     /// Whether the robot stands still because it lost contact with all other robots.
     fn is_left(&self) -> bool {
-        self.link.company == Company::Gone && !self.config.silence.may_be_alone()
+        self.link.contact == ContactState::Forgotten && !self.config.contact_loss.may_be_alone()
     }
 
     /// Updates the mode, and turns the decision of the law into a command if the mode allows it.
@@ -253,13 +253,13 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let heading = core::mem::replace(&mut self.last.heading, Dir::Stay);
         let status = decision.status;
         out.wait = match to {
-            Mode::Arrived => status.waits_for.filter(|&wait| wait == Wait::Place),
+            Mode::Arrived => status.waits_for.filter(|&wait| wait == Wait::GoalTaken),
             Mode::Hold if self.is_left() => Some(Wait::Radio),
             Mode::Hold if status.waits_for.is_some() => status.waits_for,
-            Mode::Hold if status.is_stuck => Some(Wait::Way),
-            Mode::Hold => Some(Wait::Request),
+            Mode::Hold if status.is_stuck => Some(Wait::Route),
+            Mode::Hold => Some(Wait::Stopped),
             // It intended to move in the last decision and is still in the same cell.
-            _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Others),
+            _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Robots),
             _ => None,
         };
         match &decision.action {
@@ -303,26 +303,26 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let mut wish_mps = wish_mps;
         if let Some(inflation) = inflation {
             add_lost(nearby, table.lost(), own, body.radius_m, now, &config.ages, &inflation);
-            if link.company.is_lost() && config.silence.may_be_alone() {
-                wish_mps = wish_mps.clamp_norm(config.silence.alone_mps);
+            if link.contact.is_lost() && config.contact_loss.may_be_alone() {
+                wish_mps = wish_mps.clamp_norm(config.contact_loss.alone_mps);
             }
         }
         let input = SafetyInput { body, wish_mps, way_m, nearby, obstacles: plane.obstacles };
         let mut safe = safety.keep_clear(&input, rng);
         let mut is_hidden = false;
         if let Some(inflation) = inflation {
-            let (news, may_be_alone) = (config.latency.max(config.tick), config.silence.may_be_alone());
-            let room = Room { body: &body, own, now, news, inflation, may_be_alone };
+            let (news, may_be_alone) = (config.latency.max(config.tick), config.contact_loss.may_be_alone());
+            let room = GapLimit { body: &body, own, now, news, inflation, may_be_alone };
             let within = room.limit(table, plane.obstacles, safe);
             is_hidden = within.is_none();
             safe = within.unwrap_or(Vec3::ZERO);
         }
         if is_hindered(&input, safe) {
             out.wait = Some(match () {
-                () if is_hidden || link.company.is_lost() => Wait::Radio,
+                () if is_hidden || link.contact.is_lost() => Wait::Radio,
                 () if safety.waits_for_turn() => Wait::Turn,
-                () if input.nearby.is_empty() => Wait::Way,
-                () => Wait::Others,
+                () if input.nearby.is_empty() => Wait::Route,
+                () => Wait::Robots,
             });
         }
         out.command = Command::Velocity(body.reach(safe));

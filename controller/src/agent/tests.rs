@@ -398,7 +398,8 @@ fn the_clock_may_wrap() {
 mod cell_follower;
 mod claims;
 mod commanded;
-mod double;
+mod contact_loss;
+mod duplicate_id;
 mod faults;
 mod flocks;
 mod make_way;
@@ -412,6 +413,5 @@ mod published;
 mod sealed;
 mod setup;
 mod sighted;
-mod silence;
 mod waits;
 mod wrapped;

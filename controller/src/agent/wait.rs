@@ -10,30 +10,30 @@ named! {
     ///
     /// | reason | ends when |
     /// | --- | --- |
-    /// | [`Formation`](Self::Formation) | the robots arrive, or after [`patience`] decisions |
-    /// | [`Request`](Self::Request) | a resume request arrives, or the request expires |
-    /// | [`Way`](Self::Way) | the visible terrain changes |
-    /// | [`Radio`](Self::Radio) | another robot is in contact ([`Silence`](super::Silence)) |
+    /// | [`Team`](Self::Team) | the robots arrive, or after [`patience`] decisions |
+    /// | [`Stopped`](Self::Stopped) | a resume request arrives, or the request expires |
+    /// | [`Route`](Self::Route) | the visible terrain changes |
+    /// | [`Radio`](Self::Radio) | another robot is in contact ([`ContactLossPolicy`](super::ContactLossPolicy)) |
     /// | [`Turn`](Self::Turn) | its turn comes; a turn that is not taken passes on |
-    /// | [`Others`](Self::Others) | the robots leave; robots lean to the right to pass each other |
-    /// | [`Place`](Self::Place) | its place is free; until then it has arrived beside it |
+    /// | [`Robots`](Self::Robots) | the robots leave; robots lean to the right to pass each other |
+    /// | [`GoalTaken`](Self::GoalTaken) | its place is free; until then it has arrived beside it |
     ///
     /// [`patience`]: crate::formation::FormationParams::patience
     pub enum Wait {
         /// Its leader or its followers are not in their places yet.
-        Formation = "formation",
+        Team = "team",
         /// Another robot asked it to stop.
-        Request = "request",
+        Stopped = "stopped",
         /// Terrain or walls block its way, and no robot does.
-        Way = "way",
+        Route = "route",
         /// It does not know where silent robots are.
         Radio = "radio",
         /// Other robots go first through a door.
         Turn = "turn",
         /// Other robots are in its way.
-        Others = "others",
+        Robots = "robots",
         /// Another robot occupies its goal.
-        Place = "place",
+        GoalTaken = "goal_taken",
     }
 }
 

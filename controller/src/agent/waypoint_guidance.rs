@@ -1,6 +1,6 @@
 //! Straight lines through waypoints to a goal.
 
-use super::beside::{Beside, Claim};
+use super::goal_occupancy::{Claim, GoalOccupancy};
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
 use super::{InPlane, Parameter, WAYPOINTS, Wait, Waypoint};
 use crate::geom::Vec3;
@@ -23,7 +23,7 @@ const PASSED_RADII: i32 = 3;
 pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
     leg: u8,
-    beside: Beside<S>,
+    beside: GoalOccupancy<S>,
     tolerance_m: S,
     speed_mps: S,
 }
@@ -34,7 +34,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     /// `speed_mps`: cruising speed.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
-        Self { course: Vec::new(), leg: 0, beside: Beside::NEW, tolerance_m, speed_mps }
+        Self { course: Vec::new(), leg: 0, beside: GoalOccupancy::NEW, tolerance_m, speed_mps }
     }
 
     /// Returns the offset of the current waypoint, metres, and its velocity. Advances to the next
@@ -84,7 +84,7 @@ impl<S: Scalar> WaypointGuidance<S> {
             },
             status: Status {
                 is_at_goal,
-                waits_for: is_beside.then_some(Wait::Place),
+                waits_for: is_beside.then_some(Wait::GoalTaken),
                 // A robot that stopped at a moving waypoint would lose it.
                 makes_way: is_at_goal && velocity_mps != Vec3::ZERO,
                 ..Status::default()

@@ -5,7 +5,7 @@
 //! measures. Read section 7 first. In the plane, places are points: see [`Drive`] in `places.rs`.
 //! The text below on cells applies to the grid, and in the plane to detours around closed cells.
 //!
-//! All functions are pure functions on slices; a robot's state consists of [`Pace`] and its
+//! All functions are pure functions on slices; a robot's state consists of [`PaceControl`] and its
 //! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s
 //! per cell, costs those of [`crate::cost`].
 //!
@@ -38,30 +38,30 @@
 //!   wait for robots that follow another leader.
 //! - **Look-ahead.** With the law "lookahead" followers plan their routes to where their places
 //!   will be some moves later ([`Course`]).
-//! - **Ranks.** If ranks are closed ([`FormationParams::closes_ranks`]), robots behind a dead robot
+//! - **GapClosing.** If ranks are closed ([`FormationParams::closes_ranks`]), robots behind a dead robot
 //!   move up.
 //! - **Misprints.** `less` is counted once (algorithm 5), the leader is the smallest number
 //!   (algorithm 6), sums restart for each direction (algorithm 7).
 
+mod gap_closing;
 mod lookahead;
 mod measure;
 mod neighbors;
 mod places;
 #[cfg(feature = "published")]
 pub mod published;
-mod ranks;
 mod steering;
 
 #[cfg(test)]
 mod tests;
 
+pub use gap_closing::GapClosing;
 pub use lookahead::{Course, NextMove, Steering};
 pub use measure::{FormationError, GraphDistance, graph_distance};
 pub use neighbors::{Found, Member, Seen, find_leader, find_neighbors};
 pub(crate) use places::scaled;
 pub use places::{Drive, behind, is_straight};
-pub use ranks::Ranks;
-pub use steering::{Anchor, Footprint, Pace, aim, blended, def, deviation, distances, lag, should_stay};
+pub use steering::{Anchor, Footprint, PaceControl, aim, blended, def, deviation, distances, lag, should_stay};
 
 use crate::cost::Gain;
 use crate::names::named;
@@ -128,7 +128,7 @@ pub struct FormationParams {
     /// formation splits at every obstacle; with a large one it waits longer for a robot without a
     /// route. In the plane it is the leader's waiting time in seconds.
     pub patience: u16,
-    /// Whether robots behind a dead robot move up into its place ([`Ranks`]) or leave it empty.
+    /// Whether robots behind a dead robot move up into its place ([`GapClosing`]) or leave it empty.
     /// Fixed places keep all robots at the intended distances; moving up leaves no gap behind the
     /// leader and keeps the formation within its radio range.
     pub closes_ranks: bool,

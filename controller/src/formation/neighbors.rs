@@ -45,7 +45,7 @@ pub struct Found<const F: usize> {
     pub less: u8,
     /// Robots that stand in the place of another: m1 of the graph distance.
     pub more: u8,
-    /// The first robot that `more` counts; [`RobotId::NOBODY`] if `more` is 0.
+    /// The first robot that `more` counts; [`RobotId::NONE`] if `more` is 0.
     pub surplus: RobotId,
 }
 
@@ -70,7 +70,7 @@ pub fn find_neighbors<const F: usize>(
     for entry in &template.entries {
         let place = cell + entry.offset;
         let near = |seen: &Seen| seen.cell.chebyshev(place) <= u32::from(eps);
-        let seen = if entry.id.is_somebody() {
+        let seen = if entry.id.is_some() {
             robots.clone().find(|seen| seen.id == entry.id).filter(near)
         } else {
             let is_taken = |id| found.members.iter().any(|m: &Member| m.seen.id == id);
@@ -99,7 +99,7 @@ pub fn find_neighbors<const F: usize>(
 }
 
 /// The neighbour to follow (KUZ algorithm 6): the smallest number below the own one among the
-/// direct neighbours in the graph, or without any, among all that were found. [`RobotId::NOBODY`]:
+/// direct neighbours in the graph, or without any, among all that were found. [`RobotId::NONE`]:
 /// the robot leads.
 ///
 /// The paper considers direct neighbours only. If one of those died, the robots behind it would
@@ -107,5 +107,5 @@ pub fn find_neighbors<const F: usize>(
 #[must_use]
 pub fn find_leader(own: RobotId, members: &[Member]) -> RobotId {
     let smaller = members.iter().filter(|member| member.seen.id < own);
-    smaller.min_by_key(|member| (member.hops != 1, member.seen.id)).map_or(RobotId::NOBODY, |member| member.seen.id)
+    smaller.min_by_key(|member| (member.hops != 1, member.seen.id)).map_or(RobotId::NONE, |member| member.seen.id)
 }

@@ -91,14 +91,14 @@ pub fn sums(gain: Gain, cell: Cell, members: &[Member]) -> Weights {
 }
 
 /// The neighbour to follow (algorithm 6): the smallest number below the own one among all found.
-/// [`RobotId::NOBODY`]: the robot leads.
+/// [`RobotId::NONE`]: the robot leads.
 ///
 /// With templates of geodesic radius 1 this gives figure 5: 2 and 4 follow 1, 3 and 5 follow 2, 6
 /// follows 3.
 #[must_use]
 pub fn smallest_below(own: RobotId, members: &[Member]) -> RobotId {
     let smaller = members.iter().map(|member| member.seen.id).filter(|&id| id < own);
-    smaller.min().unwrap_or(RobotId::NOBODY)
+    smaller.min().unwrap_or(RobotId::NONE)
 }
 
 /// The state of a formation by its sum of deviations, with hysteresis around r0 (algorithm 2).
@@ -172,7 +172,7 @@ mod tests {
             cell,
             predicted: cell,
             heading: Dir::Stay,
-            leader: RobotId::NOBODY,
+            leader: RobotId::NONE,
             mode: Mode::Cruise,
         }
     }

@@ -113,11 +113,11 @@ pub fn def(cell: Cell, members: &[Member]) -> Dir {
 /// Whether the top leader waits: hysteresis around r0 (KUZ algorithm 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Pace {
+pub struct PaceControl {
     waits: bool,
 }
 
-impl Pace {
+impl PaceControl {
     /// Creates a leader that does not wait.
     #[must_use]
     pub const fn new() -> Self {

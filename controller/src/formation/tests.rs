@@ -16,7 +16,7 @@ fn template(robot: usize, rho: u8) -> Template<8> {
 
 fn seen(id: u32, x: i16, y: i16) -> Seen {
     let cell = Cell::new(x, y);
-    Seen { id: RobotId(id), cell, predicted: cell, heading: Dir::Stay, leader: RobotId::NOBODY, mode: Mode::Cruise }
+    Seen { id: RobotId(id), cell, predicted: cell, heading: Dir::Stay, leader: RobotId::NONE, mode: Mode::Cruise }
 }
 
 fn in_place(top: Cell) -> Vec<Seen> {
@@ -138,7 +138,7 @@ fn lag_counts_the_distance_behind_in_full_and_the_rest_by_half() {
 #[test]
 fn waiting_has_hysteresis() {
     let params = FormationParams { halt_lag: 300, resume_lag: 200, ..FormationParams::default() };
-    let mut pace = Pace::new();
+    let mut pace = PaceControl::new();
     let waits = [300, 301, 250, 201, 200, 250].map(|lag| pace.update(&params, lag));
     assert_eq!(waits, [false, true, true, true, false, false]);
 }

@@ -3,7 +3,7 @@
 use super::tile::{AGES, LandPatch, PATCH_HEIGHT, PATCH_TILES, PATCH_WIDTH, Tile};
 use super::tile_of;
 use crate::grid::{Cell, Window};
-use crate::list::Seldom;
+use crate::list::SparseVec;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ pub(super) struct Known {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LandMap<const T: usize> {
     /// Indexed by position modulo the side; all or none.
-    tiles: Seldom<Known, T>,
+    tiles: SparseVec<Known, T>,
     /// The south-west tile, a patch's corner.
     origin: Cell,
     aged_at: Option<Instant>,
@@ -72,7 +72,7 @@ impl<const T: usize> LandMap<T> {
     /// Creates a map without known tiles.
     #[must_use]
     pub const fn new() -> Self {
-        Self { tiles: Seldom::new(), origin: Cell::new(0, 0), aged_at: None, next: 0, repeats: false }
+        Self { tiles: SparseVec::new(), origin: Cell::new(0, 0), aged_at: None, next: 0, repeats: false }
     }
 
     /// The tile at this position (in tiles).

@@ -14,10 +14,10 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-mod claims;
+mod gap_limit;
 mod loss;
 mod nearby;
-mod room;
+mod plausibility;
 mod sighting;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
@@ -25,10 +25,10 @@ mod tie;
 mod track;
 mod tracker;
 
-pub use claims::{Claim, Claims, Doubt, Suspects};
+pub use gap_limit::GapLimit;
 pub use loss::LossEstimate;
 pub use nearby::{Nearby, StalenessInflation, add_lost, nearest};
-pub use room::Room;
+pub use plausibility::{Claim, PlausibilityFilter, PlausibilityLimits, Verdict};
 pub use sighting::{Sighted, Sighting, TrackParams};
 pub use tie::tie;
 pub use track::Track;
@@ -59,7 +59,7 @@ pub struct Neighbor<S, P = ()> {
     pub cell: Cell,
     /// The cell of its goal.
     pub target: Cell,
-    /// Its leader, or [`RobotId::NOBODY`].
+    /// Its leader, or [`RobotId::NONE`].
     pub leader: RobotId,
     /// The move that it intends next.
     pub heading: Dir,
@@ -70,7 +70,7 @@ pub struct Neighbor<S, P = ()> {
     /// It has been silent for longer than [`Ages::expire_after`]. Only its last state is
     /// remembered; its intentions no longer count.
     pub is_lost: bool,
-    /// Lower bound of the gap to the own body while it is silent, metres; maintained by [`Room`].
+    /// Lower bound of the gap to the own body while it is silent, metres; maintained by [`GapLimit`].
     pub gap_m: S,
     /// The last payload of its guidance law; the default until one arrives.
     pub payload: P,
@@ -151,14 +151,14 @@ pub enum Put {
     Updated,
     /// The robot was added, and this neighbour was removed.
     Evicted(RobotId),
-    /// All neighbours in the full table have precedence, or the id is [`RobotId::NOBODY`].
+    /// All neighbours in the full table have precedence, or the id is [`RobotId::NONE`].
     Refused,
 }
 
 #[cfg(not(feature = "host"))]
 type Entries<S, const N: usize, P> = heapless::Vec<Neighbor<S, P>, N, u16>;
 #[cfg(feature = "host")]
-type Entries<S, const N: usize, P> = crate::list::Seldom<Neighbor<S, P>, N>;
+type Entries<S, const N: usize, P> = crate::list::SparseVec<Neighbor<S, P>, N>;
 
 /// At most `N` robots, sorted by id: first the known robots, then the lost ones that are
 /// remembered.
@@ -196,7 +196,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// 2. the robot farthest from `own`, if the newcomer is nearer or protected;
     /// 3. otherwise the newcomer is refused.
     ///
-    /// A [duplicate id](RobotId::double) only replaces another duplicate, so a sender that forges
+    /// A [duplicate id](RobotId::duplicate) only replaces another duplicate, so a sender that forges
     /// ids cannot crowd out other robots. The smaller id wins a tie. Distances are taken at the
     /// extrapolated positions, and an unknown distance (NaN) counts as the largest. Thus the
     /// content after a burst of beacons does not depend on their order, unless more than `N`
@@ -208,7 +208,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Put {
-        if !newcomer.id.is_somebody() {
+        if !newcomer.id.is_some() {
             return Put::Refused;
         }
         let place = self.place(newcomer.id);
@@ -246,9 +246,9 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         now: Instant,
         protect: impl Fn(RobotId) -> bool,
     ) -> Option<RobotId> {
-        let is_double = newcomer.id.doubled().is_some();
+        let is_double = newcomer.id.duplicate_of().is_some();
         let may_go = |entry: &&Neighbor<S, P>| {
-            entry.is_lost || !protect(entry.id) && (!is_double || entry.id.doubled().is_some())
+            entry.is_lost || !protect(entry.id) && (!is_double || entry.id.duplicate_of().is_some())
         };
         let candidates = || self.entries.iter().filter(may_go);
         // An age beyond half of the clock's range counts as the largest.
@@ -306,7 +306,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             // robot.
             let is_moved = || {
                 let mut others = self.as_slice().iter();
-                others.any(|entry| entry.id.double() == silent.id.double() && is_within(entry, ages.stale_after))
+                others.any(|entry| entry.id.duplicate() == silent.id.duplicate() && is_within(entry, ages.stale_after))
             };
             if (range_m <= S::ZERO || distance(&silent) < range_m) && !is_moved() {
                 // Cannot fail: an entry was removed above.
@@ -345,7 +345,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Resets the gap bounds of all robots. Call it in a step in which [`Room`] is not used. O(N).
+    /// Resets the gap bounds of all robots. Call it in a step in which [`GapLimit`] is not used. O(N).
     pub fn forget_gaps(&mut self) {
         for entry in &mut self.entries {
             entry.gap_m = S::ZERO;

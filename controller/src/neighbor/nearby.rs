@@ -62,7 +62,7 @@ impl<S: Scalar> StalenessInflation<S> {
 /// | older than [`Ages::expire_after`] | not included | | |
 ///
 /// The ball of a stale robot grows at half of the speed in `inflation`, because
-/// [`Room`](super::Room) covers its worst case. It never grows over the own ball of `own_radius_m`,
+/// [`GapLimit`](super::GapLimit) covers its worst case. It never grows over the own ball of `own_radius_m`,
 /// since an outdated state alone is not a collision. A robot that is not of `flock`
 /// ([`Neighbor::slot`]) is a stranger.
 ///

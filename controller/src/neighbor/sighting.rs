@@ -108,7 +108,7 @@ impl<S: Scalar> Sighting<S> {
             && *deviation_m > S::ZERO
             && is_size(*radius_m)
             && *age >= Duration::ZERO
-            && id.is_none_or(|id| id.is_somebody() && id != own && id.doubled().is_none() && !id.is_local())
+            && id.is_none_or(|id| id.is_some() && id != own && id.duplicate_of().is_none() && !id.is_local())
             && velocity_mps.is_none_or(|(v, deviation)| v.is_finite() && is_size(deviation))
     }
 }

@@ -75,7 +75,7 @@ fn table_of_one_keeps_the_nearer_of_two() {
 fn the_id_of_no_robot_is_refused() {
     let mut table = NeighborTable::<f32, 4>::new(AGES);
     assert_eq!(put(&mut table, standing(0, 1.0, at(0)), at(0)), Put::Refused);
-    assert_eq!(table.get(RobotId::NOBODY, at(0)), Knowledge::Unknown);
+    assert_eq!(table.get(RobotId::NONE, at(0)), Knowledge::Unknown);
 }
 
 #[test]

@@ -359,7 +359,7 @@ fn stranger<S: Scalar, P: Default>(track: &Track<S>, flock: u8) -> Neighbor<S, P
         radius_m: track.radius_m,
         cell: NO_CELL,
         target: NO_CELL,
-        leader: RobotId::NOBODY,
+        leader: RobotId::NONE,
         heading: Dir::Stay,
         slot: flock,
         mode: Mode::Cruise,

@@ -7,7 +7,7 @@
 //! can lie in flash; only differences take memory.
 
 use crate::grid::{BLOCKED, Cell, Window};
-use crate::list::{Seldom, sink_last};
+use crate::list::{SparseVec, sink_last};
 use serde::{Deserialize, Serialize};
 
 /// Ticks that a cell takes if it is only assumed to be closed. No route crosses it while there is
@@ -27,14 +27,14 @@ pub const fn supposed(class: u8) -> u8 {
 /// 6 bytes per cell.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LandMemory<const N: usize> {
-    cells: Seldom<(Cell, u8), N>,
+    cells: SparseVec<(Cell, u8), N>,
 }
 
 impl<const N: usize> LandMemory<N> {
     /// Creates an empty memory.
     #[must_use]
     pub const fn new() -> Self {
-        Self { cells: Seldom::new() }
+        Self { cells: SparseVec::new() }
     }
 
     /// The cells that differ, each as last seen, in ascending order.

@@ -2,7 +2,7 @@
 
 use crate::cost::Cost;
 use crate::grid::Cell;
-use crate::list::Seldom;
+use crate::list::SparseVec;
 use serde::{Deserialize, Serialize};
 
 /// Least costs to the target of up to `L` cells, each more than the straight path would cost.
@@ -10,14 +10,14 @@ use serde::{Deserialize, Serialize};
 /// When full, the cell farthest from the robot is forgotten. Memory: 8 bytes per cell.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LearnedCosts<const L: usize> {
-    costs: Seldom<(Cell, Cost), L>,
+    costs: SparseVec<(Cell, Cost), L>,
 }
 
 impl<const L: usize> LearnedCosts<L> {
     /// Creates an empty memory.
     #[must_use]
     pub const fn new() -> Self {
-        Self { costs: Seldom::new() }
+        Self { costs: SparseVec::new() }
     }
 
     /// The cells with their least costs, in no order.

@@ -6,7 +6,7 @@ use super::{CostField, LearnedCosts, RouteParams, Unreachable, VisitMemory};
 use crate::cost::Weights;
 use crate::grid::{Cell, Dir, Window};
 use crate::land::{FarLand, Gains};
-use crate::list::Seldom;
+use crate::list::SparseVec;
 use crate::names::named;
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +52,7 @@ pub struct Router<const M: usize, const L: usize = 0> {
     here: Option<Cell>,
     target: Option<Cell>,
     /// The next moves, last one first, each with the impassability that it was planned for.
-    plan: Seldom<(Dir, u8), PLAN>,
+    plan: SparseVec<(Dir, u8), PLAN>,
     learned: LearnedCosts<L>,
     /// Impassability of the easiest land seen on the route to this target.
     easiest: u8,
@@ -77,7 +77,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
             visits: VisitMemory::new(),
             here: None,
             target: None,
-            plan: Seldom::new(),
+            plan: SparseVec::new(),
             learned: LearnedCosts::new(),
             easiest: u8::MAX,
             least: u64::MAX,
@@ -220,10 +220,10 @@ impl<const M: usize, const L: usize> Router<M, L> {
         others: impl IntoIterator<Item = Cell> + Clone,
     ) -> Result<Dir, Unreachable> {
         // A path out of a dead end is planned again in each cell.
-        let is_anew = self.escapes() || L > 0 && self.idle > 0;
-        if is_anew || !self.plan_holds(params, window, from, others.clone()) {
+        let is_restarted = self.escapes() || L > 0 && self.idle > 0;
+        if is_restarted || !self.plan_holds(params, window, from, others.clone()) {
             let weights = self.weights(params, field, window, from, target, others)?;
-            if is_anew {
+            if is_restarted {
                 self.plan.clear();
                 return weights.best().ok_or(Unreachable);
             }

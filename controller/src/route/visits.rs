@@ -1,7 +1,7 @@
 //! The robot's memory of its own path (eq. 9).
 
 use crate::grid::Cell;
-use crate::list::Seldom;
+use crate::list::SparseVec;
 use serde::{Deserialize, Serialize};
 
 /// How often the robot entered each of the last `M` different cells.
@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 /// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes per cell.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct VisitMemory<const M: usize> {
-    visits: Seldom<(Cell, u8), M>,
+    visits: SparseVec<(Cell, u8), M>,
 }
 
 impl<const M: usize> VisitMemory<M> {
     /// Creates an empty memory.
     #[must_use]
     pub const fn new() -> Self {
-        Self { visits: Seldom::new() }
+        Self { visits: SparseVec::new() }
     }
 
     /// Counts one entry into `cell`. O(M).

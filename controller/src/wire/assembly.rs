@@ -16,7 +16,7 @@ const MAX_PARTS: usize = u64::BITS as usize;
 /// Entries in the largest template that [`TemplateAssignment::split`] accepts.
 pub const MAX_TEMPLATE: usize = MAX_PARTS * TEMPLATE_PART;
 
-const NO_ENTRY: TemplateEntry = TemplateEntry { offset: Cell::new(0, 0), id: RobotId::NOBODY, hops: 0 };
+const NO_ENTRY: TemplateEntry = TemplateEntry { offset: Cell::new(0, 0), id: RobotId::NONE, hops: 0 };
 
 /// Why a part was rejected. The parts collected before are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -22,7 +22,7 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
     ///
     /// # Errors
     /// [`EncodeError::Full`] if the whole frame does not fit, [`EncodeError::NoSender`] if the
-    /// header's sender is [`RobotId::NOBODY`](crate::robot::RobotId::NOBODY),
+    /// header's sender is [`RobotId::NONE`](crate::robot::RobotId::NONE),
     /// [`EncodeError::Robot`] if the format cannot represent a robot number. Nothing is written in
     /// these cases.
     fn encode<const N: usize>(

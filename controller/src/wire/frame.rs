@@ -157,7 +157,7 @@ const _: () = assert!(MAX_CONTENT <= 253);
 pub struct Header {
     /// Changes with each start of the sender, so that its sequence may restart.
     pub boot: u8,
-    /// The robot that sends this frame; never [`RobotId::NOBODY`].
+    /// The robot that sends this frame; never [`RobotId::NONE`].
     pub sender: RobotId,
     /// Counts all frames of the sender, wraps.
     #[serde(with = "crate::fixint")]
@@ -181,7 +181,7 @@ pub struct Frame {
 pub enum EncodeError {
     /// The outbox has less free space than the frame needs.
     Full,
-    /// The header's sender is [`RobotId::NOBODY`].
+    /// The header's sender is [`RobotId::NONE`].
     NoSender,
     /// The format cannot represent this robot number. Give the robot another number, or the swarm
     /// another format.
@@ -237,7 +237,7 @@ pub enum DecodeError {
     Body,
     /// The frame is intact, but bytes follow the message.
     Trailing,
-    /// The frame is intact, but its sender is [`RobotId::NOBODY`].
+    /// The frame is intact, but its sender is [`RobotId::NONE`].
     NoSender,
     /// The frame is intact, but does not hold a message of the swarm: it belongs to another user of
     /// a shared band.
@@ -275,7 +275,7 @@ impl core::error::Error for DecodeError {}
 ///
 /// # Errors
 /// [`EncodeError::Full`] if the whole frame does not fit (nothing is written),
-/// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NOBODY`].
+/// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NONE`].
 ///
 /// Bounded work: O([`MAX_FRAME_LEN`]).
 pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
@@ -346,7 +346,7 @@ pub fn decode_verified(
     if !trailing.is_empty() {
         return Err(DecodeError::Trailing);
     }
-    if !header.sender.is_somebody() {
+    if !header.sender.is_some() {
         return Err(DecodeError::NoSender);
     }
     Ok(Frame { header, message, tag })
@@ -397,13 +397,13 @@ fn write<const N: usize>(
     authenticate: Option<impl FnOnce(&[u8]) -> [u8; TAG_LEN]>,
     out: &mut Vec<u8, N>,
 ) -> Result<usize, EncodeError> {
-    if !header.sender.is_somebody() {
+    if !header.sender.is_some() {
         return Err(EncodeError::NoSender);
     }
     if authenticate.is_some() {
         let leader = match message {
             Message::Beacon(beacon) => beacon.leader,
-            _ => RobotId::NOBODY,
+            _ => RobotId::NONE,
         };
         let large = [header.sender, leader].into_iter();
         if let Some(robot) = large.max().filter(|robot| *robot > MAX_TAGGED_ROBOT) {

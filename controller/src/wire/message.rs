@@ -39,7 +39,7 @@ pub struct Beacon {
     /// Time until it may leave its cell, ms (saturating).
     #[serde(with = "fixint")]
     pub busy_ms: u16,
-    /// Its leader, or [`RobotId::NOBODY`].
+    /// Its leader, or [`RobotId::NONE`].
     pub leader: RobotId,
     /// Its place in the formation, or the number of its flock. The frame is full, and a robot is
     /// never in both.
@@ -132,7 +132,7 @@ pub struct TemplateAssignment {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalAssignment {
-    /// The addressee; [`RobotId::NOBODY`] = all robots.
+    /// The addressee; [`RobotId::NONE`] = all robots.
     pub to: RobotId,
     /// Counts the goals of this sender, wraps. An older goal never replaces a newer one
     /// ([`Newest`](super::Newest)).
@@ -148,7 +148,7 @@ pub struct GoalAssignment {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WaypointAssignment {
-    /// The addressee; [`RobotId::NOBODY`] = all robots.
+    /// The addressee; [`RobotId::NONE`] = all robots.
     pub to: RobotId,
     /// Counts the waypoints of this sender and index, wraps.
     pub version: u8,
@@ -244,7 +244,7 @@ impl Message {
             Self::Key(key) => key.to,
             Self::KeyHeld(held) => held.to,
         };
-        if to.is_somebody() { Some(to) } else { None }
+        if to.is_some() { Some(to) } else { None }
     }
 
     /// Whether only an operator may send this message.

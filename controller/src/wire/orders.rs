@@ -4,7 +4,7 @@
 //! The sending side is [`Requests`](super::Requests).
 
 use super::{Ack, Header, Request, RequestKind};
-use crate::list::Seldom;
+use crate::list::SparseVec;
 use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ impl Order {
 /// After a longer pause no stop is in force, but a repeat may be taken for a new request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Orders<const S: usize> {
-    lines: Seldom<Order, S>,
+    lines: SparseVec<Order, S>,
     memory: Duration,
 }
 
@@ -81,7 +81,7 @@ impl<const S: usize> Orders<S> {
     /// is executed again. It must be shorter than the time in which the sender uses 200 numbers.
     #[must_use]
     pub const fn new(memory: Duration) -> Self {
-        Self { lines: Seldom::new(), memory }
+        Self { lines: SparseVec::new(), memory }
     }
 
     /// Processes a request to this robot that arrived in a frame with `header`. O(`S`).

@@ -5,7 +5,7 @@
 //! a lossy radio.
 
 use super::{Ack, Request, RequestKind};
-use crate::list::Seldom;
+use crate::list::SparseVec;
 use crate::rand::Rng;
 use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
@@ -48,7 +48,7 @@ impl Default for Retry {
 pub enum AskError {
     /// The maximum number of requests is pending.
     Full,
-    /// The addressee is [`RobotId::NOBODY`], which cannot acknowledge.
+    /// The addressee is [`RobotId::NONE`], which cannot acknowledge.
     Nobody,
 }
 
@@ -101,7 +101,7 @@ impl Pending {
 /// [`Instant::has_reached`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Requests<const P: usize> {
-    pending: Seldom<Pending, P>,
+    pending: SparseVec<Pending, P>,
     retry: Retry,
     own: RobotId,
     boot: u8,
@@ -122,7 +122,7 @@ impl<const P: usize> Requests<P> {
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
         let () = Self::FITS;
-        Self { pending: Seldom::new(), retry, own, boot, next: 0 }
+        Self { pending: SparseVec::new(), retry, own, boot, next: 0 }
     }
 
     /// Adds a request to `to` and returns its number; the next [`Requests::poll`] sends it.
@@ -135,7 +135,7 @@ impl<const P: usize> Requests<P> {
     ///
     /// # Errors
     /// [`AskError::Full`] if `P` other requests are pending, [`AskError::Nobody`] if `to` is
-    /// [`RobotId::NOBODY`].
+    /// [`RobotId::NONE`].
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn ask(
         &mut self,
@@ -145,7 +145,7 @@ impl<const P: usize> Requests<P> {
         valid_ms: u16,
         now: Instant,
     ) -> Result<u8, AskError> {
-        if !to.is_somebody() {
+        if !to.is_some() {
             return Err(AskError::Nobody);
         }
         let number = self.free_number();

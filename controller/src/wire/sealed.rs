@@ -86,7 +86,7 @@ impl<const N: usize> Sealed<N> {
     /// persistent memory; `None` from 2^20 on.
     #[must_use]
     pub fn at_start(key: &Key, starts: u32) -> Option<Self> {
-        Self::with_ring(Ring::new(key), RobotId::NOBODY, starts)
+        Self::with_ring(Ring::new(key), RobotId::NONE, starts)
     }
 
     /// Creates the format for robot `own` with the keys in `ring`, at its start number `starts`;

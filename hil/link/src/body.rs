@@ -7,8 +7,8 @@ use crate::refusal::Refusal;
 use heapless::Vec;
 use serde::Serialize;
 use staya_controller::agent::{
-    Agent, AnySurroundings, Command, Guidance, InCell, InCells, InPlane, Inputs, KinematicState, OnGrid, Outputs,
-    Overclaims, Refused, Safety, Setup, Task, Wait,
+    Agent, AnySurroundings, Command, Guidance, ImplausibleCounts, InCell, InCells, InPlane, Inputs, KinematicState,
+    OnGrid, Outputs, Refused, Safety, Setup, Task, Wait,
 };
 use staya_controller::obstacle::Obstacle;
 use staya_controller::robot::RobotId;
@@ -39,7 +39,7 @@ pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize)
 
 /// Checks that a setup has a robot id and that the firmware speaks its packet format.
 pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
-    if setup.agent.id == RobotId::NOBODY {
+    if setup.agent.id == RobotId::NONE {
         return Err(Refusal::Nobody);
     }
     Ok(())
@@ -89,11 +89,11 @@ impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G,
                 command: Command::Hold,
                 // Not read before the robot is configured; `None` would be the only byte here that
                 // is not zero.
-                wait: Some(Wait::Formation),
+                wait: Some(Wait::Team),
                 received: 0,
                 rejected: 0,
                 refused: Refused { unsigned: 0, forged: 0, replayed: 0, no_room: 0 },
-                overclaims: Overclaims { numbers: 0, radii: 0, speeds: 0, jumps: 0 },
+                implausible: ImplausibleCounts { numbers: 0, radii: 0, speeds: 0, jumps: 0 },
                 outbox: Vec::new(),
                 events: Vec::new(),
                 call_again: Instant::from_micros(0),
@@ -201,7 +201,7 @@ fn in_f32<S: Scalar>(outputs: &Outputs<S>) -> Outputs<f32> {
         received: outputs.received,
         rejected: outputs.rejected,
         refused: outputs.refused,
-        overclaims: outputs.overclaims,
+        implausible: outputs.implausible,
         outbox: outputs.outbox.clone(),
         events: outputs.events.clone(),
         call_again: outputs.call_again,

@@ -111,8 +111,8 @@ pub(crate) fn drive(
     if scenario.maps.is_some() {
         bail!("maps.share is not available in firmware; remove [maps], or run without devices");
     }
-    if scenario.eyes.is_some() {
-        bail!("plane.eyes is not available on devices; remove it, or run without devices");
+    if scenario.sensing.is_some() {
+        bail!("plane.sensing is not available on devices; remove it, or run without devices");
     }
     if scenario.key.is_some() {
         bail!("{}: devices do not support keys; remove [authentication]", scenario.name);

@@ -13,7 +13,7 @@ mod route;
 mod sweep;
 
 use crate::experiment::Experiment as _;
-use crate::experiment::rows::Keeping;
+use crate::experiment::rows::RowRetention;
 use crate::{boids, scale, scouting};
 use anyhow::Result;
 use clap::{Args, Subcommand};
@@ -47,7 +47,7 @@ pub struct ExperimentArgs {
     #[command(subcommand)]
     experiment: Experiment,
     #[command(flatten)]
-    keeping: Keeping,
+    keeping: RowRetention,
 }
 
 #[derive(Clone, Debug, Subcommand)]

@@ -6,7 +6,7 @@
 
 pub mod rows;
 
-use self::rows::{Jobs, Keeping, Record};
+use self::rows::{Jobs, Record, RowRetention};
 use crate::sweep::Value;
 use anyhow::{Context as _, Result, bail};
 use serde::Serialize;
@@ -121,7 +121,7 @@ pub trait Experiment: Sized + Sync {
     /// # Errors
     /// A parameter is out of range, existing rows must not be replaced, a file cannot be written,
     /// the command was stopped before any result, or the report shows a defect.
-    fn command(&self, out: &Path, keeping: &Keeping, global: &Global, stop: &Stop) -> Result<Ended> {
+    fn command(&self, out: &Path, keeping: &RowRetention, global: &Global, stop: &Stop) -> Result<Ended> {
         self.check()?;
         prepare_dir(out).context("results have no place")?;
         let since = Instant::now();

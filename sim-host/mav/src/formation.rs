@@ -262,7 +262,7 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
     if robots.len() != graph.robots() {
         return Err(GraphError::Count(robots.len()));
     }
-    let id = |place: usize| robots.get(place).map_or(RobotId::NOBODY, |&robot| RobotId(robot.into()));
+    let id = |place: usize| robots.get(place).map_or(RobotId::NONE, |&robot| RobotId(robot.into()));
     let mut messages = Vec::new();
     for (own, mut template) in graph.templates()?.into_iter().enumerate() {
         for entry in &mut template.entries {
@@ -276,7 +276,7 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
     }
     // A template is relative to the first robot, which need not be the one in front.
     let target = order.goal.zip(graph.places.first()).map(|(goal, &first)| goal + first);
-    let to = if order.to_all { vec![RobotId::NOBODY] } else { (0..robots.len()).map(id).collect() };
+    let to = if order.to_all { vec![RobotId::NONE] } else { (0..robots.len()).map(id).collect() };
     messages.extend(target.iter().flat_map(|&target| {
         to.iter().map(move |&to| Message::Goal(GoalAssignment { to, version: order.version, target }))
     }));

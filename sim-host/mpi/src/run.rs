@@ -9,7 +9,7 @@ use staya_mpi::ranks::{
     Ended as RunEnded, Exchange as _, RankError, Sharing, Traffic, check, remark, simulate_on, simulate_on_from,
 };
 use staya_plot::{motion_pictures, run_pictures};
-use staya_sim::checkpoint::{Checkpoint, Every, Place};
+use staya_sim::checkpoint::{Checkpoint, CheckpointInterval, Place};
 use staya_sim::engine::{Moment, Watch};
 use staya_sim::record::{History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::{Overrides, Scenario, Setting};
@@ -40,7 +40,7 @@ pub struct RunArgs {
     /// Write a checkpoint at this interval (600s, 10min, 2h of real time, or 1000ticks) and when
     /// stopped, as `staya run --checkpoint` does, to FOLDER.checkpoint.
     #[arg(long, value_name = "EVERY")]
-    checkpoint: Option<Every>,
+    checkpoint: Option<CheckpointInterval>,
     /// Continue from a checkpoint of this scenario, written by `staya run` or any number of ranks;
     /// every rank reads it.
     #[arg(long, value_name = "FILE")]

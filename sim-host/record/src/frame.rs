@@ -9,7 +9,7 @@ use staya_sim::scenario::Scenario;
 /// First bytes of a frame.
 pub const MAGIC: [u8; 4] = *b"STF1";
 /// Leader index of a robot without a leader.
-pub const NOBODY: u32 = u32::MAX;
+pub const NONE: u32 = u32::MAX;
 /// Wait number of a robot that does not wait.
 pub const NO_WAIT: u8 = u8::MAX;
 const PASSIVE: u8 = 6;
@@ -78,7 +78,7 @@ pub struct FrameData {
     pub velocity_mps: Vec<[f32; 3]>,
     /// Goals, metres from the scene's origin, NaN for none; empty if goals are not stored.
     pub target_m: Vec<[f32; 3]>,
-    /// Index of the leader, or [`NOBODY`] for none.
+    /// Index of the leader, or [`NONE`] for none.
     pub leader: Vec<u32>,
     /// Index of the mode in the scene's words.
     pub mode: Vec<u8>,
@@ -131,7 +131,7 @@ impl Framer {
             frame.velocity_mps.push(self.flat(robot.motion.velocity_mps));
             frame.target_m.push(robot.target_m.map_or([f32::NAN; 3], |target_m| self.near(target_m)));
             let leader = self.ids.binary_search(&robot.leader).ok().filter(|_| robot.leader != 0);
-            frame.leader.push(leader.and_then(|index| u32::try_from(index).ok()).unwrap_or(NOBODY));
+            frame.leader.push(leader.and_then(|index| u32::try_from(index).ok()).unwrap_or(NONE));
             frame.mode.push(robot.mode as u8);
             frame.wait.push(robot.wait.map_or(NO_WAIT, |wait| wait as u8));
         }
@@ -139,7 +139,7 @@ impl Framer {
             frame.position_m.push(self.near(intruder.position_m));
             frame.velocity_mps.push(self.flat(intruder.velocity_mps));
             frame.target_m.push([f32::NAN; 3]);
-            frame.leader.push(NOBODY);
+            frame.leader.push(NONE);
             frame.mode.push(PASSIVE);
             frame.wait.push(NO_WAIT);
         }
@@ -203,7 +203,7 @@ impl FrameData {
                 column.for_each(|value| out.extend(value.to_le_bytes()));
             }
         }
-        let leaders = (0..bodies).map(|body| self.leader.get(body).copied().unwrap_or(NOBODY));
+        let leaders = (0..bodies).map(|body| self.leader.get(body).copied().unwrap_or(NONE));
         leaders.for_each(|leader| out.extend(leader.to_le_bytes()));
         for (bytes, missing) in [(&self.mode, 0), (&self.wait, NO_WAIT)] {
             out.extend((0..bodies).map(|body| bytes.get(body).copied().unwrap_or(missing)));

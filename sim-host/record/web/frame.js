@@ -4,7 +4,7 @@ const HEADER = 32;
 const MAGIC = 0x31465453; // "STF1"
 const HAS_Z = 1;
 const HAS_TARGETS = 2;
-export const NOBODY = 0xffffffff;
+export const NONE = 0xffffffff;
 
 const text = new TextDecoder();
 

@@ -1,7 +1,7 @@
 // Decorations around the bodies: lines for the GPU, and a canvas above them with labels, the
 // selected robot's knowledge, and previews of tools.
 
-import { NOBODY } from "staya/frame.js";
+import { NONE } from "staya/frame.js";
 import { niceStep } from "staya/ground.js";
 import { packed } from "staya/look.js";
 import { Lines } from "staya/renderer.js";
@@ -74,7 +74,7 @@ export class View {
     if (look.layers.leaders) {
       const ink = packed(look.css.leader, 0.8);
       for (let i = 0; i < app.robots && i < frame.n; i++) {
-        if (frame.leader[i] !== NOBODY) join(below, i, frame.leader[i], ink, 1.4, 4);
+        if (frame.leader[i] !== NONE) join(below, i, frame.leader[i], ink, 1.4, 4);
       }
     }
     this.crosses = [];

@@ -9,7 +9,7 @@
 //! atomically: it is written to a temporary file, synced and renamed. The previous checkpoint is
 //! kept as `FILE.old`. The file contains keys of the scenario, so only its owner can read it.
 
-pub use crate::engine::Every;
+pub use crate::engine::CheckpointInterval;
 
 use crate::engine::{Saves, StateError};
 use crate::file::{self, read_remedy};

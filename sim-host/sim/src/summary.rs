@@ -133,13 +133,13 @@ impl Waited {
     /// The cause, as the end of a sentence.
     const fn words(&self) -> &'static str {
         match self.reason {
-            Wait::Formation => "for their formation",
-            Wait::Request => "since they were asked to",
-            Wait::Way => "for a way",
+            Wait::Team => "for their formation",
+            Wait::Stopped => "since they were asked to",
+            Wait::Route => "for a way",
             Wait::Radio => "for news by radio",
             Wait::Turn => "for their turn at a door",
-            Wait::Others => "for others in the way",
-            Wait::Place => "beside a place that is taken",
+            Wait::Robots => "for others in the way",
+            Wait::GoalTaken => "beside a place that is taken",
         }
     }
 }
@@ -246,10 +246,10 @@ impl Summary {
             ("packets.unsigned", Some(packets.unsigned as f64)),
             ("packets.forged", Some(packets.forged as f64)),
             ("packets.replayed", Some(packets.replayed as f64)),
-            ("packets.overclaims.numbers", Some(packets.overclaims.numbers as f64)),
-            ("packets.overclaims.radii", Some(packets.overclaims.radii as f64)),
-            ("packets.overclaims.speeds", Some(packets.overclaims.speeds as f64)),
-            ("packets.overclaims.jumps", Some(packets.overclaims.jumps as f64)),
+            ("packets.implausible.numbers", Some(packets.implausible.numbers as f64)),
+            ("packets.implausible.radii", Some(packets.implausible.radii as f64)),
+            ("packets.implausible.speeds", Some(packets.implausible.speeds as f64)),
+            ("packets.implausible.jumps", Some(packets.implausible.jumps as f64)),
             ("is_authenticated", Some(f64::from(u8::from(self.is_authenticated)))),
             ("packets_throttled", Some(self.packets_throttled as f64)),
             ("formation_error_per_agent", self.formation_error_per_agent),
@@ -363,7 +363,7 @@ impl Summary {
                 format!("{} unsigned, {} forged, {} replayed", packets.unsigned, packets.forged, packets.replayed),
             )?;
         }
-        let lies = &packets.overclaims;
+        let lies = &packets.implausible;
         if lies.sum() > 0 {
             line(
                 "beyond belief",

@@ -1,7 +1,7 @@
 //! Checkpoints of a run.
 
 use clap::Args;
-use staya_sim::checkpoint::{Every, Place};
+use staya_sim::checkpoint::{CheckpointInterval, Place};
 use staya_sim::engine::Moment;
 use staya_sim::record::Recorder;
 use std::path::PathBuf;
@@ -15,14 +15,14 @@ pub struct CheckpointArgs {
     /// Ctrl-C. It is beside the results folder, as FOLDER.checkpoint; the previous one is
     /// FOLDER.checkpoint.old.
     #[arg(long, value_name = "EVERY")]
-    pub checkpoint: Option<Every>,
+    pub checkpoint: Option<CheckpointInterval>,
     /// Continue from a checkpoint of this scenario, with the same results as a run without a break.
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
 }
 
 pub struct Checkpoints {
-    every: Every,
+    every: CheckpointInterval,
     place: Place,
     began: Instant,
     /// Duration of the run before its continuation here.
@@ -32,7 +32,7 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// Starts the clock of checkpoints. `before_seconds` is the duration before a continuation.
-    pub fn new(every: Every, place: Place, before_seconds: f64) -> Self {
+    pub fn new(every: CheckpointInterval, place: Place, before_seconds: f64) -> Self {
         let now = Instant::now();
         Self { every, place, began: now, before_seconds, last: now }
     }
@@ -42,8 +42,8 @@ impl Checkpoints {
     pub fn tick(&mut self, moment: &Moment<'_>, recorder: &mut Recorder, ends_early: bool) {
         let tick = moment.row.tick;
         let is_due = match self.every {
-            Every::Ticks(ticks) => tick > 0 && tick.is_multiple_of(ticks),
-            Every::Time(time) => self.last.elapsed() >= time,
+            CheckpointInterval::Ticks(ticks) => tick > 0 && tick.is_multiple_of(ticks),
+            CheckpointInterval::Time(time) => self.last.elapsed() >= time,
         };
         let Some(run) = moment.run.filter(|_| is_due || ends_early) else {
             return;

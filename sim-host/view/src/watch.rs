@@ -4,7 +4,7 @@
 //! Without a page the run pays nothing: the caller polls [`Watcher::is_due`] and makes a frame only
 //! if a page wants one.
 
-use crate::frame::{FrameData, Framer, NO_WAIT, NOBODY};
+use crate::frame::{FrameData, Framer, NO_WAIT, NONE};
 use crate::page;
 use crate::scene::{Mode, Scene};
 use crate::server::{Client, FromPage, Server};
@@ -236,7 +236,7 @@ impl Watcher {
             "tick": frame.tick,
             "mode": frame.mode.get(index),
             "wait": frame.wait.get(index).filter(|wait| **wait != NO_WAIT),
-            "leader": frame.leader.get(index).filter(|leader| **leader != NOBODY),
+            "leader": frame.leader.get(index).filter(|leader| **leader != NONE),
             "neighbors": neighbors,
             "device": device,
             "facts": facts,

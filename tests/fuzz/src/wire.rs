@@ -39,7 +39,7 @@ fn judge(piece: &[u8]) {
         return;
     };
     assert!(piece.len() < MAX_FRAME_LEN);
-    assert!(frame.header.sender.is_somebody());
+    assert!(frame.header.sender.is_some());
     let refused = decode_verified(piece, |_, tag| {
         assert_eq!(tag, frame.tag);
         Err(DecodeError::Forged)

@@ -53,7 +53,7 @@ fn messages() -> [(&'static str, Message); 5] {
                 entries: [entry; TEMPLATE_PART].into(),
             }),
         ),
-        ("goal", Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: 1, target: CELL })),
+        ("goal", Message::Goal(GoalAssignment { to: RobotId::NONE, version: 1, target: CELL })),
     ]
 }
 

@@ -146,7 +146,10 @@ fn invalid_plans_are_refused_with_place_and_remedy() {
     assert!(folder.refused(&[], 2).contains("<PLAN>"));
     folder.done(&["plan.toml", "--out", "out", "--shard", "1/4"]);
     let said = folder.refused(&["plan.toml", "--out", "out"], 1);
-    assert!(said.contains("1-of-4.csv: it has 8 of 32 runs; --resume does the others, --anew forgets these"), "{said}");
+    assert!(
+        said.contains("1-of-4.csv: it has 8 of 32 runs; --resume does the others, --restart forgets these"),
+        "{said}"
+    );
     let said = folder.refused(&["plot", "plan.toml", "--out", "out", "--figure", "arrived", "--over", "radio.los"], 1);
     assert!(
         said.contains("--over: radio.los is no axis of the plan; give one of radio.loss, radio.delay_ms"),
@@ -167,10 +170,10 @@ fn invalid_plans_are_refused_with_place_and_remedy() {
     fs::write(folder.path("plan.toml"), PLAN.replace("0.2", "0.3")).expect("room");
     for arguments in [&["plan.toml", "--out", "out", "--resume"][..], &["merge", "plan.toml", "--out", "out"]] {
         let said = folder.refused(arguments, 1);
-        assert!(said.contains("1-of-4.csv:2: it is of another plan (") && said.contains("--anew"), "{said}");
+        assert!(said.contains("1-of-4.csv:2: it is of another plan (") && said.contains("--restart"), "{said}");
     }
     assert_eq!(fs::read(folder.path("out/shards/1-of-4.csv")).expect("rows"), before);
-    let said = folder.done(&["plan.toml", "--out", "out", "--anew"]);
+    let said = folder.done(&["plan.toml", "--out", "out", "--restart"]);
     assert!(said.contains("32 of 32 runs"), "{said}");
     folder.done(&["plot", "plan.toml", "--out", "out", "--figure", "least_gap_m", "--over", "radio.loss"]);
     assert!(folder.path("out/plots/least_gap_m-over-radio.loss.png").is_file());

@@ -72,7 +72,7 @@ fn invalid_memory_is_refused() {
         assert_eq!((staya_mode(agent, &mut mode), mode), (StayaStatus::Ok, 0));
         // A rejected setup leaves no agent.
         let wrong = StayaSetup { id: 0, ..setup };
-        assert_eq!(staya_init(base.cast(), bytes, &wrong, &mut agent), StayaStatus::Nobody);
+        assert_eq!(staya_init(base.cast(), bytes, &wrong, &mut agent), StayaStatus::NoRobot);
         assert_eq!(staya_mode(base.cast(), &mut mode), StayaStatus::NotThere);
     }
 }

@@ -2,8 +2,8 @@
 //! obstacles are those of the grid.
 
 use super::{FormationGuidance, comes_after};
-use crate::agent::beside::{Beside, Claim};
 use crate::agent::cell_follower::CellFollower;
+use crate::agent::goal_occupancy::{Claim, GoalOccupancy};
 use crate::agent::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use crate::agent::route_guidance::GridWorkspace;
 use crate::agent::{InCells, Parameter, Wait};
@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
-    beside: Beside<S>,
+    beside: GoalOccupancy<S>,
     /// The last desired velocity as a leader, m/s.
     wish_mps: Vec2<S>,
     waited: Duration,
@@ -104,7 +104,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         law.is_rigid = true;
         Self {
             cells: CellFollower::new(law, speed_mps),
-            beside: Beside::NEW,
+            beside: GoalOccupancy::NEW,
             wish_mps: Vec2::ZERO,
             waited: Duration::ZERO,
             is_there: false,
@@ -174,7 +174,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             wish_mps = step.drive.gently(self.wish_mps, scaled(ahead, speed));
             self.wish_mps = wish_mps;
             let stands = lag_m >= step.drive.halt_m() && wish_mps == Vec2::ZERO;
-            status.waits_for = stands.then_some(Wait::Formation);
+            status.waits_for = stands.then_some(Wait::Team);
             status.is_at_goal = self.comes_to_rest(input, to_goal_m, &step.drive, status, &mut wish_mps);
         }
         if status.makes_way || status.recovers {
@@ -206,7 +206,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
         let is_beside = claim == Claim::IsBeside;
         if is_beside {
-            status.waits_for = Some(Wait::Place);
+            status.waits_for = Some(Wait::GoalTaken);
         }
         self.is_there = way_m.norm() <= tolerance_m || is_beside;
         self.is_there
@@ -221,7 +221,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         step: &Step<'_, S>,
         ahead: Vec2<S>,
     ) -> S {
-        if self.inside().leader.is_somebody() {
+        if self.inside().leader.is_some() {
             return S::ZERO;
         }
         let lag_m = lag_m(input, view, step, ahead);
@@ -262,8 +262,8 @@ where
         self.cells.redirect();
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        self.cells.assign_template(part, is_anew)
+    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+        self.cells.assign_template(part, is_restarted)
     }
 
     fn goal_offset(&self) -> Cell {
@@ -290,7 +290,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         rng: &mut Rng,
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
-        if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_somebody() {
+        if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_some() {
             // The leader is silent: choose another one now.
             self.cells.decide_anew();
         }

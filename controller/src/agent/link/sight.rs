@@ -1,7 +1,7 @@
 //! Merges detected robots into the neighbour table.
 
+use super::super::contact_loss::ContactState;
 use super::super::io::{Event, Outputs};
-use super::super::silence::Company;
 use super::{Link, report};
 use crate::geom::Position;
 use crate::neighbor::{Put, Tracker};
@@ -33,8 +33,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         });
         for &neighbor in &tracker.seen(&self.table, flock, now) {
             let id = neighbor.id;
-            if self.company != Company::Unknown {
-                self.company = Company::Heard(now);
+            if self.contact != ContactState::Never {
+                self.contact = ContactState::InContact(now);
             }
             let put = self.table.put(neighbor, own, now, |id| needed.contains(&id));
             if let Put::Evicted(evicted) = put {

@@ -19,9 +19,9 @@ impl Teamwork for Counting {
         self.redirections += 1;
     }
 
-    fn assign_template(&mut self, _: &TemplateAssignment, is_anew: bool) -> bool {
+    fn assign_template(&mut self, _: &TemplateAssignment, is_restarted: bool) -> bool {
         self.parts += 1;
-        is_anew
+        is_restarted
     }
 
     fn goal_offset(&self) -> Cell {

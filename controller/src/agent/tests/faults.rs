@@ -6,7 +6,7 @@ use crate::template::TemplateEntry;
 use crate::wire::Ack;
 
 fn goal(version: u8, x: i16) -> Message {
-    Message::Goal(GoalAssignment { to: RobotId::NOBODY, version, target: Cell::new(x, 5) })
+    Message::Goal(GoalAssignment { to: RobotId::NONE, version, target: Cell::new(x, 5) })
 }
 
 /// The parts of a template for a robot `behind` cells west of the top leader, robot 1, with
@@ -66,7 +66,7 @@ fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
 fn a_leader_does_not_wait_for_a_robot_that_does_not_follow_it() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
-    let alone = Beacon { leader: RobotId::NOBODY, ..beacon_at(-5, 5) };
+    let alone = Beacon { leader: RobotId::NONE, ..beacon_at(-5, 5) };
     for n in 0..5 {
         let inbox = bytes(2, 0, n, &[Message::Beacon(alone)]);
         let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(n.into()), &mut ws);
@@ -335,7 +335,7 @@ fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
 #[test]
 fn a_robot_leads_although_its_own_leader_is_out_of_range() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
-    let anyone = [TemplateEntry { offset: Cell::new(3, 0), id: RobotId::NOBODY, hops: 1 }];
+    let anyone = [TemplateEntry { offset: Cell::new(3, 0), id: RobotId::NONE, hops: 1 }];
     let order = TemplateAssignment::split(RobotId(3), 1, 2, Cell::new(-6, 0), &anyone);
     let order: Vec<Message> = order.unwrap().map(Message::Template).collect();
     agent.assign_goal(Cell::new(5, 60));

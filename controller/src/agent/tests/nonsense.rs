@@ -29,7 +29,7 @@ fn cell() -> impl Strategy<Value = Cell> {
 /// Valid frames. Most come from few robots, concern this one and refer to each other.
 pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
     let few = || prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
-    let sender = few().prop_filter("somebody sends it", |id| id.is_somebody());
+    let sender = few().prop_filter("somebody sends it", |id| id.is_some());
     let header = (0..3_u8, sender, 0..40_u16);
     let subject = (few(), few(), cell(), cell());
     (header, arbitrary::message(), subject).prop_map(|(header, mut message, subject)| {
@@ -240,7 +240,7 @@ where
         }
         prop_assert!(agent.leader() < OWN, "numbers fall along the leader chain");
         for neighbor in agent.neighbors() {
-            prop_assert!(neighbor.id.is_somebody() && neighbor.id != OWN);
+            prop_assert!(neighbor.id.is_some() && neighbor.id != OWN);
         }
     }
     Ok(())

@@ -59,7 +59,7 @@ fn near() -> impl Strategy<Value = (Header, Message)> {
     let message = numbers.prop_map(|(position_mm, velocity, (radius, is_place, index))| {
         if is_place {
             Message::Waypoint(WaypointAssignment {
-                to: RobotId::NOBODY,
+                to: RobotId::NONE,
                 version: radius as u8,
                 index: index % 6,
                 position_mm,

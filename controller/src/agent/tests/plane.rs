@@ -366,7 +366,7 @@ fn a_desired_velocity_of_nan_is_ignored() {
 #[test]
 fn a_goal_on_the_grid_changes_nothing_for_a_law_with_waypoints() {
     let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
-    let goal = Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: 1, target: Cell::new(3, 4) });
+    let goal = Message::Goal(GoalAssignment { to: RobotId::NONE, version: 1, target: Cell::new(3, 4) });
     let after_three = |is_told: bool, hears: &[Message]| {
         let mut robot = Robot::new(&in_plane::<f32>(1), waypoint(), orca(), [0.0; 2]);
         if is_told {

@@ -11,7 +11,7 @@ fn wire(passphrase: &[u8]) -> Sealed<4> {
 }
 
 fn goal(x: i16) -> Message {
-    Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: x as u8, target: Cell::new(x, 5) })
+    Message::Goal(GoalAssignment { to: RobotId::NONE, version: x as u8, target: Cell::new(x, 5) })
 }
 
 fn said<W: Wire>(by: &mut W, sequence: u16, message: &Message) -> Vec<u8> {

@@ -120,7 +120,7 @@ fn a_silent_robot_in_sight_is_in_contact_and_otherwise_lost() {
             events.extend(robot.step(step_number(n), &inbox).events.iter().copied());
         }
         let ids: std::vec::Vec<_> = robot.agent.neighbors().iter().map(|known| known.id).collect();
-        (ids, events.contains(&Event::NobodyHeard))
+        (ids, events.contains(&Event::ContactLost))
     };
     assert_eq!(run(true), (std::vec![RobotId(2)], false));
     assert_eq!(run(false), (std::vec![], true));

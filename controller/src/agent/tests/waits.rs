@@ -1,7 +1,7 @@
 //! Tests of reported waits and of occupied goals.
 
+use super::contact_loss::{Mover, run, safety};
 use super::plane::{Robot, STEP, body_at, in_plane, length, one_step_late, orca, place, step_number, waypoint};
-use super::silence::{Mover, run, safety};
 use super::*;
 use crate::geom::{Position, Vec2, Vec3};
 use crate::obstacle::Obstacle;
@@ -34,13 +34,14 @@ fn robots_in_the_way_are_reported() {
     let row: Vec<_> = (-3..=3).map(|i| body_at([1000, i * 420], [0, 0], Mode::Fault)).collect();
     let waits = waits(&row, 40);
     assert_eq!(waits[0], None);
-    assert_eq!(*waits.last().unwrap(), Some(Wait::Others));
+    assert_eq!(*waits.last().unwrap(), Some(Wait::Robots));
 }
 
 #[test]
 fn a_robot_without_contact_waits_for_the_radio() {
-    let silence = Silence { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
-    let mut robot = Robot::new(&AgentConfig { silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
+    let silence = ContactLossPolicy { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
+    let mut robot =
+        Robot::new(&AgentConfig { contact_loss: silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
     let far = bytes(2, 0, 0, &[body_at([-60_000, 0], [0, 0], Mode::Idle)]);
     for n in 0..60 {
@@ -70,7 +71,7 @@ fn a_wall_is_reported_as_the_way_and_a_door_as_a_turn() {
         }
         wait
     };
-    assert_eq!(last(&door(0.0), &[]), Some(Wait::Way));
+    assert_eq!(last(&door(0.0), &[]), Some(Wait::Route));
     let comes_out = body_at([1500, 0], [-500, 0], Mode::Cruise);
     assert_eq!(last(&door(0.3), &[comes_out]), Some(Wait::Turn));
     assert_eq!(last(&door(5.0), &[]), None);
@@ -92,10 +93,10 @@ fn on_the_grid_blocked_moves_and_stop_requests_are_reported() {
         |n: u32, x: i16, inbox: &[u8]| agent.step(&inputs(&FLAT, Cell::new(x, 5), inbox), tick(n), &mut ws).wait;
     assert_eq!(step(0, 5, &[]), None);
     assert_eq!(step(1, 6, &[]), None);
-    assert_eq!(step(2, 6, &[]), Some(Wait::Others));
+    assert_eq!(step(2, 6, &[]), Some(Wait::Robots));
     assert_eq!(step(3, 7, &[]), None);
     let inbox = bytes(2, 0, 0, &[Message::Beacon(beacon_at(2, 5)), stop(2, 1, 7, RequestKind::Stop)]);
-    assert_eq!(step(4, 8, &inbox), Some(Wait::Request));
+    assert_eq!(step(4, 8, &inbox), Some(Wait::Stopped));
     let inbox = bytes(2, 0, 2, &[stop(2, 1, 8, RequestKind::Resume)]);
     assert_eq!(step(5, 8, &inbox), None);
 }
@@ -109,7 +110,7 @@ fn a_robot_arrives_beside_its_occupied_goal_until_it_is_free() {
             let on_it = body_at([2030, if n < 60 { 20 } else { 3000 }], [0, 0], mode);
             let wait = robot.step(step_number(n), &bytes(2, 0, n as u16, &[on_it])).wait;
             if n == 59 {
-                assert_eq!((robot.agent.mode(), wait), (Mode::Arrived, Some(Wait::Place)), "{mode:?}");
+                assert_eq!((robot.agent.mode(), wait), (Mode::Arrived, Some(Wait::GoalTaken)), "{mode:?}");
                 let off = length([2.03 - robot.at_m[0], 0.02 - robot.at_m[1]]);
                 assert!((0.4..0.65).contains(&off), "{mode:?}: {off} m from who is there");
             }

@@ -21,8 +21,8 @@ impl Teamwork for Listener {
         self.stopped = Some(is_asked);
     }
 
-    fn assign_template(&mut self, part: &TemplateAssignment, is_anew: bool) -> bool {
-        self.assigned = Some((part.slot, is_anew));
+    fn assign_template(&mut self, part: &TemplateAssignment, is_restarted: bool) -> bool {
+        self.assigned = Some((part.slot, is_restarted));
         true
     }
 

@@ -116,7 +116,7 @@ fn two_robots_apart_keep_their_tracks_in_any_order_of_detections() {
         assert_eq!(seen, Sighted { known: 2, ..Sighted::default() });
     }
     assert_eq!(ids(&tracker), before);
-    assert!(before.iter().all(|id| id.is_local() && id.doubled().is_none()));
+    assert!(before.iter().all(|id| id.is_local() && id.duplicate_of().is_none()));
     assert!(tracker.tracks()[0].position.mm[0] < 1100 && tracker.tracks()[1].position.mm[0] > 1900);
 }
 
@@ -243,9 +243,9 @@ fn invalid_detections_are_counted_and_change_nothing() {
         Sighting { deviation_m: f32::NAN, ..good },
         Sighting { radius_m: -1.0, ..good },
         Sighting { age: Duration::from_millis(-1), ..good },
-        Sighting { id: Some(RobotId::NOBODY), ..good },
+        Sighting { id: Some(RobotId::NONE), ..good },
         Sighting { id: Some(OWN), ..good },
-        Sighting { id: Some(RobotId(3).double()), ..good },
+        Sighting { id: Some(RobotId(3).duplicate()), ..good },
         Sighting { id: Some(RobotId::local(3)), ..good },
         Sighting { velocity_mps: Some((Vec3::new(0.0, f32::NAN, 0.0), 0.1)), ..good },
         Sighting { velocity_mps: Some((Vec3::ZERO, -0.1)), ..good },

@@ -1,7 +1,7 @@
 //! A robot that makes no progress for long backs off.
 //!
 //! Robots that push against each other, each on the side where the other wants to pass, can stand
-//! still forever: each takes at most half of a gap ([`Room`](crate::neighbor::Room)), and half of
+//! still forever: each takes at most half of a gap ([`GapLimit`](crate::neighbor::GapLimit)), and half of
 //! nothing is nothing. Therefore a robot with almost no progress gives up its wish for a short
 //! distance, moves back or aside, and tries again. Direction and distance are random, since two
 //! robots that did the same would meet again. RVO2's examples always disturb the wishes of all

@@ -38,7 +38,7 @@ pub(super) fn read(body: &[u8]) -> Option<(Header, Message)> {
     let [slot, mode] = take(&mut rest)?;
     let mode = *MODES.get(usize::from(mode))?;
     let target = self::cell(&mut rest)?;
-    if !rest.is_empty() || !sender.is_somebody() || usize::from(heading) > Dir::Stay.index() {
+    if !rest.is_empty() || !sender.is_some() || usize::from(heading) > Dir::Stay.index() {
         return None;
     }
     let heading = Dir::from_index(heading);

@@ -103,7 +103,7 @@ fn encoded(header: Header, message: &Message, tag: Option<[u8; TAG_LEN]>) -> Std
 fn fits(header: Header, message: &Message) -> bool {
     let leader = match message {
         Message::Beacon(beacon) => beacon.leader,
-        _ => RobotId::NOBODY,
+        _ => RobotId::NONE,
     };
     header.sender.max(leader) <= MAX_TAGGED_ROBOT
 }
@@ -175,7 +175,7 @@ fn a_full_outbox_is_unchanged() {
 
 #[test]
 fn robot_zero_can_neither_send_nor_be_received() {
-    let header = Header { sender: RobotId::NOBODY, ..HEADER };
+    let header = Header { sender: RobotId::NONE, ..HEADER };
     let mut out = Outbox::new();
     let result = encode(header, &beacon(), &mut out);
     assert_eq!(result, Err(EncodeError::NoSender));

@@ -127,7 +127,7 @@ impl<W: Wire> Operator<W> {
                 self.say(Message::Template(part), out);
             }
         }
-        let goal = GoalAssignment { to: RobotId::NOBODY, version: 1, target: GOAL };
+        let goal = GoalAssignment { to: RobotId::NONE, version: 1, target: GOAL };
         self.say(Message::Goal(goal), out);
         let request = |number, kind| {
             Message::Request(Request { to: RobotId(1), origin: OPERATOR, number, kind, valid_ms: 30_000 })

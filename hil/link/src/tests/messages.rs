@@ -40,11 +40,11 @@ fn longest_result() -> StepResult {
     StepResult {
         outputs: Outputs {
             command: Command::Velocity(Vec3::new(1.0, 2.0, 3.0)),
-            wait: Some(Wait::Place),
+            wait: Some(Wait::GoalTaken),
             received: u16::MAX,
             rejected: u16::MAX,
             refused: Refused { unsigned: u16::MAX, forged: u16::MAX, replayed: u16::MAX, no_room: u16::MAX },
-            overclaims: Overclaims { numbers: u16::MAX, radii: u16::MAX, speeds: u16::MAX, jumps: u16::MAX },
+            implausible: ImplausibleCounts { numbers: u16::MAX, radii: u16::MAX, speeds: u16::MAX, jumps: u16::MAX },
             outbox: core::iter::repeat_n(0xFF, OUTBOX).collect(),
             events: core::iter::repeat_n(event, EVENTS).collect(),
             call_again: LAST,
@@ -103,7 +103,7 @@ fn longest_setup_fits() {
         &mut agent.ages.expire_after,
         &mut agent.retry.interval,
         &mut agent.stop_valid,
-        &mut agent.claims.settle,
+        &mut agent.plausibility.settle,
     ] {
         *span = LATE;
     }
@@ -289,7 +289,7 @@ proptest! {
             received: counts.0,
             rejected: counts.1,
             refused: Refused { forged: counts.0, replayed: counts.1, ..Refused::default() },
-            overclaims: Overclaims { numbers: counts.0, jumps: counts.1, ..Overclaims::default() },
+            implausible: ImplausibleCounts { numbers: counts.0, jumps: counts.1, ..ImplausibleCounts::default() },
             outbox: outbox.iter().copied().collect(),
             events: numbers.iter().map(event).collect(),
             call_again: Instant::from_micros(counts.2),

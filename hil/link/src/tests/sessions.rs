@@ -98,7 +98,7 @@ fn setups_that_do_not_fit_are_refused_with_the_reason() {
     let (kind, ..) = fault(&answers(&mut session, &step(7)));
     assert_eq!(kind, FaultKind::NotConfigured);
     let mut setup = in_plane();
-    setup.agent.id = staya_controller::robot::RobotId::NOBODY;
+    setup.agent.id = staya_controller::robot::RobotId::NONE;
     let configure = |seq, setup, task| frame(kind::CONFIGURE, &Configure { seq, setup, task });
     let (kind, ..) = fault(&answers(&mut session, &configure(8, setup, None)));
     assert_eq!(kind, FaultKind::Setup);

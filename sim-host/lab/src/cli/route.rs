@@ -199,7 +199,7 @@ impl RouteArgs {
 mod tests {
     use super::*;
     use crate::experiment::Experiment as _;
-    use crate::experiment::rows::Keeping;
+    use crate::experiment::rows::RowRetention;
     use clap::Parser;
     use staya_console::{Ended, Global, Stop};
     use staya_controller::route::{ExitRule, Replan};
@@ -279,11 +279,11 @@ mod tests {
         let args = read(&words).unwrap();
         let quiet = Global { quiet: true, ..Global::default() };
         let stop = Stop::default();
-        let ended = args.plan().command(&args.out, &Keeping::default(), &quiet, &stop).unwrap();
+        let ended = args.plan().command(&args.out, &RowRetention::default(), &quiet, &stop).unwrap();
         assert_eq!(ended, Ended::Done);
         assert!(out.join("figure3.svg").is_file() && out.join("sweep-a2.png").is_file());
         stop.request();
-        let error = args.plan().command(&args.out, &Keeping::default(), &quiet, &stop).unwrap_err();
+        let error = args.plan().command(&args.out, &RowRetention::default(), &quiet, &stop).unwrap_err();
         assert!(error.to_string().contains("before any of the routes was done"), "{error}");
     }
 

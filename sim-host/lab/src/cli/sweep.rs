@@ -46,7 +46,7 @@ pub struct SweepArgs {
     resume: bool,
     /// Forget the rows that are there.
     #[arg(long, conflicts_with = "resume")]
-    anew: bool,
+    restart: bool,
 }
 
 /// The plan and its results.
@@ -206,7 +206,7 @@ impl SweepArgs {
     fn perform(&self, global: &Global) -> Result<Ended> {
         let (plan, out) = self.target.load()?;
         let stop = Stop::on_ctrl_c()?;
-        let existing = match (self.resume, self.anew) {
+        let existing = match (self.resume, self.restart) {
             (true, _) => Existing::Resume,
             (_, true) => Existing::Forget,
             _ => Existing::Refuse,

@@ -102,24 +102,24 @@ impl<T: Cell + Default> Cell for Option<T> {
 
 /// What to do about rows: the options of all experiments.
 #[derive(Args, Clone, Debug, Default)]
-pub struct Keeping {
+pub struct RowRetention {
     /// Do the runs that are not there yet.
     #[arg(long, global = true)]
     pub resume: bool,
     /// Forget the rows that are there.
     #[arg(long, global = true, conflicts_with = "resume")]
-    pub anew: bool,
+    pub restart: bool,
     /// Do one of N equal parts only, as in 3/8; with all parts in the folder, --resume reports.
     #[arg(long, global = true, value_name = "I/N", default_value_t = Shard::default())]
     pub shard: Shard,
 }
 
-impl Keeping {
+impl RowRetention {
     /// Treatment of existing rows. Rows of a completed sweep are replaced, like any results. Rows
     /// of an interrupted sweep may be hours of work, so they are kept.
     fn existing(&self, out: &Path) -> Existing {
         let is_whole = || self.shard.is_whole() && out.join(ROWS).is_file();
-        match (self.resume, self.anew) {
+        match (self.resume, self.restart) {
             (true, _) => Existing::Resume,
             (_, true) => Existing::Forget,
             _ if is_whole() => Existing::Forget,
@@ -237,14 +237,14 @@ pub struct Jobs<'a, E> {
     sheet: Sheet<'a, E>,
     goes_on: &'a GoesOn<'a>,
     /// Folder and options; `None` if rows are not stored.
-    place: Option<(&'a Path, &'a Keeping)>,
+    place: Option<(&'a Path, &'a RowRetention)>,
     course: Mutex<Option<Course>>,
 }
 
 impl<'a, E: Experiment> Jobs<'a, E> {
     /// Requires a checked plan. `goes_on` is called from any thread with the number of finished
     /// runs.
-    pub(crate) fn new(plan: &'a E, goes_on: &'a GoesOn<'a>, place: Option<(&'a Path, &'a Keeping)>) -> Self {
+    pub(crate) fn new(plan: &'a E, goes_on: &'a GoesOn<'a>, place: Option<(&'a Path, &'a RowRetention)>) -> Self {
         Self { sheet: Sheet::new(plan), goes_on, place, course: Mutex::new(None) }
     }
 
@@ -316,7 +316,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
             let (point, number) = sheet.place(row.run);
             let mut run = made.remove(&row.run).unwrap_or_else(|| sheet.plan.blank(point, number));
             // Figures come from the rows, no matter which process made them.
-            ensure!(sheet.read(&row, &mut run), "run {} has a row that no run gives; begin --anew", row.run);
+            ensure!(sheet.read(&row, &mut run), "run {} has a row that no run gives; begin --restart", row.run);
             if by_point[point].len() == number as usize {
                 by_point[point].push(run);
             }

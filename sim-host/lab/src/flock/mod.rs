@@ -362,7 +362,7 @@ impl Experiment for Plan {
                 let again = self.run(*point, number as u32)?;
                 ensure!(
                     again.hash == run.hash,
-                    "run {number} of {} is not that of its row; begin --anew",
+                    "run {number} of {} is not that of its row; begin --restart",
                     point.name()
                 );
                 *run = again;

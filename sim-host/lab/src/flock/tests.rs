@@ -1,6 +1,6 @@
 use super::closing::{Closing, Flock, Sides};
 use super::*;
-use crate::experiment::rows::Keeping;
+use crate::experiment::rows::RowRetention;
 
 fn small(case: Case, robots: u32, seconds: f64) -> Plan {
     Plan {
@@ -204,15 +204,16 @@ fn resting_reference_gathers_a_flock_that_a_static_one_splits() {
 fn finished_runs_are_not_repeated_for_their_pictures() {
     let plan = small(Case::Free, 5, 0.2);
     let dir = tempfile::tempdir().unwrap();
-    let perform = |keeping: &Keeping| plan.perform(&Jobs::new(&plan, &|_| true, Some((dir.path(), keeping)))).unwrap();
-    let made = perform(&Keeping::default());
+    let perform =
+        |keeping: &RowRetention| plan.perform(&Jobs::new(&plan, &|_| true, Some((dir.path(), keeping)))).unwrap();
+    let made = perform(&RowRetention::default());
     // A time series that differs from that of any run must come from the file.
     let file = dir.path().join("courses/0-1.postcard");
     let mut other = Run::kept(&file, made[0][1].hash).unwrap();
     assert_eq!(other, made[0][1]);
     other.energies[0] = 12345.0;
     other.keep(&file).unwrap();
-    let resume = Keeping { resume: true, ..Keeping::default() };
+    let resume = RowRetention { resume: true, ..RowRetention::default() };
     assert_eq!(perform(&resume)[0][1], other);
     // A missing time series, or that of another run, is computed again.
     std::fs::copy(dir.path().join("courses/0-0.postcard"), &file).unwrap();

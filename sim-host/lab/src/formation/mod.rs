@@ -22,7 +22,7 @@ use staya_controller::agent::{RouteSetup, TEMPLATE};
 use staya_controller::formation::FormationParams;
 use staya_controller::formation::published::PublishedParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
-use staya_controller::neighbor::Claims;
+use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::route::{Replan, RouteParams};
@@ -270,14 +270,14 @@ impl Plan {
             formation_params: self.formation,
             published: None,
             looks_ahead: false,
-            eyes: None,
+            sensing: None,
             faults: Vec::new(),
             key: None,
             key_remark: None,
             keeping: None,
             interventions: Vec::new(),
             misnumbered: Vec::new(),
-            claims: Claims::ANY,
+            plausibility: PlausibilityLimits::ANY,
             maps: None,
             attacks: Vec::new(),
             parameters: Default::default(),

@@ -287,7 +287,7 @@ impl Experiment for Plan {
         for point in pictures::drawn(&settings) {
             if let Some(first) = runs[point].first_mut().filter(|_| jobs.goes_on()) {
                 let again = self.run(&settings[point], 0, true)?;
-                ensure!(again.hash == first.hash, "a run is not that of its row; begin --anew");
+                ensure!(again.hash == first.hash, "a run is not that of its row; begin --restart");
                 *first = again;
             }
         }

@@ -217,7 +217,7 @@ impl Experiment for Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::rows::Keeping;
+    use crate::experiment::rows::RowRetention;
 
     #[test]
     fn swarms_run_on_the_grid_and_in_the_plane() {
@@ -241,14 +241,14 @@ mod tests {
     fn rows_with_another_number_of_threads_are_not_continued() {
         let plan = Plan { robots: vec![20, 80], ticks: 3, ground: vec![Ground::Grid], ..Plan::default() };
         let dir = tempfile::tempdir().unwrap();
-        let go = |threads: usize, keeping: &Keeping| {
+        let go = |threads: usize, keeping: &RowRetention| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let jobs =
                 || plan.perform(&Jobs::new(&plan, &|_| true, Some((dir.path(), keeping)))).map(|rows| rows.len());
             pool.install(jobs)
         };
-        assert_eq!(go(1, &Keeping::default()).unwrap(), 2);
-        let resume = Keeping { resume: true, ..Keeping::default() };
+        assert_eq!(go(1, &RowRetention::default()).unwrap(), 2);
+        let resume = RowRetention { resume: true, ..RowRetention::default() };
         assert_eq!(go(1, &resume).unwrap(), 2);
         assert!(go(2, &resume).is_err());
     }

@@ -25,7 +25,7 @@ use staya_controller::agent::RouteSetup;
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::{Cell, Norm, UNIT};
 use staya_controller::land::MapParams;
-use staya_controller::neighbor::Claims;
+use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::route::{Replan, RouteParams};
@@ -302,13 +302,13 @@ pub(crate) fn scenario(
         formation_params: FormationParams::default(),
         published: None,
         looks_ahead: false,
-        eyes: None,
+        sensing: None,
         key: None,
         key_remark: None,
         keeping: None,
         interventions: Vec::new(),
         misnumbered: Vec::new(),
-        claims: Claims::ANY,
+        plausibility: PlausibilityLimits::ANY,
         attacks: Vec::new(),
         parameters: Default::default(),
     }

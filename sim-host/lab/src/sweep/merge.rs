@@ -43,7 +43,7 @@ impl Merged {
                         if other.line(plan) != row.line(plan) {
                             let what = format!("run {} has another row in {}:{at}", row.run, path.display());
                             let remedy =
-                                "one of them was made by a changed program: remove it, or begin again with --anew";
+                                "one of them was made by a changed program: remove it, or begin again with --restart";
                             return Err(SweepError::new(format_args!("{}:{line}", file.display()), what, remedy));
                         }
                         doubles += 1;

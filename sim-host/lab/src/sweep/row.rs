@@ -109,5 +109,5 @@ fn damaged(what: &str) -> (String, String) {
 }
 
 fn elsewhere() -> String {
-    "choose another folder with --out, or begin again with --anew".to_owned()
+    "choose another folder with --out, or begin again with --restart".to_owned()
 }

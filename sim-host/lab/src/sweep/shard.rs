@@ -126,7 +126,7 @@ pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
             rows.rows.push((number, Row::read(plan, line).map_err(wrong)?));
         } else if line != expected {
             let what = "its columns are not those of this plan".to_owned();
-            return Err(wrong((what, "choose another folder with --out, or begin again with --anew".to_owned())));
+            return Err(wrong((what, "choose another folder with --out, or begin again with --restart".to_owned())));
         }
     }
     Ok(rows)
@@ -258,7 +258,7 @@ pub fn perform_shard<S: Default>(
         let rows = read_rows(plan, &file)?.rows;
         if existing == Existing::Refuse && !rows.is_empty() && (file == own || shard.is_whole()) {
             let what = format!("it has {} of {} runs", rows.len(), plan.runs());
-            return Err(SweepError::new(file.display(), what, "--resume does the others, --anew forgets these"));
+            return Err(SweepError::new(file.display(), what, "--resume does the others, --restart forgets these"));
         }
         let done = rows.into_iter().filter(|(_, row)| row.outcome == Outcome::Done);
         there.extend(done.map(|(_, row)| row.run));

@@ -133,7 +133,7 @@ impl Swarm {
                 sample,
                 options.starts_armed,
             );
-            if let Some(Action::Wish(wish)) = vehicle.first_deed() {
+            if let Some(Action::Wish(wish)) = vehicle.initial_action() {
                 let _ = engine.command(index, wish);
             }
             vehicles.push(vehicle);

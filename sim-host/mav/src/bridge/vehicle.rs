@@ -135,7 +135,7 @@ impl Vehicle {
 
     /// Action to perform at the start of the robot.
     #[must_use]
-    pub const fn first_deed(&self) -> Option<Action> {
+    pub const fn initial_action(&self) -> Option<Action> {
         if self.starts_armed { None } else { Some(Action::Wish(Wish::Off)) }
     }
 
@@ -152,7 +152,7 @@ impl Vehicle {
         let old = core::mem::replace(self, fresh);
         (self.mission, self.home_m) = (old.mission, old.home_m);
         (self.now_us, self.yaw) = (old.now_us, old.yaw);
-        out.actions.extend(self.first_deed());
+        out.actions.extend(self.initial_action());
         self.text(out, Kind::News, MAV_SEVERITY_WARNING, "restarted");
     }
 
@@ -199,11 +199,11 @@ impl Vehicle {
                 let text = format!("two robots use number {id}");
                 self.text(out, Kind::News, MAV_SEVERITY_WARNING, &text);
             }
-            Event::Overclaimed { id, claim } => {
+            Event::Implausible { id, claim } => {
                 let text = format!("robot {id} reports implausible {claim}");
                 self.text(out, Kind::Neighbor, MAV_SEVERITY_WARNING, &text);
             }
-            Event::NobodyHeard => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "contact to all robots lost"),
+            Event::ContactLost => self.text(out, Kind::News, MAV_SEVERITY_WARNING, "contact to all robots lost"),
             Event::Muted => {
                 let text = "robot cannot send: give it a new key";
                 self.text(out, Kind::Neighbor, MAV_SEVERITY_ERROR, text);

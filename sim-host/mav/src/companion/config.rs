@@ -220,8 +220,8 @@ impl Config {
         let mut scenario = Scenario::load(&source.folder().join(&file.scenario), &Overrides::default())?;
         // A vehicle with an uncertain position reports a radius that is larger by the error, and
         // its position jumps once telemetry is good again.
-        scenario.claims.max_radius_m += file.rules.error_m as f32;
-        scenario.claims.slack_m += file.rules.error_m as f32;
+        scenario.plausibility.max_radius_m += file.rules.error_m as f32;
+        scenario.plausibility.slack_m += file.rules.error_m as f32;
         check_scenario(&source, &scenario)?;
         let air = air(&source, &file.air)?;
         let (lines, vehicles) = vehicles(&source, &file, &origin, &mut scenario)?;
@@ -274,9 +274,9 @@ fn check_scenario(source: &Source<'_>, scenario: &Scenario) -> Result<(), Scenar
         let what = String::from("plane.torus_m is not supported on real vehicles");
         return refused(what, "remove plane.torus_m");
     }
-    if scenario.eyes.is_some() {
+    if scenario.sensing.is_some() {
         let what = String::from("autopilots report no detections of other vehicles");
-        return refused(what, "remove plane.eyes");
+        return refused(what, "remove plane.sensing");
     }
     if scenario.route.params.radius > RADIUS {
         let what = format!("route.radius {} is too large", scenario.route.params.radius);

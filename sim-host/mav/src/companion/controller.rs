@@ -10,7 +10,7 @@ use staya_controller::geom::{Position, Vec3};
 use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::{self, Instant};
 use staya_controller::wire::Wire;
-use staya_sim::engine::{self, Ground, Known, PlaneGround, Senses, WIDE};
+use staya_sim::engine::{self, Ground, Known, PlaneGround, Sensor, WIDE};
 use staya_sim::scenario::Scenario;
 use std::sync::Arc;
 use std::time::Duration;
@@ -43,7 +43,7 @@ pub struct Controller<W> {
     ground: Arc<PlaneGround>,
     agent: Box<ControllerAgent<W>>,
     workspace: GridWorkspace<WIDE>,
-    senses: Senses,
+    senses: Sensor,
     out: Outputs<f32>,
     is_in_space: bool,
     brake: Option<Brake>,
@@ -68,7 +68,12 @@ impl<W: Wire> Controller<W> {
         wire: W,
     ) -> Self {
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
-        let config = AgentConfig { boot, seed: scenario.seed, claims: scenario.claims, ..ground.config(index, tick) };
+        let config = AgentConfig {
+            boot,
+            seed: scenario.seed,
+            plausibility: scenario.plausibility,
+            ..ground.config(index, tick)
+        };
         // No operator sends goals here, so speed and tolerance are unused.
         let guidance = Commanded::new(scenario.guidance(index).guidance(), 0.0, 0.0);
         let mut agent =
@@ -93,7 +98,7 @@ impl<W: Wire> Controller<W> {
             ground: Arc::clone(ground),
             agent,
             workspace: GridWorkspace::default(),
-            senses: Senses::default(),
+            senses: Sensor::default(),
             out: Outputs::default(),
             is_in_space: safety == Some(SafetyKind::Fly),
             brake,

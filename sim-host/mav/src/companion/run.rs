@@ -4,7 +4,7 @@
 mod machine;
 mod shown;
 mod sight;
-mod telling;
+mod telemetry;
 mod vehicle;
 
 pub use sight::{Seen, Sight};

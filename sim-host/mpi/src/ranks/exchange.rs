@@ -62,8 +62,8 @@ pub enum RankError {
         ranks: usize,
     },
     /// Ranks do not exchange detections across their borders.
-    #[error("{ranks} ranks cannot share robots with sensors; start one rank, or remove plane.eyes")]
-    Eyes {
+    #[error("{ranks} ranks cannot share robots with sensors; start one rank, or remove plane.sensing")]
+    Sensing {
         /// Number of ranks.
         ranks: usize,
     },

@@ -6,7 +6,7 @@ use staya_controller::agent::Command;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_sim::engine::{Grid, Ground, PlaneGround};
-use staya_sim::metrics::{FormationMeters, Keeping, in_cells};
+use staya_sim::metrics::{FormationMeters, FormationQuality, in_cells};
 use staya_sim::world::border::{Beside, DEPTH, Settled};
 use staya_sim::world::plane::{self, Clearance};
 use staya_sim::world::scouts::Scouts;
@@ -64,10 +64,10 @@ pub trait Part: Ground {
     fn place(&self, index: usize) -> Option<[f64; 2]>;
 
     /// As [`Ground::keeping`], with the positions of all robots.
-    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping>;
+    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality>;
 }
 
-fn measure(meter: Option<&mut FormationMeters>, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
+fn measure(meter: Option<&mut FormationMeters>, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality> {
     let meter = meter.filter(|_| !places.is_empty())?;
     Some(if counts { meter.measure(places) } else { meter.look(places) })
 }
@@ -158,7 +158,7 @@ impl Part for Grid {
         self.meter.as_ref().map(|_| in_cells(self.world.bodies()[index].cell))
     }
 
-    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
+    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality> {
         measure(self.meter.as_mut(), places, counts)
     }
 }
@@ -244,7 +244,7 @@ impl Part for PlaneGround {
         Some([x / land.cell_m, y / land.cell_m])
     }
 
-    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<Keeping> {
+    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality> {
         self.plane.terrain()?;
         measure(self.meter.as_mut(), places, counts)
     }

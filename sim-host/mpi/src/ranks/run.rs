@@ -10,10 +10,10 @@ use staya_controller::agent::{Guidance, Safety};
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::Ring;
-use staya_sim::engine::Every;
+use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::hash;
 use staya_sim::engine::{Engine, Grid, HostLaw, Moment, Outcome, PlaneGround, Saves, State, Watch, agents};
-use staya_sim::metrics::Keeping;
+use staya_sim::metrics::FormationQuality;
 use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
 use staya_sim::scenario::{AttackKind, Intervention, Scenario};
@@ -32,7 +32,7 @@ pub struct Sharing {
     /// Interval at which `watch` gets the whole run to save it ([`Moment::run`]), which costs as
     /// much as sending all robots to rank 0. With an interval the run is also saved when it is
     /// stopped.
-    pub checkpoints: Option<Every>,
+    pub checkpoints: Option<CheckpointInterval>,
 }
 
 impl Default for Sharing {
@@ -65,8 +65,8 @@ pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     if ranks > 1 && scenario.torus_m().is_some() {
         return Err(RankError::Torus { ranks });
     }
-    if ranks > 1 && scenario.eyes.is_some() {
-        return Err(RankError::Eyes { ranks });
+    if ranks > 1 && scenario.sensing.is_some() {
+        return Err(RankError::Sensing { ranks });
     }
     if ranks > robots { Err(RankError::TooMany { ranks, robots }) } else { Ok(()) }
 }
@@ -169,7 +169,7 @@ where
         exchange: &'a mut dyn Exchange,
         sharing: &'a Sharing,
         mut ground: W,
-        brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
+        factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
     ) -> Result<Self, RankError> {
         let (rank, ranks) = (exchange.rank(), exchange.ranks());
         let stride = scenario.robots.len().div_ceil(SAMPLES).max(1);
@@ -178,7 +178,7 @@ where
         let here = (0..).zip(starts(scenario)).filter(|(_, place_m)| cut.rank(*place_m) == rank);
         let here: Vec<u32> = here.map(|(number, _)| number).collect();
         ground.keep(&here);
-        let engine = Engine::part(scenario, ground, brains, here, rank == 0);
+        let engine = Engine::part(scenario, ground, factory, here, rank == 0);
         let wire = Wire::new(exchange);
         let mut rank = Self {
             scenario,
@@ -313,7 +313,7 @@ where
     }
 
     /// Formation quality: rank 0 has all positions and sums them in the order of robots.
-    fn keeping(&mut self, counts: bool) -> Result<Option<Keeping>, RankError> {
+    fn keeping(&mut self, counts: bool) -> Result<Option<FormationQuality>, RankError> {
         if self.scenario.formations.is_empty() {
             return Ok(None);
         }
@@ -386,10 +386,10 @@ where
         let is_due = self.wire.rank() == 0
             && match self.sharing.checkpoints {
                 None => false,
-                Some(Every::Ticks(ticks)) => {
+                Some(CheckpointInterval::Ticks(ticks)) => {
                     self.stops || self.engine.tick > 0 && self.engine.tick.is_multiple_of(ticks.max(1))
                 }
-                Some(Every::Time(time)) => self.stops || self.saved_at.elapsed() >= time,
+                Some(CheckpointInterval::Time(time)) => self.stops || self.saved_at.elapsed() >= time,
             };
         if is_due {
             self.saved_at = Instant::now();

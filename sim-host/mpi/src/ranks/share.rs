@@ -6,7 +6,7 @@ use super::exchange::{RankError, decode, encode};
 use super::ground::Part as Ground;
 use super::run::Rank;
 use staya_controller::agent::{Command, Safety};
-use staya_sim::engine::hash::Chain;
+use staya_sim::engine::hash::StateHash;
 use staya_sim::engine::{HostLaw, State, StateError, Status};
 use std::collections::{BTreeMap, HashMap};
 
@@ -113,7 +113,7 @@ where
         engine.ground.admit(number, robot.id);
         engine.commands.push(Command::Hold);
         engine.statuses.push(Status::before(&robot));
-        engine.chains.push(Chain::new(robot.id));
+        engine.chains.push(StateHash::new(robot.id));
         engine.positions_m.insert(index, [0.0; 2]);
         engine.arrivals.admit();
         engine.waits.admit();

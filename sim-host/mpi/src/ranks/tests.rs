@@ -1,5 +1,5 @@
 use super::*;
-use staya_sim::engine::Every;
+use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::{Moment, Outcome, simulate, simulate_from};
 use staya_sim::record::RobotRow;
 use staya_sim::scenario::{Overrides, Scenario};
@@ -74,10 +74,10 @@ fn every_scenario(ticks: u32, most: usize, ranks: &[usize]) {
             continue;
         }
         eprintln!("{name}");
-        if scenario.torus_m().is_some() || scenario.eyes.is_some() {
+        if scenario.torus_m().is_some() || scenario.sensing.is_some() {
             let refused = on_ranks(&scenario, 2, &Sharing::default());
             let is_said = |ended: &Result<_, _>| {
-                matches!(ended, Err(RankError::Torus { ranks: 2 } | RankError::Eyes { ranks: 2 }))
+                matches!(ended, Err(RankError::Torus { ranks: 2 } | RankError::Sensing { ranks: 2 }))
             };
             assert!(refused.iter().all(is_said), "{name}");
             compare(&name, &scenario, &[1]);
@@ -205,7 +205,8 @@ fn a_checkpoint_continues_identically_on_any_number_of_ranks() {
     ];
     for scenario in scenarios {
         let alone = simulate(&scenario, |_, _| ControlFlow::Continue(())).expect("room");
-        let sharing = Sharing { every_ticks: 4, checkpoints: Some(Every::Ticks(25)), ..Sharing::default() };
+        let sharing =
+            Sharing { every_ticks: 4, checkpoints: Some(CheckpointInterval::Ticks(25)), ..Sharing::default() };
         let saved = Mutex::default();
         let ended = go_on(&scenario, 3, &sharing, None, &saved);
         assert_eq!(ended[0].as_ref().expect("an outcome").outcome, alone, "{}", scenario.name);

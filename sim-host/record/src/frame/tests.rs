@@ -47,7 +47,7 @@ fn bytes_follow_the_protocol() {
         position_m: vec![[1.0, 2.0, 0.0], [3.0, 4.0, 0.0]],
         velocity_mps: vec![[0.5, -0.5, 0.0]; 2],
         target_m: vec![[9.0, 8.0, 0.0], [f32::NAN; 3]],
-        leader: vec![NOBODY, 0],
+        leader: vec![NONE, 0],
         mode: vec![2, 4],
         wait: vec![NO_WAIT, 3],
         ..FrameData::default()

@@ -174,7 +174,7 @@ impl Attacker {
     fn lure(&mut self) {
         self.version = self.version.wrapping_add(1);
         let [x_m, y_m] = self.attack.lure_m;
-        let (to, version, target) = (RobotId::NOBODY, self.version, self.cell([x_m, y_m]));
+        let (to, version, target) = (RobotId::NONE, self.version, self.cell([x_m, y_m]));
         self.tell(self.attack.claims, &Message::Goal(GoalAssignment { to, version, target }));
         let position_mm = [millis(x_m), millis(y_m), 0];
         let place = WaypointAssignment { to, version, index: 0, position_mm, velocity_mmps: [0; 3] };

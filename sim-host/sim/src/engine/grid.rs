@@ -5,7 +5,7 @@ use super::body::Kinematics;
 use super::ground::{Ground, StateWords};
 use super::hash::grid_words;
 use super::intervene::Change;
-use crate::metrics::{FormationMeters, Keeping, in_cells};
+use crate::metrics::{FormationMeters, FormationQuality, in_cells};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::Terrain;
@@ -266,7 +266,7 @@ impl Ground for Grid {
         Some([x, y, 0.0])
     }
 
-    fn keeping(&mut self, counts: bool) -> Option<Keeping> {
+    fn keeping(&mut self, counts: bool) -> Option<FormationQuality> {
         let meter = self.meter.as_mut()?;
         let bodies: Vec<_> = self.world.bodies().iter().map(|body| in_cells(body.cell)).collect();
         Some(if counts { meter.measure(&bodies) } else { meter.look(&bodies) })

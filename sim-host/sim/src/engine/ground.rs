@@ -2,7 +2,7 @@
 
 use super::inspect::Scratchpad;
 use super::{Change, Status};
-use crate::metrics::{FormationKept, FormationMeters, Keeping, PlaceError};
+use crate::metrics::{FormationKept, FormationMeters, FormationQuality, PlaceError};
 use crate::record::Motion;
 use crate::terrain::Terrain;
 use crate::world::Refusal;
@@ -108,7 +108,7 @@ pub trait Ground: Send + Sync {
 
     /// Current quality of the formations, if there are any. If `counts` is set, the values are
     /// added to the run's statistics.
-    fn keeping(&mut self, _counts: bool) -> Option<Keeping> {
+    fn keeping(&mut self, _counts: bool) -> Option<FormationQuality> {
         None
     }
 
@@ -123,7 +123,7 @@ pub trait Ground: Send + Sync {
     }
 
     /// Mean quality of all formations, and the quality of each.
-    fn kept(&self) -> (Option<Keeping>, Option<PlaceError>, Vec<FormationKept>) {
+    fn kept(&self) -> (Option<FormationQuality>, Option<PlaceError>, Vec<FormationKept>) {
         let Some(meters) = self.formations() else {
             return (None, None, Vec::new());
         };

@@ -9,9 +9,9 @@ const START: u32 = 0x0048_0001;
 
 /// Running hash of all states of one robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Chain(u64);
+pub struct StateHash(u64);
 
-impl Chain {
+impl StateHash {
     #[doc(hidden)]
     pub const fn new(robot: RobotId) -> Self {
         Self(Rng::keyed(0, START, robot.0, 0).next_u64())
@@ -35,7 +35,7 @@ pub(super) fn grid_words(tick: u32, body: &Body, mode: Mode) -> [u64; 2] {
 }
 
 /// Trace hash of a swarm: a sum, so that the order of robots does not matter.
-pub fn sum(chains: &[Chain]) -> u64 {
+pub fn sum(chains: &[StateHash]) -> u64 {
     chains.iter().fold(0, |sum, chain| sum.wrapping_add(chain.0))
 }
 
@@ -53,8 +53,8 @@ mod tests {
         is_shut_in: false,
     };
 
-    fn chain(steps: &[(u32, Body, Mode)]) -> Chain {
-        let mut chain = Chain::new(RobotId(1));
+    fn chain(steps: &[(u32, Body, Mode)]) -> StateHash {
+        let mut chain = StateHash::new(RobotId(1));
         for (tick, body, mode) in steps {
             chain.extend(&grid_words(*tick, body, *mode));
         }
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn the_hash_covers_robot_ids_but_not_their_order() {
-        let (one, two) = (Chain::new(RobotId(1)), Chain::new(RobotId(2)));
+        let (one, two) = (StateHash::new(RobotId(1)), StateHash::new(RobotId(2)));
         assert_ne!(one, two);
         assert_eq!(sum(&[one, two]), sum(&[two, one]));
         assert_ne!(sum(&[one, two]), sum(&[one, one]));

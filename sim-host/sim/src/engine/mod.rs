@@ -10,7 +10,7 @@
 
 mod attacker;
 mod body;
-mod every;
+mod checkpoint_interval;
 mod external;
 mod faults;
 mod grid;
@@ -20,18 +20,18 @@ pub mod hash;
 mod inspect;
 mod intervene;
 mod intruder;
-mod keeper;
+mod key_server;
 mod operator;
-mod others;
 mod own;
 mod plane;
 mod report;
 mod simulate;
 mod state;
 mod status;
+mod transmitters;
 mod witness;
 
-pub use every::Every;
+pub use checkpoint_interval::CheckpointInterval;
 use external::External;
 pub use external::{Decision, ExternalController};
 pub use grid::Grid;
@@ -40,10 +40,10 @@ pub use inspect::{Choice, Inspection, Known, Permitted, Scratchpad, SeenLand, kn
 pub use intervene::Change;
 pub use operator::{Observation, Operated, operated};
 pub use own::{NotInPlane, OwnLaw, operated_own, simulate_own, simulate_own_with};
-pub use plane::{PlaneGround, Senses};
+pub use plane::{PlaneGround, Sensor};
 #[doc(hidden)]
 pub use simulate::{GuidanceOf, SafetyOf, agents};
-pub use simulate::{Moment, Outcome, Unable, WIDE, Watch, simulate, simulate_from, simulate_with};
+pub use simulate::{Moment, Outcome, StartError, WIDE, Watch, simulate, simulate_from, simulate_with};
 pub use state::{Saves, State, StateError};
 pub use status::Status;
 
@@ -54,30 +54,30 @@ use crate::record::{PacketCounts, TickRow};
 use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
 use crate::terrain::change::LandChange;
 use attacker::Attacker;
-use hash::Chain;
+use hash::StateHash;
 use intervene::Tuned;
 use intruder::Intruder;
-use keeper::Keeper;
-use others::ring;
+use key_server::KeyServer;
 use rayon::prelude::*;
 use staya_controller::agent::{
     Agent, AgentConfig, AnyInputs, Command, Event, Guidance, Inputs, NEIGHBORS, Outputs, Safety, Setup,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::Torus;
-use staya_controller::neighbor::Claims;
+use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Format, Ring};
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
+use transmitters::ring;
 
 /// Smallest number of robots per parallel task; smaller tasks cost more to schedule than to run.
 const BATCH: usize = 64;
 
 /// A robot's computer.
 #[derive(Debug)]
-pub struct Computer<G: Guidance<f32>, A> {
+pub struct OnboardComputer<G: Guidance<f32>, A> {
     /// `None`: the controller is external.
     agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>,
     /// Frames of the last step, without spare capacity.
@@ -94,7 +94,7 @@ pub struct Computer<G: Guidance<f32>, A> {
     heard_bytes: u64,
 }
 
-impl<G: Guidance<f32>, A> Computer<G, A> {
+impl<G: Guidance<f32>, A> OnboardComputer<G, A> {
     const fn now(&self, tick: u32, tick_us: u32) -> Instant {
         Instant::from_micros(tick.wrapping_sub(self.epoch).wrapping_mul(tick_us))
     }
@@ -110,7 +110,7 @@ impl<W: Ground> Tick<'_, W> {
     fn inputs<'b, G: Guidance<f32>, A>(
         &'b self,
         index: usize,
-        computer: &Computer<G, A>,
+        computer: &OnboardComputer<G, A>,
         senses: &'b mut W::Scratch,
         heard: &'b mut Vec<u8>,
     ) -> AnyInputs<'b, f32> {
@@ -135,7 +135,7 @@ impl<W: Ground> Tick<'_, W> {
 }
 
 /// Creates the law and the safety layer of a robot by its index in [`Scenario::robots`].
-type Brains<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
+type AgentFactory<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
 /// A running scenario in world `W`, with guidance laws `G` and safety layers `A`.
 ///
@@ -144,7 +144,7 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     seed: u64,
     format: Format,
     key: Option<Key>,
-    claims: Claims<f32>,
+    plausibility: PlausibilityLimits<f32>,
     tick_us: u32,
     #[doc(hidden)]
     pub tick: u32,
@@ -160,20 +160,20 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     tuned: Vec<Tuned>,
     /// Robot ranges of the formations, whose goals move together.
     shapes: Vec<Range<usize>>,
-    brains: Brains<G, A>,
+    factory: AgentFactory<G, A>,
     #[doc(hidden)]
     pub ground: W,
     torus: Option<Torus<f32>>,
     #[doc(hidden)]
     pub radio: Radio,
     #[doc(hidden)]
-    pub computers: Vec<Computer<G, A>>,
+    pub computers: Vec<OnboardComputer<G, A>>,
     #[doc(hidden)]
     pub commands: Vec<Command<f32>>,
     #[doc(hidden)]
     pub statuses: Vec<Status>,
     #[doc(hidden)]
-    pub chains: Vec<Chain>,
+    pub chains: Vec<StateHash>,
     /// Positions of the robots, the attackers, the intruders and the key server, in this order.
     pub positions_m: Vec<[f64; 2]>,
     #[doc(hidden)]
@@ -181,7 +181,7 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     #[doc(hidden)]
     pub intruders: Vec<Intruder>,
     #[doc(hidden)]
-    pub keeper: Option<Keeper>,
+    pub keeper: Option<KeyServer>,
     /// Keys of robots on other ranks that attackers take over in this tick.
     pub taken: HashMap<RobotId, Ring>,
     master: Option<Key>,
@@ -206,11 +206,11 @@ where
     A: Safety<f32> + Send,
 {
     /// Creates the engine before the first tick of `scenario`, with the bodies of `ground`.
-    /// `brains(i)` creates the law and the safety layer of robot `i` in [`Scenario::robots`], at
+    /// `factory(i)` creates the law and the safety layer of robot `i` in [`Scenario::robots`], at
     /// its first start and at each restart.
-    pub fn new(scenario: &Scenario, ground: W, brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
+    pub fn new(scenario: &Scenario, ground: W, factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
         let here = (0..scenario.robots.len() as u32).collect();
-        Self::part(scenario, ground, brains, here, true)
+        Self::part(scenario, ground, factory, here, true)
     }
 
     /// Creates the engine for a part of the robots: those with the indices `here` in
@@ -219,7 +219,7 @@ where
     pub fn part(
         scenario: &Scenario,
         ground: W,
-        brains: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
+        factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static,
         here: Vec<u32>,
         has_others: bool,
     ) -> Self {
@@ -233,17 +233,17 @@ where
         let intruders: Vec<_> = intruders.map(|(disc, _)| Intruder::new(disc, format)).collect();
         let ids = ids.chain((0..attackers.len()).map(Attacker::id));
         let ids = ids.chain(intruders.iter().map(|intruder| intruder.id));
-        let keeper = Keeper::new(scenario).filter(|_| has_others);
-        let ids = ids.chain(keeper.iter().map(|_| Keeper::id()));
+        let keeper = KeyServer::new(scenario).filter(|_| has_others);
+        let ids = ids.chain(keeper.iter().map(|_| KeyServer::id()));
         let mut positions_m = vec![[0.0; 2]; here.len()];
         positions_m.extend(attackers.iter().map(Attacker::place_m));
         positions_m.extend(intruders.iter().map(|intruder| intruder.position_m));
-        positions_m.extend(keeper.iter().map(Keeper::place_m));
+        positions_m.extend(keeper.iter().map(KeyServer::place_m));
         let mut engine = Self {
             seed: scenario.seed,
             format,
             key: scenario.key.clone(),
-            claims: scenario.claims,
+            plausibility: scenario.plausibility,
             tick_us: scenario.tick_us,
             tick: 0,
             faults: scenario.faults.clone(),
@@ -251,14 +251,14 @@ where
             interventions: scenario.interventions.iter().cloned().collect(),
             tuned: Vec::new(),
             shapes: scenario.formations.iter().map(Formation::members).collect(),
-            brains: Box::new(brains),
+            factory: Box::new(factory),
             radio: Radio::new(&scenario.radio, scenario.seed, scenario.tick_us, ids).on_torus(scenario.torus_m()),
             ground,
             torus: scenario.torus_m().map(|sides_m| Torus { size_m: sides_m.map(|side_m| side_m as f32) }),
             computers: Vec::new(),
             commands: vec![Command::Hold; here.len()],
             statuses: Vec::new(),
-            chains: here.iter().map(|&number| Chain::new(robots[number as usize].id)).collect(),
+            chains: here.iter().map(|&number| StateHash::new(robots[number as usize].id)).collect(),
             positions_m,
             attackers,
             intruders,
@@ -291,12 +291,17 @@ where
 
     fn config(&self, index: usize, boot: u8) -> AgentConfig<f32> {
         let tick = Duration::from_micros(i32::try_from(self.tick_us).unwrap_or(i32::MAX));
-        AgentConfig { boot, seed: self.seed, claims: self.claims, ..self.ground.config(self.number(index), tick) }
+        AgentConfig {
+            boot,
+            seed: self.seed,
+            plausibility: self.plausibility,
+            ..self.ground.config(self.number(index), tick)
+        }
     }
 
-    fn start(&self, index: usize, boot: u8) -> Computer<G, A> {
+    fn start(&self, index: usize, boot: u8) -> OnboardComputer<G, A> {
         let number = self.number(index);
-        let (guidance, safety) = (self.brains)(number);
+        let (guidance, safety) = (self.factory)(number);
         let wire = match &self.master {
             None => radio::wire(self.format, self.key.as_ref(), boot),
             // The last key survives a restart in persistent memory.
@@ -317,8 +322,8 @@ where
     }
 
     #[doc(hidden)]
-    pub fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>, boot: u8) -> Computer<G, A> {
-        Computer {
+    pub fn computer(&self, agent: Option<Agent<f32, G, NEIGHBORS, A, HostWire>>, boot: u8) -> OnboardComputer<G, A> {
+        OnboardComputer {
             agent,
             outbox: Vec::new(),
             events: Vec::new(),
@@ -372,7 +377,7 @@ where
     /// Transmits the frames of this process.
     pub fn send(&mut self) -> radio::Counts {
         let (computers, attackers, intruders) = (&self.computers, &self.attackers, &self.intruders);
-        let keeper = self.keeper.as_ref().map_or(&[][..], Keeper::outbox);
+        let keeper = self.keeper.as_ref().map_or(&[][..], KeyServer::outbox);
         let outbox = |index: usize| match computers.get(index) {
             Some(computer) => computer.outbox.as_slice(),
             None => match attackers.get(index - computers.len()) {
@@ -459,7 +464,7 @@ where
                         target: agent.target().unwrap_or(status.target),
                         wait: out.wait,
                     };
-                    PacketCounts::refused(out.rejected, out.refused, out.overclaims)
+                    PacketCounts::refused(out.rejected, out.refused, out.implausible)
                 },
             )
             .reduce(PacketCounts::default, |one, other| one + other)

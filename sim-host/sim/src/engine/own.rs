@@ -79,14 +79,14 @@ fn engine<G: OwnLaw>(
         (scenario.safety(index), [group.cruise_mps, group.tolerance_m].map(|x| x as f32))
     });
     let robots: Vec<_> = robots.collect();
-    let tracking = scenario.eyes.map(|eyes| eyes.tracking);
-    let brains = move |index: usize| {
+    let tracking = scenario.sensing.map(|sensing| sensing.tracking);
+    let factory = move |index: usize| {
         let (safety, [speed_mps, tolerance_m]) = &robots[index];
         let law = NeighborTracking::new(AnyWorld(law(index)), tracking);
         let guidance = Commanded::new(law, *speed_mps, *tolerance_m);
         (guidance, Witness::new(safety.safety()))
     };
-    Ok(Engine::new(scenario, PlaneGround::new(scenario, setup), brains))
+    Ok(Engine::new(scenario, PlaneGround::new(scenario, setup), factory))
 }
 
 #[cfg(test)]

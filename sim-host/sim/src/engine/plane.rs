@@ -11,7 +11,7 @@ use super::Status;
 use super::grid::Changed;
 use super::ground::{Ground, StateWords};
 use super::intervene::Change;
-use crate::metrics::{FormationMeters, Keeping};
+use crate::metrics::{FormationMeters, FormationQuality};
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
 use crate::terrain::Terrain;
@@ -74,7 +74,7 @@ impl PlaneGround {
         let last = scenario.robots.last().map_or(0, |robot| robot.id.0);
         let mut ids = (last + 1..).map(RobotId);
         let intruders = setup.intruders.iter().map(|intruder| Disc {
-            id: if intruder.is_heard { ids.next().unwrap_or_default() } else { RobotId::NOBODY },
+            id: if intruder.is_heard { ids.next().unwrap_or_default() } else { RobotId::NONE },
             radius_m: intruder.radius_m,
             position_m: intruder.position_m,
             velocity_mps: intruder.velocity_mps,
@@ -88,14 +88,14 @@ impl PlaneGround {
         // Three-dimensional if robots start at other heights or fly.
         let is_flat = setup.starts.iter().all(|start| start.position_m[2] == 0.0)
             && setup.kinds().all(|group| group.safety.kind() != SafetyKind::Fly);
-        let sight = scenario.eyes.map(|eyes| {
-            let mut sight = Sight::new(eyes, scenario.seed, scenario.tick_us, is_flat);
+        let sight = scenario.sensing.map(|sensing| {
+            let mut sight = Sight::new(sensing, scenario.seed, scenario.tick_us, is_flat);
             sight.look(&plane);
             sight
         });
         Self {
             sight,
-            is_mute: scenario.eyes.is_some_and(|eyes| !eyes.has_beacons),
+            is_mute: scenario.sensing.is_some_and(|sensing| !sensing.has_beacons),
             clearance: Clearance::FREE,
             gap_m: None,
             changed: Changed::new(),
@@ -128,14 +128,14 @@ impl PlaneGround {
         index: usize,
         position_m: [f64; 3],
         velocity_mps: [f64; 3],
-        senses: &'a mut Senses,
+        senses: &'a mut Sensor,
     ) -> AnyInputs<'a, f32> {
-        let Senses { cells, known, obstacles } = senses;
+        let Sensor { cells, known, obstacles } = senses;
         let group = self.setup.group(self.number(index));
         let sight_m = group.sight_m + group.radius_m;
         obstacles.clear();
         // Robots see a silent intruder as a static ball at its current position.
-        let silent = self.plane.intruders().iter().filter(|intruder| !intruder.id.is_somebody());
+        let silent = self.plane.intruders().iter().filter(|intruder| !intruder.id.is_some());
         let silent = silent.map(|disc| Solid::Ball { center_m: disc.position_m, radius_m: disc.radius_m });
         let silent = silent.filter(|solid| solid.distance_m(position_m) <= sight_m);
         let near = self.plane.solids_near(position_m, sight_m).copied().chain(silent);
@@ -220,14 +220,14 @@ fn disc(id: RobotId, setup: &PlaneSetup, number: usize) -> Disc {
 
 /// Buffers for a robot's sensor data.
 #[derive(Default)]
-pub struct Senses {
+pub struct Sensor {
     cells: Vec<u8>,
     known: Vec<u8>,
     obstacles: Vec<Obstacle<f32>>,
 }
 
 impl Ground for PlaneGround {
-    type Scratch = Senses;
+    type Scratch = Sensor;
     type Body = PlaneBody;
     type Shared = PlaneShared;
 
@@ -251,7 +251,7 @@ impl Ground for PlaneGround {
         self.put_shared(shared)
     }
 
-    fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Senses) -> AnyInputs<'a, f32> {
+    fn sense<'a>(&'a self, index: usize, _: u32, senses: &'a mut Sensor) -> AnyInputs<'a, f32> {
         let Disc { position_m, velocity_mps, .. } = self.plane.discs()[index];
         self.sense_at(index, position_m, velocity_mps, senses)
     }
@@ -300,7 +300,7 @@ impl Ground for PlaneGround {
         now.overlaps + now.intrusions
     }
 
-    fn keeping(&mut self, counts: bool) -> Option<Keeping> {
+    fn keeping(&mut self, counts: bool) -> Option<FormationQuality> {
         let (meter, cell_m) = (self.meter.as_mut()?, self.plane.terrain()?.cell_m);
         let places = self.plane.discs().iter().map(|disc| [disc.position_m[0] / cell_m, disc.position_m[1] / cell_m]);
         let places: Vec<_> = places.collect();
@@ -343,7 +343,7 @@ impl Ground for PlaneGround {
         AgentConfig {
             max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
             latency: Duration::from_micros(micros),
-            silence: group.silence,
+            contact_loss: group.contact_loss,
             flock: group.flock,
             ..AgentConfig::new(self.robots[number].id, group.radius_m as f32, tick)
         }
@@ -493,7 +493,7 @@ impl Ground for PlaneGround {
     }
 
     fn heard(&self) -> impl Iterator<Item = (&Disc, Option<Cell>)> {
-        let heard = self.plane.intruders().iter().filter(|intruder| intruder.id.is_somebody());
+        let heard = self.plane.intruders().iter().filter(|intruder| intruder.id.is_some());
         heard.map(|disc| (disc, self.plane.cell(disc.position_m)))
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Engine, HostLaw, Moment, Outcome, hash};
 use crate::engine::Ground;
-use crate::metrics::Keeping;
+use crate::metrics::FormationQuality;
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use staya_controller::agent::Safety;
 
@@ -18,7 +18,7 @@ where
     }
 
     /// The swarm's record row, with the `packets` of the last tick.
-    pub fn row(&self, keeping: Option<Keeping>, packets: PacketCounts) -> TickRow {
+    pub fn row(&self, keeping: Option<FormationQuality>, packets: PacketCounts) -> TickRow {
         TickRow {
             tick: self.tick,
             time_s: self.seconds(),

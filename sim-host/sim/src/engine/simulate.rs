@@ -4,7 +4,7 @@ use super::state::{Saves, State, StateError};
 use super::witness::Witness;
 use super::{Engine, ExternalController, Grid, Ground, HostLaw, PlaneGround};
 use crate::metrics::waits::WaitCount;
-use crate::metrics::{FormationKept, Keeping, PlaceError};
+use crate::metrics::{FormationKept, FormationQuality, PlaceError};
 use crate::record::{PacketCounts, RobotRow, TickRow};
 use crate::scenario::Scenario;
 use crate::terrain::Terrain;
@@ -70,7 +70,7 @@ pub struct Outcome {
     /// Causes of waiting.
     pub waits: Vec<WaitCount>,
     /// Means over the run; `None` without a formation.
-    pub formation: Option<Keeping>,
+    pub formation: Option<FormationQuality>,
     /// Distance of robots in the plane from their formation places, after the time for forming.
     pub place_error: Option<PlaceError>,
     /// Quality of each formation, in the order of
@@ -114,7 +114,7 @@ pub fn simulate_with(
 
 /// Why a run cannot begin.
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum Unable {
+pub enum StartError {
     /// The robots cannot be placed.
     #[error(transparent)]
     Misplaced(#[from] Misplaced),
@@ -128,7 +128,7 @@ pub enum Unable {
 ///
 /// # Errors
 /// See [`Grid::new`] and [`Engine::restore`].
-pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -> Result<Outcome, Unable> {
+pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -> Result<Outcome, StartError> {
     Ok(match AnyEngine::new(scenario)? {
         AnyEngine::Plane(engine) => go_on(scenario, *engine, state, watch)?,
         AnyEngine::Cells(engine) => go_on(scenario, *engine, state, watch)?,
@@ -185,7 +185,7 @@ pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) +
         })
     });
     let of_robots: Vec<usize> = of_robots.collect();
-    let (maps, tracking) = (scenario.maps, scenario.eyes.map(|eyes| eyes.tracking));
+    let (maps, tracking) = (scenario.maps, scenario.sensing.map(|sensing| sensing.tracking));
     move |index| {
         let (guidance, safety, speed_mps, tolerance_m) = &kinds[of_robots[index]];
         // Robots that do not plan on terrain have no map to share.

@@ -4,12 +4,12 @@
 //! bytes are in postcard format and valid only for this version of the program; floats keep their
 //! bits. The bytes contain keys.
 
-use super::{Computer, Engine, Ground, HostLaw, Status};
+use super::{Engine, Ground, HostLaw, OnboardComputer, Status};
 use crate::engine::attacker::AttackerState;
-use crate::engine::hash::Chain;
+use crate::engine::hash::StateHash;
 use crate::engine::intervene::Tuned;
 use crate::engine::intruder::IntruderState;
-use crate::engine::keeper::KeeperState;
+use crate::engine::key_server::KeeperState;
 use crate::metrics::waits;
 use crate::radio::{End, HostWire, Weather};
 use crate::record::PacketCounts;
@@ -128,7 +128,7 @@ struct Robot<B> {
     sent_bytes: u64,
     heard_bytes: u64,
     status: Status,
-    chain: Chain,
+    chain: StateHash,
     command: Command<f32>,
     arrived: Option<u64>,
     waits: waits::Robot,
@@ -210,7 +210,7 @@ where
         let end: End = from.read("an end of the radio")?;
         self.radio.set_end(index, end).map_err(unfit(at))?;
         let Robot { mail, boot, epoch, down_until, sent_bytes, heard_bytes, .. } = robot;
-        self.computers[index] = Computer {
+        self.computers[index] = OnboardComputer {
             agent,
             outbox: Vec::new(),
             events: Vec::new(),

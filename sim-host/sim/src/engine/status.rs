@@ -22,10 +22,10 @@ pub struct Status {
 impl Status {
     /// Status of a robot before its first step.
     pub const fn before(robot: &Robot) -> Self {
-        Self { mode: Mode::Idle, leader: RobotId::NOBODY, target: robot.goal, wait: None }
+        Self { mode: Mode::Idle, leader: RobotId::NONE, target: robot.goal, wait: None }
     }
 
     pub(super) const fn fall_silent(&mut self) {
-        (self.mode, self.leader, self.wait) = (Mode::Fault, RobotId::NOBODY, None);
+        (self.mode, self.leader, self.wait) = (Mode::Fault, RobotId::NONE, None);
     }
 }

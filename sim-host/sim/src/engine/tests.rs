@@ -332,12 +332,12 @@ proptest! {
 
 mod attack;
 mod external;
-mod eyes;
 mod intervene;
 mod intruder;
 mod land;
 mod operator;
 mod plane;
+mod sensing;
 mod state;
 mod torus;
 
@@ -345,7 +345,7 @@ mod torus;
 #[test]
 fn a_robot_takes_no_more_memory_than_this() {
     use super::simulate::{GuidanceOf, SafetyOf};
-    let computer = size_of::<Computer<GuidanceOf, SafetyOf>>();
+    let computer = size_of::<OnboardComputer<GuidanceOf, SafetyOf>>();
     let parts = [computer, size_of::<GuidanceOf>(), size_of::<SafetyOf>(), size_of::<HostWire>()];
     assert!(parts[0] <= 2600 && parts[1] <= 760 && parts[2] <= 100, "{parts:?}");
 }

@@ -7,7 +7,7 @@ use staya_controller::grid::Cell;
 
 /// Quality of a formation at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Keeping {
+pub struct FormationQuality {
     /// Mean over the robots of |desired - actual|, cells, with the graph placed at the top leader
     /// (robot 1). The leader counts, with 0.
     pub error_per_agent: f64,
@@ -18,7 +18,7 @@ pub struct Keeping {
     pub graph_distance: f64,
 }
 
-impl std::ops::AddAssign for Keeping {
+impl std::ops::AddAssign for FormationQuality {
     fn add_assign(&mut self, other: Self) {
         self.error_per_agent += other.error_per_agent;
         self.best_fit_error_per_agent += other.best_fit_error_per_agent;
@@ -59,7 +59,7 @@ pub struct FormationMeter {
     /// 1 / diagonal of the map, 1/cells.
     kappa: f64,
     ticks: u32,
-    sum: Keeping,
+    sum: FormationQuality,
     errors: Vec<f64>,
     missing: Vec<usize>,
     cell_m: f64,
@@ -86,7 +86,7 @@ impl FormationMeter {
             eps: eps.into(),
             kappa: 1.0 / diagonal,
             ticks: 0,
-            sum: Keeping { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 },
+            sum: FormationQuality { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 },
             errors: Vec::new(),
             missing: Vec::new(),
             cell_m: terrain.cell_m,
@@ -103,7 +103,7 @@ impl FormationMeter {
     ///
     /// # Panics
     /// If there are no bodies, or more bodies than places.
-    pub fn measure(&mut self, bodies: &[[f64; 2]]) -> Keeping {
+    pub fn measure(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
         let now = self.look(bodies);
         self.sum += now;
         self.ticks += 1;
@@ -134,7 +134,7 @@ impl FormationMeter {
     ///
     /// # Panics
     /// If there are no bodies, or more bodies than places.
-    pub fn look(&mut self, bodies: &[[f64; 2]]) -> Keeping {
+    pub fn look(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
         let top = offset(bodies[0], self.places[0]);
         self.errors.clear();
         self.missing.clear();
@@ -161,7 +161,7 @@ impl FormationMeter {
                 length([x - mean[0], y - mean[1]])
             })
             .sum();
-        Keeping {
+        FormationQuality {
             error_per_agent: self.errors.iter().sum::<f64>() / count,
             best_fit_error_per_agent: fit / count,
             graph_distance: graph + (self.missing.len() + self.taken(bodies, top)) as f64,
@@ -185,9 +185,9 @@ impl FormationMeter {
 
     /// Means over all ticks so far; `None` before the first.
     #[must_use]
-    pub fn mean(&self) -> Option<Keeping> {
+    pub fn mean(&self) -> Option<FormationQuality> {
         let ticks = f64::from(self.ticks);
-        (self.ticks > 0).then(|| Keeping {
+        (self.ticks > 0).then(|| FormationQuality {
             error_per_agent: self.sum.error_per_agent / ticks,
             best_fit_error_per_agent: self.sum.best_fit_error_per_agent / ticks,
             graph_distance: self.sum.graph_distance / ticks,
@@ -251,7 +251,7 @@ mod tests {
         let mut meter = meter(&[(0, 0), (-3, 0), (0, -3)], 2);
         for (x, y) in [(0, 0), (30, -7), (i16::MAX, i16::MAX)] {
             let now = meter.measure(&bodies(&[(x, y), (x - 3, y), (x, y - 3)]));
-            let none = Keeping { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 };
+            let none = FormationQuality { error_per_agent: 0.0, best_fit_error_per_agent: 0.0, graph_distance: 0.0 };
             assert_eq!(now, none);
             assert_eq!(meter.errors(), [0.0; 3]);
         }

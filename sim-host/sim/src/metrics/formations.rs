@@ -1,6 +1,6 @@
 //! Quality of the formations of a swarm, separately and together.
 
-use super::{FormationMeter, Keeping, PlaceError};
+use super::{FormationMeter, FormationQuality, PlaceError};
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -11,7 +11,7 @@ pub struct FormationKept {
     /// Robot indices of the members, counted from 0.
     pub members: Range<usize>,
     /// Means over the run; `None` before the first tick.
-    pub keeping: Option<Keeping>,
+    pub keeping: Option<FormationQuality>,
     /// Place errors of robots in the plane after the forming time.
     pub place_error: Option<PlaceError>,
 }
@@ -45,7 +45,7 @@ impl FormationMeters {
     ///
     /// # Panics
     /// If there are fewer bodies than members.
-    pub fn measure(&mut self, bodies: &[[f64; 2]]) -> Keeping {
+    pub fn measure(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
         self.over(|members, meter| meter.measure(&bodies[members]))
     }
 
@@ -55,11 +55,11 @@ impl FormationMeters {
     ///
     /// # Panics
     /// If there are fewer bodies than members.
-    pub fn look(&mut self, bodies: &[[f64; 2]]) -> Keeping {
+    pub fn look(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
         self.over(|members, meter| meter.look(&bodies[members]))
     }
 
-    fn over(&mut self, mut one: impl FnMut(Range<usize>, &mut FormationMeter) -> Keeping) -> Keeping {
+    fn over(&mut self, mut one: impl FnMut(Range<usize>, &mut FormationMeter) -> FormationQuality) -> FormationQuality {
         let kept = self.each.iter_mut();
         let kept: Vec<_> = kept.map(|(members, meter)| (members.len(), one(members.clone(), meter))).collect();
         together(&kept)
@@ -67,7 +67,7 @@ impl FormationMeters {
 
     /// Means over all ticks so far; `None` before the first.
     #[must_use]
-    pub fn mean(&self) -> Option<Keeping> {
+    pub fn mean(&self) -> Option<FormationQuality> {
         let kept: Option<Vec<_>> =
             self.each.iter().map(|(members, meter)| Some((members.len(), meter.mean()?))).collect();
         kept.map(|kept| together(&kept))
@@ -114,9 +114,10 @@ impl FormationMeters {
     }
 }
 
-fn together(kept: &[(usize, Keeping)]) -> Keeping {
-    let mean = |figure: fn(&Keeping) -> f64| mean_over(kept.iter().map(|(robots, kept)| (*robots, figure(kept))));
-    Keeping {
+fn together(kept: &[(usize, FormationQuality)]) -> FormationQuality {
+    let mean =
+        |figure: fn(&FormationQuality) -> f64| mean_over(kept.iter().map(|(robots, kept)| (*robots, figure(kept))));
+    FormationQuality {
         error_per_agent: mean(|kept| kept.error_per_agent),
         best_fit_error_per_agent: mean(|kept| kept.best_fit_error_per_agent),
         graph_distance: kept.iter().map(|(_, kept)| kept.graph_distance).sum(),

@@ -108,7 +108,7 @@ impl Waits {
     /// Number of robots that wait now, without those that have arrived next to their goal.
     #[must_use]
     pub fn now(&self) -> usize {
-        self.counts.iter().filter(|count| count.wait != Wait::Place).map(|count| count.now).sum()
+        self.counts.iter().filter(|count| count.wait != Wait::GoalTaken).map(|count| count.now).sum()
     }
 
     /// All causes. Ticks of robots that went to another rank stay here.
@@ -130,13 +130,13 @@ mod tests {
     #[test]
     fn robots_count_once_and_waits_are_uninterrupted() {
         let mut waits = Waits::new(2);
-        let (turn, others) = (Some(Wait::Turn), Some(Wait::Others));
+        let (turn, others) = (Some(Wait::Turn), Some(Wait::Robots));
         for [one, two] in [[turn, None], [turn, others], [None, others], [turn, others], [others, None]] {
             waits.note(0, one);
             waits.note(1, two);
         }
         assert_eq!(waits.now(), 1);
-        let expected = [(Wait::Turn, 1, 0, 3, 2), (Wait::Others, 2, 1, 4, 3)];
+        let expected = [(Wait::Turn, 1, 0, 3, 2), (Wait::Robots, 2, 1, 4, 3)];
         let counts = waits.counts();
         let seen: Vec<_> = counts.iter().map(|c| (c.wait, c.robots, c.now, c.robot_ticks, c.longest_ticks)).collect();
         assert_eq!(seen, expected);

@@ -17,7 +17,7 @@ pub use history::{Frame, History, Sample, SeriesPoint};
 
 use file::LineFile;
 use serde::{Deserialize, Serialize};
-use staya_controller::agent::{Overclaims, Refused, Wait};
+use staya_controller::agent::{ImplausibleCounts, Refused, Wait};
 use staya_controller::grid::Cell;
 use staya_controller::robot::Mode;
 use std::io::ErrorKind;
@@ -96,7 +96,7 @@ pub struct PacketCounts {
     /// Frames refused as received before or older than the latest; includes radio duplicates.
     pub replayed: u64,
     /// Beacons with implausible content.
-    pub overclaims: ClaimCounts,
+    pub implausible: ClaimCounts,
 }
 
 /// Beacons that were refused or corrected as implausible.
@@ -133,13 +133,13 @@ impl AddAssign for ClaimCounts {
 impl PacketCounts {
     /// Counts only the frames and beacons that a robot refused or corrected in a step.
     #[must_use]
-    pub fn refused(rejected: u16, why: Refused, lies: Overclaims) -> Self {
+    pub fn refused(rejected: u16, why: Refused, lies: ImplausibleCounts) -> Self {
         Self {
             rejected: rejected.into(),
             unsigned: why.unsigned.into(),
             forged: why.forged.into(),
             replayed: why.replayed.into(),
-            overclaims: ClaimCounts {
+            implausible: ClaimCounts {
                 numbers: lies.numbers.into(),
                 radii: lies.radii.into(),
                 speeds: lies.speeds.into(),
@@ -163,7 +163,7 @@ impl AddAssign for PacketCounts {
         self.unsigned += other.unsigned;
         self.forged += other.forged;
         self.replayed += other.replayed;
-        self.overclaims += other.overclaims;
+        self.implausible += other.implausible;
         self.sent += other.sent;
         self.delivered += other.delivered;
         self.lost += other.lost;

@@ -23,7 +23,7 @@ fn robot(id: u32, x: i16) -> RobotRow {
         leader: id - 1,
         target: Cell::new(9, 9),
         target_m: (id == 1).then_some([2.5, -3.0, 0.0]),
-        wait: (x == 2).then_some(Wait::Others),
+        wait: (x == 2).then_some(Wait::Robots),
         formation_error_cells: f32::NAN,
         radius_m: (id == 1).then_some(0.25),
         has_cells: id > 1,

@@ -3,7 +3,7 @@
 use super::ranges::within;
 use super::source::Source;
 use super::{
-    Attack, AttackKind, AttackTable, AuthenticationTable, Keeping, Lie, Robot, Roll, ScenarioError, ScenarioFile,
+    Attack, AttackKind, AttackTable, AuthenticationTable, KeyRotation, Lie, Robot, Roll, ScenarioError, ScenarioFile,
 };
 use crate::key::{self, KeyFile};
 use crate::radio::PEERS;
@@ -71,7 +71,7 @@ pub(super) struct Keys {
     pub key: Key,
     /// Warning about the key file, if there is one.
     pub remark: Option<String>,
-    pub keeping: Option<Keeping>,
+    pub keeping: Option<KeyRotation>,
 }
 
 fn keeping(
@@ -80,7 +80,7 @@ fn keeping(
     table: &AuthenticationTable,
     robots: &[Robot],
     master: &Key,
-) -> Result<Keeping, ScenarioError> {
+) -> Result<KeyRotation, ScenarioError> {
     if file.radio.format != Format::Postcard {
         let remedy = "give radio.format = \"postcard\", or a key instead of a master";
         return Err(source.error("authentication.master", "MAVLink's signatures have one key", remedy));
@@ -110,7 +110,7 @@ fn keeping(
     }
     rolls.sort_by_key(|roll| roll.tick);
     let overlap_ticks = ticks("overlap_s", table.overlap_s.unwrap_or(5.0))?;
-    Ok(Keeping { master: master.clone(), place_m, overlap_ticks, rolls })
+    Ok(KeyRotation { master: master.clone(), place_m, overlap_ticks, rolls })
 }
 
 pub(super) fn attacks(
@@ -169,7 +169,7 @@ fn attack(
     let last = robots.last().map_or(RobotId(1), |robot| robot.id);
     let claims = table.claims.map_or(last, RobotId);
     let most = max_robot(file.radio.format, true);
-    if !claims.is_somebody() || claims > most {
+    if !claims.is_some() || claims > most {
         let remedy = format!("give 1 to {}", most.0);
         return Err(source.error(&format!("{field}.claims"), "this is no robot's number", remedy));
     }

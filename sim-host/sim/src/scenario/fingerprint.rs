@@ -1,6 +1,6 @@
 //! A hash of everything that determines a run.
 
-use super::{Keeping, Scenario, Scouting};
+use super::{KeyRotation, Scenario, Scouting};
 use staya_controller::auth::Key;
 use std::fmt::{self, Debug, Write as _};
 
@@ -57,14 +57,14 @@ impl Scenario {
             formation_params,
             published,
             looks_ahead,
-            eyes,
+            sensing,
             faults,
             interventions,
             misnumbered,
             key,
             keeping,
             key_remark: _,
-            claims,
+            plausibility,
             attacks,
             parameters: _,
         } = self;
@@ -72,7 +72,7 @@ impl Scenario {
         all.mix(terrain.cells());
         all.add(&(terrain.width(), terrain.height(), terrain.cell_m, terrain.origin_m));
         all.add(&(seed, tick_us, rules, radio, robots, formations.first(), plane, route, formation_params, published));
-        all.add(&(faults, interventions, misnumbered, claims, attacks));
+        all.add(&(faults, interventions, misnumbered, plausibility, attacks));
         if !changes.is_empty() {
             all.add(changes);
         }
@@ -90,13 +90,13 @@ impl Scenario {
         if let Some(maps) = maps {
             all.add(maps);
         }
-        if let Some(eyes) = eyes {
-            all.add(eyes);
+        if let Some(sensing) = sensing {
+            all.add(sensing);
         }
         // `Debug` output hides secrets.
         all.key(key.as_ref());
         all.key(keeping.as_ref().map(|keeping| &keeping.master));
-        if let Some(Keeping { master: _, place_m, overlap_ticks, rolls }) = keeping {
+        if let Some(KeyRotation { master: _, place_m, overlap_ticks, rolls }) = keeping {
             all.add(&(place_m, overlap_ticks, rolls));
         }
         all.0

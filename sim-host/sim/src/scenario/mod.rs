@@ -4,7 +4,6 @@
 
 mod authentication;
 mod check;
-mod claims;
 mod de;
 mod field;
 mod fingerprint;
@@ -14,6 +13,7 @@ mod land;
 mod maps;
 mod params;
 mod plane;
+mod plausibility;
 mod ranges;
 mod robots;
 mod schema;
@@ -22,7 +22,6 @@ mod setting;
 mod setup;
 mod source;
 
-pub use claims::ClaimsTable;
 pub use field::Field;
 pub use formation::FormationEntry;
 pub use intervention::{Intervention, InterventionTable, with_interventions};
@@ -30,10 +29,11 @@ pub use maps::MapsTable;
 pub use params::{FormationTable, GridTable, RouteTable};
 pub(crate) use plane::goals;
 pub use plane::{
-    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, EyesTable, GoalFlockTable, GroupTable, HalfSpaceEntry,
-    Intruder, IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots,
-    PlaneSetup, PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, Start, Target, WallEntry, circle_starts,
+    BallEntry, BallsEntry, BoidsTable, CircleEntry, CloudEntry, GoalFlockTable, GroupTable, HalfSpaceEntry, Intruder,
+    IntruderEntry, LatticeTable, OrcaTable, Order, OrderEntry, Place, PlaneRobotEntry, PlaneRobots, PlaneSetup,
+    PlaneTable, PushOutTable, RobotGroup, ScatteredDiscs, SensingTable, Start, Target, WallEntry, circle_starts,
 };
+pub use plausibility::PlausibilityTable;
 pub use ranges::within;
 pub use robots::{Formation, Robot, RobotEntry, RobotsTable, ScatteredEntry, ScenEntry};
 pub use schema::{
@@ -49,7 +49,7 @@ use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::terrain::change::LandChange;
 use crate::world::MoveRules;
-pub use crate::world::plane::Eyes;
+pub use crate::world::plane::Sensing;
 pub use crate::world::scouts::Scouting;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{GuidanceSetup, RouteSetup};
@@ -57,7 +57,7 @@ use staya_controller::auth::Key;
 use staya_controller::formation::FormationParams;
 use staya_controller::formation::published::PublishedParams;
 use staya_controller::land::MapParams;
-use staya_controller::neighbor::Claims;
+use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
 use std::ops::Range;
 use std::path::Path;
@@ -118,7 +118,7 @@ pub struct Attack {
 
 /// The operator that holds the master secret, and its key rotations.
 #[derive(Clone, Debug)]
-pub struct Keeping {
+pub struct KeyRotation {
     /// Secret from which all keys are derived.
     pub master: Key,
     /// Position of the operator's radio, metres.
@@ -169,7 +169,7 @@ pub struct Scenario {
     /// Bodies in the plane or in space; `None`: robots move from cell to cell.
     pub plane: Option<PlaneSetup>,
     /// Sensing of other robots in the plane; `None`: disabled.
-    pub eyes: Option<Eyes>,
+    pub sensing: Option<Sensing>,
     /// Route planning of the robots.
     pub route: RouteSetup,
     /// Exchange of terrain maps; `None`: disabled.
@@ -190,11 +190,11 @@ pub struct Scenario {
     /// Shared key of the swarm; `None`: beacons are not authenticated.
     pub key: Option<Key>,
     /// The operator's keys, if each robot has its own key.
-    pub keeping: Option<Keeping>,
+    pub keeping: Option<KeyRotation>,
     /// Warning for the owner of the key file.
     pub key_remark: Option<String>,
     /// Plausibility limits on received beacons.
-    pub claims: Claims<f32>,
+    pub plausibility: PlausibilityLimits<f32>,
     /// Attackers.
     pub attacks: Vec<Attack>,
     /// Fields of the file with overrides applied, for result files; without secrets.
@@ -269,8 +269,8 @@ impl Scenario {
         let route = params::routing(&source, &file)?;
         let land = Some(&terrain).filter(|_| file.terrain.is_some());
         let scouting = scouting::scouting(&source, &file, land, params::sight(&file))?;
-        let eyes = match file.plane.as_ref().zip(plane.as_ref()) {
-            Some((table, setup)) => plane::eyes(&source, &file, table, setup)?,
+        let sensing = match file.plane.as_ref().zip(plane.as_ref()) {
+            Some((table, setup)) => plane::sensing(&source, &file, table, setup)?,
             None => None,
         };
         let maps = maps::sharing(&source, &file, &route, plane.as_ref())?;
@@ -291,7 +291,7 @@ impl Scenario {
             formations,
             parts,
             plane,
-            eyes,
+            sensing,
             route,
             maps,
             formation_params,
@@ -303,11 +303,11 @@ impl Scenario {
             key,
             key_remark,
             keeping,
-            claims: Claims::ANY,
+            plausibility: PlausibilityLimits::ANY,
             attacks,
             parameters: parameters(&source, &file),
         };
-        scenario.claims = claims::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
+        scenario.plausibility = plausibility::said(&source, &file, &scenario.robots, scenario.usual_claims())?;
         Ok(scenario)
     }
 

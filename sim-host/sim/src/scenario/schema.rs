@@ -3,12 +3,12 @@
 //! Cells are `[x, y]` from the south-west corner of the (cropped) map, x east and y north. Times
 //! are simulated. File names are relative to the scenario file.
 
-use super::claims::ClaimsTable;
 use super::formation::FormationEntry;
 use super::intervention::InterventionTable;
 use super::maps::MapsTable;
 use super::params::{FormationTable, GridTable, RouteTable};
 use super::plane::PlaneTable;
+use super::plausibility::PlausibilityTable;
 use super::robots::RobotsTable;
 use crate::radio::RadioParams;
 use crate::terrain::LoadOptions;
@@ -68,7 +68,7 @@ pub struct ScenarioFile {
     pub authentication: Option<AuthenticationTable>,
     /// Plausibility limits on received beacons.
     #[serde(default)]
-    pub claims: ClaimsTable,
+    pub plausibility: PlausibilityTable,
     /// Attackers with radios.
     #[serde(default)]
     pub attack: Vec<AttackTable>,
@@ -341,13 +341,13 @@ pub enum AttackKind {
 pub enum Lie {
     /// Orders all robots to the lure.
     Orders,
-    /// Claims the largest radius that a beacon can encode, at the lure.
+    /// PlausibilityLimits the largest radius that a beacon can encode, at the lure.
     Radius,
-    /// Claims the highest speed that a beacon can encode, from its place towards the lure.
+    /// PlausibilityLimits the highest speed that a beacon can encode, from its place towards the lure.
     Speed,
-    /// Claims to be at the lure in one tick and at its place in the next.
+    /// PlausibilityLimits to be at the lure in one tick and at its place in the next.
     Jump,
-    /// Claims that further robots exist around the lure.
+    /// PlausibilityLimits that further robots exist around the lure.
     Ghosts,
 }
 

@@ -170,7 +170,7 @@ pub const FIGURES: &str = r#"{
       "type": "object",
       "description": "radio frames of this tick, by result",
       "properties": {
-        "overclaims": { "type": "object", "additionalProperties": { "type": "integer", "minimum": 0 } }
+        "implausible": { "type": "object", "additionalProperties": { "type": "integer", "minimum": 0 } }
       },
       "additionalProperties": { "type": "integer", "minimum": 0 }
     },

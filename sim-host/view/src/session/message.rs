@@ -116,9 +116,9 @@ pub(super) fn event(event: &Event) -> String {
         Event::NeighborLost(id) => format!("robot {id} lost"),
         Event::NeighborEvicted(id) => format!("no room for robot {id}"),
         Event::NeighborRebooted(id) => format!("robot {id} restarted"),
-        Event::NobodyHeard => "contact to all robots lost".to_owned(),
+        Event::ContactLost => "contact to all robots lost".to_owned(),
         Event::DuplicateId(id) => format!("two robots use number {id}"),
-        Event::Overclaimed { id, claim } => format!("robot {id} reports implausible {claim}"),
+        Event::Implausible { id, claim } => format!("robot {id} reports implausible {claim}"),
         Event::Muted => "cannot send: counters or timestamps used up; give a new key".to_owned(),
     }
 }

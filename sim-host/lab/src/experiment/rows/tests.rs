@@ -15,7 +15,7 @@ fn quiet() -> Global {
     Global { quiet: true, ..Global::default() }
 }
 
-fn command(out: &Path, keeping: &Keeping) -> Result<Ended> {
+fn command(out: &Path, keeping: &RowRetention) -> Result<Ended> {
     plan().command(out, keeping, &quiet(), &Stop::default())
 }
 
@@ -26,7 +26,7 @@ fn text(out: &Path, name: &str) -> String {
 #[test]
 fn rows_contain_parameters_and_figures() {
     let dir = tempfile::tempdir().expect("a folder");
-    command(dir.path(), &Keeping::default()).expect("done");
+    command(dir.path(), &RowRetention::default()).expect("done");
     let rows = text(dir.path(), ROWS);
     let lines: Vec<Vec<&str>> = rows.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(lines.len(), 1 + 8);
@@ -55,28 +55,28 @@ fn rows_contain_parameters_and_figures() {
 fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     let dir = tempfile::tempdir().expect("a folder");
     let out = |name: &str| dir.path().join(name);
-    command(&out("whole"), &Keeping::default()).expect("done");
+    command(&out("whole"), &RowRetention::default()).expect("done");
     let whole = [ROWS, AGGREGATES].map(|name| text(&out("whole"), name));
     let same = |name: &str| assert_eq!([ROWS, AGGREGATES].map(|file| text(&out(name), file)), whole, "{name}");
     // Shards first, then the whole; then again from a file with an incomplete line, as after a
     // kill.
     for shard in ["2/3", "1/3", "3/3"] {
-        let keeping = Keeping { shard: shard.parse().expect("a shard"), ..Keeping::default() };
+        let keeping = RowRetention { shard: shard.parse().expect("a shard"), ..RowRetention::default() };
         command(&out("shards"), &keeping).expect("done");
         assert!(!out("shards").join(ROWS).exists());
     }
-    let resume = Keeping { resume: true, ..Keeping::default() };
+    let resume = RowRetention { resume: true, ..RowRetention::default() };
     command(&out("shards"), &resume).expect("done");
     same("shards");
     fs::create_dir_all(out("cut/shards")).expect("room");
     let rows = text(&out("whole"), "shards/1-of-1.csv");
     fs::write(out("cut/shards/1-of-1.csv"), &rows[..rows.len() / 2]).expect("room");
-    let refused = command(&out("cut"), &Keeping::default()).expect_err("somebody's hours").to_string();
-    assert!(refused.contains("--resume does the others, --anew forgets these"), "{refused}");
+    let refused = command(&out("cut"), &RowRetention::default()).expect_err("somebody's hours").to_string();
+    assert!(refused.contains("--resume does the others, --restart forgets these"), "{refused}");
     command(&out("cut"), &resume).expect("done");
     same("cut");
     // Completed results are replaced; those of another plan are not continued.
-    command(&out("cut"), &Keeping::default()).expect("done");
+    command(&out("cut"), &RowRetention::default()).expect("done");
     same("cut");
     let other = swap::Plan { noise_m: 0.01, ..plan() };
     let refused =
@@ -87,7 +87,7 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
 #[test]
 fn early_end_keeps_finished_runs() {
     let dir = tempfile::tempdir().expect("a folder");
-    let (asked, keeping, plan) = (AtomicUsize::new(0), Keeping::default(), plan());
+    let (asked, keeping, plan) = (AtomicUsize::new(0), RowRetention::default(), plan());
     let goes_on = |_: usize| asked.fetch_add(1, Ordering::Relaxed) < 700;
     let jobs = Jobs::new(&plan, &goes_on, Some((dir.path(), &keeping)));
     let some = plan.perform(&jobs).expect("no error");
@@ -98,7 +98,7 @@ fn early_end_keeps_finished_runs() {
     for (some, all) in some.iter().zip(&all) {
         assert_eq!(some[..], all[..some.len()]);
     }
-    let (always, resume) = (|_: usize| true, Keeping { resume: true, ..Keeping::default() });
+    let (always, resume) = (|_: usize| true, RowRetention { resume: true, ..RowRetention::default() });
     let jobs = Jobs::new(&plan, &always, Some((dir.path(), &resume)));
     assert_eq!(plan.perform(&jobs).expect("no error"), all);
     assert_eq!(jobs.course().expect("rows").found, course.done);

@@ -117,7 +117,7 @@ fn existing_rows_are_kept_unless_an_option_permits_it() {
     for text in ["1/2", "1/1"] {
         let said = refused(text);
         assert!(
-            said.ends_with("1-of-2.csv: it has 9 of 18 runs; --resume does the others, --anew forgets these"),
+            said.ends_with("1-of-2.csv: it has 9 of 18 runs; --resume does the others, --restart forgets these"),
             "{said}"
         );
     }
@@ -128,7 +128,7 @@ fn existing_rows_are_kept_unless_an_option_permits_it() {
     for existing in [Existing::Refuse, Existing::Resume] {
         let ended = done(&changed, shard("1/2"), &out, existing, &|| true);
         let said = ended.expect_err("another plan").to_string();
-        assert!(said.contains("1-of-2.csv:2: it is of another plan (") && said.contains("--anew"), "{said}");
+        assert!(said.contains("1-of-2.csv:2: it is of another plan (") && said.contains("--restart"), "{said}");
     }
     assert_eq!(fs::read(out.join("shards/1-of-2.csv")).expect("rows"), before);
     let course = done(&changed, Shard::default(), &out, Existing::Forget, &|| true).expect("room");
@@ -177,7 +177,7 @@ fn inconsistent_rows_are_refused() {
     fs::write(&one, format!("{rows}{other}\n")).expect("room");
     let said = read(&[one.clone(), two.clone()]).expect_err("they differ").to_string();
     assert!(
-        said.contains(&format!("1-of-2.csv:11: run {number} has another row in")) && said.contains("--anew"),
+        said.contains(&format!("1-of-2.csv:11: run {number} has another row in")) && said.contains("--restart"),
         "{said}"
     );
     for (cells, what) in [

@@ -9,7 +9,7 @@ fn controllers(count: usize) -> Vec<Controller<Postcard>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let mut scenario = Scenario::load(&path, &Overrides::default()).unwrap();
     // Like `rules.error_m` in a companion's configuration.
-    scenario.claims.max_radius_m += 10.0;
+    scenario.plausibility.max_radius_m += 10.0;
     let plane = scenario.plane.as_ref().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
     let controller = |index| Controller::new(&scenario, &ground, index, 1, [0.5, 10.0], Postcard);

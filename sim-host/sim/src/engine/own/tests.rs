@@ -1,5 +1,5 @@
 use super::*;
-use crate::engine::{Unable, simulate};
+use crate::engine::{StartError, simulate};
 use crate::scenario::Overrides;
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::{
@@ -111,7 +111,7 @@ fn a_run_resumed_from_a_checkpoint_ends_identically() {
     }
     saved.save(&mut bytes).unwrap();
     let mut again = engine(&scenario, |_| Highest::default()).unwrap();
-    again.restore(&bytes).map_err(Unable::State).unwrap();
+    again.restore(&bytes).map_err(StartError::State).unwrap();
     while !again.is_over() && again.ticks() < scenario.ticks {
         let _ = again.step();
     }

@@ -21,7 +21,7 @@ pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&K
         *version = version.wrapping_add(1);
         let milli = |x: f64| libm::round(x * 1000.0);
         let place = WaypointAssignment {
-            to: RobotId::NOBODY,
+            to: RobotId::NONE,
             version: *version,
             index: order.index,
             position_mm: order.target.position_m.map(|x| milli(x) as i32),

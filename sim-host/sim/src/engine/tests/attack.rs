@@ -78,7 +78,7 @@ fn a_lying_insider_delays_no_robot() {
     let in_time = 250;
     let text = INSIDER.replace("ticks = 1200", &format!("ticks = {in_time}"));
     let silent = run(&without(&text, "attack"));
-    assert_eq!((silent.arrived, silent.packets.overclaims.sum()), (12, 0), "{:?}", silent.packets);
+    assert_eq!((silent.arrived, silent.packets.implausible.sum()), (12, 0), "{:?}", silent.packets);
     for (lies, is_late) in [("\"radius\"", true), ("\"speed\"", true), ("\"ghosts\", \"jump\"", false)] {
         let mut lied = text.replace("\"radius\", \"speed\", \"jump\", \"ghosts\"", lies);
         if !lies.contains("ghosts") {
@@ -86,9 +86,9 @@ fn a_lying_insider_delays_no_robot() {
         }
         let bounded = run(&lied);
         assert_eq!(bounded.arrived, 12, "{lies}");
-        assert!(bounded.packets.overclaims.sum() > 30, "{lies}: {:?}", bounded.packets.overclaims);
+        assert!(bounded.packets.implausible.sum() > 30, "{lies}: {:?}", bounded.packets.implausible);
         let open = run(&lied.replace("bounded = true", "bounded = false"));
-        assert_eq!((open.arrived < 12, open.packets.overclaims.sum()), (is_late, 0), "{lies}");
+        assert_eq!((open.arrived < 12, open.packets.implausible.sum()), (is_late, 0), "{lies}");
     }
 }
 
@@ -100,7 +100,7 @@ fn honest_robots_stay_within_the_limits() {
         include_str!("../../../../../scenarios/two-flocks.toml"),
     ];
     for text in texts {
-        let counted = run(text).packets.overclaims;
+        let counted = run(text).packets.implausible;
         assert_eq!(counted.sum(), 0, "{counted:?}");
     }
 }

@@ -36,7 +36,7 @@ fn run(scenario: &Scenario) -> (Outcome, Vec<u32>) {
             assert!(land.is_passable(*now), "tick {}: from {then:?} to {now:?}", moment.row.tick);
         }
         before = cells;
-        if rows[0].wait == Some(Wait::Way) {
+        if rows[0].wait == Some(Wait::Route) {
             stuck.push(moment.row.tick);
         }
         ControlFlow::Continue(())

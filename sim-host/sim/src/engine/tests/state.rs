@@ -180,7 +180,7 @@ fn runs_with_interventions_resume() {
 #[test]
 fn runs_with_sensors_resume() {
     let text = "tick_s = 0.05\nname = \"t\"\nticks = 200\n[radio]\nloss = 0.5\n[plane]\nradius_m = 0.15\nmax_speed_mps = 0.5\n\
-        [plane.eyes]\nrange_m = 3\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 3\n\
+        [plane.sensing]\nrange_m = 3\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 3\n\
         [plane.robots.circle]\ncount = 8\nradius_m = 1\n[[fault]]\nrobot = 2\nat_s = 1\ndown_s = 1\n";
     let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
     with_engines!(&scenario, goes_on("eyes", 80, &[1, 2, 3, 4, 5, 21, 41, 50]));

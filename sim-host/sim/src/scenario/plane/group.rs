@@ -5,7 +5,7 @@ use super::super::{ScenarioError, ScenarioFile, params};
 use super::spec::Spec;
 use super::{checks, flocks};
 use crate::world::plane::Abilities;
-use staya_controller::agent::{AnyHalfPlanes, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup, Silence};
+use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceKind, GuidanceSetup, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::push_out::{Evasion, Model, PushOutParams};
@@ -30,7 +30,7 @@ pub struct RobotGroup {
     /// The safety layer.
     pub safety: SafetySetup,
     /// Reaction to loss of contact.
-    pub silence: Silence<f32>,
+    pub contact_loss: ContactLossPolicy<f32>,
     /// Flock number; robots of different flocks avoid each other but do not flock together.
     pub flock: u8,
 }
@@ -50,7 +50,7 @@ impl RobotGroup {
             sight_m: super::table::ten(),
             guidance: waypoint(cruise_mps, tolerance_m),
             safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
-            silence: Silence::DEFAULT,
+            contact_loss: ContactLossPolicy::DEFAULT,
             flock: 0,
         }
     }
@@ -134,7 +134,7 @@ impl Spec {
             sight_m: self.sight_m,
             guidance: self.guidance(source, file, cruise_mps, tolerance_m)?,
             safety: self.safety(source)?,
-            silence: self.silence(source)?,
+            contact_loss: self.silence(source)?,
             flock: self.flock,
         };
         self.unused(source)?;
@@ -210,8 +210,8 @@ impl Spec {
         Ok(params)
     }
 
-    fn silence(&self, source: &Source<'_>) -> Result<Silence<f32>, ScenarioError> {
-        let mut silence = Silence::DEFAULT;
+    fn silence(&self, source: &Source<'_>) -> Result<ContactLossPolicy<f32>, ScenarioError> {
+        let mut silence = ContactLossPolicy::DEFAULT;
         if let Some(remember_s) = self.orca.remember_s {
             self.within(source, "orca.remember_s", remember_s, [0.0, 1800.0], "seconds")?;
             silence.remember = Duration::from_micros(libm::round(remember_s * 1e6) as i32);

@@ -1,21 +1,21 @@
 //! `[plane]`: robots that move in the plane or in space, and their choice of velocity.
 
 mod checks;
-mod eyes;
 mod flocks;
 mod group;
 mod place;
 mod remarks;
 mod scattered;
+mod sensing;
 mod spec;
 mod starts;
 mod table;
 mod torus;
 
 pub(crate) use checks::goals;
-pub(super) use eyes::eyes;
 pub(super) use flocks::remark;
 pub(super) use remarks::remarks;
+pub(super) use sensing::sensing;
 
 #[cfg(test)]
 mod tests;
@@ -38,7 +38,7 @@ use spec::Spec;
 use staya_controller::agent::{GuidanceKind, RouteSetup};
 use staya_controller::formation::FormationParams;
 use staya_controller::grid::Cell;
-use staya_controller::neighbor::Claims;
+use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
 
 const MAX_ROBOTS: u32 = 1_000_000;
@@ -176,19 +176,19 @@ impl Scenario {
             formation_params: FormationParams::default(),
             published: None,
             looks_ahead: false,
-            eyes: None,
+            sensing: None,
             faults: Vec::new(),
             interventions: Vec::new(),
             misnumbered: Vec::new(),
             key: None,
             key_remark: None,
             keeping: None,
-            claims: Claims::ANY,
+            plausibility: PlausibilityLimits::ANY,
             maps: None,
             attacks: Vec::new(),
             parameters: serde_json::Value::Null,
         };
-        scenario.claims = scenario.usual_claims();
+        scenario.plausibility = scenario.usual_claims();
         scenario
     }
 }

@@ -64,7 +64,7 @@ pub struct PlaneTable {
     /// Parameters of boids; required for them.
     pub boids: Option<BoidsTable>,
     /// Detection of other robots by sensors.
-    pub eyes: Option<EyesTable>,
+    pub sensing: Option<SensingTable>,
     /// Goals that an operator sends during the run.
     #[serde(default)]
     pub order: Vec<OrderEntry>,
@@ -78,10 +78,10 @@ pub(super) const fn ten() -> f64 {
     10.0
 }
 
-/// `[plane.eyes]`: robots detect each other with sensors, in addition to the radio or without it.
+/// `[plane.sensing]`: robots detect each other with sensors, in addition to the radio or without it.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct EyesTable {
+pub struct SensingTable {
     /// Range from centre to centre, metres.
     pub range_m: f64,
     /// Standard deviation of measured positions along each axis, metres. Default: 0.

@@ -1,12 +1,12 @@
-mod eyes;
 mod flocks;
 mod groups;
 mod remarks;
+mod sensing;
 
 use super::super::Overrides;
 use super::*;
 use proptest::prelude::*;
-use staya_controller::agent::{AnyHalfPlanes, GuidanceSetup, SafetyKind, SafetySetup, Silence};
+use staya_controller::agent::{AnyHalfPlanes, ContactLossPolicy, GuidanceSetup, SafetyKind, SafetySetup};
 use staya_controller::neighbor::StalenessInflation;
 use staya_controller::orca::AvoidParams;
 use staya_controller::time::Duration;
@@ -52,14 +52,17 @@ fn the_smallest_plane_has_the_documented_defaults() {
     let [one, two] = &plane.starts[..] else { panic!("two robots") };
     assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
     assert_eq!((two.position_m, two.places.len()), ([3.0, 0.0, 1.0], 0));
-    assert_eq!(plane.general.silence, Silence { remember: Duration::from_millis(60_000), alone_mps: 0.0 });
+    assert_eq!(
+        plane.general.contact_loss,
+        ContactLossPolicy { remember: Duration::from_millis(60_000), alone_mps: 0.0 }
+    );
 }
 
 #[test]
 fn the_reaction_to_silence_is_read() {
     let table = "[plane.orca]\nremember_s = 2.5\nalone_mps = inf\n";
-    let silence = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.silence;
-    assert_eq!(silence, Silence { remember: Duration::from_millis(2500), alone_mps: f32::MAX });
+    let silence = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.contact_loss;
+    assert_eq!(silence, ContactLossPolicy { remember: Duration::from_millis(2500), alone_mps: f32::MAX });
 }
 
 #[test]

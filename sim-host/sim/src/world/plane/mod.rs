@@ -6,14 +6,14 @@
 //! world for safety.
 
 mod border;
-mod eyes;
+mod sensing;
 mod shape;
 mod solid;
 mod solids;
 
 #[doc(hidden)]
 pub use border::Beside;
-pub use eyes::{Eyes, Sight};
+pub use sensing::{Sensing, Sight};
 pub use shape::{FAR_M, Shape};
 pub use solid::Solid;
 pub use solid::narrow;

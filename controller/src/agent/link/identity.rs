@@ -1,10 +1,10 @@
 //! Identifies the sender of a frame and checks the plausibility of its beacon.
 
-use super::super::double::{is_ahead, is_within, place};
+use super::super::duplicate_id::{is_ahead, is_within, place};
 use super::super::io::{Event, Outputs};
-use super::{Link, Listener, report};
+use super::{Link, ReceiveContext, report};
 use crate::geom::Position;
-use crate::neighbor::{Claim, Claims, Doubt, Neighbor};
+use crate::neighbor::{Claim, Neighbor, PlausibilityLimits, Verdict};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::Duration;
@@ -12,12 +12,12 @@ use crate::wire::{Frame, Header, Payload, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     /// Returns the id under which the sender of a frame is known: its own id, or
-    /// [`RobotId::double`] for the second robot with that id. `None` for an echo of an own frame,
+    /// [`RobotId::duplicate`] for the second robot with that id. `None` for an echo of an own frame,
     /// and for a beacon with an implausible id or position.
     pub(super) fn known_as(
         &mut self,
         frame: &Frame,
-        listener: &Listener<'_, S>,
+        listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
     ) -> Option<RobotId> {
         let (header, own, place) = (frame.header, self.header, place(&frame.message));
@@ -27,20 +27,20 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 (self.header.boot, self.header.sequence) = (header.boot, header.sequence.wrapping_add(1));
                 self.requests.set_boot(header.boot);
             }
-            return is_other.then_some(own.sender.double());
+            return is_other.then_some(own.sender.duplicate());
         }
         let Some(place) = place else {
             return Some(header.sender);
         };
-        if header.sender > listener.claims.last {
-            if out.overclaims.numbers == 0 {
-                report(out, Event::Overclaimed { id: header.sender, claim: Claim::Number });
+        if header.sender > listener.plausibility.last {
+            if out.implausible.numbers == 0 {
+                report(out, Event::Implausible { id: header.sender, claim: Claim::Number });
             }
-            out.overclaims.count(Claim::Number);
+            out.implausible.count(Claim::Number);
             return None;
         }
         let is_double = listener.fastest_mps.is_some_and(|fastest| self.is_double(header, place, listener, fastest));
-        let id = if is_double { header.sender.double() } else { header.sender };
+        let id = if is_double { header.sender.duplicate() } else { header.sender };
         self.is_believed(id, header, place, listener, out).then_some(id)
     }
 
@@ -52,7 +52,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
 
     /// The time since the last beacon of `known`: by the clock, or by its sequence numbers if its
     /// packets were delayed.
-    fn time_since(&self, known: &Neighbor<S, P>, header: Header, listener: &Listener<'_, S>) -> Duration {
+    fn time_since(&self, known: &Neighbor<S, P>, header: Header, listener: &ReceiveContext<'_, S>) -> Duration {
         let window = self.windows.iter().find(|(id, _)| *id == known.id);
         let frames = window.map_or(0, |(_, window)| window.distance(header));
         let counted = listener.period.saturating_mul(frames.into());
@@ -60,11 +60,11 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 
     /// Whether a beacon comes from the second of two other robots with one id.
-    fn is_double(&self, header: Header, place: Position, listener: &Listener<'_, S>, fastest_mps: S) -> bool {
+    fn is_double(&self, header: Header, place: Position, listener: &ReceiveContext<'_, S>, fastest_mps: S) -> bool {
         let at = listener.heard_at;
         // Duplicate ids are the largest.
-        let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.doubled().is_some());
-        let double = if has_doubles { self.known(header.sender.double()) } else { None };
+        let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.duplicate_of().is_some());
+        let double = if has_doubles { self.known(header.sender.duplicate()) } else { None };
         match (self.known(header.sender), double) {
             // Then it is the only robot in contact with that id.
             (None, _) => false,
@@ -91,12 +91,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         id: RobotId,
         header: Header,
         place: Position,
-        listener: &Listener<'_, S>,
+        listener: &ReceiveContext<'_, S>,
         out: &mut Outputs<S>,
     ) -> bool {
-        let claims = listener.claims;
+        let plausibility = listener.plausibility;
         // Then no robot is ever in doubt.
-        if claims.believes_all_places() {
+        if plausibility.believes_all_places() {
             return true;
         }
         // The first position of a second robot with one id is accepted, since both robots are
@@ -105,35 +105,35 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             return true;
         };
         let place = self.image(place, known.position);
-        if claims.can_go(known.position, place, self.time_since(known, header, listener)) {
+        if plausibility.can_go(known.position, place, self.time_since(known, header, listener)) {
             self.suspects.clear(id);
             return true;
         }
-        out.overclaims.count(Claim::Jump);
-        let longest = self.table.ages().stale_after.max(claims.settle);
-        let doubt = self.suspects.judge(id, place, listener.heard_at, claims, longest);
-        if doubt == Doubt::Begins {
-            report(out, Event::Overclaimed { id: header.sender, claim: Claim::Jump });
+        out.implausible.count(Claim::Jump);
+        let longest = self.table.ages().stale_after.max(plausibility.settle);
+        let doubt = self.suspects.judge(id, place, listener.heard_at, plausibility, longest);
+        if doubt == Verdict::Begins {
+            report(out, Event::Implausible { id: header.sender, claim: Claim::Jump });
         }
-        doubt == Doubt::Settled
+        doubt == Verdict::Settled
     }
 
     /// Reduces radius and speed of a report to the limits. An event is reported only for the first
     /// of consecutive violations.
-    pub(super) fn cut(&self, said: &mut Neighbor<S, P>, claims: &Claims<S>, out: &mut Outputs<S>) {
-        let (is_large, is_fast) = claims.cut(said);
+    pub(super) fn cut(&self, said: &mut Neighbor<S, P>, plausibility: &PlausibilityLimits<S>, out: &mut Outputs<S>) {
+        let (is_large, is_fast) = plausibility.cut(said);
         if !is_large && !is_fast {
             return;
         }
         let known = self.known(said.id);
-        let was_large = known.is_some_and(|known| known.radius_m >= claims.max_radius_m);
-        let was_fast = known.is_some_and(|known| known.velocity_mps.norm() >= claims.max_speed_mps * S::HALF);
+        let was_large = known.is_some_and(|known| known.radius_m >= plausibility.max_radius_m);
+        let was_fast = known.is_some_and(|known| known.velocity_mps.norm() >= plausibility.max_speed_mps * S::HALF);
         for (is, was, claim) in [(is_large, was_large, Claim::Radius), (is_fast, was_fast, Claim::Speed)] {
             if is {
-                out.overclaims.count(claim);
+                out.implausible.count(claim);
             }
             if is && !was {
-                report(out, Event::Overclaimed { id: said.id.doubled().unwrap_or(said.id), claim });
+                report(out, Event::Implausible { id: said.id.duplicate_of().unwrap_or(said.id), claim });
             }
         }
     }

@@ -34,8 +34,8 @@ const DOUBLE: u32 = 7 | 1 << 31;
 
 #[test]
 fn duplicate_ids_are_distinct_from_real_ids() {
-    assert_eq!(RobotId(7).double(), RobotId(DOUBLE));
-    assert_eq!((RobotId(DOUBLE).doubled(), RobotId(7).doubled()), (Some(RobotId(7)), None));
+    assert_eq!(RobotId(7).duplicate(), RobotId(DOUBLE));
+    assert_eq!((RobotId(DOUBLE).duplicate_of(), RobotId(7).duplicate_of()), (Some(RobotId(7)), None));
     assert_eq!(
         (std::format!("{}", RobotId(7)), std::format!("{}", RobotId(DOUBLE))),
         ("7".into(), "7 (the second one)".into())
@@ -126,7 +126,7 @@ fn the_own_duplicate_stays_in_a_full_table_and_its_orders_are_ignored() {
     let mut robot = walker(0, [0.0; 2], [0, 0]);
     let crowd = |n: u16| (1..=6).chain(8..=12).flat_map(move |id| frame(id, 0, n, &standing(1000 + 500 * id as i32)));
     for n in 0..5 {
-        let goal = Message::Goal(GoalAssignment { to: RobotId::NOBODY, version: 9, target: Cell::new(1, 1) });
+        let goal = Message::Goal(GoalAssignment { to: RobotId::NONE, version: 9, target: Cell::new(1, 1) });
         let own = [frame(7, 0, 2 * n + 20, &standing(90_000)), frame(7, 0, 2 * n + 21, &goal)].concat();
         let inbox: Vec<u8> = own.into_iter().chain(crowd(n)).collect();
         let out = robot.step(step_number(n.into()), &inbox);

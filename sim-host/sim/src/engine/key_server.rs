@@ -15,7 +15,7 @@ const AGAIN_TICKS: u32 = 5;
 const ROUNDS: u32 = 20;
 
 /// The key server and its radio.
-pub struct Keeper {
+pub struct KeyServer {
     wire: OperatorWire<{ radio::PEERS }>,
     place_m: [f64; 2],
     robots: Vec<RobotId>,
@@ -30,7 +30,7 @@ pub struct Keeper {
     outbox: Vec<u8>,
 }
 
-/// Deserialized form of [`Keeper::state`].
+/// Deserialized form of [`KeyServer::state`].
 #[derive(Deserialize)]
 pub struct KeeperState {
     wire: Box<OperatorWire<{ radio::PEERS }>>,
@@ -42,7 +42,7 @@ pub struct KeeperState {
     held: BTreeMap<RobotId, (u16, KeyPhase)>,
 }
 
-impl Keeper {
+impl KeyServer {
     /// The key server of a scenario; `None` if robots have no keys of their own.
     pub(super) fn new(scenario: &Scenario) -> Option<Self> {
         let keeping = scenario.keeping.as_ref()?;

@@ -107,10 +107,10 @@ impl Companions<'_> {
             AgentEvent::DuplicateId(id) => {
                 self.tell(index, &format!("two robots use number {id}; give one of them another number"))
             }
-            AgentEvent::Overclaimed { id, claim } => {
+            AgentEvent::Implausible { id, claim } => {
                 self.tell(index, &format!("ignores robot {id}: implausible {claim}"));
             }
-            AgentEvent::NobodyHeard => self.tell(index, "lost contact to all robots"),
+            AgentEvent::ContactLost => self.tell(index, "lost contact to all robots"),
             AgentEvent::Muted => {
                 self.tell(index, "cannot send: packet counters or timestamps are used up; give a new key (air.key)");
                 self.send(index, &status_text("staya: cannot send, new swarm key needed", true));

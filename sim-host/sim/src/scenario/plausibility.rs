@@ -1,10 +1,10 @@
-//! `[claims]`: limits within which received beacons count as plausible.
+//! `[plausibility]`: limits within which received beacons count as plausible.
 
 use super::ranges::within;
 use super::source::Source;
 use super::{PlaneSetup, Robot, Scenario, ScenarioError, ScenarioFile};
 use serde::Deserialize;
-use staya_controller::neighbor::Claims;
+use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
 use staya_controller::time::Duration;
 
@@ -15,10 +15,10 @@ const SLACK_RADII: f64 = 4.0;
 /// Ticks for which a robot must be consistent after a jump: the age at which a beacon is stale.
 const SETTLE_TICKS: u32 = 4;
 
-/// `[claims]`: plausibility limits on beacons. The defaults accept every honest robot.
+/// `[plausibility]`: plausibility limits on beacons. The defaults accept every honest robot.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ClaimsTable {
+pub struct PlausibilityTable {
     /// Whether beacons are checked. Default: true.
     pub bounded: Option<bool>,
     /// Largest radius, metres. Default: twice the radius of the largest body.
@@ -34,8 +34,8 @@ pub struct ClaimsTable {
 }
 
 /// Default limits; `radius_m` and `speed_mps` are the largest in the scenario.
-fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> Claims<f32> {
-    Claims {
+fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> PlausibilityLimits<f32> {
+    PlausibilityLimits {
         max_radius_m: (TIMES * radius_m) as f32,
         max_speed_mps: (TIMES * speed_mps) as f32,
         slack_m: (SLACK_RADII * radius_m) as f32,
@@ -44,7 +44,7 @@ fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> Claims<f32> 
     }
 }
 
-pub(super) fn in_plane(setup: &PlaneSetup, tick_us: u32, last: u32) -> Claims<f32> {
+pub(super) fn in_plane(setup: &PlaneSetup, tick_us: u32, last: u32) -> PlausibilityLimits<f32> {
     let norm = |v: [f64; 3]| libm::sqrt(v.iter().map(|v| v * v).sum());
     let kinds = setup.kinds().map(|group| (group.radius_m, group.abilities.max_speed_mps));
     let intruders = setup.intruders.iter().map(|intruder| (intruder.radius_m, norm(intruder.velocity_mps)));
@@ -54,14 +54,14 @@ pub(super) fn in_plane(setup: &PlaneSetup, tick_us: u32, last: u32) -> Claims<f3
     usual(radius_m, speed_mps, tick_us, last)
 }
 
-pub(super) fn on_grid(cell_m: f64, tick_us: u32, last: u32) -> Claims<f32> {
+pub(super) fn on_grid(cell_m: f64, tick_us: u32, last: u32) -> PlausibilityLimits<f32> {
     usual(cell_m / 2.0, cell_m * 1e6 / f64::from(tick_us), tick_us, last)
 }
 
 impl Scenario {
-    /// Plausibility limits of a scenario without `[claims]`. O(robots).
+    /// Plausibility limits of a scenario without `[plausibility]`. O(robots).
     #[must_use]
-    pub fn usual_claims(&self) -> Claims<f32> {
+    pub fn usual_claims(&self) -> PlausibilityLimits<f32> {
         let numbers = self.robots.iter().map(|robot| robot.id).chain(self.misnumbered.iter().map(|(_, said)| *said));
         let last = numbers.max().unwrap_or_default().0;
         match &self.plane {
@@ -72,43 +72,43 @@ impl Scenario {
     }
 }
 
-/// Applies the fields of `[claims]` to the default limits.
+/// Applies the fields of `[plausibility]` to the default limits.
 pub(super) fn said(
     source: &Source<'_>,
     file: &ScenarioFile,
     robots: &[Robot],
-    usual: Claims<f32>,
-) -> Result<Claims<f32>, ScenarioError> {
-    let (table, mut claims) = (file.claims, usual);
+    usual: PlausibilityLimits<f32>,
+) -> Result<PlausibilityLimits<f32>, ScenarioError> {
+    let (table, mut plausibility) = (file.plausibility, usual);
     if table.bounded == Some(false) {
-        let ClaimsTable { bounded: _, max_radius_m, max_speed_mps, slack_m, settle_s, last_robot } = table;
+        let PlausibilityTable { bounded: _, max_radius_m, max_speed_mps, slack_m, settle_s, last_robot } = table;
         if [max_radius_m, max_speed_mps, slack_m, settle_s].iter().any(Option::is_some) || last_robot.is_some() {
             let remedy = "leave the other fields of this table out, or bounded";
-            return Err(source.error("claims.bounded", "there are bounds in this table", remedy));
+            return Err(source.error("plausibility.bounded", "there are bounds in this table", remedy));
         }
-        return Ok(Claims::ANY);
+        return Ok(PlausibilityLimits::ANY);
     }
     for (field, value, low, unit, bound) in [
-        ("max_radius_m", table.max_radius_m, 0.001, "metres", &mut claims.max_radius_m),
-        ("max_speed_mps", table.max_speed_mps, 0.001, "m/s", &mut claims.max_speed_mps),
-        ("slack_m", table.slack_m, 0.0, "metres", &mut claims.slack_m),
+        ("max_radius_m", table.max_radius_m, 0.001, "metres", &mut plausibility.max_radius_m),
+        ("max_speed_mps", table.max_speed_mps, 0.001, "m/s", &mut plausibility.max_speed_mps),
+        ("slack_m", table.slack_m, 0.0, "metres", &mut plausibility.slack_m),
     ] {
         if let Some(value) = value {
-            within(source, &format!("claims.{field}"), value, low, 1e6, unit)?;
+            within(source, &format!("plausibility.{field}"), value, low, 1e6, unit)?;
             *bound = value as f32;
         }
     }
     if let Some(settle_s) = table.settle_s {
-        within(source, "claims.settle_s", settle_s, 0.0, 1800.0, "seconds")?;
-        claims.settle = Duration::from_micros(libm::round(settle_s * 1e6) as i32);
+        within(source, "plausibility.settle_s", settle_s, 0.0, 1800.0, "seconds")?;
+        plausibility.settle = Duration::from_micros(libm::round(settle_s * 1e6) as i32);
     }
     if let Some(last) = table.last_robot {
         let least = robots.last().map_or(1, |robot| robot.id.0);
         if last < least {
             let what = format!("robot {least} would not be believed");
-            return Err(source.error("claims.last_robot", what, format!("give {least} or more")));
+            return Err(source.error("plausibility.last_robot", what, format!("give {least} or more")));
         }
-        claims.last = RobotId(last);
+        plausibility.last = RobotId(last);
     }
-    Ok(claims)
+    Ok(plausibility)
 }

@@ -54,7 +54,7 @@ impl<S: Scalar> Mover<S> {
             let _ = table.put(neighbor, own, now, |_| false);
         }
         let inflation = StalenessInflation { growth_mps: S::ONE, max_m: body.radius_m };
-        let room = Room { body: &body, own, now, news: STEP, inflation, may_be_alone: false };
+        let room = GapLimit { body: &body, own, now, news: STEP, inflation, may_be_alone: false };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
         body.velocity_mps = velocity_mps;
@@ -153,8 +153,14 @@ fn a_robot_turned_aside_is_not_turned_into_a_wall() {
     let mut table = mover.table.clone();
     let _ = table.put(other.news(0), Position::ORIGIN, moment(1), |_| false);
     let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-    let room =
-        Room { body: &mover.body, own: Position::ORIGIN, now: moment(1), news: STEP, inflation, may_be_alone: false };
+    let room = GapLimit {
+        body: &mover.body,
+        own: Position::ORIGIN,
+        now: moment(1),
+        news: STEP,
+        inflation,
+        may_be_alone: false,
+    };
     let east = Vec3::new(1.0, 0.0, 0.0);
     let open = room.limit(&mut table, &[], east).unwrap();
     assert!(open.y < -0.2 && open.x > 0.4, "{open:?}: aside");
@@ -174,7 +180,7 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
         let (own, now) = (mover.position(), moment(step));
         let _ = mover.table.put(other.news(step - 1), own, now, |_| false);
         let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-        let room = Room { body: &mover.body, own, now, news: STEP, inflation, may_be_alone: false };
+        let room = GapLimit { body: &mover.body, own, now, news: STEP, inflation, may_be_alone: false };
         let v = room.limit(&mut mover.table, &wall, Vec3::new(1.0, 0.0, 0.0)).unwrap();
         mover.at_m += v.cast() * 0.1;
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);

@@ -22,14 +22,14 @@ use serde::{Deserialize, Serialize};
 /// rule; there the place of a missing robot remains empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Ranks {
+pub struct GapClosing {
     /// The place held instead of the own one, and its distance, cells.
     taken: Option<(u8, Cell)>,
     /// The place in front, if its holder was received before.
     front: Option<u8>,
 }
 
-impl Ranks {
+impl GapClosing {
     /// Creates the state of a robot in its own place.
     #[must_use]
     pub const fn new() -> Self {
@@ -151,7 +151,7 @@ mod tests {
     /// Six robots that receive each other, each with its ranks and number; `is_alive` tells which
     /// are alive.
     struct File {
-        ranks: [Ranks; 6],
+        ranks: [GapClosing; 6],
         is_alive: [bool; 6],
         numbers: [u32; 6],
     }
@@ -162,7 +162,7 @@ mod tests {
         }
 
         fn numbered(numbers: [u32; 6]) -> Self {
-            Self { ranks: [Ranks::new(); 6], is_alive: [true; 6], numbers }
+            Self { ranks: [GapClosing::new(); 6], is_alive: [true; 6], numbers }
         }
 
         fn template(&self, own: usize) -> Template<8> {
@@ -267,7 +267,7 @@ mod tests {
             file.ticks(3);
             file.is_alive[dead] = false;
             file.ticks(20);
-            (file.is_alive[dead], file.ranks[dead]) = (true, Ranks::new());
+            (file.is_alive[dead], file.ranks[dead]) = (true, GapClosing::new());
             assert_eq!(file.ticks(30), [0, 1, 2, 3, 4, 5].map(Some), "{dead}");
         }
     }
@@ -276,7 +276,7 @@ mod tests {
     fn the_view_is_from_the_place_that_is_held() {
         // Robot 2 is dead; robot 4 (place 3) steps into place 1, robot 6 (place 5) into place 3.
         let holders = [(1, 0), (3, 2), (4, 1), (5, 4), (6, 3)].map(|(id, slot)| (RobotId(id), slot));
-        let ranks = Ranks { taken: Some((1, Cell::new(0, 3))), front: None };
+        let ranks = GapClosing { taken: Some((1, Cell::new(0, 3))), front: None };
         let others = holders.into_iter().filter(|(id, _)| *id != RobotId(4));
         let view = ranks.view(RobotId(4), &template(3), others);
         assert_eq!((view.slot, view.offset), (1, Cell::new(3, 0)));
@@ -284,17 +284,17 @@ mod tests {
         seen.sort_unstable();
         assert_eq!(seen, [(1, -3, 0), (3, -3, -3), (5, -3, -6), (6, 0, -3)]);
         // Robot 1 sees robot 4 beside it, not behind.
-        let view = Ranks::new().view(RobotId(1), &template(0), holders.into_iter().skip(1));
+        let view = GapClosing::new().view(RobotId(1), &template(0), holders.into_iter().skip(1));
         let beside = view.entries.iter().find(|entry| entry.id == RobotId(4)).unwrap();
         assert_eq!(beside.offset, Cell::new(3, 0));
     }
 
     #[test]
     fn robots_that_are_not_numbered_by_their_places_keep_them() {
-        let mut ranks = Ranks::new();
+        let mut ranks = GapClosing::new();
         for holders in [&[(RobotId(1), 0)][..], &[]] {
             ranks.close(RobotId(9), &template(3), holders.iter().copied());
         }
-        assert_eq!(ranks, Ranks::new());
+        assert_eq!(ranks, GapClosing::new());
     }
 }

@@ -40,7 +40,7 @@ const SLOW: i32 = 100;
 ///   be nearest to its own place). The other robots leave it the space that it needs. Then all try
 ///   again.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Beside<S> {
+pub(super) struct GoalOccupancy<S> {
     /// Least distance to the goal so far, metres; 0 before the first check.
     nearest_m: S,
     /// Distance that it could have covered since it last came nearer, metres.
@@ -56,7 +56,7 @@ pub(super) enum Claim<S> {
     IsBeside,
 }
 
-impl<S: Scalar> Beside<S> {
+impl<S: Scalar> GoalOccupancy<S> {
     pub(super) const NEW: Self = Self { nearest_m: S::ZERO, idle_m: S::ZERO, is_beside: false };
 
     /// Decides about a stationary goal at offset `way_m`. Call it in each step. O(nearby).

@@ -10,9 +10,9 @@ use std::collections::VecDeque;
 
 const PURPOSE: u32 = u32::from_be_bytes(*b"eyes");
 
-/// Properties of the sensors: `[plane.eyes]` of a scenario.
+/// Properties of the sensors: `[plane.sensing]` of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eyes {
+pub struct Sensing {
     /// Range from centre to centre, metres.
     pub range_m: f64,
     /// Standard deviation of measured positions along each axis, metres.
@@ -34,7 +34,7 @@ pub struct Eyes {
 /// The robots' sensors and the past positions that they measure.
 #[derive(Clone, Debug)]
 pub struct Sight {
-    eyes: Eyes,
+    sensing: Sensing,
     seed: u64,
     tick_us: u32,
     /// Whether all bodies stay at one height; then measured heights have no error.
@@ -46,9 +46,9 @@ pub struct Sight {
 
 impl Sight {
     /// Creates sensors without past positions.
-    pub fn new(eyes: Eyes, seed: u64, tick_us: u32, is_flat: bool) -> Self {
-        let index = Cells::new(Space::OPEN, eyes.range_m);
-        Self { eyes, seed, tick_us, is_flat, past: VecDeque::new(), index }
+    pub fn new(sensing: Sensing, seed: u64, tick_us: u32, is_flat: bool) -> Self {
+        let index = Cells::new(Space::OPEN, sensing.range_m);
+        Self { sensing, seed, tick_us, is_flat, past: VecDeque::new(), index }
     }
 
     /// Records all positions at the start of a tick.
@@ -70,7 +70,7 @@ impl Sight {
     }
 
     fn keep(&mut self) {
-        let wanted = self.eyes.delay_ticks as usize + 1;
+        let wanted = self.sensing.delay_ticks as usize + 1;
         while self.past.len() > wanted {
             self.past.pop_front();
         }
@@ -83,16 +83,16 @@ impl Sight {
     /// intruders are excluded, because robots detect them as obstacles.
     pub fn sightings(&self, plane: &Plane, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
         sightings.clear();
-        let (eyes, delay) = (&self.eyes, self.eyes.delay_ticks);
+        let (sensing, delay) = (&self.sensing, self.sensing.delay_ticks);
         let is_early = self.past.len() <= delay as usize;
         let Some(then) = self.past.front().filter(|_| !is_early) else { return };
         let own = &plane.discs()[index];
-        if (tick.wrapping_sub(delay).wrapping_add(own.id.0)) % eyes.every_ticks != 0 {
+        if (tick.wrapping_sub(delay).wrapping_add(own.id.0)) % sensing.every_ticks != 0 {
             return;
         }
         let at = then[index];
         let mut found: Vec<Found<f64, 3>> = Vec::new();
-        let query = Query { at, radius: eyes.range_m, most: usize::MAX, except: Some(index as u32) };
+        let query = Query { at, radius: sensing.range_m, most: usize::MAX, except: Some(index as u32) };
         self.index.within(&query, &mut found);
         let disc = |found: &Found<f64, 3>| -> &Disc {
             let at = found.index as usize;
@@ -104,11 +104,11 @@ impl Sight {
             let to = then[other.index as usize];
             let is_behind =
                 |nearer: &Found<f64, 3>| distance_m(at, to, then[nearer.index as usize]) < disc(nearer).radius_m;
-            let is_hidden = eyes.is_occluded && (found[..place].iter().any(is_behind) || is_walled(plane, at, to));
-            if !body.id.is_somebody() || is_hidden {
+            let is_hidden = sensing.is_occluded && (found[..place].iter().any(is_behind) || is_walled(plane, at, to));
+            if !body.id.is_some() || is_hidden {
                 continue;
             }
-            let mut noise = [0.0; 3].map(|_: f64| normal(&mut rng) * eyes.noise_m);
+            let mut noise = [0.0; 3].map(|_: f64| normal(&mut rng) * sensing.noise_m);
             if self.is_flat {
                 noise[2] = 0.0;
             }
@@ -116,10 +116,10 @@ impl Sight {
             sightings.push(Sighting {
                 offset_m: Vec3::new(x, y, z),
                 // The reported deviation is at least a millimetre.
-                deviation_m: eyes.noise_m.max(0.001) as f32,
+                deviation_m: sensing.noise_m.max(0.001) as f32,
                 age: Duration::from_micros((delay * self.tick_us).cast_signed()),
                 radius_m: body.radius_m as f32,
-                id: eyes.sees_names.then_some(body.id),
+                id: sensing.sees_names.then_some(body.id),
                 velocity_mps: None,
             });
             if sightings.len() == SIGHTINGS {

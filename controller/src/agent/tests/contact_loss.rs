@@ -128,35 +128,36 @@ fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
 
 /// Contact with a distant robot (or none), then six seconds of silence. Returns the speed, the
 /// mode, and whether the loss of contact was reported.
-fn left_alone(hears: bool, silence: Silence<f32>) -> (f64, Mode, bool) {
-    let config = AgentConfig { silence, ..in_plane(1) };
+fn left_alone(hears: bool, silence: ContactLossPolicy<f32>) -> (f64, Mode, bool) {
+    let config = AgentConfig { contact_loss: silence, ..in_plane(1) };
     let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
     let inbox = bytes(2, 0, 0, &[super::plane::body_at([-60_000, 0], [0, 0], Mode::Idle)]);
     let mut is_told = false;
     for n in 0..60 {
         let out = robot.step(step_number(n), if n == 0 && hears { &inbox } else { &[] });
-        is_told |= out.events.contains(&Event::NobodyHeard);
+        is_told |= out.events.contains(&Event::ContactLost);
     }
     (length(robot.velocity_mps), robot.agent.mode(), is_told)
 }
 
 #[test]
 fn a_robot_without_contact_stands_unless_it_may_be_alone() {
-    let after = |alone_mps| Silence { remember: STEP.saturating_mul(50), alone_mps };
-    assert_eq!(left_alone(true, Silence::DEFAULT), (1.0, Mode::Cruise, true), "a minute is not over");
+    let after = |alone_mps| ContactLossPolicy { remember: STEP.saturating_mul(50), alone_mps };
+    assert_eq!(left_alone(true, ContactLossPolicy::DEFAULT), (1.0, Mode::Cruise, true), "a minute is not over");
     assert_eq!(left_alone(true, after(0.0)), (0.0, Mode::Hold, true));
     assert_eq!(left_alone(true, after(0.25)), (0.25, Mode::Cruise, true));
     assert_eq!(left_alone(true, after(f32::MAX)), (1.0, Mode::Cruise, true));
     assert_eq!(left_alone(false, after(0.0)), (1.0, Mode::Cruise, false), "who never heard anybody is the first");
-    let nobody = Silence { remember: Duration::ZERO, alone_mps: 0.0 };
+    let nobody = ContactLossPolicy { remember: Duration::ZERO, alone_mps: 0.0 };
     assert_eq!(left_alone(true, nobody), (0.0, Mode::Hold, true), "nobody is remembered");
 }
 
 #[test]
 fn a_robot_continues_when_contact_is_restored() {
-    let silence = Silence { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
-    let mut robot = Robot::new(&AgentConfig { silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
+    let silence = ContactLossPolicy { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
+    let mut robot =
+        Robot::new(&AgentConfig { contact_loss: silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
     for n in 0..60 {
         let far = super::plane::body_at([-60_000, 0], [0, 0], Mode::Idle);

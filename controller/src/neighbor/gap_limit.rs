@@ -39,7 +39,7 @@ const TOLERANCE_UM: i32 = 200;
 /// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017, express this as
 /// cells; here it limits the velocity that the safety layer has chosen.)
 ///
-/// *Silence:* a silent neighbour that gives way keeps to the same rule. Thus the border of its ball
+/// *ContactLossPolicy:* a silent neighbour that gives way keeps to the same rule. Thus the border of its ball
 /// comes nearer by at most half of the gap per step.
 ///
 /// *Inertia:* the ball of a body with inertia follows its last course and grows by half of its
@@ -53,7 +53,7 @@ const TOLERANCE_UM: i32 = 200;
 /// loss and in any blackout, as long as no robot is faster than `growth_mps` and bodies follow
 /// their commands.
 #[derive(Clone, Copy, Debug)]
-pub struct Room<'a, S> {
+pub struct GapLimit<'a, S> {
     /// Own body.
     pub body: &'a Body<S>,
     /// Own position.
@@ -97,7 +97,7 @@ impl<S: Scalar> Limit<S> {
     }
 }
 
-impl<S: Scalar> Room<'_, S> {
+impl<S: Scalar> GapLimit<'_, S> {
     /// Returns the part of `velocity_mps`, m/s, that the gaps allow. The velocity is first turned
     /// aside, without running into `obstacles`, then shortened. Returns `None` if a silent robot
     /// may be at the own position: the robot must stand still.
@@ -166,7 +166,7 @@ impl<S: Scalar> Room<'_, S> {
     /// Returns the limit that a robot imposes, and whether it can be at the own position. Stores
     /// the gap bound.
     fn limit_of<P>(&self, other: &mut Neighbor<S, P>, is_bad: bool) -> (Limit<S>, bool) {
-        let Room { body, inflation, .. } = self;
+        let GapLimit { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
         let silent = age.as_micros().saturating_sub(self.news.as_micros()).max(0);
         let silent_s = S::from_micro(silent);

@@ -2,18 +2,18 @@
 
 use super::super::simulate::AnyEngine;
 use super::*;
-use crate::scenario::Eyes;
+use crate::scenario::Sensing;
 
 /// Robots that swap places on a circle of 2 m, or a larger one for many robots.
-fn circle(count: u32, eyes: &str, radio: &str) -> Scenario {
-    seeded(count, eyes, radio, 11)
+fn circle(count: u32, sensing: &str, radio: &str) -> Scenario {
+    seeded(count, sensing, radio, 11)
 }
 
-fn seeded(count: u32, eyes: &str, radio: &str, seed: u64) -> Scenario {
+fn seeded(count: u32, sensing: &str, radio: &str, seed: u64) -> Scenario {
     let radius_m = (f64::from(count) * 0.1).max(2.0);
     let text = format!(
         "name = \"t\"\nseed = {seed}\nticks = 1200\ntick_s = 0.05\n[radio]\nrange_m = 3\n{radio}\n[plane]\nradius_m = 0.15\n\
-         max_speed_mps = 0.5\ntolerance_m = 0.02\n[plane.eyes]\nrange_m = 3\n{eyes}\n\
+         max_speed_mps = 0.5\ntolerance_m = 0.02\n[plane.sensing]\nrange_m = 3\n{sensing}\n\
          [plane.robots.circle]\ncount = {count}\nradius_m = {radius_m}\nnoise_m = 0.1\n"
     );
     Scenario::parse(&text, Path::new("t.toml"), &Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -33,13 +33,13 @@ fn robots_swap_places_by_sensors_alone_without_collisions() {
 }
 
 fn with_range(scenario: Scenario, range_m: f64) -> Scenario {
-    Scenario { eyes: scenario.eyes.map(|eyes| Eyes { range_m, ..eyes }), ..scenario }
+    Scenario { sensing: scenario.sensing.map(|sensing| Sensing { range_m, ..sensing }), ..scenario }
 }
 
 #[test]
 fn sensors_without_detections_do_not_change_the_run() {
     let blind = with_range(circle(8, "", "loss = 0.2"), 0.01);
-    let without = Scenario { eyes: None, ..blind.clone() };
+    let without = Scenario { sensing: None, ..blind.clone() };
     assert_eq!(run(&blind).trace_hash, run(&without).trace_hash);
 }
 
@@ -57,7 +57,7 @@ fn the_number_of_threads_makes_no_difference() {
 #[test]
 fn an_order_reaches_robots_without_beacons() {
     let text = "name = \"t\"\nticks = 400\ntick_s = 0.05\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n\
-         [plane.eyes]\nrange_m = 3\nbeacons = false\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [5, 0]\n\
+         [plane.sensing]\nrange_m = 3\nbeacons = false\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [5, 0]\n\
          [[plane.order]]\nat_s = 1\nplace_m = [0, 3]\n";
     let text = text.replacen("[[plane.robots.list]]", "[plane.robots]\n[[plane.robots.list]]", 1);
     let scenario = Scenario::parse(&text, Path::new("t.toml"), &Overrides::default());
@@ -72,10 +72,10 @@ fn an_order_reaches_robots_without_beacons() {
 
 /// Root mean square error of the neighbours' positions in metres, and the mean number of known
 /// neighbours, over runs of some seconds on fresh seeds.
-fn errors(eyes: &str, radio: &str, range_m: f64) -> (f64, f64) {
+fn errors(sensing: &str, radio: &str, range_m: f64) -> (f64, f64) {
     let (mut squares, mut count, mut moments) = (0.0, 0.0, 0.0);
     for seed in 500..503 {
-        let scenario = with_range(seeded(12, eyes, radio, seed), range_m);
+        let scenario = with_range(seeded(12, sensing, radio, seed), range_m);
         let AnyEngine::Plane(mut engine) = AnyEngine::new(&scenario).expect("room") else { panic!("no plane") };
         for _ in 0..160 {
             let places: Vec<_> = engine.ground.plane().discs().iter().map(|disc| disc.position_m).collect();
@@ -104,14 +104,15 @@ fn errors(eyes: &str, radio: &str, range_m: f64) -> (f64, f64) {
 
 #[test]
 fn sensors_and_radio_together_are_better_than_either() {
-    const EYES: &str = "noise_m = 0.05\nocclusion = false";
+    const SENSING: &str = "noise_m = 0.05\nocclusion = false";
     const RADIO: &str = "loss = 0.7\ndelay_ms = 200";
     let mut table = Vec::new();
-    for (what, eyes, radio) in [("nameless", EYES.to_owned(), RADIO), ("named", format!("{EYES}\nnames = true"), RADIO)]
+    for (what, sensing, radio) in
+        [("nameless", SENSING.to_owned(), RADIO), ("named", format!("{SENSING}\nnames = true"), RADIO)]
     {
-        let heard = errors(&eyes, radio, 0.01);
-        let seen = errors(&format!("{eyes}\nbeacons = false"), radio, 3.0);
-        let both = errors(&eyes, radio, 3.0);
+        let heard = errors(&sensing, radio, 0.01);
+        let seen = errors(&format!("{sensing}\nbeacons = false"), radio, 3.0);
+        let both = errors(&sensing, radio, 3.0);
         println!("{what}: heard {heard:.4?}, seen {seen:.4?}, both {both:.4?} (m, neighbours)");
         table.push((heard.0, seen.0, both.0));
     }

@@ -1,10 +1,10 @@
-//! `[plane.eyes]`: detection of other robots by sensors.
+//! `[plane.sensing]`: detection of other robots by sensors.
 
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
 use super::table::PlaneTable;
 use super::{PlaneSetup, within};
-use crate::world::plane::Eyes;
+use crate::world::plane::Sensing;
 use staya_controller::neighbor::TrackParams;
 use staya_controller::time::Duration;
 
@@ -15,16 +15,16 @@ const MOST_TICKS: u32 = 1000;
 const HEARD_M: f64 = 0.002;
 const HEARD_MPS: f64 = 0.01;
 
-pub(in super::super) fn eyes(
+pub(in super::super) fn sensing(
     source: &Source<'_>,
     file: &ScenarioFile,
     table: &PlaneTable,
     setup: &PlaneSetup,
-) -> Result<Option<Eyes>, ScenarioError> {
-    let Some(eyes) = table.eyes else {
+) -> Result<Option<Sensing>, ScenarioError> {
+    let Some(sensing) = table.sensing else {
         return Ok(None);
     };
-    let refuse = |what: String, remedy: &str| Err(source.error("plane.eyes", what, remedy));
+    let refuse = |what: String, remedy: &str| Err(source.error("plane.sensing", what, remedy));
     if setup.torus_m.is_some() {
         return refuse("nobody sees over the seams of a torus".into(), "leave one of the two out");
     }
@@ -33,23 +33,23 @@ pub(in super::super) fn eyes(
         return refuse(what, "give a guidance that goes by velocities, or leave it out");
     }
     let number = |name: &str, value: f64, low: f64, high: f64, unit: &str| {
-        within(source, &format!("plane.eyes.{name}"), value, low, high, unit)
+        within(source, &format!("plane.sensing.{name}"), value, low, high, unit)
     };
-    number("range_m", eyes.range_m, 0.01, 1e6, "metres")?;
-    number("noise_m", eyes.noise_m, 0.0, 10.0, "metres")?;
-    number("every_ticks", eyes.every_ticks.into(), 1.0, MOST_TICKS.into(), "ticks")?;
-    number("delay_ticks", eyes.delay_ticks.into(), 0.0, MOST_TICKS.into(), "ticks")?;
-    number("gate", eyes.gate, 0.1, 100.0, "standard deviations")?;
-    number("margin", eyes.margin, 0.0, 100.0, "standard deviations")?;
+    number("range_m", sensing.range_m, 0.01, 1e6, "metres")?;
+    number("noise_m", sensing.noise_m, 0.0, 10.0, "metres")?;
+    number("every_ticks", sensing.every_ticks.into(), 1.0, MOST_TICKS.into(), "ticks")?;
+    number("delay_ticks", sensing.delay_ticks.into(), 0.0, MOST_TICKS.into(), "ticks")?;
+    number("gate", sensing.gate, 0.1, 100.0, "standard deviations")?;
+    number("margin", sensing.margin, 0.0, 100.0, "standard deviations")?;
     // At least the age at which a beacon is stale, and at least three detections.
-    let usual_s = f64::from((3 * eyes.every_ticks + eyes.delay_ticks).max(4)) * file.tick_s;
-    let forget_s = eyes.forget_s.unwrap_or(usual_s);
+    let usual_s = f64::from((3 * sensing.every_ticks + sensing.delay_ticks).max(4)) * file.tick_s;
+    let forget_s = sensing.forget_s.unwrap_or(usual_s);
     number("forget_s", forget_s, file.tick_s, 1000.0, "seconds")?;
     let abilities = setup.kinds().map(|group| group.abilities);
     let (speed_mps, most_mps2) = abilities.fold((0.0, 0.0), |(speed, most): (f64, f64), can| {
         (speed.max(can.max_speed_mps), most.max(can.max_acceleration_mps2))
     });
-    let acceleration_mps2 = match eyes.acceleration_mps2 {
+    let acceleration_mps2 = match sensing.acceleration_mps2 {
         // Unlimited acceleration: a reversal from full speed within a second, with a factor of two.
         None => most_mps2.min(4.0 * speed_mps),
         Some(said) => {
@@ -57,21 +57,21 @@ pub(in super::super) fn eyes(
             said
         }
     };
-    Ok(Some(Eyes {
-        range_m: eyes.range_m,
-        noise_m: eyes.noise_m,
-        is_occluded: eyes.occlusion,
-        sees_names: eyes.names,
-        every_ticks: eyes.every_ticks,
-        delay_ticks: eyes.delay_ticks,
-        has_beacons: eyes.beacons,
+    Ok(Some(Sensing {
+        range_m: sensing.range_m,
+        noise_m: sensing.noise_m,
+        is_occluded: sensing.occlusion,
+        sees_names: sensing.names,
+        every_ticks: sensing.every_ticks,
+        delay_ticks: sensing.delay_ticks,
+        has_beacons: sensing.beacons,
         tracking: TrackParams {
             acceleration_mps2: acceleration_mps2 as f32,
             speed_mps: speed_mps as f32,
             heard_m: HEARD_M as f32,
             heard_mps: HEARD_MPS as f32,
-            gate: eyes.gate as f32,
-            margin: eyes.margin as f32,
+            gate: sensing.gate as f32,
+            margin: sensing.margin as f32,
             forget: Duration::from_micros((forget_s * 1e6) as i32),
         },
     }))

@@ -6,12 +6,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// At most `N` items; grows by a few at a time. In place of [`heapless::Vec`], with its functions and its answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Seldom<T, const N: usize>(Vec<T>);
+pub(crate) struct SparseVec<T, const N: usize>(Vec<T>);
 
 /// Bytes by which a list grows, about: that many cost less to hold for nothing than to move.
 const STEP: usize = 48;
 
-impl<T, const N: usize> Seldom<T, N> {
+impl<T, const N: usize> SparseVec<T, N> {
     pub(crate) const fn new() -> Self {
         Self(Vec::new())
     }
@@ -47,26 +47,26 @@ impl<T, const N: usize> Seldom<T, N> {
     }
 }
 
-impl<T, const N: usize> Default for Seldom<T, N> {
+impl<T, const N: usize> Default for SparseVec<T, N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T, const N: usize> Deref for Seldom<T, N> {
+impl<T, const N: usize> Deref for SparseVec<T, N> {
     type Target = [T];
     fn deref(&self) -> &[T] {
         &self.0
     }
 }
 
-impl<T, const N: usize> DerefMut for Seldom<T, N> {
+impl<T, const N: usize> DerefMut for SparseVec<T, N> {
     fn deref_mut(&mut self) -> &mut [T] {
         &mut self.0
     }
 }
 
-impl<'a, T, const N: usize> IntoIterator for &'a Seldom<T, N> {
+impl<'a, T, const N: usize> IntoIterator for &'a SparseVec<T, N> {
     type Item = &'a T;
     type IntoIter = core::slice::Iter<'a, T>;
     fn into_iter(self) -> Self::IntoIter {
@@ -74,7 +74,7 @@ impl<'a, T, const N: usize> IntoIterator for &'a Seldom<T, N> {
     }
 }
 
-impl<'a, T, const N: usize> IntoIterator for &'a mut Seldom<T, N> {
+impl<'a, T, const N: usize> IntoIterator for &'a mut SparseVec<T, N> {
     type Item = &'a mut T;
     type IntoIter = core::slice::IterMut<'a, T>;
     fn into_iter(self) -> Self::IntoIter {
@@ -83,13 +83,13 @@ impl<'a, T, const N: usize> IntoIterator for &'a mut Seldom<T, N> {
 }
 
 // A sequence with its length, as that of `heapless::Vec`: digests are the same.
-impl<T: Serialize, const N: usize> Serialize for Seldom<T, N> {
+impl<T: Serialize, const N: usize> Serialize for SparseVec<T, N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.deref().serialize(serializer)
     }
 }
 
-impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Seldom<T, N> {
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for SparseVec<T, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let items = heapless::Vec::<T, N>::deserialize(deserializer)?;
         Ok(Self(items.into_iter().collect()))
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn it_takes_as_many_as_a_fixed_list_and_reads_the_same() {
-        let (mut seldom, mut fixed) = (Seldom::<u32, 9>::new(), heapless::Vec::<u32, 9>::new());
+        let (mut seldom, mut fixed) = (SparseVec::<u32, 9>::new(), heapless::Vec::<u32, 9>::new());
         assert_eq!(digest(&seldom), digest(&fixed));
         for item in 0..12 {
             assert_eq!(seldom.push(item), fixed.push(item));
@@ -115,6 +115,6 @@ mod tests {
         fixed.retain(|item| item % 2 == 0);
         assert_eq!(*seldom, *fixed);
         seldom.clear();
-        assert_eq!((seldom.len(), seldom.pop(), Seldom::<u32, 0>::new().push(1)), (0, None, Err(1)));
+        assert_eq!((seldom.len(), seldom.pop(), SparseVec::<u32, 0>::new().push(1)), (0, None, Err(1)));
     }
 }

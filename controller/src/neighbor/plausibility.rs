@@ -31,7 +31,7 @@ const SUSPECTS: usize = 4;
 /// wide limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Claims<S> {
+pub struct PlausibilityLimits<S> {
     /// Largest radius of any robot, metres.
     pub max_radius_m: S,
     /// Highest speed of any robot, m/s. With [`Scalar::MAX`], positions are not checked.
@@ -72,7 +72,7 @@ impl fmt::Display for Claim {
     }
 }
 
-impl<S: Scalar> Claims<S> {
+impl<S: Scalar> PlausibilityLimits<S> {
     /// Accepts all values.
     pub const ANY: Self = Self {
         max_radius_m: S::MAX,
@@ -84,8 +84,8 @@ impl<S: Scalar> Claims<S> {
 
     /// Converts to another scalar type.
     #[must_use]
-    pub fn cast<T: Scalar>(&self) -> Claims<T> {
-        Claims {
+    pub fn cast<T: Scalar>(&self) -> PlausibilityLimits<T> {
+        PlausibilityLimits {
             max_radius_m: cast(self.max_radius_m),
             max_speed_mps: if self.max_speed_mps < S::MAX { cast(self.max_speed_mps) } else { T::MAX },
             slack_m: cast(self.slack_m),
@@ -142,16 +142,16 @@ struct Suspect {
 #[cfg(not(feature = "host"))]
 type Jumpers = heapless::Vec<Suspect, SUSPECTS, u8>;
 #[cfg(feature = "host")]
-type Jumpers = crate::list::Seldom<Suspect, SUSPECTS>;
+type Jumpers = crate::list::SparseVec<Suspect, SUSPECTS>;
 
 /// Robots that reported an unreachable position recently. 100 bytes; with the feature `host`, only
 /// the memory of its entries.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Suspects(Jumpers);
+pub struct PlausibilityFilter(Jumpers);
 
 /// The verdict on an unreachable position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
+pub enum Verdict {
     /// The robot has reported consistent positions for long enough: accept it.
     Settled,
     /// Not accepted yet.
@@ -160,7 +160,7 @@ pub enum Doubt {
     Begins,
 }
 
-impl Suspects {
+impl PlausibilityFilter {
     /// Creates an empty list.
     #[must_use]
     pub const fn new() -> Self {
@@ -177,15 +177,15 @@ impl Suspects {
         id: RobotId,
         place: Position,
         at: Instant,
-        claims: &Claims<S>,
+        plausibility: &PlausibilityLimits<S>,
         longest: Duration,
-    ) -> Doubt {
+    ) -> Verdict {
         self.0.retain(|suspect| (Duration::ZERO..=longest).contains(&at.since(suspect.heard)));
         let known = self.0.iter_mut().find(|suspect| suspect.id == id);
         let is_new = known.is_none();
         let since = match known {
             Some(suspect) => {
-                if !claims.can_go(suspect.place, place, at.since(suspect.heard)) {
+                if !plausibility.can_go(suspect.place, place, at.since(suspect.heard)) {
                     suspect.since = at;
                 }
                 (suspect.place, suspect.heard) = (place, at);
@@ -197,11 +197,11 @@ impl Suspects {
                 at
             }
         };
-        if at.since(since) >= claims.settle {
+        if at.since(since) >= plausibility.settle {
             self.0.retain(|suspect| suspect.id != id);
-            return Doubt::Settled;
+            return Verdict::Settled;
         }
-        if is_new { Doubt::Begins } else { Doubt::Stands }
+        if is_new { Verdict::Begins } else { Verdict::Stands }
     }
 
     /// Removes a robot whose positions are accepted again.

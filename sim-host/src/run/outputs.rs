@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Options of additional outputs.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Additional files; docs/tour.md")]
-pub struct AlsoArgs {
+pub struct OutputArgs {
     /// Record positions in each tick, for `staya page`; replaces the file.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
@@ -35,7 +35,7 @@ pub struct AlsoArgs {
     gif_seconds: u32,
 }
 
-impl AlsoArgs {
+impl OutputArgs {
     /// Whether there are files that cannot continue from a checkpoint.
     pub const fn begins_anew(&self) -> bool {
         self.record.is_some() || self.mcap.is_some()
@@ -66,19 +66,19 @@ pub trait Observer {
 }
 
 /// Open files and observers.
-pub struct Also<'a> {
-    args: &'a AlsoArgs,
+pub struct RunOutputs<'a> {
+    args: &'a OutputArgs,
     scenario: &'a Scenario,
     recording: Option<RunRecorder<File>>,
     observers: Vec<Box<dyn Observer>>,
 }
 
-impl<'a> Also<'a> {
+impl<'a> RunOutputs<'a> {
     /// Creates the selected files.
     ///
     /// # Errors
     /// A file cannot be written.
-    pub fn begin(args: &'a AlsoArgs, scenario: &'a Scenario, observers: Vec<Box<dyn Observer>>) -> Result<Self> {
+    pub fn begin(args: &'a OutputArgs, scenario: &'a Scenario, observers: Vec<Box<dyn Observer>>) -> Result<Self> {
         let recording = match &args.record {
             Some(path) => Some(RunRecorder::new(create(path)?, path, scenario, args.record_every)?),
             None => None,
@@ -99,7 +99,7 @@ impl<'a> Also<'a> {
 
     /// Paths of the additional files.
     pub fn paths(&self) -> impl Iterator<Item = PathBuf> {
-        let AlsoArgs { record, mcap, gif, .. } = self.args;
+        let OutputArgs { record, mcap, gif, .. } = self.args;
         [record, mcap, gif].into_iter().flatten().cloned()
     }
 

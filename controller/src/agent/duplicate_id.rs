@@ -25,7 +25,7 @@
 //! [`Sealed`](crate::wire::Sealed) wire as a replay, and receive the other one alone. The two still
 //! receive each other, because no robot tracks its own counters.
 //!
-//! The second robot is known as [`RobotId::double`](crate::robot::RobotId::double). Only its
+//! The second robot is known as [`RobotId::duplicate`](crate::robot::RobotId::duplicate). Only its
 //! beacons are used; its requests and orders are ignored.
 
 use crate::geom::{Position, Vec3};
@@ -42,9 +42,9 @@ const _: () = assert!(SAID.is_power_of_two());
 
 /// Fingerprints of the last own beacons, by sequence number.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Said([u16; SAID]);
+pub(super) struct EchoFilter([u16; SAID]);
 
-impl Said {
+impl EchoFilter {
     pub(super) const fn new() -> Self {
         Self([0; SAID])
     }

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 pub(super) const PATIENCE: u8 = 4;
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Travel {
+pub(super) struct MoveHistory {
     cell: Option<Cell>,
     choice: Dir,
     /// Consecutive decisions to leave this cell.
@@ -26,7 +26,7 @@ pub(super) struct Travel {
     redirected: bool,
 }
 
-impl Travel {
+impl MoveHistory {
     pub(super) const fn new() -> Self {
         Self { cell: None, choice: Dir::Stay, attempts: 0, redirected: false }
     }

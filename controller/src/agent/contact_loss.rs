@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 ///
 /// | contact | reaction |
 /// | --- | --- |
-/// | all neighbours in each tick | takes at most half of a gap per step, see [`Room`] |
+/// | all neighbours in each tick | takes at most half of a gap per step, see [`GapLimit`] |
 /// | one neighbour silent | avoids the growing ball in which it may be |
 /// | one neighbour [lost] | avoids its ball, which grows by at most [`max_m`] |
 /// | fewer than half fresh | avoids the balls of all silent robots, then stands |
-/// | all lost | reports [`NobodyHeard`]; avoids their balls, then stands |
+/// | all lost | reports [`ContactLost`]; avoids their balls, then stands |
 /// | all lost for longer than [`remember`](Self::remember) | stands until a robot is in contact |
-/// | all lost, all left radio range | reports [`NobodyHeard`], moves freely |
+/// | all lost, all left radio range | reports [`ContactLost`], moves freely |
 /// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
 /// | never any since power-on | moves freely: it is the first or only robot of its swarm |
 ///
@@ -25,13 +25,13 @@ use serde::{Deserialize, Serialize};
 /// forgotten. If the last robots move beyond the greatest distance of any earlier contact, all have
 /// left.
 ///
-/// [`Room`]: crate::neighbor::Room
+/// [`GapLimit`]: crate::neighbor::GapLimit
 /// [lost]: crate::neighbor::Ages::expire_after
 /// [`max_m`]: crate::neighbor::StalenessInflation::max_m
-/// [`NobodyHeard`]: super::Event::NobodyHeard
+/// [`ContactLost`]: super::Event::ContactLost
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Silence<S> {
+pub struct ContactLossPolicy<S> {
     /// How long a silent robot is remembered; at most half an hour. Longer: a robot that was
     /// carried away blocks its place for longer, and this robot continues for longer after it left
     /// the radio range of the others. Shorter: a dead robot is hit sooner. Below
@@ -43,14 +43,14 @@ pub struct Silence<S> {
     pub alone_mps: S,
 }
 
-impl<S: Scalar> Silence<S> {
+impl<S: Scalar> ContactLossPolicy<S> {
     /// Remembers for a minute, and stands.
     pub const DEFAULT: Self = Self { remember: Duration::from_millis(60_000), alone_mps: S::ZERO };
 
     /// Converts to another scalar type.
     #[must_use]
-    pub fn cast<T: Scalar>(&self) -> Silence<T> {
-        Silence { remember: self.remember, alone_mps: cast(self.alone_mps) }
+    pub fn cast<T: Scalar>(&self) -> ContactLossPolicy<T> {
+        ContactLossPolicy { remember: self.remember, alone_mps: cast(self.alone_mps) }
     }
 
     /// Whether the robot may be alone.
@@ -61,18 +61,18 @@ impl<S: Scalar> Silence<S> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) enum Company {
+pub(super) enum ContactState {
     /// Never in contact, or all other robots have left radio range.
-    Unknown,
+    Never,
     /// In contact; the time of the last reception.
-    Heard(Instant),
+    InContact(Instant),
     /// All robots are lost; the time of the last reception.
     Lost(Instant),
     /// All robots are lost and forgotten.
-    Gone,
+    Forgotten,
 }
 
-impl Company {
+impl ContactState {
     /// Updates the state. Returns whether contact was lost just now. Call it in each step, so that
     /// the 32-bit clock cannot wrap unnoticed.
     ///
@@ -80,22 +80,22 @@ impl Company {
     pub(super) fn passes<S: Scalar>(&mut self, now: Instant, have_left: bool, config: &AgentConfig<S>) -> bool {
         let is_over = |at, longest| !(Duration::ZERO..=longest).contains(&now.since(at));
         let before = *self;
-        if let Self::Heard(at) = *self
+        if let Self::InContact(at) = *self
             && is_over(at, config.ages.expire_after)
         {
             *self = Self::Lost(at);
         }
         if let Self::Lost(at) = *self {
-            if is_over(at, config.silence.remember) {
-                *self = Self::Gone;
+            if is_over(at, config.contact_loss.remember) {
+                *self = Self::Forgotten;
             } else if have_left {
-                *self = Self::Unknown;
+                *self = Self::Never;
             }
         }
-        matches!(before, Self::Heard(_)) && *self != before
+        matches!(before, Self::InContact(_)) && *self != before
     }
 
     pub(super) const fn is_lost(self) -> bool {
-        matches!(self, Self::Lost(_) | Self::Gone)
+        matches!(self, Self::Lost(_) | Self::Forgotten)
     }
 }

@@ -5,14 +5,14 @@ use std::time::Duration;
 
 /// Interval between checkpoints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Every {
+pub enum CheckpointInterval {
     /// Real time.
     Time(Duration),
     /// Number of ticks.
     Ticks(u32),
 }
 
-impl FromStr for Every {
+impl FromStr for CheckpointInterval {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -40,13 +40,13 @@ mod tests {
 
     #[test]
     fn an_interval_has_a_unit() {
-        let seconds = |seconds| Ok(Every::Time(Duration::from_secs(seconds)));
+        let seconds = |seconds| Ok(CheckpointInterval::Time(Duration::from_secs(seconds)));
         assert_eq!("600s".parse(), seconds(600));
         assert_eq!("10min".parse(), seconds(600));
         assert_eq!("2h".parse(), seconds(7200));
-        assert_eq!("1000ticks".parse(), Ok(Every::Ticks(1000)));
+        assert_eq!("1000ticks".parse(), Ok(CheckpointInterval::Ticks(1000)));
         for wrong in ["", "600", "s", "-1s", "0s", "0ticks", "1.5h", "99999999999s", "5 days"] {
-            assert!(wrong.parse::<Every>().is_err(), "{wrong}");
+            assert!(wrong.parse::<CheckpointInterval>().is_err(), "{wrong}");
         }
     }
 }
