@@ -10,13 +10,13 @@ const NAMED = {
   arrived: "green",
   fault: "vermillion",
   passive: "purple",
-  formation: "purple",
-  request: "sky",
-  way: "vermillion",
+  team: "purple",
+  stopped: "sky",
+  route: "vermillion",
   radio: "blue",
   turn: "orange",
-  others: "yellow",
-  place: "green",
+  robots: "yellow",
+  goal_taken: "green",
 };
 const NUMBERED = ["blue", "orange", "green", "purple", "sky", "vermillion", "yellow"];
 const CSS = {

@@ -22,7 +22,7 @@ Table = Literal["trace", "series"]
 Columns = dict[str, NDArray[Any]]
 
 _MODES = np.array(["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"])
-_WAITS = np.array(["formation", "request", "way", "radio", "turn", "others", "place"])
+_WAITS = np.array(["team", "stopped", "route", "radio", "turn", "robots", "goal_taken"])
 
 
 def figures(run: Run) -> dict[str, Any]:
