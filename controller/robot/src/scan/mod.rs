@@ -4,6 +4,43 @@
 //! [`LocalMap`] stores them as cells for guidance on the grid; [`outline`] converts them directly
 //! to walls and balls, for collision avoidance in the plane. Both exclude known robots, whose
 //! packets are more precise.
+//!
+//! ```rust
+//! use staya_controller::agent::KinematicState;
+//! use staya_controller::geom::{Position, Vec2};
+//! use staya_controller::grid::GridFrame;
+//! use staya_controller::neighbor::Neighbor;
+//! use staya_controller::obstacle::Obstacle;
+//! use staya_controller::time::{Duration, Instant};
+//! use staya_robot::scan::*;
+//!
+//! fn look(
+//!     map: &mut LocalMap, // LocalMap::new(MapParams::default(), own cell)
+//!     ranges_m: &[f32],   // one turn, counter-clockwise, the first one straight ahead
+//!     state: &KinematicState<f32>,
+//!     heading_rad: f32,
+//!     others: &[Neighbor<f32>], // agent.neighbors()
+//!     now: Instant,
+//! ) -> heapless::Vec<Obstacle<f32>, 16> {
+//!     let frame = GridFrame { origin_m: Vec2::new(0.0, 0.0), cell_m: 0.4 };
+//!     let scan = Scan {
+//!         first_rad: 0.0,
+//!         step_rad: core::f32::consts::TAU / ranges_m.len().max(1) as f32,
+//!         ranges_m,
+//!         min_m: 0.1,
+//!         max_m: 4.0,
+//!         mount_m: Vec2::new(-0.06, 0.0), // over the axle, seen from the point ahead
+//!     };
+//!     // Other robots report their own positions.
+//!     let longest = Duration::from_millis(200);
+//!     let is_robot = |place| is_neighbor(others, state.position, now, longest, place, 0.05);
+//!     let place_m = state.position.since::<f32>(Position::ORIGIN).xy();
+//!     map.observe(&frame, place_m, heading_rad, &scan, now, is_robot);
+//!     // For InCells: map.window(), and these.
+//!     let params = OutlineParams { tolerance_m: 0.03, gap_m: 0.3, point_m: 0.03 };
+//!     outline(&scan, heading_rad, &params, is_robot)
+//! }
+//! ```
 
 mod local_map;
 mod outline;

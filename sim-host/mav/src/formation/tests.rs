@@ -168,7 +168,7 @@ fn offset_and_scale_of_positions_do_not_change_the_assignment() {
 }
 
 /// For each pair of shapes: total path length in cells, and pairs of robots that come within a cell
-/// of each other on straight paths. `--nocapture` prints the table of `docs/bridge.md`.
+/// of each other on straight paths. `--nocapture` prints a table.
 #[test]
 fn changes_between_shapes_have_shorter_paths_with_nearest_places() {
     for count in [6, 12, 40] {
