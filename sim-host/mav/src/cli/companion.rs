@@ -11,6 +11,7 @@ use staya_console::WatchArgs;
 use staya_console::{Ended, Global, Stop, print, print_json};
 use staya_view::watch::Watcher;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Control ArduPilot or PX4 vehicles as a swarm.
 #[derive(Args, Clone, Debug)]
@@ -20,6 +21,13 @@ pub struct CompanionArgs {
     /// Show the messages that would be sent, and send nothing.
     #[arg(long)]
     dry_run: bool,
+    /// Simulate the configured vehicles in this process, without links; ends when all have
+    /// arrived.
+    #[arg(long, conflicts_with = "dry_run")]
+    demo: bool,
+    /// End with an error if no autopilot is heard in this many seconds; 0 waits forever.
+    #[arg(long, value_name = "N", default_value = "60", value_parser = seconds)]
+    wait: f64,
     /// Stop after this many seconds [default: run until Ctrl-C].
     #[arg(long, value_name = "N", value_parser = seconds)]
     seconds: Option<f64>,
@@ -62,10 +70,14 @@ impl CompanionArgs {
             dry_run: self.dry_run,
             quiet: global.quiet,
             seconds: self.seconds,
+            demo: self.demo,
+            is_real_time: false,
+            wait: (self.wait > 0.0).then(|| Duration::from_secs_f64(self.wait)),
             tlog: self.tlog.as_deref().map(Tlog::create).transpose()?,
         };
         let stop = Stop::on_ctrl_c()?;
         let page = Watcher::by_options(&self.page, &config.scenario)?;
+        options.is_real_time = page.is_some();
         let mut page = page.map(|watcher| Page::new(watcher, &config.scenario)).transpose()?;
         let look = |sight: &Sight<'_>| {
             if let Some(page) = &mut page {

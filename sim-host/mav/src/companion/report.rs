@@ -62,6 +62,8 @@ pub struct CompanionReport {
     pub interrupted: bool,
     /// Whether nothing was sent.
     pub dry_run: bool,
+    /// Whether the vehicles were simulated; then there are no links.
+    pub demo: bool,
     /// Vehicles sorted by robot number.
     pub vehicles: Vec<VehicleReport>,
     /// Links in the order of the configuration.
@@ -72,12 +74,13 @@ pub struct CompanionReport {
 
 impl fmt::Display for CompanionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.demo { ", simulated vehicles" } else { "" };
         let ended = match (self.interrupted, self.dry_run) {
             (_, true) => ", dry run: nothing was sent",
             (true, false) => ", stopped",
             (false, false) => "",
         };
-        writeln!(f, "{} ({:.1} s{ended})", self.scenario, self.seconds)?;
+        writeln!(f, "{} ({:.1} s{kind}{ended})", self.scenario, self.seconds)?;
         for vehicle in &self.vehicles {
             let VehicleReport { robot, system, .. } = vehicle;
             let mut line = format!("  robot {robot:<4} system {system:<4} ");

@@ -1,6 +1,7 @@
 //! The main loop of companions: receives frames, runs the agents and state machines when they are
 //! due, sends frames.
 
+mod demo;
 mod machine;
 mod shown;
 mod sight;
@@ -18,6 +19,7 @@ use super::roll::{Roll, Turn};
 use super::seal::{Seal, SealError};
 use crate::geo::{Origin, ned};
 use crate::{Lines, OpenError, Received, Tlog, TlogError};
+use demo::Demo;
 use machine::{Host, Machine};
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
@@ -43,6 +45,9 @@ const LOOK: Duration = Duration::from_secs(1);
 /// Smallest age limit of positions in a dry run.
 const SELDOM: Duration = Duration::from_secs(3);
 
+/// Longest demo, seconds.
+pub const DEMO_S: f64 = 600.0;
+
 /// Options of the command line.
 #[derive(Debug, Default)]
 pub struct Options {
@@ -52,6 +57,13 @@ pub struct Options {
     pub quiet: bool,
     /// Duration in seconds; `None` runs until stopped.
     pub seconds: Option<f64>,
+    /// Simulated autopilots in place of the configured links; the run ends when all vehicles have
+    /// arrived, or after [`DEMO_S`].
+    pub demo: bool,
+    /// Runs the demo in real time.
+    pub is_real_time: bool,
+    /// Ends with an error if no autopilot is heard within this time; `None` waits forever.
+    pub wait: Option<Duration>,
     /// Log of all sent and accepted messages.
     pub tlog: Option<Tlog>,
 }
@@ -71,6 +83,17 @@ pub enum RunError {
     /// The key of links is unusable.
     #[error(transparent)]
     Key(#[from] KeyError),
+    /// No autopilot was heard.
+    #[error(
+        "no autopilot heard within {seconds} s on {links}; start the vehicles or correct `link`, wait longer with --wait N \
+         (0: forever), or try --demo, which simulates the vehicles"
+    )]
+    NoAutopilot {
+        /// The time, seconds.
+        seconds: f64,
+        /// The links, with the reason where one has no connection.
+        links: String,
+    },
     /// Standard output cannot be written during a dry run.
     #[error("cannot write to standard output: {0}")]
     Output(io::Error),
@@ -129,15 +152,25 @@ pub fn run(
         // A closed standard error must not stop the run.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
-    let host = Host {
-        lines: Lines::open(&config.lines)?,
-        medium: Medium::open(&config.air)?,
-        tlog: options.tlog.take(),
-        key: seal.as_ref().map(Seal::watch),
-        began: Instant::now(),
+    let tlog = options.tlog.take();
+    let machine: Box<dyn Machine> = if options.demo {
+        Box::new(Demo::new(config, tlog, options.is_real_time))
+    } else {
+        Box::new(Host {
+            lines: Lines::open(&config.lines)?,
+            medium: Medium::open(&config.air)?,
+            tlog,
+            key: seal.as_ref().map(Seal::watch),
+            began: Instant::now(),
+        })
     };
-    let mut companions = Companions::new(config, options, seal.as_ref(), link_key, Box::new(host));
+    let link_key = link_key.filter(|_| !options.demo);
+    let mut companions = Companions::new(config, options, seal.as_ref(), link_key, machine);
     let (seconds, interrupted) = companions.run(is_wanted, &mut look);
+    if let Some(error) = companions.no_autopilot() {
+        companions.has_said_farewell = true;
+        return Err(error);
+    }
     companions.say_farewell();
     companions.close_log();
     match companions.output_error.take() {
@@ -226,9 +259,13 @@ impl<'a> Companions<'a> {
     /// Runs until the time is over or `is_wanted` returns false. Returns the duration in seconds
     /// and whether it was interrupted.
     fn run(&mut self, is_wanted: impl Fn() -> bool, look: &mut dyn FnMut(&Sight<'_>)) -> (f64, bool) {
-        let limit = self.options.seconds.map(Duration::from_secs_f64);
+        let limit = self.options.seconds.or(self.options.demo.then_some(DEMO_S)).map(Duration::from_secs_f64);
         let mut interrupted = false;
         while limit.is_none_or(|limit| self.now() < limit) && self.output_error.is_none() {
+            let is_done = self.options.demo && self.vehicles.iter().all(|vehicle| vehicle.has_arrived);
+            if is_done || self.no_autopilot().is_some() {
+                break;
+            }
             if !is_wanted() {
                 interrupted = true;
                 break;
@@ -237,6 +274,18 @@ impl<'a> Companions<'a> {
             look(&self.sight());
         }
         (self.now().as_secs_f64(), interrupted)
+    }
+
+    /// The error if all autopilots have been silent for too long since the start.
+    fn no_autopilot(&self) -> Option<RunError> {
+        let wait = self.options.wait.filter(|&wait| self.now() >= wait)?;
+        let is_silent = self.vehicles.iter().all(|vehicle| vehicle.offboard.tally().heartbeats == 0);
+        let links = self.links.iter().map(|link| match &link.trouble {
+            Some(why) => format!("{} ({why})", link.name),
+            None => link.name.clone(),
+        });
+        is_silent
+            .then(|| RunError::NoAutopilot { seconds: wait.as_secs_f64(), links: links.collect::<Vec<_>>().join(", ") })
     }
 
     fn now(&self) -> Duration {

@@ -143,7 +143,8 @@ impl Companions<'_> {
             packets_refused: vehicle.refused,
             neighbors: vehicle.controller.neighbors(),
         });
-        let links = config.lines.iter().enumerate();
+        let lines = if self.options.demo { &[][..] } else { &config.lines[..] };
+        let links = lines.iter().enumerate();
         let links = links.map(|(line, endpoint)| LineReport {
             link: endpoint.to_string(),
             counts: self.machine.counts(line),
@@ -156,6 +157,7 @@ impl Companions<'_> {
             seconds,
             interrupted,
             dry_run: self.options.dry_run,
+            demo: self.options.demo,
             vehicles: vehicles.collect(),
             links: links.collect(),
             log_error: self.log_error.as_ref().map(ToString::to_string),

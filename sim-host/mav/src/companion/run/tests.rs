@@ -358,6 +358,35 @@ fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
 }
 
 #[test]
+fn silent_autopilots_end_the_run_with_their_links_named() {
+    let options = Options { wait: Some(Duration::from_secs(3)), ..Options::default() };
+    let world = Rc::new(RefCell::new(World::new(Some((Call::Receive, Failure::From(1))))));
+    let config = config();
+    let mut companions = Companions::new(&config, &options, None, None, Box::new(Shared(world)));
+    let (seconds, _) = companions.run(|| true, &mut |_| {});
+    let error = companions.no_autopilot().expect("no autopilot").to_string();
+    companions.has_said_farewell = true;
+    assert!((3.0..3.2).contains(&seconds), "{seconds}");
+    assert!(error.starts_with("no autopilot heard within 3 s on serial:none") && error.contains("--demo"), "{error}");
+}
+
+#[test]
+fn simulated_vehicles_of_each_kind_arrive_and_the_demo_ends() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions");
+    for name in ["six-rovers-crossing", "six-copters-crossing", "six-px4-crossing", "one-rover"] {
+        let config = Config::load(&folder.join(format!("{name}.toml"))).unwrap();
+        let mut options = Options { demo: true, quiet: true, ..Options::default() };
+        let report = run(&config, &mut options, || true, |_| {}).unwrap();
+        assert!(report.seconds < 60.0 && report.links.is_empty(), "{name}: {report}");
+        for vehicle in &report.vehicles {
+            let height_m = vehicle.position_m.expect("a position")[2];
+            let is_at_height = (height_m > 9.0) == vehicle.autopilot.flies();
+            assert!(vehicle.has_arrived && is_at_height && vehicle.tally.stops == 0, "{name}: {report}");
+        }
+    }
+}
+
+#[test]
 fn a_dry_run_ends_when_its_output_is_closed() {
     let (world, seconds) = rehearse(Some((Call::Show, Failure::One(3))));
     assert!(seconds < SECONDS && world.shown.len() == 2, "{seconds}: {:?}", world.shown);

@@ -29,6 +29,44 @@ fn setpoints_of_each_frame_and_mask_become_goals() {
     }
 }
 
+/// Masks in public use, and whether they use a position and a velocity.
+const PUBLIC_MASKS: [(u16, bool, bool, &str); 14] = [
+    (0b0000_1111_1111_1000, true, false, "DroneKit-Python, guided_set_speed_yaw: position"),
+    (0b0000_1111_1100_0111, false, true, "DroneKit-Python, guided_set_speed_yaw: velocity"),
+    (0b0000_1111_1100_0000, true, true, "position and velocity, with the force bit"),
+    (0b1101_1111_1000, true, false, "ArduPilot documentation: position"),
+    (0b1101_1100_0111, false, true, "ArduPilot documentation: velocity"),
+    (0b1101_1100_0000, true, true, "ArduPilot documentation: position and velocity"),
+    (0b1001_1100_0111, false, true, "ArduPilot documentation: velocity and yaw"),
+    (0b0101_1100_0111, false, true, "ArduPilot documentation: velocity and yaw rate"),
+    (0b1001_1111_1000, true, false, "MAVSDK: position and yaw"),
+    (0b1001_1100_0000, true, true, "MAVSDK: position, velocity and yaw"),
+    (0b0001_1111_1000, true, false, "position, yaw and yaw rate"),
+    (0b0001_1100_0111, false, true, "velocity, yaw and yaw rate"),
+    (0b1101_1110_0111, false, true, "velocity without vz"),
+    (0b1101_1111_1100, true, false, "position without z"),
+];
+
+#[test]
+fn masks_in_public_use_are_accepted() {
+    let mut bench = guided(flying());
+    for (mask, has_place, has_velocity, what) in PUBLIC_MASKS {
+        let wish = set(&mut bench, local(mask, 1));
+        let found = match wish {
+            Some(Wish::Waypoint { waypoint, .. }) => (true, waypoint.velocity_mps != Vec3::new(0.0, 0.0, 0.0)),
+            Some(Wish::Velocity { .. }) => (false, true),
+            _ => (false, false),
+        };
+        assert_eq!(found, (has_place, has_velocity), "{mask:#b} {what}: {wish:?}");
+    }
+    // Accelerations with the force bit and without it, nothing, half a position, half a velocity.
+    for mask in [0xE38, 0xC38, 0xDFF, 0xDFA, 0xDCF] {
+        bench.vehicle.now_us += 10_000_000;
+        assert_eq!(set(&mut bench, local(mask, 1)), None, "{mask:#x}");
+        assert_eq!(bench.texts().len(), 1, "{mask:#x}");
+    }
+}
+
 #[test]
 fn setpoints_in_space_have_heights() {
     let mut bench = guided(flying());
