@@ -60,7 +60,7 @@ impl Demo {
             Autopilot {
                 setup: setup.clone(),
                 lag_s: config.lag_s.max(STEP.as_secs_f64()),
-                max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps.into(),
+                max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
                 position_m: [x, y, 0.0],
                 velocity_mps: [0.0; 3],
                 wish_mps: [0.0; 3],
