@@ -1,5 +1,5 @@
-//! `cargo xtask mpi`: one world over ranks, with OpenMPI from Debian's packages. What is not
-//! installed is unpacked into `target/tools`.
+//! `cargo xtask mpi`: one world over ranks, with OpenMPI from Debian's packages. Missing
+//! packages are unpacked into `target/tools`.
 
 use crate::apt::{Tools, unpacked};
 use crate::files;

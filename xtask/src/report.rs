@@ -36,7 +36,7 @@ struct Part {
     took: Duration,
     /// Time of all processors in the commands that it ran, if the system tells.
     worked: Option<Duration>,
-    /// Why it failed or was skipped, or what was found.
+    /// The reason of a failure or a skip, or the findings.
     note: String,
 }
 
@@ -129,9 +129,9 @@ impl Report {
     }
 }
 
-/// What this program and the commands that have ended have worked so far (`/proc/self/stat` of
-/// Linux: a machine that is shared makes parts take longer, but hardly work more). What is started
-/// from a server of its own does not count.
+/// Processor time so far of this program and of the commands that have ended, by `/proc/self/stat`
+/// of Linux: on a shared machine parts take longer, but hardly more processor time. Programs that a
+/// server starts do not count.
 pub fn processor_time() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let hundredths = hundredths_worked(&stat)?;
