@@ -19,6 +19,7 @@ mod files;
 mod firmware;
 mod fuzz;
 mod install;
+mod language;
 mod layers;
 mod minimal;
 mod mpi;
