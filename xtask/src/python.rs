@@ -87,6 +87,25 @@ pub fn package(s: &mut Session) {
     suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
 }
 
+/// The pages as a book with search, in `target/book`; warnings of Sphinx are errors.
+pub fn book(s: &mut Session) {
+    const NAME: &str = "book";
+    let build = |repo: &Repo, python: &Path| {
+        let (book, index) = (repo.target.join("book"), repo.target.join("book/index.html"));
+        files::make_empty(&book)?;
+        let mut sphinx = repo.command(python);
+        sphinx.args(["-m", "sphinx", "--quiet", "--fail-on-warning", "--fresh-env", "--conf-dir", "docs"]);
+        run(sphinx.arg("--doctree-dir").arg(repo.target.join("book-trees")).arg(".").arg(&book))?;
+        files::write(&index, "<meta http-equiv=\"refresh\" content=\"0; url=README.html\">\n")?;
+        println!("{}", index.display());
+        Ok(())
+    };
+    match environment(&s.repo, "python-book", "docs/requirements.txt") {
+        Err(reason) => s.report.skip(NAME, &reason),
+        Ok(python) => drop(s.report.step(NAME, || build(&s.repo, &python))),
+    }
+}
+
 /// The setting of a suite.
 #[derive(Default)]
 pub struct Suite<'a> {
