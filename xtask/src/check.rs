@@ -106,12 +106,8 @@ fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
 /// Waits for them: one step a part.
 fn end_feature_checks(s: &mut Session, checks: Vec<FeatureCheck>) {
     for (name, check) in checks {
-        match check {
-            Ok(check) => {
-                s.report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
-            }
-            Err(reason) => s.report.skip(&name, &reason),
-        }
+        let join = |check: JoinHandle<_>| check.join().unwrap_or_else(|_| Err(String::from("the check panicked")));
+        s.report.step_with(&name, check, join);
     }
 }
 

@@ -89,21 +89,16 @@ pub fn package(s: &mut Session) {
 
 /// The pages as a book with search, in `target/book`; warnings of Sphinx are errors.
 pub fn book(s: &mut Session) {
-    const NAME: &str = "book";
-    let build = |repo: &Repo, python: &Path| {
-        let (book, index) = (repo.target.join("book"), repo.target.join("book/index.html"));
+    let (repo, book) = (&s.repo, s.repo.target.join("book"));
+    s.report.step_with("book", environment(repo, "python-book", "docs/requirements.txt"), |python| {
         files::make_empty(&book)?;
         let mut sphinx = repo.command(python);
         sphinx.args(["-m", "sphinx", "--quiet", "--fail-on-warning", "--fresh-env", "--conf-dir", "docs"]);
         run(sphinx.arg("--doctree-dir").arg(repo.target.join("book-trees")).arg(".").arg(&book))?;
-        files::write(&index, "<meta http-equiv=\"refresh\" content=\"0; url=README.html\">\n")?;
+        let index = book.join("index.html");
         println!("{}", index.display());
-        Ok(())
-    };
-    match environment(&s.repo, "python-book", "docs/requirements.txt") {
-        Err(reason) => s.report.skip(NAME, &reason),
-        Ok(python) => drop(s.report.step(NAME, || build(&s.repo, &python))),
-    }
+        files::write(&index, "<meta http-equiv=\"refresh\" content=\"0; url=README.html\">\n")
+    });
 }
 
 /// The setting of a suite.

@@ -95,6 +95,23 @@ impl Report {
         counts.failed == 0
     }
 
+    /// Runs one part with the value that it needs; skips it if the value is missing. Returns
+    /// whether the part succeeded.
+    pub fn step_with<T>(
+        &mut self,
+        name: &str,
+        needed: Result<T, String>,
+        work: impl FnOnce(T) -> Result<(), String>,
+    ) -> bool {
+        match needed {
+            Ok(needed) => self.step(name, || work(needed)),
+            Err(reason) => {
+                self.skip(name, &reason);
+                false
+            }
+        }
+    }
+
     /// Runs one command as a part.
     pub fn command(&mut self, name: &str, mut command: Command) -> bool {
         self.step(name, || crate::repo::run(&mut command))
