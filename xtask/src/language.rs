@@ -155,7 +155,7 @@ mod tests {
             "No robot moves; the robot keeps its place.",
             "There is no wall, and 3 is no less than 2; it is not a wall.",
             "The run continues. It goes on the list, the same in all bits.",
-            "The new field has a default.",
+            "The new field has a default; robots are told apart.",
         ] {
             assert_eq!(broken(sentence), [""; 0], "{sentence}");
         }
