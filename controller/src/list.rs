@@ -1,11 +1,11 @@
-//! What fixed lists need beside [`heapless::Vec`]: its own ways to extend, collect, remove and sort, and its iterator by
-//! value, leave a panic in the firmware, even where none can happen.
+//! What fixed lists need beside [`heapless::Vec`]: its own ways to extend, collect, remove and
+//! sort, and its iterator by value, leave a panic in the firmware, even where none can happen.
 
 use heapless::{LenType, Vec};
 
-/// A list of at most `N` items that is empty or short in nearly all robots: what a dead end taught, requests on their
-/// way, whom one hears. On a part its room is there from the start; on a host with many robots only what is in it takes memory. It is
-/// written as [`heapless::Vec`] is.
+/// A list of at most `N` items that is empty or short in nearly all robots: what a dead end taught,
+/// requests on their way, whom one hears. On a part its room is there from the start; on a host
+/// with many robots only what is in it takes memory. It is written as [`heapless::Vec`] is.
 #[cfg(all(not(feature = "host"), any(feature = "route", feature = "wire")))]
 pub(crate) type SparseVec<T, const N: usize> = heapless::Vec<T, N>;
 #[cfg(feature = "host")]

@@ -1,4 +1,5 @@
-//! The library of the program `staya`: its commands, and how it finds the programs of other commands.
+//! The library of the program `staya`: its commands, and how it finds the programs of other
+//! commands.
 
 pub mod cli;
 pub mod page;

@@ -3,6 +3,7 @@
 
 use crate::files;
 use crate::python;
+use crate::repo::run as run_command_line;
 use crate::report::Counts;
 use crate::session::Session;
 use std::fs;
@@ -53,14 +54,9 @@ fn script(s: &mut Session, name: &str, file: &str) {
     let Some(program) = s.staya("release") else {
         return s.report.skip(name, "the program was not built");
     };
-    match python::client_environment(&s.repo) {
-        Ok(python) => {
-            let mut bench = s.repo.command(&python);
-            bench.arg(file).env("STAYA", program);
-            s.report.command(name, bench);
-        }
-        Err(reason) => s.report.skip(name, &reason),
-    }
+    s.report.step_with(name, python::client_environment(&s.repo), |python| {
+        run_command_line(s.repo.command(&python).arg(file).env("STAYA", program))
+    });
 }
 
 /// Runs the benchmarks, all of which stand beside peers.

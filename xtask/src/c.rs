@@ -129,8 +129,8 @@ pub fn library(repo: &Repo, toolchain: &Toolchain) -> Result<PathBuf, String> {
 /// The word before the deepest stack that the program on the part has seen.
 const STACK: &str = "stack";
 
-/// Everything that C can call is in the library, and what is left of the panic handler would be
-/// undefined in it.
+/// Everything that C can call is in the library. A remaining call of the panic handler would be an
+/// undefined symbol.
 fn has_no_panic(repo: &Repo, library: &Path) -> Result<(), String> {
     let symbols = output_of(repo.command("arm-none-eabi-nm").arg("--undefined-only").arg(library));
     let symbols = symbols.ok_or("arm-none-eabi-nm cannot read the library")?;
@@ -161,7 +161,7 @@ fn templates(repo: &Repo) -> Result<(), String> {
     Ok(())
 }
 
-/// The canned swarms as a program of the part, and what it takes of it.
+/// Links the canned swarms into a program of the part, and prints its size.
 fn link(repo: &Repo, library: &Path) -> Result<PathBuf, String> {
     let elf = folder(repo)?.join("swarms.elf");
     let mut build = cross(repo, "arm-none-eabi-gcc");

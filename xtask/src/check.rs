@@ -31,7 +31,8 @@ pub fn run(s: &mut Session) {
     s.report.step(crate::weight::SHARED, || crate::weight::check_shared(&s.repo));
     s.report.step("no log that panics", || crate::plants::check_logs(&s.repo.root));
     crate::minimal::check(s);
-    s.report.step("what the documentation names", || crate::documents::check(&s.repo.root));
+    s.report.step("references of the documentation", || crate::documents::check(&s.repo.root));
+    s.report.step("language", || crate::language::check(&s.repo.root));
     let feature_checks = begin_feature_checks(s);
     if has(s, "clippy", "clippy") {
         let deny = ["--", "-D", "warnings"];
@@ -70,8 +71,8 @@ fn has(s: &mut Session, subcommand: &str, component: &str) -> bool {
     found
 }
 
-/// Checks of the controller for a part with each set of features that its manifest lists: the name of
-/// the step, and the thread that runs it while other steps run, or why none does.
+/// Checks of the controller for a part with each set of features that its manifest lists: the name
+/// of the step, and the thread that runs it while other steps run, or why none does.
 type FeatureCheck = (String, Result<JoinHandle<Result<(), String>>, String>);
 
 /// Begins them, one thread a part: the compiler has one thread for one crate. The part with a
@@ -105,12 +106,8 @@ fn begin_feature_checks(s: &mut Session) -> Vec<FeatureCheck> {
 /// Waits for them: one step a part.
 fn end_feature_checks(s: &mut Session, checks: Vec<FeatureCheck>) {
     for (name, check) in checks {
-        match check {
-            Ok(check) => {
-                s.report.step(&name, || check.join().unwrap_or_else(|_| Err(String::from("the check panicked"))));
-            }
-            Err(reason) => s.report.skip(&name, &reason),
-        }
+        let join = |check: JoinHandle<_>| check.join().unwrap_or_else(|_| Err(String::from("the check panicked")));
+        s.report.step_with(&name, check, join);
     }
 }
 

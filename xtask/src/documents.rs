@@ -1,28 +1,24 @@
-//! What the documentation names exists: paths, links and their headings, and the code that
-//! README.md quotes.
+//! The documentation refers only to things that exist: paths, links and their headings, pages in
+//! comments, and the code that README.md quotes.
 
 use crate::files;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Folders at the top that only runs make, so that documentation may name what is not there.
-const MADE: [&str; 2] = ["target", "out"];
-/// Says what was, not what is.
-const HISTORY: &str = "CHANGELOG.md";
-
-/// Reads every Markdown file of the repository. The error counts the faults, which are printed by
-/// file and line.
+/// Reads every Markdown file of the repository and the comments of its Rust code. The error counts
+/// the faults, which are printed by file and line.
 pub fn check(root: &Path) -> Result<(), String> {
     let folders = folders(root)?;
     let mut faults = Vec::new();
-    for file in &list(root, "md")? {
+    for file in &files::sources(root, &["md", "rs"])? {
         let text = files::read(file)?;
-        let shown = file.strip_prefix(root).unwrap_or(file);
-        if shown != Path::new(HISTORY) {
-            let document = Document { root, file, folders: &folders };
-            faults.extend(document.faults(&text).map(|(line, fault)| format!("{}:{line}: {fault}", shown.display())));
-        }
+        let document = Document { root, file, folders: &folders };
+        let found =
+            if files::has_extension(file, &["md"]) { document.faults(&text) } else { document.missing_pages(&text) };
+        let shown = file.strip_prefix(root).unwrap_or(file).display();
+        faults.extend(found.iter().map(|(line, fault)| format!("{shown}:{line}: {fault}")));
     }
-    let examples = list(&root.join("examples"), "rs")?;
+    let examples = files::sources(&root.join("examples"), &["rs"])?;
     let examples = examples.iter().map(|file| files::read(file)).collect::<Result<Vec<_>, _>>()?;
     let readme = files::read(&root.join("README.md"))?;
     let quotes = quotes(&readme);
@@ -31,10 +27,10 @@ pub fn check(root: &Path) -> Result<(), String> {
     for fault in &faults {
         println!("{fault}");
     }
-    if faults.is_empty() { Ok(()) } else { Err(format!("{} names of what is not there", faults.len())) }
+    if faults.is_empty() { Ok(()) } else { Err(format!("{} references lead nowhere", faults.len())) }
 }
 
-/// A Markdown file and what it may refer to.
+/// A Markdown file, and the folders that it may refer to.
 struct Document<'a> {
     root: &'a Path,
     file: &'a Path,
@@ -43,15 +39,25 @@ struct Document<'a> {
 }
 
 impl Document<'_> {
-    /// Each name of what does not exist, and what a merge has left, with its line.
-    fn faults(&self, text: &str) -> impl Iterator<Item = (usize, String)> {
-        text.lines().zip(1..).flat_map(|(line, number)| {
+    /// The references to missing things and the conflict markers, each with its line.
+    fn faults(&self, text: &str) -> Vec<(usize, String)> {
+        let faults = text.lines().zip(1..).flat_map(|(line, number)| {
             let links = self.broken_links(line).into_iter().map(|link| format!("the link {link} leads nowhere"));
             let paths = self.missing_paths(line).into_iter().map(|path| format!("{path} does not exist"));
             let is_mark = ["<<<<<<< ", ">>>>>>> "].iter().any(|mark| line.starts_with(mark));
             let mark = is_mark.then(|| String::from("a merge has left this mark"));
             links.chain(paths).chain(mark).map(move |fault| (number, fault)).collect::<Vec<_>>()
-        })
+        });
+        faults.collect()
+    }
+
+    /// The missing pages, such as `docs/python.md`, that comments of Rust code name.
+    fn missing_pages(&self, text: &str) -> Vec<(usize, String)> {
+        let comments = text.lines().zip(1..).filter(|(line, _)| line.trim_start().starts_with("//"));
+        let names = comments.flat_map(|(line, number)| words(line).map(move |word| (number, word)));
+        let pages = names.filter(|(_, name)| name.ends_with(".md") && name.contains('/'));
+        let missing = pages.filter(|(_, page)| !self.file.ancestors().any(|folder| folder.join(page).exists()));
+        missing.map(|(line, page)| (line, format!("{page} does not exist"))).collect()
     }
 
     fn broken_links<'t>(&self, line: &'t str) -> Vec<&'t str> {
@@ -66,7 +72,7 @@ impl Document<'_> {
             path => self.here().join(path),
         };
         heading.is_empty() && file.exists()
-            || files::read(&file).is_ok_and(|text| text.lines().any(|line| anchor(line).as_deref() == Some(heading)))
+            || files::read(&file).is_ok_and(|text| anchors(&text).iter().any(|anchor| anchor == heading))
     }
 
     /// Words that begin with a top folder, and in backticks files and folders beside, below or
@@ -75,8 +81,7 @@ impl Document<'_> {
         let mut missing = Vec::new();
         let mut near = vec![self.here().join("src"), self.here()];
         for (span, is_code) in line.split('`').zip([false, true].into_iter().cycle()) {
-            for word in span.split(|c: char| !(c.is_alphanumeric() || "_-./*".contains(c))) {
-                let word = word.trim_end_matches('.');
+            for word in words(span) {
                 let is_placeholder = word.split('/').any(is_placeholder);
                 let top = word.split_once('/').map(|(top, _)| top);
                 if top.is_some_and(|top| self.folders.iter().any(|folder| folder == top)) {
@@ -108,6 +113,33 @@ fn is_placeholder(part: &str) -> bool {
     part.contains('*') || !stem.is_empty() && stem != "README" && stem.chars().all(|c| c.is_uppercase() || c == '_')
 }
 
+/// The words of a line, which may be paths.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    let words = line.split(|c: char| !(c.is_alphanumeric() || "_-./*".contains(c)));
+    words.map(|word| word.trim_end_matches('.'))
+}
+
+/// The lines of a page outside blocks of code, with their numbers.
+pub fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut is_code = false;
+    (1..).zip(text.lines()).filter(move |(_, line)| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    })
+}
+
+/// The names of a page's headings in links, by GitHub's rules: repeated headings are numbered.
+fn anchors(text: &str) -> Vec<String> {
+    let mut seen = BTreeMap::new();
+    let numbered = prose(text).filter_map(|(_, line)| anchor(line)).map(|name| {
+        let count: &mut usize = seen.entry(name.clone()).or_default();
+        *count += 1;
+        if *count == 1 { name } else { format!("{name}-{}", *count - 1) }
+    });
+    numbered.collect()
+}
+
 /// The name of a heading in links; `None` for other lines.
 fn anchor(line: &str) -> Option<String> {
     let heading = line.trim_start_matches('#').strip_prefix(' ').filter(|_| line.starts_with('#'))?;
@@ -129,20 +161,8 @@ fn is_in(quote: &[&str], text: &str) -> bool {
 
 /// The folders at the top that are the repository's own.
 fn folders(root: &Path) -> Result<Vec<String>, String> {
-    let folders = files::entries(root)?.into_iter().filter(|path| path.is_dir()).map(|path| files::name(&path));
-    Ok(folders.filter(|name| !is_foreign(name)).collect())
-}
-
-/// The files with this extension.
-fn list(folder: &Path, extension: &str) -> Result<Vec<PathBuf>, String> {
-    files::below(folder, &|path| {
-        if path.is_dir() { !is_foreign(&files::name(path)) } else { path.extension().is_some_and(|e| e == extension) }
-    })
-}
-
-/// Whether a folder is hidden or made by runs.
-fn is_foreign(name: &str) -> bool {
-    name.starts_with('.') || MADE.contains(&name)
+    let folders = files::entries(root)?.into_iter().filter(|path| path.is_dir() && !files::is_made(path));
+    Ok(folders.map(|path| files::name(&path)).collect())
 }
 
 #[cfg(test)]
@@ -155,17 +175,19 @@ mod tests {
         let file = root.join("xtask/README.md");
         let folders = folders(&root).expect("the repository");
         let document = Document { root: &root, file: &file, folders: &folders };
-        document.faults(line).map(|(_, fault)| fault).collect()
+        let faults = document.faults(line).into_iter().chain(document.missing_pages(line));
+        faults.map(|(_, fault)| fault).collect()
     }
 
     #[test]
-    fn this_repository_names_what_exists() {
+    fn this_repository_has_no_broken_reference() {
         assert_eq!(check(&Repo::find().root), Ok(()));
     }
 
     #[test]
-    fn what_exists_is_no_fault() {
+    fn existing_names_are_accepted() {
         for line in [
+            "//! See docs/limits.md and `PROTOCOL.md`.",
             "see `xtask/src/main.rs` (all), `layers.rs`, `size/`, and `src/main.rs`",
             "`xtask/src/size/` beside `layers.rs`; `trace.csv`, `m/s`, `target/firmware/PART/BIN` are not ours",
             "`scenarios/NAME.toml`, `scenarios/bridge-*.toml`, [a page](../README.md), [a part](../ARCHITECTURE.md#one-tick), [far](https://a.b/c)",
@@ -175,12 +197,13 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_exist_is_named() {
+    fn missing_names_are_reported() {
         assert_eq!(missing("<<<<<<< HEAD"), ["a merge has left this mark"]);
         for (line, path) in [
             ("cargo run -- run scenarios/nowhere.toml.", "scenarios/nowhere.toml"),
             ("`xtask/src/main.rs` and `nowhere.rs`", "nowhere.rs"),
             ("`nowhere/`", "nowhere/"),
+            ("/// See nowhere/page.md.", "nowhere/page.md"),
         ] {
             assert_eq!(missing(line), [format!("{path} does not exist")]);
         }
@@ -198,8 +221,8 @@ mod tests {
     }
 
     #[test]
-    fn headings_are_linked_as_browsers_do() {
-        assert_eq!(anchor("## To change X, look in Y").as_deref(), Some("to-change-x-look-in-y"));
-        assert_eq!(anchor("#define"), None);
+    fn headings_are_named_as_on_github() {
+        let page = "# `a_b`: c (d), E\n```sh\n# code\n```\n## Same\n## Same\n#define\n";
+        assert_eq!(anchors(page), ["a_b-c-d-e", "same", "same-1"]);
     }
 }

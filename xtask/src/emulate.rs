@@ -52,10 +52,7 @@ pub fn on_part(
     if !firmware::build(s, part, profile, bins) {
         return s.report.skip(name, "there is no firmware");
     }
-    match prepare(&s.repo, part) {
-        Err(reason) => s.report.skip(name, &reason),
-        Ok(()) => drop(s.report.step(name, || work(&s.repo))),
-    }
+    s.report.step_with(name, prepare(&s.repo, part), |()| work(&s.repo));
 }
 
 /// Runs a program that ends by itself, with the part's UART on one of QEMU's devices, `none` or

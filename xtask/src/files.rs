@@ -72,6 +72,22 @@ pub fn below(folder: &Path, is_wanted: &impl Fn(&Path) -> bool) -> Result<Vec<Pa
     Ok(files)
 }
 
+/// The files below a folder with one of these extensions, except hidden folders and output.
+pub fn sources(folder: &Path, extensions: &[&str]) -> Result<Vec<PathBuf>, String> {
+    below(folder, &|path| if path.is_dir() { !is_made(path) } else { has_extension(path, extensions) })
+}
+
+/// Whether a folder is hidden, or holds only output of builds and runs.
+pub fn is_made(folder: &Path) -> bool {
+    let name = name(folder);
+    name.starts_with('.') || ["target", "out"].contains(&name.as_str())
+}
+
+/// Whether the path has one of these extensions.
+pub fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|own| extensions.iter().any(|extension| own == *extension))
+}
+
 /// The last part of a path.
 pub fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()

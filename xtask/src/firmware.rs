@@ -1,4 +1,4 @@
-//! `cargo xtask firmware`: the ELF files of the parts, with whatever toolchain there is.
+//! `cargo xtask firmware`: the ELF files of the parts, with the toolchain that is installed.
 
 use crate::device::{PARTS, Part, STM32F405, Toolchain, parts};
 use crate::files;
@@ -17,7 +17,7 @@ pub enum Profile {
 }
 
 impl Profile {
-    /// As cargo is told, and the folder that it builds in.
+    /// The name of cargo's profile, and the folder that it builds in.
     fn names(self) -> (&'static str, &'static str) {
         match self {
             Self::Firmware => ("firmware", "firmware"),
@@ -51,8 +51,8 @@ pub fn run_command(s: &mut Session, options: &Options<'_>) {
     }
 }
 
-/// Begins to build every program for all parts, with what others leave of the processors; the
-/// caller waits for its end. What it cannot build is reported when it is built as a step.
+/// Begins to build every program for all parts at a low priority; the caller waits for the end.
+/// Failures are reported later, when a step builds the program again.
 pub fn begin(s: &mut Session) -> Option<Child> {
     // Toolchains are fetched first: packages are unpacked by one program at a time.
     let parts = PARTS.iter().filter(|part| s.toolchains.find(&s.repo, part.target).is_ok());
@@ -161,8 +161,8 @@ pub fn sections(file: &Path) -> Result<Sections, String> {
     sizes(&files::bytes(file)?).ok_or_else(|| format!("{} is not a 32-bit ELF file", file.display()))
 }
 
-/// The same from the file's section headers: what is loaded and has contents is flash, what is
-/// writable is RAM. What riscv-rt calls a section and is only the rest of RAM does not count.
+/// The same from the file's section headers: loaded sections with contents are flash,
+/// writable ones are RAM. The section of riscv-rt for the rest of RAM does not count.
 fn sizes(bytes: &[u8]) -> Option<Sections> {
     let file = object::read::elf::ElfFile32::<object::Endianness>::parse(bytes).ok()?;
     let mut sum = Sections::default();

@@ -19,6 +19,7 @@ mod files;
 mod firmware;
 mod fuzz;
 mod install;
+mod language;
 mod layers;
 mod minimal;
 mod mpi;
@@ -47,7 +48,7 @@ type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
 
 /// The commands. Of lines that begin with the same word, the first that fits counts.
 #[rustfmt::skip]
-const COMMANDS: [Command; 27] = [
+const COMMANDS: [Command; 28] = [
     ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
     ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, Short)),
     ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, All)),
@@ -55,6 +56,7 @@ const COMMANDS: [Command; 27] = [
         autopilots::run_command),
     ("bench [NAME]", "benchmarks: medians, ratios, goals", |s, o| bench::run(s, o.name())),
     ("bless [NAME]", "rewrite golden files by tests named NAME (golden)", |s, o| bless::run(s, o.name())),
+    ("book", "the pages as a book with search: target/book/index.html", |s, _| python::book(s)),
     ("browser", "the page of `staya view` in Chromium", |s, _| python::browser(s)),
     ("c", "the library for C, on this machine and on an emulated STM32F405", |s, _| c::run(s)),
     ("clients [NAME]", "MAVLink clients against staya", |s, o| python::clients(s, o.name(), All)),

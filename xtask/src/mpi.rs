@@ -1,5 +1,5 @@
-//! `cargo xtask mpi`: one world over ranks, with OpenMPI from Debian's packages. What is not
-//! installed is unpacked into `target/tools`.
+//! `cargo xtask mpi`: one world over ranks, with OpenMPI from Debian's packages. Missing
+//! packages are unpacked into `target/tools`.
 
 use crate::apt::{Tools, unpacked};
 use crate::files;
@@ -29,13 +29,7 @@ pub fn run_scaling(s: &mut Session) {
 /// Makes OpenMPI ready and builds `staya-mpi`. Returns the environment of both; none if it cannot
 /// be built.
 fn build(s: &mut Session, options: &[&str]) -> Option<Vec<(&'static str, String)>> {
-    let environment = match environment(&s.repo) {
-        Ok(environment) => environment,
-        Err(reason) => {
-            s.report.skip(NAME, &reason);
-            return None;
-        }
-    };
+    let environment = environment(&s.repo).map_err(|reason| s.report.skip(NAME, &reason)).ok()?;
     let mut build = s.repo.cargo(&["build", "--locked", "--package", "staya-mpi", "--features", "mpi"]);
     build.args(options).envs(environment.iter().cloned());
     s.report.step("staya-mpi", || run_command(&mut build)).then_some(environment)

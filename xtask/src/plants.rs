@@ -67,14 +67,14 @@ pub fn run(s: &mut Session, all: bool) {
     }
 }
 
-/// That no source names one of the macros of `defmt` that panic: those have a panic of their own,
-/// of which the linker is told that it is in order (`hil/firmware/build.rs`).
+/// Refuses sources that name a macro of `defmt` that panics: these have a panic handler of their
+/// own, which the linker accepts (`hil/firmware/build.rs`).
 pub fn check_logs(root: &Path) -> Result<(), String> {
-    for file in LOGGED.iter().map(|folder| list(&root.join(folder))).collect::<Result<Vec<_>, _>>()?.concat() {
+    for file in sources(root, &LOGGED)? {
         let bytes = files::bytes(&file)?;
         if let Some(found) = panicking_log(&String::from_utf8_lossy(&bytes)) {
             let file = file.display();
-            return Err(format!("{file}: `{found}` panics behind the proof's back; log, and go on or reset"));
+            return Err(format!("{file}: `{found}` panics without the linker noticing; log, then continue or reset"));
         }
     }
     Ok(())
@@ -110,12 +110,10 @@ fn is_refused(repo: &Repo, toolchain: &Toolchain, part: &Part, plant: &Plant) ->
     }
 }
 
-/// The sources with the plant in them. What is as it should be is left alone, so that cargo builds
-/// only what differs.
+/// The sources with the plant in them. Unchanged files are not written, so that cargo builds
+/// only the difference.
 fn copy_sources(root: &Path, copy: &Path, plant: &Plant) -> Result<(), String> {
-    let mut sources = FILES.map(|file| root.join(file)).to_vec();
-    sources.extend(FOLDERS.iter().map(|folder| list(&root.join(folder))).collect::<Result<Vec<_>, _>>()?.concat());
-    for file in sources {
+    for file in FILES.map(|file| root.join(file)).into_iter().chain(sources(root, &FOLDERS)?) {
         let mut bytes = files::bytes(&file)?;
         if file == root.join(plant.file) {
             let text = String::from_utf8_lossy(&bytes);
@@ -133,12 +131,9 @@ fn copy_sources(root: &Path, copy: &Path, plant: &Plant) -> Result<(), String> {
     Ok(())
 }
 
-/// The sources in a folder and all within it; what builds leave there is left out.
-fn list(folder: &Path) -> Result<Vec<PathBuf>, String> {
-    files::below(folder, &|path| {
-        let is_source = path.extension().is_some_and(|end| ENDINGS.iter().any(|known| end == *known));
-        if path.is_dir() { files::name(path) != "target" } else { is_source }
-    })
+fn sources(root: &Path, folders: &[&str]) -> Result<Vec<PathBuf>, String> {
+    let lists = folders.iter().map(|folder| files::sources(&root.join(folder), &ENDINGS));
+    Ok(lists.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 #[cfg(test)]

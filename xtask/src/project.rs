@@ -39,15 +39,10 @@ pub fn run(s: &mut Session, extent: Extent) {
     if extent == Extent::Short {
         return;
     }
-    match make_is_there(&s.repo) {
-        Err(reason) => s.report.skip(C, &reason),
-        Ok(()) => {
-            s.report.step(C, || {
-                let folder = make(&s.repo, "c", &["--c"])?;
-                run_command_line(make_in(&s.repo, &folder).arg("test"))
-            });
-        }
-    }
+    s.report.step_with("a new project in C", make_is_there(&s.repo), |()| {
+        let folder = make(&s.repo, "c", &["--c"])?;
+        run_command_line(make_in(&s.repo, &folder).arg("test"))
+    });
     for (name, target) in PARTS {
         firmware(s, name, target);
     }
@@ -57,8 +52,6 @@ pub fn run(s: &mut Session, extent: Extent) {
     }
     in_python(s);
 }
-
-const C: &str = "a new project in C";
 
 /// Makes sure that there is what projects in C are compiled by; `make` is unpacked on Debian.
 fn make_is_there(repo: &Repo) -> Result<(), String> {

@@ -87,6 +87,20 @@ pub fn package(s: &mut Session) {
     suite(s, NAME, Suite { program: Some(python), arguments, ..Suite::default() }, package_environment);
 }
 
+/// The pages as a book with search, in `target/book`; warnings of Sphinx are errors.
+pub fn book(s: &mut Session) {
+    let (repo, book) = (&s.repo, s.repo.target.join("book"));
+    s.report.step_with("book", environment(repo, "python-book", "docs/requirements.txt"), |python| {
+        files::make_empty(&book)?;
+        let mut sphinx = repo.command(python);
+        sphinx.args(["-m", "sphinx", "--quiet", "--fail-on-warning", "--fresh-env", "--conf-dir", "docs"]);
+        run(sphinx.arg("--doctree-dir").arg(repo.target.join("book-trees")).arg(".").arg(&book))?;
+        let index = book.join("index.html");
+        println!("{}", index.display());
+        files::write(&index, "<meta http-equiv=\"refresh\" content=\"0; url=README.html\">\n")
+    });
+}
+
 /// The setting of a suite.
 #[derive(Default)]
 pub struct Suite<'a> {

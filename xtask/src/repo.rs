@@ -35,7 +35,7 @@ impl Repo {
         self.target.join("tools/bin")
     }
 
-    /// A program to run at the top of the repository, without standard input; it and what it starts
+    /// A program to run at the top of the repository, without standard input; it and its children
     /// find [`Repo::tools`] as well.
     pub fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);

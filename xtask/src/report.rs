@@ -36,7 +36,7 @@ struct Part {
     took: Duration,
     /// Time of all processors in the commands that it ran, if the system tells.
     worked: Option<Duration>,
-    /// Why it failed or was skipped, or what was found.
+    /// The reason of a failure or a skip, or the findings.
     note: String,
 }
 
@@ -95,6 +95,23 @@ impl Report {
         counts.failed == 0
     }
 
+    /// Runs one part with the value that it needs; skips it if the value is missing. Returns
+    /// whether the part succeeded.
+    pub fn step_with<T>(
+        &mut self,
+        name: &str,
+        needed: Result<T, String>,
+        work: impl FnOnce(T) -> Result<(), String>,
+    ) -> bool {
+        match needed {
+            Ok(needed) => self.step(name, || work(needed)),
+            Err(reason) => {
+                self.skip(name, &reason);
+                false
+            }
+        }
+    }
+
     /// Runs one command as a part.
     pub fn command(&mut self, name: &str, mut command: Command) -> bool {
         self.step(name, || crate::repo::run(&mut command))
@@ -129,9 +146,9 @@ impl Report {
     }
 }
 
-/// What this program and the commands that have ended have worked so far (`/proc/self/stat` of
-/// Linux: a machine that is shared makes parts take longer, but hardly work more). What is started
-/// from a server of its own does not count.
+/// Processor time so far of this program and of the commands that have ended, by `/proc/self/stat`
+/// of Linux: on a shared machine parts take longer, but hardly more processor time. Programs that a
+/// server starts do not count.
 pub fn processor_time() -> Option<Duration> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
     let hundredths = hundredths_worked(&stat)?;

@@ -53,13 +53,8 @@ impl Session {
         target: &str,
         work: impl FnOnce(&Repo, &Toolchain) -> Result<(), String>,
     ) -> bool {
-        match self.toolchains.find(&self.repo, target) {
-            Ok(toolchain) => self.report.step(name, || work(&self.repo, &toolchain)),
-            Err(reason) => {
-                self.report.skip(name, &reason);
-                false
-            }
-        }
+        let toolchain = self.toolchains.find(&self.repo, target);
+        self.report.step_with(name, toolchain, |toolchain| work(&self.repo, &toolchain))
     }
 }
 

@@ -45,7 +45,7 @@ pub struct Code {
 
 impl Code {
     fn read(&mut self, source: &Path) -> Result<(), String> {
-        let is_code = |path: &Path| path.extension().is_some_and(|end| end == "rs");
+        let is_code = |path: &Path| files::has_extension(path, &["rs"]);
         let is_wanted = |path: &Path| if path.is_dir() { files::name(path) != "bin" } else { is_code(path) };
         for file in files::below(source, &is_wanted)? {
             let module = file.with_extension("");

@@ -64,16 +64,16 @@ impl Tally {
     }
 }
 
-/// The counts in the closing line of a program of `cargo test`, and the number of ignored tests, which
-/// another command has. Tests that the command line filters out were skipped.
+/// The counts in the closing line of a program of `cargo test`, and the number of ignored tests,
+/// which another command has. Tests that the command line filters out were skipped.
 fn cargo_line(line: &str) -> Option<(Counts, u64)> {
     let (_, counts) = line.strip_prefix("test result: ")?.split_once(". ")?;
     // "finished in 0.01s" is not a count.
     add_up(counts.split("; ").filter(|field| field.starts_with(|first: char| first.is_ascii_digit())))
 }
 
-/// The counts in the closing line of pytest, `1 failed, 2 passed, 1 skipped in 3.21s`, or of the soak,
-/// and the number of tests that were not wanted.
+/// The counts in the closing line of pytest, `1 failed, 2 passed, 1 skipped in 3.21s`, or of the
+/// soak, and the number of tests that were not wanted.
 fn pytest_line(line: &str) -> Option<(Counts, u64)> {
     let (counts, time) = line.trim_start_matches("soak: ").trim_matches(['=', ' ']).rsplit_once(" in ")?;
     let is_time = time.contains('s') && time.starts_with(|first: char| first.is_ascii_digit());
@@ -95,10 +95,10 @@ fn add_up<'a>(mut fields: impl Iterator<Item = &'a str>) -> Option<(Counts, u64)
     })
 }
 
-/// Runs test programs of Rust or pytest and adds up their closing lines. A program that ends without one
-/// (it crashed), and a command that fails without any test that does (it did not compile), is one failure
-/// each. The note names the failed tests and the figures that were found last; `why_skipped` is part of it
-/// if tests were skipped.
+/// Runs test programs of Rust or pytest and adds up their closing lines. A program that ends
+/// without one (it crashed), and a command that fails without any test that does (it did not
+/// compile), is one failure each. The note names the failed tests and the figures that were found
+/// last; `why_skipped` is part of it if tests were skipped.
 pub fn counted(tests: &mut Command, why_skipped: &str) -> (Counts, String) {
     let mut tally = Tally::default();
     let ended = run_reading(tests, |line| tally.read(line));

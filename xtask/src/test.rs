@@ -38,6 +38,7 @@ pub fn run(s: &mut Session, extent: Extent) {
         crate::swarms::run_short(s, &SHORT);
         return crate::emulated::run(s, &SHORT);
     }
+    crate::python::book(s);
     crate::python::browser(s);
     crate::python::cluster(s);
     crate::mpi::run(s);

@@ -4,7 +4,8 @@ use alloc::vec::Vec;
 use core::ops::{Deref, DerefMut};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// At most `N` items; grows by a few at a time. In place of [`heapless::Vec`], with its functions and its answers.
+/// At most `N` items; grows by a few at a time. In place of [`heapless::Vec`], with its functions
+/// and its answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct SparseVec<T, const N: usize>(Vec<T>);
 

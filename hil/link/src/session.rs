@@ -6,7 +6,8 @@
 //! use staya_link::session::{About, Reaction, Session, content_bytes};
 //!
 //! const CONTENT: usize = content_bytes(169, 16, SMALL_INBOX);
-//! let about = About { part: "nrf51", firmware: "lockstep", boot: 0, ticks_per_second: 16_000_000 };
+//! let (part, firmware) = ("nrf51", "lockstep");
+//! let about = About { part, firmware, boot: 0, ticks_per_second: 16_000_000 };
 //! let mut session = Session::<Small, CONTENT>::new(Small::new(), about);
 //! let mut meter = ();
 //! // Sent once after each start; then feed each received byte.

@@ -18,10 +18,17 @@
 //! #     type Destination = Roams;
 //! #     type Workspace = ();
 //! #     type Payload = ();
-//! #     fn decide(&mut self, _: &GuidanceInput<'_, S>, _: &InPlane<'_, S>, _: &mut Rng, (): &mut ()) -> Result<Decision<S>, BadInput> {
+//! #     fn decide(
+//! #         &mut self,
+//! #         _: &GuidanceInput<'_, S>,
+//! #         _: &InPlane<'_, S>,
+//! #         _: &mut Rng,
+//! #         (): &mut (),
+//! #     ) -> Result<Decision<S>, BadInput> {
 //! #         let x = S::from_f32(self.speed_mps).unwrap_or(S::ZERO);
 //! #         let wish_mps = Vec3 { x, ..Vec3::ZERO };
-//! #         Ok(Decision { action: Action::Velocity { wish_mps, way_m: None }, ..Decision::default() })
+//! #         let action = Action::Velocity { wish_mps, way_m: None };
+//! #         Ok(Decision { action, ..Decision::default() })
 //! #     }
 //! # }
 //! fn main() -> std::process::ExitCode {

@@ -48,7 +48,6 @@ impl NewArgs {
     /// Runs the command.
     ///
     /// An invalid name, a folder that exists or cannot be created, or missing sources of Staya.
-    /// A name that no package can have, a folder that is there or cannot be made, sources of Staya that are not there.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let Some(folder) = self.folder.as_deref().filter(|_| !self.list) else {
             print(&list())?;

@@ -5,7 +5,8 @@
 //! # fn main() -> Result<(), staya_sim::record::Error> {
 //! let loss = Chart::new("Route loss on natural land", "obstacles", "loss (%)")
 //!     .note("1000 runs each, 95 % intervals")
-//!     .with(Series::intervals("measured", [[10.0, 4.1, 3.9, 4.3], [40.0, 9.0, 8.6, 9.4]]).joined())
+//!     .with(Series::intervals("measured", [[10.0, 4.1, 3.9, 4.3], [40.0, 9.0, 8.6, 9.4]])
+//!         .joined())
 //!     .with(Series::reference("paper", [[10.0, 5.0], [40.0, 11.0]]));
 //! let times = Chart::new("Arrival times", "ticks", "runs")
 //!     .with(Series::bars("runs", [[0.0, 10.0, 3.0], [10.0, 20.0, 8.0]]));

@@ -163,7 +163,8 @@ pub enum View {
     Plan,
     /// From the south: x and height.
     Elevation,
-    /// From the south-east and above: east to the right, north to the upper right at half its length, height up.
+    /// From the south-east and above: east to the right, north to the upper right at half its
+    /// length, height up.
     Oblique,
 }
 

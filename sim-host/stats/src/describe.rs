@@ -44,8 +44,8 @@ impl Summary {
         })
     }
 
-    /// The 95 % interval of the mean by Student's t: exact for normal values, and for others as good
-    /// as the normality of their mean. Both ends are the mean when there is one value.
+    /// The 95 % interval of the mean by Student's t: exact for normal values, and for others as
+    /// good as the normality of their mean. Both ends are the mean when there is one value.
     #[must_use]
     pub fn mean_interval95(&self) -> [f64; 2] {
         let error = self.mean_error95.unwrap_or(0.0);
@@ -101,8 +101,9 @@ pub struct Histogram {
 impl Histogram {
     /// Counts the values in at most `max_bins` bins between the least and the greatest.
     ///
-    /// Whole numbers get bins of whole width with edges halfway between them, so that no bin catches
-    /// more of the lattice than its neighbour. `None` if there are no values, one is not finite, or
+    /// Whole numbers get bins of whole width with edges halfway between them, so that no bin
+    /// catches more of the lattice than its neighbour. `None` if there are no values, one is not
+    /// finite, or
     /// `max_bins` is 0.
     #[must_use]
     pub fn new(values: &[f64], max_bins: usize) -> Option<Self> {

@@ -1,5 +1,5 @@
-//! Statistics: summaries with confidence intervals, the curve of figure 6 of A. V. Kuznetsov 2017 (KUZ), and
-//! the Norton-Rice law of KUZ section 5 with its fit and test.
+//! Statistics: summaries with confidence intervals, the curve of figure 6 of A. V. Kuznetsov 2017
+//! (KUZ), and the Norton-Rice law of KUZ section 5 with its fit and test.
 //!
 //! Everything goes through `libm` and sums in the order of the samples, so that equal samples give
 //! equal bits everywhere. A sample that is NaN or infinite never vanishes silently: the functions

@@ -1,8 +1,9 @@
 //! The Norton-Rice law of arrival times (KUZ section 5), its fit and its test.
 //!
-//! p(x) = (alpha m / beta^2) (x / alpha)^m exp(-m (alpha^2 + x^2) / (2 beta^2)) I_{m-1}(m x alpha / beta^2)
-//! for x > 0: with sigma^2 = beta^2 / m, (X / sigma)^2 is a noncentral chi-square with 2m degrees of
-//! freedom and noncentrality (alpha / sigma)^2. m = 1 is Rice's law, alpha -> 0 Nakagami's.
+//! p(x) = (alpha m / beta^2) (x / alpha)^m exp(-m (alpha^2 + x^2) / (2 beta^2))
+//! I_{m-1}(m x alpha / beta^2) for x > 0: with sigma^2 = beta^2 / m, (X / sigma)^2 is a noncentral
+//! chi-square with 2m degrees of freedom and noncentrality (alpha / sigma)^2. m = 1 is Rice's law,
+//! alpha -> 0 Nakagami's.
 
 use super::describe::sorted;
 use super::optimize::minimize;
@@ -110,9 +111,9 @@ impl NortonRice {
         self.mass(0.0, x).min(1.0)
     }
 
-    /// The probability of a value between `a` and `b`, by Gauss-Legendre quadrature over panels half a
-    /// sigma wide. At most about 40 panels of 8 points: X is the length of a normal vector, so all but
-    /// 1e-17 of its probability lies within 10 sigma of the root of the mean square.
+    /// The probability of a value between `a` and `b`, by Gauss-Legendre quadrature over panels
+    /// half a sigma wide. At most about 40 panels of 8 points: X is the length of a normal vector,
+    /// so all but 1e-17 of its probability lies within 10 sigma of the root of the mean square.
     fn mass(&self, a: f64, b: f64) -> f64 {
         let sigma = self.beta / sqrt(self.m);
         let center = sqrt(self.mean_square());
@@ -145,8 +146,8 @@ impl NortonRice {
         self.alpha * self.alpha + 2.0 * self.beta * self.beta
     }
 
-    /// Coordinates in which the likelihood is round: ln of mean and variance of X^2, and the logit of
-    /// r = alpha^2 / mean square, which goes from Nakagami (0) to ever smaller m (1).
+    /// Coordinates in which the likelihood is round: ln of mean and variance of X^2, and the logit
+    /// of r = alpha^2 / mean square, which goes from Nakagami (0) to ever smaller m (1).
     ///
     /// With A the mean and V the variance of X^2: alpha^2 = A r, beta^2 = A (1 - r) / 2,
     /// m = (1 - r^2) A^2 / V. Any real coordinates are a law, so the search needs no bounds.
@@ -170,8 +171,8 @@ impl NortonRice {
     /// Nelder-Mead over `Self::coordinates` from the sample's moments and three shapes; the samples
     /// are scaled to a mean square of 1 first. O(n), some hundred passes.
     ///
-    /// For samples whose deviation is small against their mean the law is nearly normal and m hardly
-    /// shows in it: then the density is well determined, m alone is not.
+    /// For samples whose deviation is small against their mean the law is nearly normal and m
+    /// hardly shows in it: then the density is well determined, m alone is not.
     ///
     /// # Errors
     /// See [`FitError`].
@@ -213,11 +214,12 @@ impl NortonRice {
 
     /// Pearson's chi-square test of the family, honest after fitting.
     ///
-    /// The bins have about equal expected counts under `self`, the fitted law: 2 n^(2/5) of them, but
-    /// at least 8 expected samples in each. Their edges lie halfway between neighbouring samples, so that whole
-    /// ticks cannot fall on an edge. A fit to the single samples does not minimise chi-square, and its
-    /// chi-square follows no chi-square law (Chernoff and Lehmann 1954). So chi-square is minimised over the
-    /// three parameters from `self` on, which makes bins - 1 - 3 the right degrees of freedom (Fisher 1924).
+    /// The bins have about equal expected counts under `self`, the fitted law: 2 n^(2/5) of them,
+    /// but at least 8 expected samples in each. Their edges lie halfway between neighbouring
+    /// samples, so that whole ticks cannot fall on an edge. A fit to the single samples does not
+    /// minimise chi-square, and its chi-square follows no chi-square law (Chernoff and Lehmann
+    /// 1954). So chi-square is minimised over the three parameters from `self` on, which makes bins
+    /// - 1 - 3 the right degrees of freedom (Fisher 1924).
     ///
     /// `None` when the samples fill fewer than 5 bins (fewer than 40 samples or very few different
     /// values) or one is not finite.

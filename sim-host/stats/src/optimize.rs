@@ -8,8 +8,8 @@ type Vertex<const N: usize> = ([f64; N], f64);
 /// The point where `f` is least, and its value there.
 ///
 /// Starts from a simplex around `start` with the edge lengths `step`; ends when the values of the
-/// simplex differ by at most `tolerance` and a fresh simplex around the answer finds nothing better,
-/// or after about `max_evals` evaluations. NaN counts as infinitely bad.
+/// simplex differ by at most `tolerance` and a fresh simplex around the answer finds nothing
+/// better, or after about `max_evals` evaluations. NaN counts as infinitely bad.
 #[must_use]
 pub fn minimize<const N: usize>(
     mut f: impl FnMut([f64; N]) -> f64,

@@ -1,6 +1,7 @@
 //! Special functions: incomplete gamma and beta, Student's t, the modified Bessel function.
 //!
-//! By hand: on `libm` alone they give the same bits on every machine, which crates on std's float functions do not.
+//! By hand: on `libm` alone they give the same bits on every machine, which crates on std's float
+//! functions do not.
 
 use libm::{exp, fabs, lgamma, log, log1p, sqrt};
 use std::f64::consts::TAU;
@@ -140,10 +141,10 @@ pub fn student_t_quantile(p: f64, freedom: f64) -> f64 {
 /// ln(e^-z I_nu(z)), the modified Bessel function of the first kind, scaled so that no argument
 /// overflows.
 ///
-/// `nu > -1`, `z >= 0`, else NaN. Below |(nu, z)| = 60 the ascending series (DLMF 10.25.2, all terms
-/// positive, at most about 100), above it the uniform expansion for large order (DLMF 10.41.3) up to
-/// the fourth term; written in powers of 1/sqrt(nu^2 + z^2) it holds for small orders too. Relative
-/// error of I_nu below 1e-9.
+/// `nu > -1`, `z >= 0`, else NaN. Below |(nu, z)| = 60 the ascending series (DLMF 10.25.2, all
+/// terms positive, at most about 100), above it the uniform expansion for large order (DLMF
+/// 10.41.3) up to the fourth term; written in powers of 1/sqrt(nu^2 + z^2) it holds for small
+/// orders too. Relative error of I_nu below 1e-9.
 #[must_use]
 pub fn ln_bessel_i_scaled(nu: f64, z: f64) -> f64 {
     if !(nu > -1.0 && z >= 0.0) || z.is_infinite() {

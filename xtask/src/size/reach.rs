@@ -23,7 +23,7 @@ pub struct Program {
     things: BTreeMap<u64, (u64, bool)>,
     /// Functions by name.
     names: Vec<(String, u64)>,
-    /// Place of a reference, and what it refers to.
+    /// Targets of references, by their places.
     references: BTreeMap<u64, u64>,
 }
 
@@ -137,7 +137,7 @@ impl Program {
     }
 }
 
-/// The step of one behaviour and what it needs.
+/// The step of one behaviour and its needs.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Step {
     /// Kind of number, guidance, safety layer, neighbours.
@@ -163,8 +163,8 @@ pub fn steps(program: &Program) -> Vec<Step> {
     steps
 }
 
-/// The functions of `bench` that write or read one frame of a wire format, and what they need: of
-/// another one's constants and code they share some.
+/// The functions of `bench` that write or read one frame of a wire format, and their needs.
+/// Formats share some constants and code.
 pub fn formats(program: &Program) -> Vec<Step> {
     let mut formats = Vec::new();
     for direction in ["encode", "decode"] {

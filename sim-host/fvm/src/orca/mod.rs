@@ -1,5 +1,5 @@
-//! The velocity obstacle of two robots (Tolok et al., FVM): how far half-planes from the voxel template are off the exact
-//! ones, and [`pictures`] of what the paper draws.
+//! The velocity obstacle of two robots (Tolok et al., FVM): how far half-planes from the voxel
+//! template are off the exact ones, and [`pictures`] of what the paper draws.
 
 pub mod pictures;
 mod view;

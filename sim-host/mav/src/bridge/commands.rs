@@ -3,9 +3,9 @@
 //! | answer | when |
 //! | --- | --- |
 //! | UNSUPPORTED | the vehicle does not have this command (a ground vehicle has no takeoff) |
-//! | DENIED | the command is invalid: a required parameter is NaN or out of range, or the place is inside an obstacle |
+//! | DENIED | a required parameter is NaN or out of range, or the place is in an obstacle |
 //! | TEMPORARILY_REJECTED | not now: disarmed, in the wrong mode, in the air, or moving |
-//! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | the frame is unknown, or its coordinates are too coarse |
+//! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | an unknown frame, or one with coarse coordinates |
 //!
 //! Parameters that a command does not use may have any value, NaN included.
 

@@ -1,8 +1,8 @@
 //! Runs one scenario on several ranks, with the bits of a run on one.
 //!
-//! Every rank has the scenario and an [`Engine`](staya_sim::engine::Engine) with the robots in its block of the
-//! world. In each tick it decides for these robots. It exchanges with its neighbours the packets
-//! that cross a border (`radio/border.rs`), bodies near the border with their moves
+//! Every rank has the scenario and an [`Engine`](staya_sim::engine::Engine) with the robots in its
+//! block of the world. In each tick it decides for these robots. It exchanges with its neighbours
+//! the packets that cross a border (`radio/border.rs`), bodies near the border with their moves
 //! (`world/border.rs`), and possible collisions. Everything else about the whole run is a sum.
 //!
 //! Packet losses and the order of moves are functions of (seed, robot, tick), and the trace hash is

@@ -10,7 +10,8 @@ use super::canvas::{Anchor, Canvas, Shape};
 use super::font;
 use std::path::Path;
 
-/// Fails unless the text is XML with one root, every element closed, and no bare special characters.
+/// Fails unless the text is XML with one root, every element closed, and no bare special
+/// characters.
 fn assert_well_formed(svg: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut roots = 0;

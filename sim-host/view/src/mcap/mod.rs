@@ -2,16 +2,17 @@
 //!
 //! | topic | schema | when |
 //! | --- | --- | --- |
-//! | `/tf` | `foxglove.FrameTransforms` | once: the position of frame `map` in frame `world`, the scenario's coordinates |
-//! | `/land` | `foxglove.Grid` | once: one byte per cell, 0 for a wall, otherwise the ticks to cross it |
+//! | `/tf` | `foxglove.FrameTransforms` | once: the origin of frame `map` in frame `world` |
+//! | `/land` | `foxglove.Grid` | once: per cell 0 for a wall, otherwise the ticks to cross it |
 //! | `/obstacles` | `foxglove.SceneUpdate` | once |
 //! | `/bodies` | `foxglove.SceneUpdate` | each frame: robots and intruders |
-//! | `/poses` | `foxglove.PosesInFrame` | each frame: robots, then intruders, facing their velocity (with pitch in space) |
+//! | `/poses` | `foxglove.PosesInFrame` | each frame: robots, intruders, facing their velocity |
 //! | `/goals` | `foxglove.SceneUpdate` | on change: crosses |
 //! | `/events` | `foxglove.Log` | when a robot's mode changes |
 //! | `/figures` | `staya.Figures` (JSON) | each frame |
 //!
-//! Positions are in frame `map`, metres. Times are simulated and start at 0.
+//! Positions are in frame `map`, metres; `world` has the scenario's coordinates. Times are
+//! simulated and start at 0.
 
 mod draw;
 mod proto;
