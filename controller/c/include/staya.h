@@ -196,7 +196,7 @@ enum StayaLaw
      */
     STAYA_LAW_WAYPOINT = 0,
     /**
-     * The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is its reference.
+     * The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is followed.
      */
     STAYA_LAW_LATTICE = 1,
     /**
@@ -1234,8 +1234,8 @@ typedef struct StayaSetup {
      */
     float max_acceleration_mps2;
     /**
-     * Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0 only
-     * for robots that may be alone.
+     * Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0:
+     * only for robots that may be alone.
      */
     float alone_mps;
     /**

@@ -14,7 +14,7 @@ use staya_controller::wire::RequestKind;
 pub enum StayaLaw {
     /// Straight to its waypoint at `speed_mps`, until it is within `tolerance_m`.
     Waypoint = 0,
-    /// The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is its reference.
+    /// The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is followed.
     Lattice = 1,
     /// The goal flock (V. E. and V. V. Pavlovsky): to the middle of the waypoints, then to one
     /// each.

@@ -92,8 +92,8 @@ pub struct StayaSetup {
     pub tolerance_m: f32,
     /// How fast the body can change its velocity, m/s^2; FLT_MAX: at once.
     pub max_acceleration_mps2: f32,
-    /// Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0 only
-    /// for robots that may be alone.
+    /// Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0:
+    /// only for robots that may be alone.
     pub alone_mps: f32,
     /// Largest radius accepted in a beacon, metres; FLT_MAX: any.
     pub plausibility_max_radius_m: f32,
