@@ -36,6 +36,7 @@ pub enum Event {
 }
 
 impl State {
+    /// Text for the operator, at most 40 bytes.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
