@@ -441,7 +441,7 @@ impl Swarm {
     }
 }
 
-/// A third of what the slowest serial link carries; the rest is for telemetry.
+/// A third of the slowest serial link's rate; the rest is for telemetry.
 fn parameters_per_s(endpoints: &[Endpoint]) -> u32 {
     const BITS: u32 = 10 * 50;
     let serial = endpoints.iter().filter_map(|endpoint| match endpoint {

@@ -2,11 +2,11 @@
 //!
 //! | topic | schema | when |
 //! | --- | --- | --- |
-//! | `/tf` | `foxglove.FrameTransforms` | once: the position of frame `map` in frame `world`, the scenario's coordinates |
-//! | `/land` | `foxglove.Grid` | once: one byte per cell, 0 for a wall, otherwise the ticks to cross it |
+//! | `/tf` | `foxglove.FrameTransforms` | once: frame `map` in `world`, the scenario's axes |
+//! | `/land` | `foxglove.Grid` | once: a byte per cell, 0 for a wall, else the ticks to cross |
 //! | `/obstacles` | `foxglove.SceneUpdate` | once |
 //! | `/bodies` | `foxglove.SceneUpdate` | each frame: robots and intruders |
-//! | `/poses` | `foxglove.PosesInFrame` | each frame: robots, then intruders, facing their velocity (with pitch in space) |
+//! | `/poses` | `foxglove.PosesInFrame` | each frame: robots, then intruders, with attitude |
 //! | `/goals` | `foxglove.SceneUpdate` | on change: crosses |
 //! | `/events` | `foxglove.Log` | when a robot's mode changes |
 //! | `/figures` | `staya.Figures` (JSON) | each frame |
@@ -31,13 +31,12 @@ use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// Size of a chunk, bytes. A killed run loses its last chunk.
+/// A killed run loses its last chunk.
 const CHUNK: u64 = 1 << 20;
-/// `foxglove.Log.Level`.
 const INFO: u64 = 2;
 const WARNING: u64 = 3;
 
-/// Topics and schemas (without package), by the index of the channel.
+/// By the index of the channel; schemas without package.
 const TOPICS: [(&str, &str); 7] = [
     ("/tf", "FrameTransforms"),
     ("/land", "Grid"),
@@ -61,7 +60,7 @@ pub struct McapWriter<W: Write + Seek> {
     out: mcap::Writer<W>,
     path: PathBuf,
     scene: Scene,
-    /// Channel number in the file, and messages so far.
+    /// Number in the file, and messages so far.
     channels: Vec<(u16, u32)>,
     goals: Vec<[u32; 3]>,
     modes: Vec<u8>,
@@ -85,8 +84,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// `out` cannot be written.
     pub fn new(out: W, path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
         let error = failed(path);
-        // Without seeking, each complete chunk is final, so a file that is cut off is valid up to
-        // there.
+        // Without seeking, each complete chunk is final, so a file that is cut off is valid.
         let options = WriteOptions::new().compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
         let mut out = options.library(concat!("staya ", env!("CARGO_PKG_VERSION"))).create(out).map_err(&error)?;
         let (descriptors, mut channels) = (schema::descriptors(), Vec::new());
@@ -138,7 +136,6 @@ impl<W: Write + Seek> McapWriter<W> {
         Ok(())
     }
 
-    /// Writes the static messages.
     fn begin(&mut self, at_ns: u64) -> Result<(), RecordingError> {
         let origin_m = self.scene.origin_m;
         let mut frames = Bytes::default();
@@ -175,7 +172,7 @@ impl<W: Write + Seek> McapWriter<W> {
         self.send(OBSTACLES, at_ns, &obstacles)
     }
 
-    /// Logs changed modes; for the first frame only the number of robots.
+    /// For the first frame only the number of robots.
     fn events(&mut self, frame: &FrameData, robots: usize, at_ns: u64) -> Result<(), RecordingError> {
         let now = frame.mode.get(..robots).unwrap_or_default();
         let before = std::mem::replace(&mut self.modes, now.to_vec());
@@ -213,7 +210,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 }
 
-/// Simulated time in nanoseconds; 0 for negative times and NaN.
+/// 0 for negative times and NaN.
 fn nanos(time_s: f64) -> u64 {
     libm::round(time_s * 1e9) as u64
 }

@@ -1,13 +1,9 @@
-//! Scenario files of interactive runs: saved ones, and generated ones.
-
 use staya_controller::rand::Rng;
 use staya_sim::scenario::{Intervention, Scenario, with_interventions};
 use std::fmt::Write as _;
 
-/// Separates this module's random numbers from others.
 const RANDOM: u32 = u32::from_be_bytes(*b"view");
 
-/// Sets a top-level field in the text of a scenario.
 pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let top = lines.iter().position(|line| line.trim_start().starts_with('[')).unwrap_or(lines.len());
@@ -20,7 +16,6 @@ pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The scenario that repeats a run with its interventions.
 pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)], tick: u32, hash: &str) -> String {
     let text = with_top_field(text, "seed", &scenario.seed.to_string());
     let text = with_top_field(&text, "ticks", &scenario.ticks.max(tick).to_string());
@@ -54,11 +49,10 @@ impl Configuration {
     }
 
     /// Generates the scenario: robots start in the west, goals are in the east, obstacles lie
-    /// between them with a gap to both.
+    /// between.
     #[must_use]
     pub fn scenario(self) -> String {
         let Self { robots, goals, obstacles, seed } = self.clamped();
-        // Each robot needs about one square metre.
         let side_m = libm::ceil(libm::sqrt(f64::from(robots))) * 1.2 + 3.0;
         let width_m = side_m * 2.0 + 16.0;
         let mut draws = Rng::keyed(seed, RANDOM, robots, obstacles);
