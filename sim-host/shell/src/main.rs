@@ -1,4 +1,4 @@
-//! `staya-shell PREFIX`: writes manual pages and shell completions of all programs below PREFIX/share.
+//! `staya-shell PREFIX` writes manual pages and shell completions below PREFIX/share.
 
 use anyhow::{Context as _, Result};
 use clap::{Command, CommandFactory as _};
@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Where each shell looks for completions below a prefix.
+/// Relative to a prefix.
 const COMPLETIONS: [(Shell, &str, &str); 3] = [
     (Shell::Bash, "share/bash-completion/completions", "staya"),
     (Shell::Zsh, "share/zsh/site-functions", "_staya"),

@@ -144,7 +144,7 @@ pub fn boids_steer<'py>(
     let params = BoidsParams::new(crowded_m, closest_m, turn, turn_away);
     let (positions_m, headings, radii_m) = (rows::<3>(&positions_m)?, rows::<3>(&headings)?, radii_m.as_slice()?);
     let next = py.detach(|| {
-        // All boids have one speed, so headings replace velocities.
+        // One common speed makes headings sufficient.
         let robots = Robots { positions_m, velocities_mps: headings, radii_m };
         let neighborhood = Neighborhood::new(robots, f64::from(closest_m), torus_m);
         let each = (0..positions_m.len()).into_par_iter().with_min_len(BATCH);
