@@ -13,8 +13,7 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Creates a request that Ctrl-C or a termination signal sets; a second signal ends the
-    /// process.
+    /// Creates a request that Ctrl-C or a termination signal sets; the second ends the process.
     ///
     /// # Errors
     /// The signal handler cannot be installed, for example on the second call in a process.

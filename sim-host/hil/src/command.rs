@@ -52,7 +52,7 @@ fn run_crate(folder: &Path) -> Result<Ended> {
     }
 }
 
-/// Without `hil` and `--crate`, for a program whose only command is `hil`.
+/// The arguments without `hil` and `--crate`, for a program whose only command is `hil`.
 fn handed_on(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let (mut handed_on, mut is_named, mut is_folder) = (Vec::new(), false, false);
     for argument in arguments {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// Has the meaning of `--firmware`.
+/// Equivalent of `--firmware`.
 const VARIABLE: &str = "STAYA_FIRMWARE";
 
 pub(crate) struct Program {

@@ -11,7 +11,7 @@ pub(crate) struct RealTime {
 
 pub(crate) struct Pace {
     pub(crate) report: RealTime,
-    /// Of tick 0, and of the present tick.
+    /// Starts of tick 0 and of the present tick.
     began: Option<(Instant, Instant)>,
 }
 

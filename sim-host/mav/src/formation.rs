@@ -241,8 +241,7 @@ pub struct Order {
     pub version: u8,
 }
 
-/// Encodes the orders for `robots` (sorted): the parts of each template, then the goal. O(robots *
-/// edges).
+/// Encodes the orders for `robots` (sorted): the parts of each template, then the goal.
 ///
 /// # Errors
 /// [`GraphError`] if the robots and places differ in number, or a robot has too many neighbours.

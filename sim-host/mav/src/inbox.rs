@@ -32,7 +32,7 @@ type Source = (usize, Option<Peer>);
 #[derive(Debug, Default)]
 struct Waiting {
     queues: HashMap<Source, VecDeque<Received>>,
-    /// In the order of service.
+    /// Sources in the order of service.
     turn: VecDeque<Source>,
     paid_at: HashMap<Source, Instant>,
     served: Option<Source>,

@@ -116,8 +116,7 @@ impl Lines {
     }
 
     /// Charges the sender of the last received frame for its answers. Above 1000 per second (and
-    /// 1000 at once) it is not served for a while; its frames queue up and are dropped from a full
-    /// queue.
+    /// 1000 at once) it is not served for a while, and its queue may fill up.
     pub fn charge(&self, answers: usize) {
         self.inbox.charge(answers);
     }

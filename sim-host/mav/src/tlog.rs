@@ -6,11 +6,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// Hours of a few vehicles.
 const LIMIT: u64 = 256 << 20;
 
-/// A tlog file for MAVExplorer, mavlogdump and QGroundControl: before each frame its time,
-/// microseconds since 1970 as a big-endian `u64`.
-///
-/// At 256 MiB the file is renamed with `.1` appended, which replaces an older one, and a new one
-/// begins: at most 512 MiB are kept.
+/// A tlog file: before each frame its time, microseconds since 1970 as a big-endian `u64`. At 256
+/// MiB the file replaces the one with `.1` appended, and a new one begins.
 #[derive(Debug)]
 pub struct Tlog {
     file: BufWriter<File>,

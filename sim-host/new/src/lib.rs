@@ -1,5 +1,5 @@
-//! `staya new NAME` creates a project that compiles and has a running test. The templates are the
-//! files of a project named `my-swarm`, in which `/STAYA` stands for this repository.
+//! `staya new NAME` creates a tested project from templates, in which `my-swarm` stands for its
+//! name and `/STAYA` for this repository.
 
 mod files;
 mod source;

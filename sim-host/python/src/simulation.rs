@@ -55,7 +55,7 @@ struct Inner {
 }
 
 impl Inner {
-    /// O(robots), nothing without commands.
+    /// Sends the commanded velocities, if there are any. O(robots).
     fn command(&mut self) -> PyResult<()> {
         for (index, wish) in self.wishes.iter().enumerate() {
             let wish = wish.map_or(Wish::Own, |velocity_mps| Wish::Velocity { velocity_mps, valid: VALID });

@@ -11,9 +11,9 @@ use staya_sim::world::plane::{self, Shape};
 
 /// Names of the modes by the numbers in frames.
 pub const MODES: [&str; 7] = ["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"];
-/// As a fraction of a cell.
+/// A fraction of a cell.
 const GRID_RADIUS: f64 = 0.35;
-/// As a fraction of the longer side.
+/// A fraction of the view's longer side.
 const MARGIN: f64 = 0.08;
 /// Obstacles this near to starts and goals are in the initial view; a fraction of its longer side.
 const AROUND: f64 = 0.5;
@@ -388,7 +388,7 @@ impl Extent {
         }
     }
 
-    /// At least 1.
+    /// The longer horizontal side, at least 1.
     fn longest(&self) -> f64 {
         (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]).max(1.0)
     }

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 const FRAME: Duration = Duration::from_millis(16);
-/// Per poll; the server disconnects faster pages.
+/// Messages per poll; the server disconnects faster pages.
 const WORDS: usize = 64;
 const LONGEST: usize = 256;
 

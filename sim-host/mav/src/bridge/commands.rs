@@ -36,7 +36,7 @@ pub(super) struct Spot {
 struct Command {
     id: u16,
     params: [f32; 7],
-    /// Only in a COMMAND_INT.
+    /// The place in a COMMAND_INT.
     spot: Option<Spot>,
 }
 

@@ -1,4 +1,4 @@
-//! The orders that a vehicle last received, so that each is confirmed once.
+//! The orders that a vehicle last received.
 
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message};
@@ -13,7 +13,7 @@ pub(super) struct Ordered {
 }
 
 impl Ordered {
-    /// Records an order. Returns a confirmation the first time that the order is complete. O(1).
+    /// Returns a confirmation the first time that the order is complete. O(1).
     pub(super) fn hear(&mut self, header: Header, message: &Message) -> Option<String> {
         let order = |version| Some((header.sender, header.boot, version));
         match message {

@@ -307,7 +307,7 @@ impl Swarm {
         Ok(())
     }
 
-    /// Comes while some timestamps are left to sign the warning.
+    /// The warning comes while some timestamps are left to sign it.
     fn complain(&mut self, now_us: u64) -> Result<(), BridgeError> {
         let is_early = |last: u64| now_us.saturating_sub(last) < COMPLAIN_US;
         if !self.is_exhausted() || self.complained_us.is_some_and(is_early) {

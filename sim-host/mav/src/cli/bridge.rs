@@ -105,7 +105,6 @@ fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
 
 fn say(remark: Option<&str>) {
     if let Some(remark) = remark {
-        // Standard error may be closed; a remark may be lost.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
 }

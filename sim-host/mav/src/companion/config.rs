@@ -154,8 +154,7 @@ impl Config {
         Self::parse(&text, path)
     }
 
-    /// Validates `text` as if it was read from `path`, which resolves relative paths and appears in
-    /// errors.
+    /// Validates `text` as the content of `path`, to which relative paths and errors refer.
     ///
     /// # Errors
     /// See [`Config::load`].
@@ -173,8 +172,7 @@ impl Config {
         })?;
         check_rules(&source, &file.rules)?;
         let mut scenario = Scenario::load(&source.folder().join(&file.scenario), &Overrides::default())?;
-        // A vehicle with an uncertain position adds the error to its radius, and its position jumps
-        // later.
+        // A vehicle with an uncertain position adds the error to its radius, and may jump later.
         scenario.plausibility.max_radius_m += file.rules.error_m as f32;
         scenario.plausibility.slack_m += file.rules.error_m as f32;
         check_scenario(&source, &scenario)?;

@@ -1,6 +1,5 @@
-//! Packets between companions: the same frames that robots exchange by radio. On a LAN a datagram
-//! has the frames of one agent in one step; over MAVLink, TUNNEL messages of up to 128 bytes have
-//! them.
+//! Packets between companions: the frames that robots exchange by radio. A datagram on a LAN has
+//! those of one agent in one step; a TUNNEL message over MAVLink has up to 128 bytes of them.
 
 use socket2::{Domain, Protocol, Socket, Type};
 use staya_controller::wire::Wire;

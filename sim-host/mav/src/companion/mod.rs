@@ -1,9 +1,8 @@
-//! The companion: one controller per vehicle with a real autopilot, telemetry in, velocity
-//! setpoints out.
+//! The companion: one controller per vehicle with a real autopilot, from telemetry to velocities.
 //!
 //! The behaviour of the swarm is a scenario in the plane, as for `staya run`. [`Config`] adds the
 //! geographic position and assigns vehicles to robots. [`OffboardStateMachine`] speaks MAVLink to
-//! one autopilot, [`Controller`] is the agent, [`Medium`] connects companions, [`run`] is the main
+//! an autopilot, [`Controller`] is the agent, [`Medium`] connects companions, [`run`] is the main
 //! loop.
 
 mod config;

@@ -137,7 +137,6 @@ mod tests {
         assert!((19.5..=20.5).contains(&rate), "{rate} setpoints a second");
     }
 
-    /// Relative to ArduPilot's default home.
     fn north_east_m(offboard: &OffboardStateMachine) -> [f64; 2] {
         let place = offboard.fix().expect("a position").place;
         let origin = Origin::new(Global { latitude_deg: -35.363_262, longitude_deg: 149.165_237, altitude_m: 584.0 });

@@ -31,7 +31,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use vehicle::{Vehicle, is_within};
 
-/// With a LAN to poll, and without.
+/// Longest waits: with a LAN to poll, and without.
 const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(20)];
 /// Zero-velocity setpoints at the end, and their interval.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
@@ -119,7 +119,7 @@ pub fn run(
     let remarks =
         [seal.as_ref().and_then(|seal| seal.remark.as_ref()), link_key.as_ref().and_then(|file| file.remark.as_ref())];
     for remark in remarks.into_iter().flatten() {
-        // A closed standard error must not stop the run.
+        // Standard error may be closed.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
     let host = Host {

@@ -57,7 +57,7 @@ pub enum SealError {
 pub struct Seal {
     path: PathBuf,
     key: Key,
-    /// From the file with `.old` appended to its name.
+    /// The previous key, from the file with `.old` appended to its name.
     old: Option<Key>,
     starts: u32,
     /// A warning about the key file.

@@ -13,8 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
 const EVERY: Duration = Duration::from_millis(500);
-/// After the first heartbeat of a robot the others follow within this time, since they come at 1
-/// Hz.
+/// Robots send heartbeats at 1 Hz, so all follow the first one within this time.
 const GATHER: Duration = Duration::from_millis(1500);
 /// Less than the capacity of a peer's queue.
 const AT_ONCE: usize = 100;
@@ -203,7 +202,7 @@ impl Station<'_> {
         Ok(robots)
     }
 
-    /// Relative to one of them, in a common unit.
+    /// Positions relative to one robot, in a common unit.
     fn positions(&self, robots: &BTreeSet<u8>) -> Vec<[f64; 2]> {
         let at: Vec<_> = robots.iter().filter_map(|robot| self.at.get(robot)).collect();
         let Some(&&[lon, lat]) = at.first() else {

@@ -37,7 +37,7 @@ pub struct Writer<W: Sink> {
     path: PathBuf,
     written: u64,
     raw: Vec<u8>,
-    /// For the XOR.
+    /// The previous frame, for the XOR.
     before: Vec<u8>,
     frame: Vec<u8>,
 }

@@ -4,12 +4,12 @@ use crate::scene::{Kind, Scene, Solid};
 use staya_sim::world::plane::Shape;
 
 pub const FRAME: &str = "map";
-/// By Okabe and Ito.
+/// Colours by Okabe and Ito.
 const COLOURS: [[u8; 3]; 7] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233], [90, 90, 90]];
 const INTRUDER: [f64; 4] = [0.8, 0.1, 0.1, 1.0];
 const OBSTACLE: [f64; 4] = [0.44, 0.41, 0.36, 1.0];
-/// As a multiple of a robot's radius.
+/// A multiple of a robot's radius.
 const HEIGHT: f64 = 1.0;
 const MANY: usize = 100;
 

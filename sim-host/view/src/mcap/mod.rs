@@ -36,7 +36,7 @@ const CHUNK: u64 = 1 << 20;
 const INFO: u64 = 2;
 const WARNING: u64 = 3;
 
-/// By the index of the channel; schemas without package.
+/// Topic and schema (without package) of each channel.
 const TOPICS: [(&str, &str); 7] = [
     ("/tf", "FrameTransforms"),
     ("/land", "Grid"),
@@ -172,7 +172,7 @@ impl<W: Write + Seek> McapWriter<W> {
         self.send(OBSTACLES, at_ns, &obstacles)
     }
 
-    /// For the first frame only the number of robots.
+    /// The first frame only logs the number of robots.
     fn events(&mut self, frame: &FrameData, robots: usize, at_ns: u64) -> Result<(), RecordingError> {
         let now = frame.mode.get(..robots).unwrap_or_default();
         let before = std::mem::replace(&mut self.modes, now.to_vec());

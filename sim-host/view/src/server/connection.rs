@@ -11,12 +11,12 @@ use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, Utf8Bytes, WebSocket};
 
 const LONGEST_MESSAGE: usize = 64 << 10;
-/// More close the connection.
+/// Limit of queued texts, beyond which a page is disconnected.
 const UNREAD: usize = 512;
 /// A scene and a frame of a million robots.
 const MOST_BYTES: usize = 256 << 20;
 
-/// For a page that confirms frames.
+/// Frames in transit to a page that confirms them.
 const AHEAD: u64 = 3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -27,7 +27,7 @@ use tungstenite::{Bytes, Utf8Bytes};
 const CONNECTIONS: usize = 256;
 const PAGES: usize = 32;
 const UNHEARD: usize = 1024;
-/// For a request, and for its answer.
+/// Timeout of a request, and of its answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 const LISTENER: Token = Token(0);
@@ -235,7 +235,7 @@ struct Pages {
     listener: TcpListener,
     rules: Rules,
     files: Vec<File>,
-    /// By token; tokens rise, so the oldest is first.
+    /// Keys are tokens, which rise: the oldest connection is first.
     connections: BTreeMap<usize, Connection>,
     next: usize,
     heard: SyncSender<FromPage>,

@@ -1,7 +1,6 @@
 const MOST: usize = 256 << 20;
 
-/// Frames by tick. Above the limit every second one is dropped, and from then on every second
-/// added.
+/// Frames by tick. Above the limit every second one is dropped, and added from then on.
 #[derive(Debug)]
 pub(super) struct Memory {
     frames: Vec<(u32, Box<[u8]>)>,

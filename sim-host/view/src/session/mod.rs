@@ -62,7 +62,7 @@ pub struct Session {
     pace: Pace,
     /// The engine repeats the run up to this tick after a seek.
     catches_up_to: Option<u32>,
-    /// These wait for the end of the repetition.
+    /// Requests that wait for the end of the repetition.
     deferred: VecDeque<(Client, Wanted)>,
     /// Without any distance to go, only the last tick ends the run.
     has_work: bool,
@@ -238,7 +238,7 @@ impl Session {
         self.memory.put(self.tick, &self.bytes);
     }
 
-    /// While later frames are stored.
+    /// The present frame, while later ones are stored.
     fn take_frame_of_past(&mut self) {
         let (framer, frame) = (&self.framer, &mut self.frame);
         self.engine.show(&mut |moment, robots| framer.fill(frame, moment, robots));

@@ -50,17 +50,17 @@ const LOW_M: f64 = 1.0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Entry {
-    /// By the pilot.
+    /// The pilot selects the mode.
     #[default]
     Wait,
-    /// By the companion, once after its start.
+    /// The companion selects the mode, once after its start.
     Once,
 }
 
 /// Rules by which a companion controls a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// Selection of the mode.
+    /// Selection of the external control mode.
     pub entry: Entry,
     /// Whether [`Entry::Once`] also arms. Otherwise it waits for arming by the pilot.
     pub arm: bool,
@@ -168,7 +168,7 @@ pub struct OffboardStateMachine {
     health: Health,
     boot_ms: Option<u32>,
     behind: Option<(u32, u8)>,
-    /// Of `LOCAL_POSITION_NED`, which is finer.
+    /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
     velocity: Option<(Duration, [f64; 3])>,
     landed: Option<u8>,
     may_enter: bool,
@@ -441,7 +441,6 @@ impl OffboardStateMachine {
                 State::Steering | State::Stopped | State::Distrusted if !self.health.is_trusted(now) => {
                     State::Distrusted
                 }
-                // Stays until a position is trusted.
                 State::Distrusted => State::Distrusted,
                 State::Steering | State::Stopped => State::Stopped,
                 _ => State::NoPosition,

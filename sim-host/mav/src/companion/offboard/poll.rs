@@ -9,7 +9,6 @@ const HEALTH_LOOKS: u8 = 3;
 const STREAM: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_secs(2);
 /// Two minutes, since autopilots refuse arming and modes long after their first position.
-/// first position.
 pub(super) const ATTEMPTS: u8 = 60;
 const COMMAND_VALID: Duration = Duration::from_millis(500);
 

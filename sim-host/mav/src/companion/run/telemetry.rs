@@ -19,7 +19,6 @@ impl Companions<'_> {
 
     pub(super) fn say(&mut self, line: &str) {
         if !self.options.quiet {
-            // A closed standard error must not stop the companion.
             let _ = self.machine.tell(line);
         }
     }

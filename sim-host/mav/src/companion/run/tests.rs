@@ -23,7 +23,6 @@ enum Call {
 
 #[derive(Clone, Copy, Debug)]
 enum Failure {
-    /// From 1.
     One(usize),
     From(usize),
     Panic(usize),
@@ -336,7 +335,6 @@ fn used_up_timestamps_are_reported_while_signing_is_possible() {
     assert!(report.links[0].is_exhausted && report.to_string().contains("timestamps used up"), "{report}");
 }
 
-/// Returns the duration in seconds.
 fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
     let options = Options { seconds: Some(SECONDS), dry_run: true, ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(failing)));

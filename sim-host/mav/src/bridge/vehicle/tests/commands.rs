@@ -106,7 +106,6 @@ fn messages_for_other_systems_are_ignored() {
     for (system, component) in [(7, 0), (7, 1), (0, 0), (0, 1)] {
         assert_eq!(bench.give(command(system, component)).results, [MAV_RESULT_ACCEPTED]);
     }
-    // PARAM_SET as a broadcast is ignored.
     let set = MavMessage::PARAM_SET(PARAM_SET_DATA {
         param_id: "SPEED_MPS".into(),
         param_value: 0.5,

@@ -43,7 +43,6 @@ fn reached(out: &Out) -> Vec<u16> {
     messages.collect()
 }
 
-/// A mission as MAVSDK writes it: every waypoint is followed by a speed and camera items.
 #[test]
 fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     let mut bench = Bench::new(model());
@@ -69,7 +68,6 @@ fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     assert_eq!(reached(&bench.out), [1]);
     assert!(bench.out.actions.contains(&Action::Set(Parameter::Speed, 0.5)));
     assert!((place_mm(bench.wish())[0] - 10_000).abs() < 10);
-    // The body is limited to 2 m/s.
     let out = bench.tick(|sample| sample.position_m = [10.0, 0.0, 0.0]);
     assert_eq!(reached(out), [2, 3]);
     assert!(out.actions.contains(&Action::Set(Parameter::Speed, 2.0)));

@@ -117,7 +117,6 @@ fn goals_inside_a_wall_are_denied() {
     let ball = Solid::Ball { center_m: [8.0, 2.0, 0.0], radius_m: 1.0 };
     let mut bench = Bench::new(VehicleModel { solids: vec![ball], ..model() });
     assert_eq!(bench.command_int(reposition(8.5, 2.0, 1.0)), MAV_RESULT_DENIED);
-    // The edge of the body would be in the wall.
     assert_eq!(bench.command_int(reposition(9.2, 2.0, 1.0)), MAV_RESULT_DENIED);
     assert_eq!(bench.command_int(reposition(9.3, 2.0, 1.0)), MAV_RESULT_ACCEPTED);
 }

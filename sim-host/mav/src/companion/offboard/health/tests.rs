@@ -64,7 +64,6 @@ fn one_of_two_receivers_is_enough_until_it_times_out() {
         (1.5, gps(1), None),
         (3.0, second_gps(3), None),
         (4.9, gps(1), None),
-        // The second receiver has timed out.
         (5.1, gps(1), Some(Doubt::Gps)),
         (5.2, second_gps(3), None),
         (11.0, second_gps(3), None),

@@ -125,7 +125,6 @@ fn a_flying_vehicle_is_not_controlled_on_the_ground() {
     bench.above_home_m = 1.0;
     bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
-    // The landed state takes precedence over the height.
     bench.offboard.hear(&landed(1), bench.now);
     bench.run(0.5);
     assert_eq!(bench.state(), State::Grounded);
