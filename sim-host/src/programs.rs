@@ -81,8 +81,7 @@ pub fn with_commands(line: Command) -> Command {
     line.subcommands(stubs).disable_help_subcommand(true).subcommand(help)
 }
 
-/// Runs a program with this process's arguments. On Unix it replaces this process, and so receives
-/// the signals and sets the exit code.
+/// Runs a program with this process's arguments; on Unix it replaces this process.
 ///
 /// # Errors
 /// The program cannot be built or found.

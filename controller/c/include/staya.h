@@ -200,8 +200,7 @@ enum StayaLaw
      */
     STAYA_LAW_LATTICE = 1,
     /**
-     * The goal flock (V. E. and V. V. Pavlovsky): to the middle of the waypoints, then to one
-     * each.
+     * The goal flock (V. E. and V. V. Pavlovsky): to the waypoints' middle, then each to one.
      */
     STAYA_LAW_GOAL_FLOCK = 2,
     /**
@@ -1331,8 +1330,7 @@ typedef struct StayaObstacle {
 } StayaObstacle;
 
 /**
- * The input of a step. All zeros is a stationary robot at the origin that sees and receives
- * nothing.
+ * The input of a step. All zeros: stationary at the origin, with nothing seen or received.
  *
  * Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
  * `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
@@ -1401,8 +1399,7 @@ typedef struct StayaInputs {
      */
     size_t obstacle_count;
     /**
-     * `inbox_bytes` bytes from the radio since the last step, in order, damaged and foreign ones
-     * too.
+     * `inbox_bytes` bytes from the radio since the last step, in order, with damaged frames.
      */
     const uint8_t *inbox;
     /**
@@ -1767,8 +1764,7 @@ StayaStatus staya_neighbors(const struct StayaAgent *agent,
                             size_t *count);
 
 /**
- * A hash of the agent's whole state, the same on every machine. Agents with equal hashes behave
- * identically from then on.
+ * A hash of the agent's whole state. Agents with equal hashes behave identically on any machine.
  */
 StayaStatus staya_digest(const struct StayaAgent *agent, uint64_t *digest);
 
@@ -1812,8 +1808,8 @@ StayaStatus staya_orca_velocity(struct StayaAvoider *avoider,
                                 float velocity_mps[3]);
 
 /**
- * Returns the acceleration of a robot in an alpha flock, m/s^2, not limited by the body.
- * `reference` may be null.
+ * Returns the acceleration in an alpha flock, m/s^2, not limited by the body. `reference` may
+ * be null.
  */
 StayaStatus staya_lattice_acceleration(const struct StayaLattice *lattice,
                                        const struct StayaBody *body,
@@ -1858,8 +1854,7 @@ StayaStatus staya_push_out_velocity(const struct StayaPushOut *params,
                                     float velocity_mps[3]);
 
 /**
- * The name of a parameter, such as "horizon_s"; null if the number does not exist. Numbers start
- * at 0 without gaps.
+ * The name of parameter 0, 1, 2 and so on, such as "horizon_s"; null beyond the last one.
  */
 const char *staya_parameter_name(uint32_t parameter);
 
@@ -1874,8 +1869,7 @@ const char *staya_parameter_unit(uint32_t parameter);
 StayaStatus staya_parameter_range(uint32_t parameter, float *least, float *greatest);
 
 /**
- * Returns the present value of a parameter (StayaParameter). `STAYA_STATUS_PARAMETER` if this
- * robot's law and layer do not have it.
+ * Returns the present value of a StayaParameter; `STAYA_STATUS_PARAMETER` if the robot lacks it.
  */
 StayaStatus staya_get_parameter(const struct StayaAgent *agent, uint32_t parameter, float *value);
 

@@ -68,8 +68,7 @@ const fn no_outputs() -> Outputs<Number> {
 }
 
 impl StayaAgent {
-    /// Creates the agent in place: each part is written separately, so that only law and layer pass
-    /// through the stack.
+    /// Creates the agent in place and in parts: only law and layer pass through the stack.
     ///
     /// # Safety
     /// `site` was returned by [`site`].
@@ -334,8 +333,7 @@ pub unsafe extern "C" fn staya_neighbors(
     answer(ask())
 }
 
-/// A hash of the agent's whole state, the same on every machine. Agents with equal hashes behave
-/// identically from then on.
+/// A hash of the agent's whole state. Agents with equal hashes behave identically on any machine.
 ///
 /// # Safety
 /// See the header's introduction.

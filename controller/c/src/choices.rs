@@ -16,8 +16,7 @@ pub enum StayaLaw {
     Waypoint = 0,
     /// The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is followed.
     Lattice = 1,
-    /// The goal flock (V. E. and V. V. Pavlovsky): to the middle of the waypoints, then to one
-    /// each.
+    /// The goal flock (V. E. and V. V. Pavlovsky): to the waypoints' middle, then each to one.
     GoalFlock = 2,
     /// Boids (V. A. Starovoitova 2018): constant speed, only headings change.
     Boids = 3,

@@ -47,8 +47,7 @@ pub struct StayaObstacle {
     pub size_m: f32,
 }
 
-/// The input of a step. All zeros is a stationary robot at the origin that sees and receives
-/// nothing.
+/// The input of a step. All zeros: stationary at the origin, with nothing seen or received.
 ///
 /// Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
 /// `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
@@ -87,8 +86,7 @@ pub struct StayaInputs {
     pub obstacles: *const StayaObstacle,
     /// Length of `obstacles`.
     pub obstacle_count: usize,
-    /// `inbox_bytes` bytes from the radio since the last step, in order, damaged and foreign ones
-    /// too.
+    /// `inbox_bytes` bytes from the radio since the last step, in order, with damaged frames.
     pub inbox: *const u8,
     /// Length of `inbox`.
     pub inbox_bytes: usize,

@@ -144,8 +144,7 @@ fn known(number: u32) -> Checked<(Parameter, &'static CStr, &'static CStr)> {
     found.map(|(_, parameter, name, unit)| (parameter, name, unit)).ok_or(StayaStatus::Unknown)
 }
 
-/// The name of a parameter, such as "horizon_s"; null if the number does not exist. Numbers start
-/// at 0 without gaps.
+/// The name of parameter 0, 1, 2 and so on, such as "horizon_s"; null beyond the last one.
 #[unsafe(no_mangle)]
 pub extern "C" fn staya_parameter_name(parameter: u32) -> *const c_char {
     match known(parameter) {
@@ -180,8 +179,7 @@ pub unsafe extern "C" fn staya_parameter_range(parameter: u32, least: *mut f32, 
     answer(ask())
 }
 
-/// Returns the present value of a parameter (StayaParameter). `STAYA_STATUS_PARAMETER` if this
-/// robot's law and layer do not have it.
+/// Returns the present value of a StayaParameter; `STAYA_STATUS_PARAMETER` if the robot lacks it.
 ///
 /// # Safety
 /// See the header's introduction.

@@ -90,8 +90,7 @@ pub fn hills() -> impl TypedValueParser<Value = Hills> {
     ])
 }
 
-/// Sharpness of the order of moves: cost difference in ticks, a multiple of 1/16, that halves a
-/// priority; 0 is greedy.
+/// Sharpness of the order of moves: cost difference in ticks that halves a priority; 0 is greedy.
 pub fn shuffle(word: &str) -> Result<Sharpness, String> {
     Ok(match gain(word)? {
         Gain::ZERO => Sharpness::Greedy,

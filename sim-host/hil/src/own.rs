@@ -38,8 +38,7 @@ macro_rules! package {
     };
 }
 
-/// Robots with guidance law `G`, which serde encodes for the devices: parameters changed in the
-/// host program need no new firmware.
+/// Robots with guidance law `G`. serde sends it to devices: new parameters need no new firmware.
 pub struct Own<G> {
     package: Package,
     law: Arc<dyn Fn(usize) -> G + Send + Sync>,
@@ -98,8 +97,8 @@ impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
     /// Runs a scenario and prints its summary.
     ///
     /// # Errors
-    /// Missing devices or firmware, a device that stopped answering or differed from its shadow, or
-    /// a scenario that an own law cannot run.
+    /// Missing devices or firmware, a device that fails or differs from its shadow, or a scenario
+    /// that an own law cannot run.
     pub fn run(&self, scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
         drive(self, scenario, devices, page, global)
     }

@@ -20,8 +20,7 @@ impl Pace {
         Self { report: RealTime { tick_seconds, deadlines_missed: 0, slowest_seconds: 0.0 }, began: None }
     }
 
-    /// Late ticks are not made up for: the clock restarts. The first tick starts the devices and
-    /// does not count.
+    /// After a late tick the clock restarts. The first tick starts the devices and does not count.
     pub(crate) fn wait(&mut self, ticks: u32, stop: &Stop) {
         let now = Instant::now();
         let tick = Duration::from_secs_f64(self.report.tick_seconds);

@@ -45,8 +45,8 @@ impl HilArgs {
 /// Runs a scenario with Staya's guidance laws, with some robots on devices, and prints its summary.
 ///
 /// # Errors
-/// Missing devices or firmware, a device that stopped answering or differed from its shadow, or a
-/// feature that the firmware lacks.
+/// Missing devices, firmware or firmware features, or a device that fails or differs from its
+/// shadow.
 pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
     if scenario.published.is_some() || scenario.looks_ahead {
         let law = if scenario.looks_ahead { FormationLaw::Lookahead } else { FormationLaw::Paper };

@@ -101,8 +101,7 @@ impl Lines {
         }
     }
 
-    /// Marks a peer as known after a valid (with a key, authentic) frame. [`Self::send`] reaches it
-    /// as long as such frames keep arriving.
+    /// Marks a peer as known after a valid (with a key, authentic) frame; a silent peer expires.
     pub fn believe(&self, line: usize, peer: Peer) {
         if let Some(line) = self.lines.get(line) {
             line.outgoing.believe(peer);

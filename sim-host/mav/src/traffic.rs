@@ -89,8 +89,7 @@ impl Shared {
         self.closed.load(Ordering::Relaxed)
     }
 
-    /// Queues the frames at the start of `bytes` and returns the number of bytes used. Unknown
-    /// peers share one queue of the link.
+    /// Queues the frames at the start of `bytes`, and returns the number of bytes used.
     pub(super) fn take(&self, peer: Peer, bytes: &[u8], is_whole: bool, is_known: bool) -> usize {
         let mut used = 0;
         loop {

@@ -281,8 +281,7 @@ impl Run {
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).neighbors as u32))
     }
 
-    /// Sets the preferred velocities from the next tick for robots whose mask is true; the others
-    /// follow their own law.
+    /// Sets the preferred velocities of robots whose mask is true; others follow their own law.
     fn wish(
         &self,
         py: Python<'_>,
@@ -329,8 +328,7 @@ impl Run {
         serde_json::to_string(&self.lock(py).summary()).map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
 
-    /// The scenario with all orders, with which `staya run` repeats this run; commanded velocities
-    /// cannot be included.
+    /// The scenario with all orders, but without commanded velocities, for `staya run`.
     fn scenario_text(&self, py: Python<'_>) -> PyResult<String> {
         let inner = self.lock(py);
         let Scenario { seed, ticks, tick_us, .. } = inner.scenario;

@@ -176,8 +176,7 @@ impl FrameData {
         self.position_m.len()
     }
 
-    /// Writes the bytes of the frame to `out`, which is cleared first, and pads short arrays.
-    /// O(bodies).
+    /// Writes the bytes of the frame to `out`, cleared first; short arrays are padded. O(bodies).
     pub fn encode(&self, out: &mut Vec<u8>) {
         let figures = serde_json::to_vec(&self.figures).unwrap_or_default();
         let bodies = self.bodies();

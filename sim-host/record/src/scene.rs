@@ -108,8 +108,7 @@ pub struct Land {
     pub origin_m: [f64; 2],
     /// Travel time of the slowest class, ticks.
     pub classes: u8,
-    /// Base64, one byte per cell, row by row from the south-west: 0 for a wall, else the ticks to
-    /// cross.
+    /// Base64, one byte per cell by rows from the south-west: 0 for a wall, else ticks to cross.
     pub cells: String,
 }
 

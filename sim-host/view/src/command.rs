@@ -127,8 +127,7 @@ impl ViewArgs {
     }
 }
 
-/// A file that leads a browser to the page, since other users can read the arguments of a command.
-/// Removed on drop.
+/// A file that leads a browser to the page, since others can read a command's arguments.
 struct WayIn(PathBuf);
 
 impl WayIn {

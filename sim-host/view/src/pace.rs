@@ -18,8 +18,7 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Creates a clock that starts at real time, or at ten ticks of `tick_s` seconds per second if
-    /// that is faster.
+    /// Creates a clock at real time, or at ten ticks of `tick_s` per second if that is faster.
     #[must_use]
     pub fn new(tick_s: f64, is_paused: bool) -> Self {
         let speed = Some((tick_s * TICKS_A_SECOND).max(1.0));
@@ -49,8 +48,7 @@ impl Pace {
         self.due = Instant::now();
     }
 
-    /// Sets the speed in simulated seconds per second, limited to 0.001 to 1e6; `None`, NaN and
-    /// infinity remove the limit.
+    /// Sets simulated seconds per second, 0.001 to 1e6; `None`, NaN and infinity: no limit.
     pub fn set_speed(&mut self, speed: Option<f64>) {
         self.speed = speed.filter(|speed| speed.is_finite()).map(|speed| speed.clamp(0.001, 1e6));
         self.due = Instant::now();

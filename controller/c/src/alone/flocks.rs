@@ -11,8 +11,8 @@ use staya_controller::geom::{Position, Vec2};
 use staya_controller::robot::RobotId;
 use staya_controller::scalar::cast;
 
-/// Returns the acceleration of a robot in an alpha flock, m/s^2, not limited by the body.
-/// `reference` may be null.
+/// Returns the acceleration in an alpha flock, m/s^2, not limited by the body. `reference` may
+/// be null.
 /// cbindgen:ptrs-as-arrays=[[acceleration_mps2; 3]]
 ///
 /// # Safety

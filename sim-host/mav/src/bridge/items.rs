@@ -22,8 +22,7 @@ impl Item {
         matches!(self.command, NAV_DELAY | MAV_CMD_DO_CHANGE_SPEED) || OF_CAMERAS.contains(&self.command)
     }
 
-    /// Why an item without a place is invalid, as a MAV_MISSION_RESULT; 0 if valid, as a negative
-    /// speed ("unchanged") is.
+    /// Why an item without a place is invalid, as a MAV_MISSION_RESULT; 0 if it is valid.
     pub(super) fn fault(&self) -> u8 {
         let [first, second, ..] = self.params;
         match self.command {

@@ -180,8 +180,7 @@ impl Mission {
         request(from, 0)
     }
 
-    /// Returns the answer to an uploaded item. `fault` validates it: a MAV_MISSION_RESULT, 0 if
-    /// valid.
+    /// Returns the answer to an uploaded item; `fault` returns a MAV_MISSION_RESULT, 0 if valid.
     pub fn take(
         &mut self,
         from: Sender,

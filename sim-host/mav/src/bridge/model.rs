@@ -72,8 +72,7 @@ impl VehicleModel {
     }
 }
 
-/// The source of a vehicle's goals, with ArduPilot's numbers and names: those of Copter for flying
-/// vehicles, of Rover otherwise.
+/// The source of a vehicle's goals, named and numbered as in ArduPilot's Copter or Rover.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlightMode {
     /// The behaviour of the scenario, or the mission once it is started.

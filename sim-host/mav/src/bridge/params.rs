@@ -130,8 +130,7 @@ impl Parameters {
         self.entries.len()
     }
 
-    /// Starts listing all parameters. A request during a listing restarts the count; each parameter
-    /// is sent once per request.
+    /// Starts listing each parameter once; during a listing the count restarts.
     pub const fn list(&mut self) {
         self.left = self.count();
     }

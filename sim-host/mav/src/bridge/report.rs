@@ -78,8 +78,7 @@ pub struct BridgeReport {
     pub frames_ahead: u64,
     /// Frames still queued at the end.
     pub frames_waiting: u64,
-    /// Whether the signing timestamps are used up; the bridge refuses commands until it has a new
-    /// key.
+    /// Whether the signing timestamps are used up; the bridge then needs a new key.
     pub is_exhausted: bool,
     /// Answers to commands, by result.
     pub commands: BTreeMap<&'static str, u64>,

@@ -102,8 +102,7 @@ struct Companions<'a> {
 /// Runs the companions of a configuration until the time is over or `is_wanted` returns false.
 /// `look` observes them between two steps and must be fast.
 ///
-/// A log that cannot be written is reported and does not end the run. At any end, controlled
-/// vehicles stop.
+/// A log that cannot be written does not end the run. At any end, controlled vehicles stop.
 ///
 /// # Errors
 /// [`RunError`] if something cannot be opened at the start, or standard output fails in a dry run.

@@ -236,8 +236,7 @@ pub fn numbers(robots: &BTreeSet<u8>) -> String {
     runs.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// Sends the orders to the swarm at `endpoint` until every robot has confirmed them or `wait` is
-/// over.
+/// Sends the orders to the swarm at `endpoint` until all robots confirm them or `wait` is over.
 ///
 /// # Errors
 /// [`StationError`]. Robots without a confirmation are not an error: see [`Given`].

@@ -112,8 +112,7 @@ fn nearest_places_have_shorter_paths_without_crossings() {
             let to = |graph: &Graph, robot: usize| [graph.places[robot].x, graph.places[robot].y].map(f64::from);
             for a in 0..count {
                 for b in 0..a {
-                    // Robots on straight paths do not meet if the paths keep the direction between
-                    // them.
+                    // Robots do not meet if their paths keep the direction between them.
                     let (pa, pb) = (to(&near, a), to(&near, b));
                     let off = [at[a][0] - at[b][0], at[a][1] - at[b][1]];
                     let dot = off[0] * (pa[0] - pb[0]) + off[1] * (pa[1] - pb[1]);

@@ -80,9 +80,8 @@ pub fn lattice_acceleration<'py>(
     Ok(simulation::rows(py, answers.into_iter()))
 }
 
-/// Preferred velocities of a goal flock, m/s (V. E. and V. V. Pavlovsky). `gains` are those of the
-/// goal, of the neighbours' centre and of repulsion. Runs on all cores, without the interpreter
-/// lock.
+/// Preferred velocities of a goal flock, m/s (V. E. and V. V. Pavlovsky), on all cores. `gains` are
+/// those of the goal, of the neighbours' centre and of repulsion.
 ///
 /// # Errors
 /// `ValueError` for parameters that the law refuses.
@@ -125,9 +124,8 @@ pub fn goal_wish<'py>(
     Ok(simulation::rows(py, wishes.into_iter()))
 }
 
-/// Headings of boids one step later, unit vectors (V. A. Starovoitova 2018). `values` are crowded
-/// and closest, metres, and the largest turns towards and away from neighbours, radians. Runs on
-/// all cores, without the interpreter lock.
+/// Headings of boids one step later, unit vectors (V. A. Starovoitova 2018), on all cores. `values`
+/// are crowded and closest, metres, and the largest turns towards and away from others, radians.
 ///
 /// # Errors
 /// `ValueError` for arrays that cannot be read.

@@ -92,8 +92,7 @@ impl<R: Read + Seek> Reader<R> {
         let mut before = None;
         for at in self.frames.clone() {
             let block = self.blocks[at];
-            // The length, magic number and tick of the first frame are enough; the rest is checked
-            // later.
+            // The first bytes of a block are enough; the rest is checked when it is read.
             let packed = self.packed(&block)?;
             let beginning = match decompress_to_vec_with_limit(&packed, 12) {
                 Ok(bytes) => bytes,
@@ -152,8 +151,7 @@ impl<R: Read + Seek> Reader<R> {
         self.json(self.blocks[0])
     }
 
-    /// Bytes of the last frame at or before `tick`, else of the first frame. The last block is
-    /// cached.
+    /// Bytes of the last frame at or before `tick`, else of the first frame; caches one block.
     ///
     /// # Errors
     /// There are no frames, or the file cannot be read or is damaged.

@@ -29,8 +29,7 @@ impl Sink for Vec<u8> {
     }
 }
 
-/// Writes a recording block by block; the file always ends with a complete block. Memory: one block
-/// and one frame.
+/// Writes a recording, which always ends with a complete block. Memory: one block and one frame.
 #[derive(Clone, Debug)]
 pub struct Writer<W: Sink> {
     out: W,

@@ -85,8 +85,7 @@ impl Connection {
         }
     }
 
-    /// `has_room`: whether another page is allowed. `hear` returns whether there was room for a
-    /// message.
+    /// `has_room`: another page is allowed. `hear` returns whether it had room for a message.
     pub fn read(
         &mut self,
         rules: &Rules,

@@ -44,8 +44,7 @@ pub struct Counts {
     pub connections: u64,
     /// Rejected requests: malformed, wrong token, other origin, or too many pages.
     pub refused: u64,
-    /// Connections closed by the server: slow requests, unread or too many messages, the oldest of
-    /// too many.
+    /// Connections closed by the server: too slow, too talkative, not reading, or too many.
     pub left: u64,
 }
 
@@ -192,8 +191,7 @@ impl Server {
         let _ = self.waker.wake();
     }
 
-    /// Records that a page has drawn this number of frames; it gets no more while three are in
-    /// transit.
+    /// Records how many frames a page has drawn; it gets no more while three are in transit.
     pub fn seen(&self, client: Client, frames: u64) {
         self.send(ToPages::Seen(client, frames));
     }

@@ -276,8 +276,7 @@ fn orca(choice: &Choice) -> Value {
     })
 }
 
-/// A point of the border at one vertical velocity and the unit vector into the half-space; `None`
-/// if it permits all or no velocities there.
+/// A point of the border and the unit vector into the half-space; `None` without a border there.
 fn section(permitted: &Permitted, climb_mps: f32) -> Option<([f32; 2], [f32; 2])> {
     let Permitted { point_mps: [px, py, pz], normal: [nx, ny, nz], .. } = *permitted;
     let length = libm::hypotf(nx, ny);

@@ -26,8 +26,7 @@ pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)
     head + &with_interventions(&text, scenario.tick_us, done)
 }
 
-/// Parameters of a generated run (V. E. and V. V. Pavlovsky, PAV): robots flock to goals among
-/// obstacles.
+/// Parameters of a run in which robots flock to goals among obstacles (V. E. and V. V. Pavlovsky).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
     /// Number of robots, 1 to 2000.
@@ -48,8 +47,7 @@ impl Configuration {
         Self { robots: robots.clamp(1, 2000), goals: goals.clamp(1, 4), obstacles: obstacles.min(200), seed }
     }
 
-    /// Generates the scenario: robots start in the west, goals are in the east, obstacles lie
-    /// between.
+    /// Generates the scenario: starts in the west, goals in the east, obstacles between.
     #[must_use]
     pub fn scenario(self) -> String {
         let Self { robots, goals, obstacles, seed } = self.clamped();

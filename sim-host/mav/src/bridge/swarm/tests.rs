@@ -110,8 +110,7 @@ fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
     })
 }
 
-/// The attack: a frame signed with the key and the last possible timestamp is recorded and replayed
-/// by an attacker without the key.
+/// The attack: an attacker without the key replays a frame with the last possible timestamp.
 #[test]
 fn a_frame_of_the_far_future_does_not_mute_the_bridge() {
     let (swarm, address) = ten(Some(Signing::new(key(), 0, timestamp())));
