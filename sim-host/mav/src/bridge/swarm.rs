@@ -30,7 +30,7 @@ const GLANCE: Duration = Duration::from_millis(4);
 /// Frames handled between two ticks even if no time is left.
 const AT_LEAST: usize = 8;
 const PARAMETERS_PER_S: u32 = 2000;
-/// With fewer signing timestamps left, commands are refused because answers would be unsigned.
+/// With fewer signing timestamps left, commands are refused because they could not be answered.
 const RESERVE: u64 = 1 << 16;
 const COMPLAIN_US: u64 = 10_000_000;
 

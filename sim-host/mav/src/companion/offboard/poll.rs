@@ -3,9 +3,9 @@ use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
 const LOOK: Duration = Duration::from_secs(3);
-/// Not every autopilot has an estimator status.
+/// Requests of the estimator status, which not every autopilot has.
 const HEALTH_LOOKS: u8 = 3;
-/// PX4 accepts the mode only after setpoints.
+/// PX4 receives setpoints for this time before the mode is requested.
 const STREAM: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_secs(2);
 /// Two minutes, since autopilots refuse arming and modes long after their first position.
