@@ -1,4 +1,5 @@
-//! The commands of the program `staya`, and the search for the programs of other commands.
+//! The library of the program `staya`: its commands, and how it finds the programs of other
+//! commands.
 
 pub mod cli;
 pub mod page;

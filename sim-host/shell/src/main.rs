@@ -1,4 +1,5 @@
-//! `staya-shell PREFIX` writes manual pages and shell completions below PREFIX/share.
+//! `staya-shell PREFIX`: writes manual pages and shell completions of all programs below
+//! PREFIX/share.
 
 use anyhow::{Context as _, Result};
 use clap::{Command, CommandFactory as _};

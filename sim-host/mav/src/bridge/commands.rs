@@ -3,11 +3,11 @@
 //! | answer | when |
 //! | --- | --- |
 //! | UNSUPPORTED | the vehicle does not have this command (a ground vehicle has no takeoff) |
-//! | DENIED | a required parameter is NaN or out of range, or the place is inside an obstacle |
+//! | DENIED | a required parameter is NaN or out of range, or the place is in an obstacle |
 //! | TEMPORARILY_REJECTED | not now: disarmed, in the wrong mode, in the air, or moving |
-//! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | unknown frame, or too coarse coordinates |
+//! | COMMAND_INT_ONLY, UNSUPPORTED_MAV_FRAME | an unknown frame, or one with coarse coordinates |
 //!
-//! Unused parameters may have any value, NaN included.
+//! Parameters that a command does not use may have any value, NaN included.
 
 use super::model::FlightMode;
 use super::params::Meaning;

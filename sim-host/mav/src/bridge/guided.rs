@@ -237,6 +237,7 @@ mod tests {
         }
         let found = Used::new(2503, false).expect("a good mask");
         assert_eq!((found.velocity, found.place, found.velocity_z), (true, false, false));
+        // Empty, half a position, half a velocity, accelerations, forces.
         for mask in [0xDFF, 0xDFA, 0xDCF, 0xC38, 0xFF8] {
             assert!(Used::new(mask, true).is_err(), "{mask:#x}");
         }

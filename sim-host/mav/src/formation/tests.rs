@@ -160,8 +160,8 @@ fn offset_and_scale_of_positions_do_not_change_the_assignment() {
     assert_eq!(graph.nearest(&[[1.0, 2.0]; 5]).robots(), 5);
 }
 
-/// Path length in cells, and pairs of robots within a cell of each other, for each pair of shapes.
-/// `--nocapture` prints the table of `docs/bridge.md`.
+/// For each pair of shapes: total path length in cells, and pairs of robots that come within a cell
+/// of each other on straight paths. `--nocapture` prints a table.
 #[test]
 fn changes_between_shapes_have_shorter_paths_with_nearest_places() {
     for count in [6, 12, 40] {

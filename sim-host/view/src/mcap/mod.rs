@@ -2,16 +2,17 @@
 //!
 //! | topic | schema | when |
 //! | --- | --- | --- |
-//! | `/tf` | `foxglove.FrameTransforms` | once: frame `map` in `world`, the scenario's axes |
-//! | `/land` | `foxglove.Grid` | once: a byte per cell, 0 for a wall, else the ticks to cross |
+//! | `/tf` | `foxglove.FrameTransforms` | once: the origin of frame `map` in frame `world` |
+//! | `/land` | `foxglove.Grid` | once: per cell 0 for a wall, otherwise the ticks to cross it |
 //! | `/obstacles` | `foxglove.SceneUpdate` | once |
 //! | `/bodies` | `foxglove.SceneUpdate` | each frame: robots and intruders |
-//! | `/poses` | `foxglove.PosesInFrame` | each frame: robots, then intruders, with attitude |
+//! | `/poses` | `foxglove.PosesInFrame` | each frame: robots, intruders, facing their velocity |
 //! | `/goals` | `foxglove.SceneUpdate` | on change: crosses |
 //! | `/events` | `foxglove.Log` | when a robot's mode changes |
 //! | `/figures` | `staya.Figures` (JSON) | each frame |
 //!
-//! Positions are in frame `map`, metres. Times are simulated and start at 0.
+//! Positions are in frame `map`, metres; `world` has the scenario's coordinates. Times are
+//! simulated and start at 0.
 
 mod draw;
 mod proto;
