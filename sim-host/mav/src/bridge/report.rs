@@ -86,7 +86,7 @@ pub struct BridgeReport {
     pub lines: Vec<LineReport>,
     /// Overlaps between bodies, summed over ticks.
     pub collisions: u64,
-    /// Smallest distance between the surfaces of two bodies, metres; null on a grid or if none are near.
+    /// Smallest gap between the surfaces of two bodies, metres; null on a grid or if all kept away.
     pub least_gap_m: Option<f64>,
     /// Trace hash, 16 hex digits; equal to that of `staya run` if no command arrived.
     pub trace_hash: String,
