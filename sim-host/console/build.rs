@@ -1,13 +1,10 @@
-//! Sets the version that results record.
-//!
-//! `STAYA_VERSION` is the package version. In a git repository it continues with `+` and the last
-//! commit that changed the sources of results, and with a hash of uncommitted changes to them. So
-//! results of different builds differ in version, and a change of documents alone does not.
+//! Sets `STAYA_VERSION`, which results record: the package version, and in a git repository `+`,
+//! the last commit that changed the sources of results, and a hash of their uncommitted changes. So
+//! a change of documents alone does not change the version.
 
 use std::path::Path;
 use std::process::Command;
 
-/// Files that influence results.
 const SOURCES: [&str; 7] = [
     "Cargo.lock",
     "controller",
@@ -32,7 +29,6 @@ fn main() {
 
 /// `None` without git or outside its repository.
 fn commit(root: &Path) -> Option<String> {
-    // The sources may lie inside a foreign repository.
     git(root, &["ls-files", "--error-unmatch", "sim-host/console/build.rs"])?;
     let of_sources = |words: &[&str]| git(root, &[words, &["--"], &SOURCES].concat());
     let commit = of_sources(&["log", "-1", "--abbrev=12", "--format=%h"]).filter(|commit| !commit.is_empty())?;
@@ -41,14 +37,13 @@ fn commit(root: &Path) -> Option<String> {
     if changes.is_empty() && new.is_empty() {
         return Some(commit);
     }
-    // FNV-1a hash.
     let texts = new.lines().map(|file| std::fs::read_to_string(root.join(file)).unwrap_or_default());
     let all: String = [changes, new.clone()].into_iter().chain(texts).collect();
     let hash = all.bytes().fold(0x811c_9dc5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
     Some(format!("{commit}.{hash:08x}"))
 }
 
-/// Output of git; `None` if it fails.
+/// `None` if git fails.
 fn git(root: &Path, words: &[&str]) -> Option<String> {
     let done = Command::new("git").arg("-C").arg(root).args(words).output().ok()?;
     let said = String::from_utf8(done.stdout).ok()?;

@@ -1,4 +1,4 @@
-//! Embeds the files of the page (`web/`) into the program.
+//! Embeds the page (`web/`) into the program.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,9 +1,8 @@
 //! The command line of `staya`.
 //!
 //! A command is a module with a `clap::Args` struct and `run(&self, &Global) -> Result<Ended>`, and
-//! a variant of [`Command`]. Results go to standard output, progress and errors to standard error.
-//! Exit codes: 0 success, 1 error, 2 invalid usage, 130 stopped by Ctrl-C (results so far are
-//! kept).
+//! a variant of [`Command`]. Exit codes: 0 success, 1 error, 2 invalid usage, 130 stopped by Ctrl-C
+//! (with the results so far).
 
 use crate::programs::{self, VIEW};
 use crate::{page, run, terrain};

@@ -27,12 +27,11 @@ pub struct PageArgs {
     every: u32,
 }
 
-/// Result, the output of `--json`.
+/// Output of `--json`.
 #[derive(Debug, Serialize)]
 struct Made {
     page: PathBuf,
     bytes: usize,
-    /// Size of the recording inside.
     recording_bytes: usize,
     first_tick: u32,
     last_tick: u32,
@@ -51,7 +50,6 @@ impl PageArgs {
             true => recorded(&self.source.load()?, self.every, &stop, global)?,
             false => read(path, MAP).with_context(|| format!("cannot read {}; check the name", path.display()))?,
         };
-        // The recording is checked before a page is made of it.
         let mut reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
         reader.scene()?;
         let (first_tick, last_tick) =

@@ -1,8 +1,7 @@
-//! Finds the programs of commands: `staya NAME` runs the program with the command NAME and passes
-//! the whole command line on.
+//! Finds the programs of commands: `staya NAME` runs the program with the command NAME.
 //!
-//! The search order: in a checkout, cargo builds the package into this program's folder and profile
-//! (0.2 s if up to date); then the folder of this program; then the PATH.
+//! In a checkout, cargo first builds the package into this program's folder (0.2 s if up to date);
+//! else the program is in the folder of this one or in the PATH.
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Arg, Command};
@@ -82,8 +81,7 @@ pub fn with_commands(line: Command) -> Command {
     line.subcommands(stubs).disable_help_subcommand(true).subcommand(help)
 }
 
-/// Runs a program with this process's arguments. On Unix the program replaces this process, so it
-/// receives the signals and sets the exit code.
+/// Runs a program with this process's arguments; on Unix it replaces this process.
 ///
 /// # Errors
 /// The program cannot be built or found.
@@ -133,7 +131,6 @@ fn find(program: &Program) -> Result<PathBuf> {
     }
 }
 
-/// The checkout and target folder in which cargo built this program.
 struct Place {
     manifest: PathBuf,
     target: PathBuf,
@@ -141,7 +138,6 @@ struct Place {
 }
 
 impl Place {
-    /// `None` if this program was installed, or its sources are gone.
     fn of(own: &Path) -> Option<Self> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
         let folder = own.parent()?;
@@ -158,7 +154,6 @@ impl Place {
         })
     }
 
-    /// Builds a program if it is missing or outdated.
     fn build(&self, program: &Program, file: &Path) -> Result<()> {
         let is_there = file.is_file();
         if !is_there {
@@ -171,7 +166,6 @@ impl Place {
         match cargo.status() {
             Ok(status) if status.success() => Ok(()),
             Ok(_) => bail!("cargo could not build {}; see the messages above", program.name),
-            // Without cargo the existing program is used.
             Err(_) if is_there => Ok(()),
             Err(error) => bail!("cannot start cargo to build {}: {error}; install Rust", program.name),
         }

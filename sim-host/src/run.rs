@@ -112,17 +112,14 @@ pub fn summary(scenario: &Scenario, outcome: &Outcome) -> impl serde::Serialize 
 
 struct Task<'a> {
     scenario: &'a Scenario,
-    /// Folder for the results.
     out: &'a Path,
-    /// Whether to write the lines of robots and the picture of paths.
     keeps_robots: bool,
     from: Option<Checkpoint>,
     checkpoints: Option<Checkpoints>,
     stop: &'a Stop,
 }
 
-/// Runs a scenario and writes all results to its folder. Earlier results stay until the new ones
-/// are complete.
+/// Earlier results stay until the new ones are complete.
 fn run(task: Task<'_>, outputs: &OutputArgs, observers: Vec<Box<dyn Observer>>, global: &Global) -> Result<Summary> {
     let outputs = RunOutputs::begin(outputs, task.scenario, observers)?;
     let out = task.out;
@@ -146,7 +143,7 @@ fn run(task: Task<'_>, outputs: &OutputArgs, observers: Vec<Box<dyn Observer>>, 
     }
 }
 
-/// Writes the results except `summary.json` to `dir`, which later becomes the results folder.
+/// Writes all but `summary.json`. `dir` later becomes the results folder.
 fn run_into(task: Task<'_>, dir: &Path, mut outputs: RunOutputs<'_>, global: &Global) -> Result<Summary> {
     let Task { scenario, out, keeps_robots, mut from, mut checkpoints, stop } = task;
     // A checkpoint without the robots' lines cannot continue them.

@@ -119,8 +119,7 @@ enum StayaStatus
      */
     STAYA_STATUS_NULL = 1,
     /**
-     * A pointer is not aligned as its type requires; memory for agents and avoiders: to
-     * STAYA_ALIGN.
+     * A pointer is misaligned for its type; memory of agents and avoiders needs STAYA_ALIGN.
      */
     STAYA_STATUS_ALIGNMENT = 2,
     /**
@@ -197,13 +196,11 @@ enum StayaLaw
      */
     STAYA_LAW_WAYPOINT = 0,
     /**
-     * The alpha flock (R. Olfati-Saber 2006): equal distances, with waypoint 0, if present, as the
-     * reference.
+     * The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is followed.
      */
     STAYA_LAW_LATTICE = 1,
     /**
-     * The goal flock (V. E. and V. V. Pavlovsky): together to the middle of the waypoints, then
-     * each robot to one of them.
+     * The goal flock (V. E. and V. V. Pavlovsky): to the waypoints' middle, then each to one.
      */
     STAYA_LAW_GOAL_FLOCK = 2,
     /**
@@ -285,13 +282,11 @@ enum StayaWire
      */
     STAYA_WIRE_POSTCARD = 0,
     /**
-     * MAVLink 2 frames with the messages of Staya's dialect
-     * (`controller/mavlink/messages/staya.xml`).
+     * MAVLink 2 frames with Staya's dialect, `controller/mavlink/messages/staya.xml`.
      */
     STAYA_WIRE_MAVLINK = 1,
     /**
-     * Like STAYA_WIRE_POSTCARD, with an authentication code that requires the `key`, and with
-     * protection against replays.
+     * Like STAYA_WIRE_POSTCARD, with an authentication code (needs `key`) and replay protection.
      */
     STAYA_WIRE_SEALED = 2,
 };
@@ -304,7 +299,7 @@ typedef uint8_t StayaWire;
 #endif // __cplusplus
 
 /**
- * What the body shall do until the next step.
+ * The command to the body until the next step.
  */
 enum StayaCommand
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -378,7 +373,7 @@ typedef uint8_t StayaMode;
 #endif // __cplusplus
 
 /**
- * What a robot with a goal waits for if it does not get closer.
+ * Why a robot with a goal does not get closer to it.
  */
 enum StayaWait
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -528,8 +523,7 @@ enum StayaEventKind
      */
     STAYA_EVENT_KIND_DUPLICATE_ID = 9,
     /**
-     * A beacon of `robot` exceeds the limits of `plausibility`; `after`: 0 number, 1 radius, 2 speed, 3
-     * position.
+     * A beacon of `robot` is implausible; `after`: 0 number, 1 radius, 2 speed, 3 position.
      */
     STAYA_EVENT_KIND_IMPLAUSIBLE = 10,
     /**
@@ -890,8 +884,7 @@ typedef struct StayaPushOut {
 } StayaPushOut;
 
 /**
- * The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3). `staya_lattice_defaults` writes the
- * paper's values.
+ * The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3); see `staya_lattice_defaults`.
  */
 typedef struct StayaLattice {
     /**
@@ -1029,8 +1022,7 @@ typedef struct StayaRoute {
      */
     uint16_t way_gain_16ths;
     /**
-     * A move that costs this much more, in sixteenths of a tick, comes first half as often; 0: the
-     * cheapest always comes first.
+     * A move that costs this much more, in 16ths of a tick, comes first half as often; 0: never.
      */
     uint16_t halved_per_16ths;
     /**
@@ -1038,8 +1030,7 @@ typedef struct StayaRoute {
      */
     uint8_t radius_cells;
     /**
-     * Other than 0: the window's exit lies on the ray to the target; otherwise it is the best of
-     * all.
+     * Other than 0: the window's exit is on the ray to the target; otherwise it is the best one.
      */
     uint8_t exit_on_ray;
     /**
@@ -1118,8 +1109,7 @@ typedef struct StayaFormation {
      */
     uint16_t halt_lag_units;
     /**
-     * The lag down to which it must catch up before the leader continues, units; at most
-     * `halt_lag_units`.
+     * Lag at which the leader continues, units; at most `halt_lag_units`.
      */
     uint16_t resume_lag_units;
     /**
@@ -1143,8 +1133,7 @@ typedef struct StayaFormation {
      */
     uint8_t closes_ranks;
     /**
-     * Other than 0: predicts others by computing the move that this robot would make in their
-     * place; expensive.
+     * Other than 0: predicts others by computing their moves in their place; expensive.
      */
     uint8_t foresees_others;
     /**
@@ -1154,9 +1143,8 @@ typedef struct StayaFormation {
 } StayaFormation;
 
 /**
- * The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields.
- *
- * Fields that the chosen law and layer do not use are ignored.
+ * The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields. Fields
+ * that the chosen law and layer do not use are ignored.
  */
 typedef struct StayaSetup {
     /**
@@ -1164,8 +1152,7 @@ typedef struct StayaSetup {
      */
     uint32_t version;
     /**
-     * The robot's number, 1 or more, unique in the swarm (MAVLink: up to 254; with a key: below
-     * 2^21).
+     * The robot's number from 1, unique in the swarm (MAVLink: up to 254; with a key: below 2^21).
      */
     uint32_t id;
     /**
@@ -1210,8 +1197,7 @@ typedef struct StayaSetup {
      */
     uint8_t retry_attempts;
     /**
-     * Must change with each start (counted in persistent memory or random), or others take a
-     * restarted robot for a replay.
+     * Must change with each start (a stored counter or random), or others take it for a replay.
      */
     uint8_t boot;
     /**
@@ -1247,7 +1233,7 @@ typedef struct StayaSetup {
      */
     float max_acceleration_mps2;
     /**
-     * Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0
+     * Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0:
      * only for robots that may be alone.
      */
     float alone_mps;
@@ -1300,8 +1286,7 @@ typedef struct StayaSetup {
      */
     struct StayaFormation formation;
     /**
-     * With STAYA_WIRE_SEALED: the robot's count of starts, kept in persistent memory from 0; below
-     * 2^20.
+     * With STAYA_WIRE_SEALED: its count of starts, in persistent memory from 0; below 2^20.
      */
     uint32_t starts;
     /**
@@ -1345,8 +1330,7 @@ typedef struct StayaObstacle {
 } StayaObstacle;
 
 /**
- * The input of a step. All zeros is a stationary robot at the origin that sees and receives
- * nothing.
+ * The input of a step. All zeros: stationary at the origin, with nothing seen or received.
  *
  * Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
  * `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
@@ -1354,8 +1338,7 @@ typedef struct StayaObstacle {
  */
 typedef struct StayaInputs {
     /**
-     * The robot's position in the world: east, north, up from an origin that all robots share,
-     * millimetres.
+     * Position in the world: east, north, up from an origin that all robots share, millimetres.
      */
     int32_t position_mm[3];
     /**
@@ -1367,8 +1350,7 @@ typedef struct StayaInputs {
      */
     uint32_t now_us;
     /**
-     * The body's highest possible speed in its present place, m/s. With 0 the robot is in
-     * STAYA_MODE_FAULT, and stops.
+     * Highest possible speed in this place, m/s; with 0 the robot stops in STAYA_MODE_FAULT.
      */
     float max_speed_mps;
     /**
@@ -1417,8 +1399,7 @@ typedef struct StayaInputs {
      */
     size_t obstacle_count;
     /**
-     * The bytes that the radio received since the last step, `inbox_bytes` of them, in order:
-     * intact, damaged and foreign frames.
+     * `inbox_bytes` bytes from the radio since the last step, in order, with damaged frames.
      */
     const uint8_t *inbox;
     /**
@@ -1538,7 +1519,7 @@ typedef struct StayaOutputs {
      */
     uint8_t mode;
     /**
-     * What it waits for: StayaWait.
+     * Why it waits: StayaWait.
      */
     uint8_t wait;
     /**
@@ -1686,8 +1667,7 @@ typedef struct StayaNearby {
      */
     uint8_t gives_way;
     /**
-     * Other than 0: it stands at its place and will stay (STAYA_MODE_ARRIVED), so others need not
-     * wait for it.
+     * Other than 0: it has arrived and stays (STAYA_MODE_ARRIVED), so others do not wait for it.
      */
     uint8_t is_parked;
     /**
@@ -1739,10 +1719,8 @@ const char *staya_version(void);
 size_t staya_agent_bytes(void);
 
 /**
- * Creates an agent in the caller's memory: idle, without a goal or known neighbours. `*agent` then
- * points to it, which equals `memory`. It lives as long as the memory, must not be moved, and need
- * not be destroyed. `*agent` is null if the setup is rejected.
- *
+ * Creates an idle agent in the caller's memory and points `*agent` to it; null if the setup is
+ * rejected. The agent lives as long as the memory, must not be moved, and need not be destroyed.
  * Temporarily needs some kilobytes of stack (docs/c.md).
  */
 StayaStatus staya_init(void *memory,
@@ -1752,9 +1730,7 @@ StayaStatus staya_init(void *memory,
 
 /**
  * Runs one step: receive, decide, send. Call it once per `tick_us` with the robot's present clock
- * and state.
- *
- * Bounded work. If the inputs are rejected, the agent and `outputs` are unchanged.
+ * and state. Bounded work. If the inputs are rejected, the agent and `outputs` are unchanged.
  */
 StayaStatus staya_step(struct StayaAgent *agent,
                        const struct StayaInputs *inputs,
@@ -1769,8 +1745,7 @@ StayaStatus staya_assign_waypoint(struct StayaAgent *agent,
                                   const struct StayaWaypoint *waypoint);
 
 /**
- * Gives the robot a target cell: for the laws that cross land in cells. In a formation the cell of
- * the top leader suffices.
+ * Gives the robot a target cell, for laws on land in cells. A formation only needs its leader's.
  */
 StayaStatus staya_assign_cell(struct StayaAgent *agent, int16_t x, int16_t y);
 
@@ -1780,8 +1755,8 @@ StayaStatus staya_assign_cell(struct StayaAgent *agent, int16_t x, int16_t y);
 StayaStatus staya_mode(const struct StayaAgent *agent, uint8_t *mode);
 
 /**
- * Returns the first `room` neighbours in ascending order of their numbers. `*count` is their total
- * number, which may be greater than `room`. A room of `STAYA_NEIGHBORS` always suffices.
+ * Returns the first `room` neighbours in ascending order of their numbers, and in `*count` the
+ * number of all. A room of `STAYA_NEIGHBORS` always suffices.
  */
 StayaStatus staya_neighbors(const struct StayaAgent *agent,
                             struct StayaNeighbor *neighbors,
@@ -1789,14 +1764,12 @@ StayaStatus staya_neighbors(const struct StayaAgent *agent,
                             size_t *count);
 
 /**
- * A hash of the agent's whole state, the same on every machine. Agents with equal hashes behave
- * identically from then on.
+ * A hash of the agent's whole state. Agents with equal hashes behave identically on any machine.
  */
 StayaStatus staya_digest(const struct StayaAgent *agent, uint64_t *digest);
 
 /**
- * Moves a position by a vector in metres, rounded to millimetres, saturating. For odometry, and
- * for bodies in a simulation.
+ * Moves a position by a vector in metres (odometry), rounded to millimetres, saturating.
  */
 StayaStatus staya_move(int32_t position_mm[3], const float way_m[3]);
 
@@ -1806,9 +1779,8 @@ StayaStatus staya_move(int32_t position_mm[3], const float way_m[3]);
 StayaStatus staya_orca_defaults(struct StayaOrca *orca);
 
 /**
- * Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN.
- * In the plane, or in space if `in_space` is not 0. `seed` seeds the random decisions that break
- * ties; robots may share it.
+ * Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN;
+ * in space if `in_space` is not 0. `seed` seeds random tie-breaks; robots may share it.
  */
 StayaStatus staya_orca_init(void *memory,
                             size_t memory_bytes,
@@ -1821,9 +1793,9 @@ StayaStatus staya_orca_init(void *memory,
  * Returns the velocity to take until the next step, m/s: the one nearest to `wish_mps` that robots
  * and obstacles permit. Call it once per `step_s`, always for the same robot.
  *
- * `way_m` is the vector to the goal, metres, or null without a goal; near the goal the robot does
- * not turn aside. Of the robots, which may be in any order, the nearest STAYA_NEARBY count. In the
- * plane heights are ignored, and the result has the height of the wish.
+ * `way_m` is the vector to the goal, metres, or null; near the goal the robot does not turn aside.
+ * Only the nearest STAYA_NEARBY robots count. The plane ignores heights and keeps that of the
+ * wish.
  */
 StayaStatus staya_orca_velocity(struct StayaAvoider *avoider,
                                 const struct StayaBody *body,
@@ -1836,8 +1808,8 @@ StayaStatus staya_orca_velocity(struct StayaAvoider *avoider,
                                 float velocity_mps[3]);
 
 /**
- * Returns the acceleration of a robot in an alpha flock, m/s^2; not limited to what the body can
- * do. `reference` may be null.
+ * Returns the acceleration in an alpha flock, m/s^2, not limited by the body. `reference` may
+ * be null.
  */
 StayaStatus staya_lattice_acceleration(const struct StayaLattice *lattice,
                                        const struct StayaBody *body,
@@ -1849,8 +1821,7 @@ StayaStatus staya_lattice_acceleration(const struct StayaLattice *lattice,
                                        float acceleration_mps2[3]);
 
 /**
- * Returns the preferred velocity of a robot in a goal flock, m/s. Positions are in millimetres;
- * `goal_mm` may be null.
+ * Returns the preferred velocity of a robot in a goal flock, m/s. `goal_mm` may be null.
  */
 StayaStatus staya_goal_flock_wish(const struct StayaGoalFlock *goal_flock,
                                   float speed_mps,
@@ -1883,8 +1854,7 @@ StayaStatus staya_push_out_velocity(const struct StayaPushOut *params,
                                     float velocity_mps[3]);
 
 /**
- * The name of a parameter, such as "horizon_s"; null if the number does not exist. Numbers start
- * at 0 without gaps.
+ * The name of parameter 0, 1, 2 and so on, such as "horizon_s"; null beyond the last one.
  */
 const char *staya_parameter_name(uint32_t parameter);
 
@@ -1899,24 +1869,21 @@ const char *staya_parameter_unit(uint32_t parameter);
 StayaStatus staya_parameter_range(uint32_t parameter, float *least, float *greatest);
 
 /**
- * Returns the present value of a parameter (StayaParameter). `STAYA_STATUS_PARAMETER` if this
- * robot's law and layer do not have it.
+ * Returns the present value of a StayaParameter; `STAYA_STATUS_PARAMETER` if the robot lacks it.
  */
 StayaStatus staya_get_parameter(const struct StayaAgent *agent, uint32_t parameter, float *value);
 
 /**
- * Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER` if this
- * robot does not have it, or if the value is out of range or contradicts other parameters; then
- * nothing changes.
+ * Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER`, and no
+ * change, if the robot lacks it, or the value is out of range or contradicts other parameters.
  */
 StayaStatus staya_set_parameter(struct StayaAgent *agent, uint32_t parameter, float value);
 
 /**
  * Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon
- * each step, no inertia, no latency. Lengths of the other laws follow from the radius.
- *
- * `radius_m` is that of the ball around the body, metres; `tick_us` the time from one step to the
- * next, microseconds. `staya_init` checks them.
+ * each step, no inertia, no latency; lengths of other laws follow from the radius. `radius_m` is
+ * that of the ball around the body, `tick_us` the time between two steps. `staya_init` checks
+ * them.
  */
 StayaStatus staya_setup_defaults(struct StayaSetup *setup, uint32_t id, float radius_m, int32_t tick_us);
 
@@ -1934,10 +1901,8 @@ StayaStatus staya_lattice_soften(struct StayaLattice *lattice, float delay_s, fl
 /**
  * Fills in the place number `own` of a formation, given the cells of all places in any common
  * frame, the top leader's first, and the edges of its graph. Robots within `hops` edges become
- * neighbours; the robot at place i has the number i + 1.
- *
- * `STAYA_STATUS_SHAPE` for a place or an edge that does not exist, `STAYA_STATUS_TOO_MANY` for
- * more than STAYA_TEMPLATE neighbours.
+ * neighbours; the robot at place i has the number i + 1. `STAYA_STATUS_SHAPE` for a place or edge
+ * that does not exist, `STAYA_STATUS_TOO_MANY` above STAYA_TEMPLATE neighbours.
  */
 StayaStatus staya_formation_from_graph(struct StayaFormation *formation,
                                        const struct StayaCell *places,

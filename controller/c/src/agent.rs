@@ -68,8 +68,7 @@ const fn no_outputs() -> Outputs<Number> {
 }
 
 impl StayaAgent {
-    /// Creates the agent in place: each part is written separately, so that only law and layer pass
-    /// through the stack.
+    /// Creates the agent in place and in parts: only law and layer pass through the stack.
     ///
     /// # Safety
     /// `site` was returned by [`site`].
@@ -186,10 +185,8 @@ pub const extern "C" fn staya_agent_bytes() -> usize {
     size_of::<StayaAgent>()
 }
 
-/// Creates an agent in the caller's memory: idle, without a goal or known neighbours. `*agent` then
-/// points to it, which equals `memory`. It lives as long as the memory, must not be moved, and need
-/// not be destroyed. `*agent` is null if the setup is rejected.
-///
+/// Creates an idle agent in the caller's memory and points `*agent` to it; null if the setup is
+/// rejected. The agent lives as long as the memory, must not be moved, and need not be destroyed.
 /// Temporarily needs some kilobytes of stack (docs/c.md).
 ///
 /// # Safety
@@ -206,8 +203,7 @@ pub unsafe extern "C" fn staya_init(
         unsafe { memory::write(agent, core::ptr::null_mut())? };
         // SAFETY: this much memory by the caller's contract, or `site` rejects it.
         let site = unsafe { site::<StayaAgent>(memory, memory_bytes)? };
-        // SAFETY: a valid setup by the caller's contract, or `shared` rejects it; the site is
-        // checked.
+        // SAFETY: a valid setup by contract, or `shared` rejects it; the site is checked.
         unsafe { StayaAgent::make(site, shared(setup)?)? };
         // SAFETY: as above.
         unsafe { memory::write(agent, site) }
@@ -216,9 +212,7 @@ pub unsafe extern "C" fn staya_init(
 }
 
 /// Runs one step: receive, decide, send. Call it once per `tick_us` with the robot's present clock
-/// and state.
-///
-/// Bounded work. If the inputs are rejected, the agent and `outputs` are unchanged.
+/// and state. Bounded work. If the inputs are rejected, the agent and `outputs` are unchanged.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -235,13 +229,11 @@ pub unsafe extern "C" fn staya_step(
         if !outputs.is_aligned() {
             return Err(StayaStatus::Alignment);
         }
-        // SAFETY: an agent that is not used elsewhere, by the caller's contract, or `resident_mut`
-        // rejects it.
+        // SAFETY: an agent not used elsewhere by contract, or `resident_mut` rejects it.
         let agent = unsafe { resident_mut(agent)? };
         // SAFETY: inputs with valid pointers by the caller's contract, or they are rejected.
         unsafe { agent.step(shared(inputs)?)? };
-        // SAFETY: valid space for outputs, or it is rejected. The inputs, which may lie in the same
-        // memory, have been read.
+        // SAFETY: valid space, or it is rejected. Inputs in the same memory have been read.
         agent.tell(unsafe { zeroed(outputs)? });
         Ok(())
     };
@@ -274,7 +266,6 @@ pub unsafe extern "C" fn staya_assign_waypoint(
     answer(assign())
 }
 
-/// Conversion of three finite numbers.
 trait IntoVector {
     fn into_vector(self) -> Checked<staya_controller::geom::Vec3<f32>>;
 }
@@ -287,16 +278,14 @@ impl IntoVector for [f32; 3] {
     }
 }
 
-/// Gives the robot a target cell: for the laws that cross land in cells. In a formation the cell of
-/// the top leader suffices.
+/// Gives the robot a target cell, for laws on land in cells. A formation only needs its leader's.
 ///
 /// # Safety
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_assign_cell(agent: *mut StayaAgent, x: i16, y: i16) -> StayaStatus {
     let assign = || {
-        // SAFETY: an agent that is not used elsewhere, by the caller's contract, or `resident_mut`
-        // rejects it.
+        // SAFETY: an agent not used elsewhere by contract, or `resident_mut` rejects it.
         let agent = unsafe { resident_mut(agent)? };
         agent.agent.assign(&Task::Cell(Cell::new(x, y))).map_err(|_| StayaStatus::Task)
     };
@@ -318,8 +307,8 @@ pub unsafe extern "C" fn staya_mode(agent: *const StayaAgent, mode: *mut u8) -> 
     answer(ask())
 }
 
-/// Returns the first `room` neighbours in ascending order of their numbers. `*count` is their total
-/// number, which may be greater than `room`. A room of `STAYA_NEIGHBORS` always suffices.
+/// Returns the first `room` neighbours in ascending order of their numbers, and in `*count` the
+/// number of all. A room of `STAYA_NEIGHBORS` always suffices.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -344,8 +333,7 @@ pub unsafe extern "C" fn staya_neighbors(
     answer(ask())
 }
 
-/// A hash of the agent's whole state, the same on every machine. Agents with equal hashes behave
-/// identically from then on.
+/// A hash of the agent's whole state. Agents with equal hashes behave identically on any machine.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -360,8 +348,7 @@ pub unsafe extern "C" fn staya_digest(agent: *const StayaAgent, digest: *mut u64
     answer(ask())
 }
 
-/// Moves a position by a vector in metres, rounded to millimetres, saturating. For odometry, and
-/// for bodies in a simulation.
+/// Moves a position by a vector in metres (odometry), rounded to millimetres, saturating.
 /// cbindgen:ptrs-as-arrays=[[position_mm; 3], [way_m; 3]]
 ///
 /// # Safety

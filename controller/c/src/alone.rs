@@ -1,5 +1,4 @@
-//! Behaviours without an agent, on arrays of the caller, for robots that sense each other or use
-//! their own radio. ORCA is here.
+//! Behaviours without an agent, for robots that sense each other or use their own radio; ORCA.
 
 #[cfg(feature = "flocks")]
 pub mod flocks;
@@ -64,8 +63,7 @@ pub struct StayaNearby {
     pub radius_m: f32,
     /// 0: it does not give way, and this robot makes the whole correction.
     pub gives_way: u8,
-    /// Other than 0: it stands at its place and will stay (STAYA_MODE_ARRIVED), so others need not
-    /// wait for it.
+    /// Other than 0: it has arrived and stays (STAYA_MODE_ARRIVED), so others do not wait for it.
     pub is_parked: u8,
     /// Other than 0: it belongs to another flock, and is only an obstacle.
     pub is_stranger: u8,
@@ -135,7 +133,6 @@ fn nearest(all: &[StayaNearby]) -> Vec<Nearby<Number>, STAYA_NEARBY> {
     nearest
 }
 
-/// Moves the last element up to its place.
 fn sink(kept: &mut [(u64, Nearby<Number>)]) {
     let mut rest = kept;
     while let [.., before, last] = rest {
@@ -240,9 +237,8 @@ pub unsafe extern "C" fn staya_orca_defaults(orca: *mut StayaOrca) -> StayaStatu
     answer(unsafe { memory::write(orca, StayaOrca::defaults()) })
 }
 
-/// Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN.
-/// In the plane, or in space if `in_space` is not 0. `seed` seeds the random decisions that break
-/// ties; robots may share it.
+/// Creates ORCA for one robot in the caller's memory, STAYA_ORCA_SIZE bytes aligned to STAYA_ALIGN;
+/// in space if `in_space` is not 0. `seed` seeds random tie-breaks; robots may share it.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -273,9 +269,9 @@ pub unsafe extern "C" fn staya_orca_init(
 /// Returns the velocity to take until the next step, m/s: the one nearest to `wish_mps` that robots
 /// and obstacles permit. Call it once per `step_s`, always for the same robot.
 ///
-/// `way_m` is the vector to the goal, metres, or null without a goal; near the goal the robot does
-/// not turn aside. Of the robots, which may be in any order, the nearest STAYA_NEARBY count. In the
-/// plane heights are ignored, and the result has the height of the wish.
+/// `way_m` is the vector to the goal, metres, or null; near the goal the robot does not turn aside.
+/// Only the nearest STAYA_NEARBY robots count. The plane ignores heights and keeps that of the
+/// wish.
 /// cbindgen:ptrs-as-arrays=[[wish_mps; 3], [way_m; 3], [velocity_mps; 3]]
 ///
 /// # Safety

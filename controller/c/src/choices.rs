@@ -14,11 +14,9 @@ use staya_controller::wire::RequestKind;
 pub enum StayaLaw {
     /// Straight to its waypoint at `speed_mps`, until it is within `tolerance_m`.
     Waypoint = 0,
-    /// The alpha flock (R. Olfati-Saber 2006): equal distances, with waypoint 0, if present, as the
-    /// reference.
+    /// The alpha flock (R. Olfati-Saber 2006): equal distances; waypoint 0, if any, is followed.
     Lattice = 1,
-    /// The goal flock (V. E. and V. V. Pavlovsky): together to the middle of the waypoints, then
-    /// each robot to one of them.
+    /// The goal flock (V. E. and V. V. Pavlovsky): to the waypoints' middle, then each to one.
     GoalFlock = 2,
     /// Boids (V. A. Starovoitova 2018): constant speed, only headings change.
     Boids = 3,
@@ -54,15 +52,13 @@ pub enum StayaSafety {
 pub enum StayaWire {
     /// The controller's own frames of at most 60 bytes, each followed by a zero byte.
     Postcard = 0,
-    /// MAVLink 2 frames with the messages of Staya's dialect
-    /// (`controller/mavlink/messages/staya.xml`).
+    /// MAVLink 2 frames with Staya's dialect, `controller/mavlink/messages/staya.xml`.
     Mavlink = 1,
-    /// Like STAYA_WIRE_POSTCARD, with an authentication code that requires the `key`, and with
-    /// protection against replays.
+    /// Like STAYA_WIRE_POSTCARD, with an authentication code (needs `key`) and replay protection.
     Sealed = 2,
 }
 
-/// What the body shall do until the next step.
+/// The command to the body until the next step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaCommand {
@@ -94,7 +90,7 @@ pub enum StayaMode {
     Passive = 6,
 }
 
-/// What a robot with a goal waits for if it does not get closer.
+/// Why a robot with a goal does not get closer to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum StayaWait {
@@ -164,8 +160,7 @@ pub enum StayaEventKind {
     ContactLost = 8,
     /// Two robots have the number `robot`.
     DuplicateId = 9,
-    /// A beacon of `robot` exceeds the limits of `plausibility`; `after`: 0 number, 1 radius, 2 speed, 3
-    /// position.
+    /// A beacon of `robot` is implausible; `after`: 0 number, 1 radius, 2 speed, 3 position.
     Implausible = 10,
     /// The robot stopped sending: its counters are used up, and it needs a new key.
     Muted = 11,

@@ -47,8 +47,7 @@ pub struct StayaObstacle {
     pub size_m: f32,
 }
 
-/// The input of a step. All zeros is a stationary robot at the origin that sees and receives
-/// nothing.
+/// The input of a step. All zeros: stationary at the origin, with nothing seen or received.
 ///
 /// Robots with velocities as commands need `max_speed_mps`. Robots that cross land in cells need
 /// `cell` and `window`; with velocities as commands also `in_cell_x_m`, `in_cell_y_m` and `cell_m`.
@@ -56,15 +55,13 @@ pub struct StayaObstacle {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaInputs {
-    /// The robot's position in the world: east, north, up from an origin that all robots share,
-    /// millimetres.
+    /// Position in the world: east, north, up from an origin that all robots share, millimetres.
     pub position_mm: [i32; 3],
     /// The robot's velocity in the world, m/s.
     pub velocity_mps: [f32; 3],
     /// The robot's clock, microseconds; it wraps after 71.6 minutes.
     pub now_us: u32,
-    /// The body's highest possible speed in its present place, m/s. With 0 the robot is in
-    /// STAYA_MODE_FAULT, and stops.
+    /// Highest possible speed in this place, m/s; with 0 the robot stops in STAYA_MODE_FAULT.
     pub max_speed_mps: f32,
     /// The robot's cell.
     pub cell: StayaCell,
@@ -89,8 +86,7 @@ pub struct StayaInputs {
     pub obstacles: *const StayaObstacle,
     /// Length of `obstacles`.
     pub obstacle_count: usize,
-    /// The bytes that the radio received since the last step, `inbox_bytes` of them, in order:
-    /// intact, damaged and foreign frames.
+    /// `inbox_bytes` bytes from the radio since the last step, in order, with damaged frames.
     pub inbox: *const u8,
     /// Length of `inbox`.
     pub inbox_bytes: usize,
@@ -156,7 +152,7 @@ pub struct StayaOutputs {
     pub move_count: u8,
     /// Its activity: StayaMode.
     pub mode: u8,
-    /// What it waits for: StayaWait.
+    /// Why it waits: StayaWait.
     pub wait: u8,
     /// Whether it has a goal, and so a `target`.
     pub has_target: u8,
@@ -199,8 +195,6 @@ pub(crate) fn read_obstacles(from: &[StayaObstacle], to: &mut Vec<Obstacle<Numbe
 }
 
 impl StayaInputs {
-    /// The inputs of a robot with this law.
-    ///
     /// # Safety
     /// Each pointer is null, misaligned, or valid for the given number of elements, which are not
     /// modified during the call.

@@ -1,7 +1,5 @@
-//! The guidance laws in this build, as one type.
-//!
-//! A digest contains only the law inside. Therefore an agent made through C has the same digest as
-//! the Rust agent with these types.
+//! The guidance laws in this build, as one type. A digest contains only the law inside, so an agent
+//! made through C has the digest of the Rust agent with these types.
 
 use crate::Number;
 use crate::choices::StayaLaw;
@@ -21,10 +19,8 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use staya_controller::wire::TemplateAssignment;
 
-/// Capacity of the visit memory, cells.
 #[cfg(feature = "grid")]
 const VISITS: usize = if cfg!(feature = "small") { 32 } else { staya_controller::agent::VISITS };
-/// Capacity of the memory for learned costs.
 #[cfg(feature = "grid")]
 const LEARNED: usize = if cfg!(feature = "small") { 0 } else { staya_controller::agent::LEARNED };
 
@@ -33,10 +29,8 @@ pub(crate) type Route = RouteGuidance<CELLS, VISITS, LEARNED>;
 #[cfg(feature = "grid")]
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE, LEARNED>;
 
-/// Scratch memory of the laws.
 #[cfg(feature = "grid")]
 pub(crate) type Workspace = GridWorkspace<CELLS>;
-/// Scratch memory of the laws.
 #[cfg(not(feature = "grid"))]
 pub(crate) type Workspace = ();
 
@@ -61,7 +55,6 @@ pub enum Law {
     FormationOnGrid(Formation),
 }
 
-/// Applies the same code to any variant.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {

@@ -60,7 +60,6 @@ pub enum Layer {
     PushOut(PushOutSafety<Number>),
 }
 
-/// Applies the same code to any variant.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {

@@ -5,12 +5,10 @@
 //! bytes to send ([`io`]). Behaviours are also available without an agent ([`alone`]).
 //!
 //! No function allocates, calls back or panics. Null, misaligned and undersized memory is rejected
-//! with a [`status::StayaStatus`]. The caller must ensure everything that a library cannot check;
-//! the header's introduction lists it.
+//! with a [`status::StayaStatus`]; the header's introduction lists the caller's obligations.
 //!
-//! `cargo rustc` with the profile `firmware` builds the library; `docs/c.md` has the steps. In that
-//! build the panic handler calls a function that does not exist, so that a program links only if no
-//! panic is reachable, as in `hil/firmware`.
+//! `docs/c.md` has the steps to build the library with the profile `firmware`. There the panic
+//! handler calls a function that does not exist, so a program links only if no panic is reachable.
 #![cfg_attr(not(test), no_std)]
 #![cfg_attr(
     not(test),
@@ -23,8 +21,7 @@
     )
 )]
 
-// If panics unwind (in tests and debug builds on a host), the standard library provides what they
-// need.
+// The standard library handles unwinding panics in tests and debug builds on a host.
 #[cfg(all(not(test), not(panic = "abort")))]
 extern crate std;
 

@@ -97,8 +97,7 @@ pub(crate) unsafe fn write<T: Plain>(to: *mut T, value: T) -> Checked<()> {
 /// As [`write`].
 pub(crate) unsafe fn zeroed<'a, T: Plain>(to: *mut T) -> Checked<&'a mut T> {
     check(to)?;
-    // SAFETY: neither null nor misaligned, and space for a `T` by the caller's contract. Zeros are
-    // a valid `T`.
+    // SAFETY: neither null nor misaligned, space by contract. Zeros are a valid `T`.
     unsafe {
         to.write_bytes(0, 1);
         Ok(&mut *to)
@@ -128,7 +127,6 @@ pub(crate) unsafe fn room<'a, T: Plain>(first: *mut T, count: usize) -> Checked<
 /// # Safety
 /// `repr(C)`, and its first field is a `u32`.
 pub(crate) unsafe trait Resident: Sized {
-    /// The mark.
     const MARK: u32;
 }
 
@@ -155,8 +153,6 @@ fn check_resident<T: Resident>(place: *const T) -> Checked<()> {
     if mark == T::MARK { Ok(()) } else { Err(StayaStatus::NotThere) }
 }
 
-/// Mutable access to a resident.
-///
 /// # Safety
 /// If the pointer is neither null nor misaligned, it points to memory for a `T` that holds one, or
 /// has another first word, and is not used elsewhere during the call.
@@ -166,8 +162,6 @@ pub(crate) unsafe fn resident_mut<'a, T: Resident>(place: *mut T) -> Checked<&'a
     Ok(unsafe { &mut *place })
 }
 
-/// Shared access to a resident.
-///
 /// # Safety
 /// As [`resident_mut`], but other readers are permitted.
 pub(crate) unsafe fn resident<'a, T: Resident>(place: *const T) -> Checked<&'a T> {

@@ -95,7 +95,6 @@ pub enum StayaParameter {
     Patience = 40,
 }
 
-/// All parameters with their names, in the order of their numbers.
 const ALL: [(StayaParameter, Parameter, &CStr, &CStr); 41] = [
     (StayaParameter::Radius, Parameter::Radius, c"radius_m", c"m"),
     (StayaParameter::BeaconPeriod, Parameter::BeaconPeriod, c"beacon_period_s", c"s"),
@@ -140,14 +139,12 @@ const ALL: [(StayaParameter, Parameter, &CStr, &CStr); 41] = [
     (StayaParameter::Patience, Parameter::Patience, c"patience", c"decisions"),
 ];
 
-/// The parameter with this number, its name and its unit.
 fn known(number: u32) -> Checked<(Parameter, &'static CStr, &'static CStr)> {
     let found = ALL.into_iter().find(|(known, ..)| *known as u32 == number);
     found.map(|(_, parameter, name, unit)| (parameter, name, unit)).ok_or(StayaStatus::Unknown)
 }
 
-/// The name of a parameter, such as "horizon_s"; null if the number does not exist. Numbers start
-/// at 0 without gaps.
+/// The name of parameter 0, 1, 2 and so on, such as "horizon_s"; null beyond the last one.
 #[unsafe(no_mangle)]
 pub extern "C" fn staya_parameter_name(parameter: u32) -> *const c_char {
     match known(parameter) {
@@ -182,8 +179,7 @@ pub unsafe extern "C" fn staya_parameter_range(parameter: u32, least: *mut f32, 
     answer(ask())
 }
 
-/// Returns the present value of a parameter (StayaParameter). `STAYA_STATUS_PARAMETER` if this
-/// robot's law and layer do not have it.
+/// Returns the present value of a StayaParameter; `STAYA_STATUS_PARAMETER` if the robot lacks it.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -200,9 +196,8 @@ pub unsafe extern "C" fn staya_get_parameter(agent: *const StayaAgent, parameter
     answer(ask())
 }
 
-/// Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER` if this
-/// robot does not have it, or if the value is out of range or contradicts other parameters; then
-/// nothing changes.
+/// Changes a parameter (StayaParameter) from the next step on. `STAYA_STATUS_PARAMETER`, and no
+/// change, if the robot lacks it, or the value is out of range or contradicts other parameters.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -210,8 +205,7 @@ pub unsafe extern "C" fn staya_get_parameter(agent: *const StayaAgent, parameter
 pub unsafe extern "C" fn staya_set_parameter(agent: *mut StayaAgent, parameter: u32, value: f32) -> StayaStatus {
     let set = || {
         let (parameter, ..) = known(parameter)?;
-        // SAFETY: an agent that is not used elsewhere, by the caller's contract, or `resident_mut`
-        // rejects it.
+        // SAFETY: an agent not used elsewhere by contract, or `resident_mut` rejects it.
         let agent = unsafe { resident_mut(agent)? };
         let is_set = agent.inside_mut().set_parameter(parameter, value);
         is_set.then_some(()).ok_or(StayaStatus::Parameter)

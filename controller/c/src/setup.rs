@@ -1,5 +1,4 @@
-//! The configuration of a robot, as one plain structure: `staya_setup_defaults` fills it, then the
-//! caller changes fields.
+//! The configuration of a robot: `staya_setup_defaults` fills it, then the caller changes fields.
 
 // The structures exist in every build, so that the header is the same; the conversions do not.
 #[cfg_attr(not(feature = "push-out"), allow(unused_imports))]
@@ -45,16 +44,14 @@ const _: () = assert!(size_of::<StayaSetup>() == STAYA_SETUP_SIZE);
 #[cfg(feature = "auth")]
 const _: () = assert!(STAYA_KEY == staya_controller::auth::KEY_LEN);
 
-/// The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields.
-///
-/// Fields that the chosen law and layer do not use are ignored.
+/// The configuration of a robot. Fill it with `staya_setup_defaults`, then change fields. Fields
+/// that the chosen law and layer do not use are ignored.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaSetup {
     /// Written by `staya_setup_defaults`; shows that header and library have the same version.
     pub version: u32,
-    /// The robot's number, 1 or more, unique in the swarm (MAVLink: up to 254; with a key: below
-    /// 2^21).
+    /// The robot's number from 1, unique in the swarm (MAVLink: up to 254; with a key: below 2^21).
     pub id: u32,
     /// Seed of its random decisions, together with its number.
     pub seed: u64,
@@ -77,8 +74,7 @@ pub struct StayaSetup {
     pub retry_interval_us: i32,
     /// Number of attempts of a request.
     pub retry_attempts: u8,
-    /// Must change with each start (counted in persistent memory or random), or others take a
-    /// restarted robot for a replay.
+    /// Must change with each start (a stored counter or random), or others take it for a replay.
     pub boot: u8,
     /// The robot's flock; robots of other flocks are only obstacles.
     pub flock: u8,
@@ -96,7 +92,7 @@ pub struct StayaSetup {
     pub tolerance_m: f32,
     /// How fast the body can change its velocity, m/s^2; FLT_MAX: at once.
     pub max_acceleration_mps2: f32,
-    /// Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0
+    /// Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0:
     /// only for robots that may be alone.
     pub alone_mps: f32,
     /// Largest radius accepted in a beacon, metres; FLT_MAX: any.
@@ -123,8 +119,7 @@ pub struct StayaSetup {
     pub route: StayaRoute,
     /// Formations.
     pub formation: StayaFormation,
-    /// With STAYA_WIRE_SEALED: the robot's count of starts, kept in persistent memory from 0; below
-    /// 2^20.
+    /// With STAYA_WIRE_SEALED: its count of starts, in persistent memory from 0; below 2^20.
     pub starts: u32,
     /// With STAYA_WIRE_SEALED: the swarm's secret. The agent keeps a copy.
     pub key: [u8; STAYA_KEY],
@@ -132,10 +127,8 @@ pub struct StayaSetup {
 
 plain!(StayaSetup);
 
-/// The version that header and library must share.
 const VERSION: u32 = u32::from_be_bytes(*b"sty1");
 
-/// Checks that all numbers are above 0 and finite.
 fn positive(numbers: &[f32]) -> Checked<()> {
     if numbers.iter().all(|number| *number > 0.0 && number.is_finite()) { Ok(()) } else { Err(StayaStatus::Number) }
 }
@@ -174,7 +167,6 @@ impl StayaSetup {
         laws::defaults(self);
     }
 
-    /// The fixed part of the configuration.
     pub(crate) fn config(&self) -> Checked<AgentConfig<Number>> {
         if self.version != VERSION {
             return Err(StayaStatus::Version);
@@ -215,7 +207,6 @@ impl StayaSetup {
         Ok(config.cast())
     }
 
-    /// The guidance law in its initial state.
     pub(crate) fn law(&self) -> Checked<Law> {
         let law = StayaLaw::of(self.law)?;
         if !matches!(law, StayaLaw::RouteOnGrid | StayaLaw::FormationOnGrid) {
@@ -245,7 +236,6 @@ impl StayaSetup {
         }
     }
 
-    /// The safety layer in its initial state.
     pub(crate) fn layer(&self) -> Checked<Layer> {
         let orca = |source| {
             positive(&[self.orca.horizon_s, self.orca.wall_horizon_s])?;
@@ -295,10 +285,9 @@ impl StayaSetup {
 }
 
 /// Fills a setup for robot `id` with defaults: straight to waypoints at 0.5 m/s with ORCA, a beacon
-/// each step, no inertia, no latency. Lengths of the other laws follow from the radius.
-///
-/// `radius_m` is that of the ball around the body, metres; `tick_us` the time from one step to the
-/// next, microseconds. `staya_init` checks them.
+/// each step, no inertia, no latency; lengths of other laws follow from the radius. `radius_m` is
+/// that of the ball around the body, `tick_us` the time between two steps. `staya_init` checks
+/// them.
 ///
 /// # Safety
 /// See the header's introduction.

@@ -1,5 +1,4 @@
-//! The wire formats in this build, as one type. A digest contains only the format inside, as for
-//! laws.
+//! The wire formats in this build, as one type. A digest contains only the format inside.
 
 use heapless::Vec;
 use serde::{Serialize, Serializer};
@@ -28,7 +27,6 @@ pub enum Speech {
     Sealed(Sealed<PEERS>),
 }
 
-/// Applies the same code to any variant.
 macro_rules! each {
     ($any:expr, $inside:ident => $action:expr) => {
         match $any {

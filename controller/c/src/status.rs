@@ -11,8 +11,7 @@ pub enum StayaStatus {
     Ok = 0,
     /// A required pointer is null, or null with a length above 0.
     Null = 1,
-    /// A pointer is not aligned as its type requires; memory for agents and avoiders: to
-    /// STAYA_ALIGN.
+    /// A pointer is misaligned for its type; memory of agents and avoiders needs STAYA_ALIGN.
     Alignment = 2,
     /// The memory is too small: see STAYA_AGENT_SIZE and STAYA_ORCA_SIZE.
     MemorySize = 3,
@@ -94,10 +93,8 @@ impl StayaStatus {
     }
 }
 
-/// The result of an internal function.
 pub(crate) type Checked<T> = Result<T, StayaStatus>;
 
-/// Converts a result for C.
 pub(crate) fn answer(result: Checked<()>) -> StayaStatus {
     match result {
         Ok(()) => StayaStatus::Ok,

@@ -1,5 +1,3 @@
-//! Tests of the library through its C functions.
-
 mod header;
 mod misuse;
 mod steps;
@@ -11,12 +9,10 @@ use crate::status::StayaStatus;
 use core::mem::MaybeUninit;
 use core::ptr::null_mut;
 
-/// Memory as a C program reserves it.
 #[repr(align(8))]
 struct Memory([u8; STAYA_AGENT_SIZE]);
 
 impl Memory {
-    /// With arbitrary contents.
     fn new() -> Box<Self> {
         Box::new(Self([0xA5; STAYA_AGENT_SIZE]))
     }

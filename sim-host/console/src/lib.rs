@@ -1,6 +1,5 @@
-//! Parts common to all commands of `staya`: shared options, progress, Ctrl-C, output.
-//!
-//! Results go to standard output, progress and errors to standard error.
+//! Parts common to all commands of `staya`: shared options, progress, Ctrl-C, output. Results go to
+//! standard output, progress and errors to standard error.
 
 pub mod options;
 mod progress;
@@ -30,13 +29,12 @@ pub struct Global {
 }
 
 impl Global {
-    /// Starts the thread pool. Call this once, before any parallel work.
+    /// Starts the thread pool; call this once, before any parallel work.
     ///
     /// # Errors
     /// The threads cannot be started.
     pub fn begin(&self) -> Result<()> {
         if let Some(threads) = self.threads {
-            // More than one thread per processor would only cost time.
             let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
             rayon::ThreadPoolBuilder::new()
                 .num_threads(usize::from(threads).min(processors))
@@ -47,8 +45,8 @@ impl Global {
     }
 }
 
-/// Version of this program in results: `0.1.0`, then the commit as found by `build.rs`:
-/// `0.1.0+298ef29bca11`, or `0.1.0+298ef29bca11.5f0c2d9a` with uncommitted changes.
+/// Version in results: `0.1.0+298ef29bca11` with the commit that `build.rs` finds, then a hash of
+/// uncommitted changes, as in `0.1.0+298ef29bca11.5f0c2d9a`.
 pub const VERSION: &str = env!("STAYA_VERSION");
 
 /// Command line of a program: the options of every command, and the program's own commands `C`.
@@ -108,14 +106,13 @@ pub fn print_json(value: &impl Serialize) -> Result<()> {
     print(&text)
 }
 
-/// Exit code of a command: 0 for success, 1 for an error (printed on standard error), 130 for
-/// Ctrl-C.
+/// Exit code of a command: 0 for success, 1 for a printed error, 130 for Ctrl-C.
 #[must_use]
 pub fn exit(program: &str, ended: Result<Ended>) -> ExitCode {
     match ended {
         Ok(Ended::Done) => ExitCode::SUCCESS,
         Ok(Ended::Interrupted) => ExitCode::from(130),
-        // The reader of a pipe (`staya ... | head`) has closed it; that is not an error.
+        // The reader of a pipe (`staya ... | head`) may close it.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             // Standard error may be closed; the exit code still reports the failure.
@@ -125,7 +122,7 @@ pub fn exit(program: &str, ended: Result<Ended>) -> ExitCode {
     }
 }
 
-/// An error with its causes, without a cause that the previous message already contains.
+/// An error with its causes, without causes that the message already contains.
 #[must_use]
 pub fn in_one_line(error: &anyhow::Error) -> String {
     let mut text = error.to_string();

@@ -30,7 +30,6 @@ pub fn word(value: impl Named) -> String {
 /// Parser of named values that lists them with their help.
 pub fn one_of<T: Named + Send + Sync>(values: &'static [(T, &'static str)]) -> impl TypedValueParser<Value = T> {
     let possible = values.iter().map(|(value, help)| {
-        // Leaks a few bytes for the lifetime of the program.
         let possible = PossibleValue::new(&*word(*value).leak()).alias(value.name());
         if help.is_empty() { possible } else { possible.help(*help) }
     });
@@ -91,8 +90,7 @@ pub fn hills() -> impl TypedValueParser<Value = Hills> {
     ])
 }
 
-/// Sharpness of the order of moves: cost difference in ticks that halves a priority, in sixteenths;
-/// 0 is greedy.
+/// Sharpness of the order of moves: cost difference in ticks that halves a priority; 0 is greedy.
 pub fn shuffle(word: &str) -> Result<Sharpness, String> {
     Ok(match gain(word)? {
         Gain::ZERO => Sharpness::Greedy,
@@ -140,8 +138,7 @@ pub struct RouteOptions {
 }
 
 impl RouteOptions {
-    /// Parameters for a window with this radius and the default moves (Euclidean, no corner
-    /// cutting).
+    /// Parameters for a window with this radius and Euclidean moves without corner cutting.
     pub fn params(&self, radius: u8) -> RouteParams {
         let default = RouteParams::default();
         RouteParams {
@@ -156,8 +153,7 @@ impl RouteOptions {
     }
 }
 
-/// Extra cost of a move, in ticks, that halves how often it comes first; 0: the cheapest always
-/// comes first.
+/// Extra cost of a move, in ticks, that halves how often it comes first; 0: greedy.
 #[must_use]
 pub fn shuffle_ticks(sharpness: Sharpness) -> f64 {
     match sharpness {

@@ -1,5 +1,3 @@
-//! Progress on standard error, and requests to stop.
-
 use super::Global;
 use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -8,7 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Interval of progress lines without a terminal.
 const LINE_EVERY: Duration = Duration::from_secs(5);
 
 /// A request to stop early, shared by all clones.
@@ -16,8 +13,7 @@ const LINE_EVERY: Duration = Duration::from_secs(5);
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Creates a request that Ctrl-C or a termination signal sets. A second signal ends the process
-    /// at once.
+    /// Creates a request that Ctrl-C or a termination signal sets; the second ends the process.
     ///
     /// # Errors
     /// The signal handler cannot be installed, for example on the second call in a process.
@@ -91,7 +87,7 @@ impl Progress {
             self.lines = Some(Instant::now());
             let (label, total) = (self.bar.prefix(), self.bar.length().unwrap_or(0));
             let left = self.bar.eta().as_secs();
-            // A closed standard error must not stop the work.
+            // Standard error may be closed.
             let _ = writeln!(io::stderr(), "{label}: {done}/{total}{}, about {left} s left", spaced(&message()));
         }
     }

@@ -1,5 +1,3 @@
-//! Options of commands that run a scenario.
-
 use anyhow::Result;
 use clap::Args;
 use staya_sim::scenario::{Overrides, Scenario, Setting};

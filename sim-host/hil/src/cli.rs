@@ -15,6 +15,7 @@ pub enum Command {
 impl Command {
     /// Runs the command.
     ///
+    /// # Errors
     /// Any error of the command.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let Self::Hil(args) = self;

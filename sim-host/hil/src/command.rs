@@ -1,5 +1,3 @@
-//! `staya hil SCENARIO`, for Staya's laws and for crates with their own guidance law.
-
 use crate::run::HilArgs;
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
@@ -28,10 +26,6 @@ pub struct HilCommand {
 }
 
 impl HilCommand {
-    /// Runs the command.
-    ///
-    /// # Errors
-    /// Errors of [`HilArgs::run`], or a crate that does not build or whose program fails.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.folder {
             Some(folder) => run_crate(folder),
@@ -40,8 +34,7 @@ impl HilCommand {
     }
 }
 
-/// Builds and runs the program of a crate with this command line. That program reports its own
-/// errors.
+/// The program of the crate reports its own errors.
 fn run_crate(folder: &Path) -> Result<Ended> {
     let manifest = folder.join("Cargo.toml");
     if !manifest.is_file() {
@@ -59,7 +52,7 @@ fn run_crate(folder: &Path) -> Result<Ended> {
     }
 }
 
-/// The same arguments without `hil` and `--crate`, for a program whose only command is `hil`.
+/// The arguments without `hil` and `--crate`, for a program whose only command is `hil`.
 fn handed_on(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let (mut handed_on, mut is_named, mut is_folder) = (Vec::new(), false, false);
     for argument in arguments {

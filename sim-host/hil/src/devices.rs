@@ -1,8 +1,4 @@
-//! Robots whose controllers run on emulated parts or on boards.
-//!
-//! [`OnDevices`] is the interface to the engine; [`firmware`](crate::firmware) finds the programs
-//! of emulated devices. The crate `staya-runner` has the devices, their serial links and the
-//! comparison with shadows.
+//! Robots whose controllers run on emulated parts or on boards, as the engine sees them.
 
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
@@ -10,15 +6,13 @@ use staya_runner::{Answer, Cause, Device, DeviceConfig, Fleet, LineFaults, Load,
 use staya_sim::engine::{Decision, ExternalController, Status};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Devices of a run, and planned faults.
 #[derive(Clone, Debug)]
 pub struct DevicePlan {
     /// Index and device of each robot, by index.
     pub devices: Vec<(usize, Device)>,
     /// Faults of all serial links.
     pub faults: LineFaults,
-    /// Times of planned restarts. At each, the devices restart one after the other: the first in
-    /// this tick, the next one tick later.
+    /// Times of planned restarts. At each, the devices restart one per tick.
     pub resets: Vec<Reset>,
 }
 
@@ -30,13 +24,11 @@ pub struct Log(Arc<Mutex<Entries>>);
 struct Entries {
     trouble: Option<String>,
     statistics: Vec<Statistics>,
-    /// Index of each robot, and the load of its device in the last step.
     loads: Vec<(usize, Load)>,
 }
 
 impl Log {
     fn entries(&self) -> MutexGuard<'_, Entries> {
-        // Entries are consistent even after a panic.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -46,7 +38,7 @@ impl Log {
         self.entries().trouble.clone()
     }
 
-    /// Load of the device of robot `index` in the last step; `None` if it runs on no device.
+    /// `None` if the robot runs on no device.
     #[must_use]
     pub fn load(&self, index: usize) -> Option<Load> {
         let entries = self.entries();
@@ -60,19 +52,15 @@ impl Log {
     }
 }
 
-/// The devices as the engine sees them. They start at the first step.
 pub struct OnDevices {
     plan: DevicePlan,
     options: Option<Options>,
-    /// Encoded guidance law of each robot.
     law: Box<dyn Fn(usize) -> Vec<u8> + Send>,
-    /// Configuration of each device until the fleet starts.
     orders: Vec<Option<DeviceConfig>>,
     fleet: Option<Fleet>,
-    /// Indices in the plan of the devices with an outstanding request.
     asked: Vec<usize>,
     decisions: Vec<Option<Decision>>,
-    /// Devices that were reset and whose robots did not restart yet.
+    /// These devices were reset, and their robots did not restart yet.
     lost: Vec<bool>,
     log: Log,
 }
@@ -95,7 +83,6 @@ impl OnDevices {
         (devices, log)
     }
 
-    /// Index in the plan of robot `index`.
     fn at(&self, index: usize) -> Option<usize> {
         let devices = &self.plan.devices;
         devices.binary_search_by_key(&index, |(robot, _)| *robot).ok()
@@ -145,7 +132,6 @@ impl OnDevices {
                 Answer::Down => self.lost[at] = true,
                 Answer::Mismatch(mismatch) => self.fail(mismatch.to_string()),
                 Answer::Failed(error) => match *error.cause {
-                    // The run ends in any case.
                     Cause::Stopped => {}
                     _ => self.fail(error.to_string()),
                 },

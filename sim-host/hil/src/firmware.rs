@@ -1,5 +1,3 @@
-//! Finds or builds the firmware of emulated devices: ELF files made by `cargo xtask firmware`.
-
 use anyhow::{Context as _, Result, bail};
 use staya_runner::{Note, Part, find_emulator};
 use std::fmt::Write as _;
@@ -7,11 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// Environment variable with the same meaning as `--firmware`.
+/// Equivalent of `--firmware`.
 const VARIABLE: &str = "STAYA_FIRMWARE";
 
 pub(crate) struct Program {
-    /// Name of the host program. Installed firmware is in `share/NAME/firmware`.
+    /// Name of the host program, whose firmware is installed in `share/NAME/firmware`.
     pub(crate) name: &'static str,
     /// Expected name and version inside the firmware.
     pub(crate) says: String,
@@ -19,20 +17,13 @@ pub(crate) struct Program {
 }
 
 pub(crate) enum Made {
-    /// Staya's repository, `hil/firmware`.
     InRepository,
-    /// The package in this folder.
     InPackage(PathBuf),
 }
 
-/// Finds the folder with firmware for `parts`, or one ELF file. In this order: the given path, the
-/// environment variable, firmware installed beside this program or in the user's data folder, the
-/// sources of this program. The last one builds missing or outdated firmware and downloads the
-/// emulators.
-///
-/// # Errors
-/// Missing firmware, with the searched places and a remedy; or firmware of another part, version or
-/// program.
+/// Finds the folder with firmware for `parts`, or one ELF file: the given path, the environment
+/// variable, firmware installed beside this program or in the user's data folder, the sources of
+/// this program. The last one builds outdated firmware and downloads the emulators.
 pub(crate) fn find(parts: &[Part], given: Option<&Path>, program: &Program) -> Result<PathBuf> {
     if parts.is_empty() {
         return Ok(PathBuf::new());
@@ -86,7 +77,6 @@ fn lacking(parts: &[Part], folder: &Path) -> Option<PathBuf> {
     parts.iter().map(|part| part.elf(folder)).find(|elf| !elf.is_file())
 }
 
-/// Returns the folder if all its firmware fits the program.
 fn checked(parts: &[Part], folder: PathBuf, program: &Program) -> Result<PathBuf> {
     for part in parts {
         Note::check(&part.elf(&folder), *part, Some(&program.says))?;
@@ -111,7 +101,6 @@ fn remedy(parts: &[Part], program: &Program) -> String {
     }
 }
 
-/// Folders of installed firmware: `share` beside this program's folder, and the user's data folder.
 fn installed(name: &str) -> Vec<PathBuf> {
     let program = std::env::current_exe().ok();
     let beside = program.as_deref().and_then(|program| Some(program.ancestors().nth(2)?.join("share")));
@@ -123,14 +112,12 @@ fn installed(name: &str) -> Vec<PathBuf> {
     places
 }
 
-/// Path of Staya's repository when this was built.
 fn home() -> PathBuf {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     here.ancestors().nth(2).unwrap_or(here).to_owned()
 }
 
-/// Staya's repository: the one in which cargo started this program, or the one that it was built
-/// from.
+/// The repository in which cargo started this program, or the one that it was built from.
 fn repository() -> Option<PathBuf> {
     let started = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let started = started.as_deref().and_then(Path::parent).map(Path::to_owned);
@@ -146,7 +133,7 @@ fn target(root: &Path) -> PathBuf {
         .map_or_else(|| root.join("target"), |folder| std::path::absolute(&folder).unwrap_or_else(|_| folder.into()))
 }
 
-/// Builds outdated firmware and downloads the emulators. Returns the folder of the firmware.
+/// Builds outdated firmware, downloads the emulators, and returns the firmware's folder.
 fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
     let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
     let (folder, what) = match made {
@@ -176,13 +163,13 @@ fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// Runs a command of the repository. Its output goes to standard error, complete only if it fails.
+/// Its output goes to standard error, complete only if it fails.
 fn xtask(root: &Path, arguments: &[&str]) -> Result<()> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let line = format!("cargo xtask {}", arguments.join(" "));
     eprintln!("staya: {line}");
     let mut command = Command::new(cargo);
-    // Cargo's variables describe this program's package, not the next one's.
+    // Cargo's variables describe this program's package, not that of the command.
     for (name, _) in std::env::vars_os() {
         let is_cargos =
             name.to_str().is_some_and(|name| name.starts_with("CARGO_PKG_") || name.starts_with("CARGO_MANIFEST_"));
@@ -215,7 +202,6 @@ mod tests {
 
     const PARTS: [Part; 2] = [Part::Stm32f405, Part::Microbit];
 
-    /// A folder with a file for each part that is not firmware.
     fn folder(parts: &[Part]) -> tempfile::TempDir {
         let top = tempfile::tempdir().expect("a folder");
         for part in parts {

@@ -1,5 +1,3 @@
-//! Options of a run with devices.
-
 use crate::devices::DevicePlan;
 use anyhow::{Result, bail};
 use clap::Args;

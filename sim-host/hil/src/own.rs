@@ -1,5 +1,3 @@
-//! Runs robots with the caller's own guidance law, some of them on devices.
-
 use crate::firmware::{Made, Program};
 use crate::options::DeviceArgs;
 use crate::run::{HilArgs, Swarm, drive};
@@ -40,8 +38,7 @@ macro_rules! package {
     };
 }
 
-/// Robots with guidance law `G`. Devices receive the law's data as encoded by serde, so parameters
-/// changed in the host program need no new firmware.
+/// Robots with guidance law `G`. serde sends it to devices: new parameters need no new firmware.
 pub struct Own<G> {
     package: Package,
     law: Arc<dyn Fn(usize) -> G + Send + Sync>,
@@ -55,16 +52,14 @@ impl<G> std::fmt::Debug for Own<G> {
 }
 
 impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
-    /// Creates a swarm whose robot `i` in [`Scenario::robots`] follows `law(i)`. `law` is called at
-    /// every start of a robot, here and on devices, as in
-    /// [`simulate_own`](staya_sim::engine::simulate_own).
+    /// Creates a swarm whose robot `i` in [`Scenario::robots`] follows `law(i)`, called at every
+    /// start of a robot, as in [`simulate_own`](staya_sim::engine::simulate_own).
     #[must_use]
     pub fn new(package: Package, law: impl Fn(usize) -> G + Send + Sync + 'static) -> Self {
         Self { package, law: Arc::new(law), shadows: || vec![Box::new(OwnLarge::<G>::new())] }
     }
 
-    /// Also supports parts with fixed-point arithmetic (micro:bit); the law must work with [`Q16`]
-    /// too.
+    /// Also supports parts with fixed-point arithmetic (micro:bit); `law` must work with [`Q16`].
     #[must_use]
     pub fn in_fixed_point(self) -> Self
     where
@@ -102,8 +97,8 @@ impl<G: OwnLaw + LinkedLaw<f32>> Own<G> {
     /// Runs a scenario and prints its summary.
     ///
     /// # Errors
-    /// Missing devices or firmware, a device that stopped answering or differed from its shadow, or
-    /// a scenario that an own law cannot run.
+    /// Missing devices or firmware, a device that fails or differs from its shadow, or a scenario
+    /// that an own law cannot run.
     pub fn run(&self, scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
         drive(self, scenario, devices, page, global)
     }
@@ -121,7 +116,6 @@ impl<G: OwnLaw + LinkedLaw<f32>> Swarm for Own<G> {
 
     fn law(&self) -> Box<dyn Fn(usize) -> Vec<u8> + Send> {
         let law = Arc::clone(&self.law);
-        // A law that serde cannot encode has no checkpoint and no digest either.
         Box::new(move |index| postcard::to_stdvec(&law(index)).unwrap_or_default())
     }
 

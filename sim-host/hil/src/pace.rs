@@ -1,5 +1,3 @@
-//! Keeps a run in real time.
-
 use serde::Serialize;
 use staya_console::Stop;
 use std::time::{Duration, Instant};
@@ -7,14 +5,13 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct RealTime {
     pub(crate) tick_seconds: f64,
-    /// Ticks that were not finished when the next one was due.
     pub(crate) deadlines_missed: u32,
     pub(crate) slowest_seconds: f64,
 }
 
 pub(crate) struct Pace {
     pub(crate) report: RealTime,
-    /// Start of tick 0, and start of the present tick.
+    /// Starts of tick 0 and of the present tick.
     began: Option<(Instant, Instant)>,
 }
 
@@ -23,8 +20,7 @@ impl Pace {
         Self { report: RealTime { tick_seconds, deadlines_missed: 0, slowest_seconds: 0.0 }, began: None }
     }
 
-    /// Waits until the next tick is due. Late ticks are not made up for: the clock restarts. The
-    /// first tick does not count, since it starts the devices.
+    /// After a late tick the clock restarts. The first tick starts the devices and does not count.
     pub(crate) fn wait(&mut self, ticks: u32, stop: &Stop) {
         let now = Instant::now();
         let tick = Duration::from_secs_f64(self.report.tick_seconds);

@@ -1,5 +1,3 @@
-//! Runs a scenario with some robots on devices in lockstep.
-
 use crate::devices::{Log, OnDevices};
 use crate::firmware::{self, Made, Program};
 use crate::options::{DeviceArgs, emulated_parts};
@@ -37,8 +35,8 @@ impl HilArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// An unreadable or invalid scenario, missing devices or firmware, or a device that stopped
-    /// answering or differed from its shadow.
+    /// The scenario is invalid, devices or firmware are missing, or a device fails or differs from
+    /// its shadow.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         run(&self.scenario.load()?, &self.devices, &self.page, global)
     }
@@ -47,8 +45,8 @@ impl HilArgs {
 /// Runs a scenario with Staya's guidance laws, with some robots on devices, and prints its summary.
 ///
 /// # Errors
-/// Missing devices or firmware, a device that stopped answering or differed from its shadow, or a
-/// feature that the firmware lacks.
+/// Missing devices, firmware or firmware features, or a device that fails or differs from its
+/// shadow.
 pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: &Global) -> Result<Ended> {
     if scenario.published.is_some() || scenario.looks_ahead {
         let law = if scenario.looks_ahead { FormationLaw::Lookahead } else { FormationLaw::Paper };
@@ -60,7 +58,7 @@ pub fn run(scenario: &Scenario, devices: &DeviceArgs, page: &WatchArgs, global: 
 pub(crate) trait Swarm {
     fn program(&self) -> Program;
 
-    /// Shadows of devices; `None` for those of Staya's laws.
+    /// `None` for those of Staya's laws.
     fn shadows(&self) -> Option<Shadows>;
 
     /// Encoded law of each robot; empty if its name is enough.
@@ -74,7 +72,6 @@ pub(crate) trait Swarm {
     ) -> Result<Outcome>;
 }
 
-/// The laws named in scenarios.
 struct Ours;
 
 impl Swarm for Ours {
@@ -151,7 +148,7 @@ struct Watched<'a> {
     stop: &'a Stop,
 }
 
-/// Runs with devices and, if that finished, once more without them.
+/// Runs with devices and, if that finished, without them.
 fn simulate(
     swarm: &impl Swarm,
     scenario: &Scenario,

@@ -1,11 +1,9 @@
-//! Summary of a run with devices.
-
 use crate::pace::RealTime;
 use serde::Serialize;
 use staya_runner::{Spread, Statistics};
 use std::fmt::Write as _;
 
-/// Summary of a run, the output of `--json`.
+/// The output of `--json`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) scenario: String,
@@ -23,7 +21,6 @@ pub(crate) struct Summary {
     /// Trace hash of the scenario with all robots in this process; null if the run ended early.
     pub(crate) trace_hash_without_devices: Option<String>,
     pub(crate) real_time: Option<RealTime>,
-    /// Error that ended the run.
     pub(crate) trouble: Option<String>,
     pub(crate) devices: Vec<Statistics>,
 }

@@ -22,6 +22,7 @@ pub enum Command {
 impl Command {
     /// Runs the command.
     ///
+    /// # Errors
     /// Any error of the command.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match self {

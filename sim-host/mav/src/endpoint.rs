@@ -10,8 +10,7 @@ use std::str::FromStr;
 pub enum Endpoint {
     /// `udpout:HOST:PORT`: sends datagrams to this address, receives answers on the same socket.
     UdpOut(SocketAddr),
-    /// `udpin:HOST:PORT`: receives datagrams at this address, answers up to 16 authenticated
-    /// senders.
+    /// `udpin:HOST:PORT`: receives datagrams here, answers up to 16 authenticated senders.
     UdpIn(SocketAddr),
     /// `tcpout:HOST:PORT`: connects to this address, and reconnects after a disconnect.
     TcpOut(SocketAddr),

@@ -1,8 +1,8 @@
 //! Orders that give a formation a new shape and goal. [`Shape`] builds a [`Graph`], [`orders`]
 //! encodes it, and [`station::give`] sends the frames until every robot has confirmed them.
 //!
-//! Shapes face east, as in scenarios; [`Graph::turned`] turns them. Places follow the order of
-//! robot numbers, the first in front, unless [`Graph::nearest`] assigns nearby places.
+//! Shapes face east; [`Graph::turned`] turns them. Robots get places in the order of their numbers,
+//! the first in front, or with [`Graph::nearest`] nearby places.
 
 mod nearest;
 pub mod station;
@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 
 /// System id of the ground station.
 pub const STATION: u8 = 255;
-/// Radii of a robot's knowledge of its formation, the largest that fits is used, as in scenarios.
+/// Radii of a robot's knowledge of its formation, as in scenarios; the largest that fits is used.
 const RADII: [u8; 3] = [3, 2, 1];
 
 /// A formation for any number of robots.
@@ -56,12 +56,10 @@ impl Shape {
     /// Builds the formation of `count` robots whose neighbours are `spacing` cells apart.
     ///
     /// # Errors
-    /// [`GraphError`]: too few or too many robots, or a spacing that moves places off any map or
-    /// into one cell.
+    /// [`GraphError`]: too few or too many robots, or places off any map or in one cell.
     pub fn graph(self, count: usize, spacing: i16) -> Result<Graph, GraphError> {
         let robots = i32::try_from(count).unwrap_or(i32::MAX).min(i32::from(MAX_ROBOT) + 1);
         let step = i32::from(spacing);
-        // Offsets to alternating sides, growing outwards.
         let flank = |index: i32| (index + 1) / 2 * if index % 2 == 1 { 1 } else { -1 };
         let columns = (1..=robots).find(|side| side * side >= robots).unwrap_or(1);
         let turn = std::f64::consts::TAU / f64::from(robots.max(1));
@@ -127,7 +125,6 @@ pub enum GraphError {
     File(String),
 }
 
-/// Equal to a scenario's `[robots.formation]`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct GraphFile {
@@ -136,11 +133,6 @@ struct GraphFile {
 }
 
 impl Graph {
-    /// Creates a formation from places relative to the first one and pairs of indices. O(places *
-    /// edges).
-    ///
-    /// # Errors
-    /// [`GraphError`]: too few or too many robots, or places that are too far or shared.
     fn new(places: &[(i32, i32)], edges: Vec<(u16, u16)>) -> Result<Self, GraphError> {
         if places.is_empty() || places.len() > usize::from(MAX_ROBOT) {
             return Err(GraphError::Count(places.len()));
@@ -162,8 +154,7 @@ impl Graph {
     /// Parses `places` and `edges` as in a scenario's `[robots.formation]`.
     ///
     /// # Errors
-    /// [`GraphError`] if the text is invalid, or its robots are too many, too far, in one cell or
-    /// not connected.
+    /// [`GraphError`]: invalid text, or too many, too far, colliding or unconnected places.
     pub fn parse(text: &str) -> Result<Self, GraphError> {
         let file: GraphFile = toml::from_str(text).map_err(|error| GraphError::File(error.to_string()))?;
         if file.places.first() != Some(&[0, 0]) {
@@ -207,7 +198,6 @@ impl Graph {
         Ok(())
     }
 
-    /// The first place without a path of edges to place 0.
     fn unreached(&self) -> Option<usize> {
         let mut reached = vec![false; self.places.len()];
         *reached.first_mut()? = true;
@@ -243,8 +233,7 @@ impl Graph {
 pub struct Order {
     /// Goal cell of place [0, 0]; `None` keeps the robots' present goal.
     pub goal: Option<Cell>,
-    /// Whether the goal is a broadcast. Otherwise each robot of the formation is addressed, because
-    /// other robots are present.
+    /// Whether the goal is a broadcast; otherwise it is addressed to each robot of the formation.
     pub to_all: bool,
     /// Boot counter of the ground station.
     pub boot: u8,
@@ -252,12 +241,10 @@ pub struct Order {
     pub version: u8,
 }
 
-/// Encodes the orders that form `robots` (sorted by number): the parts of each robot's template,
-/// then the goal. O(robots * edges).
+/// Encodes the orders for `robots` (sorted): the parts of each template, then the goal.
 ///
 /// # Errors
-/// [`GraphError`] if the number of robots differs from the number of places, or a robot has too
-/// many neighbours.
+/// [`GraphError`] if the robots and places differ in number, or a robot has too many neighbours.
 pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>>, GraphError> {
     if robots.len() != graph.robots() {
         return Err(GraphError::Count(robots.len()));
@@ -266,7 +253,6 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
     let mut messages = Vec::new();
     for (own, mut template) in graph.templates()?.into_iter().enumerate() {
         for entry in &mut template.entries {
-            // Graphs number their places from 1.
             entry.id = id(entry.id.0 as usize - 1);
         }
         let parts =
@@ -274,7 +260,6 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
                 .map_err(|_| GraphError::Neighbors(own + 1))?;
         messages.extend(parts.map(Message::Template));
     }
-    // A template is relative to the first robot, which need not be the one in front.
     let target = order.goal.zip(graph.places.first()).map(|(goal, &first)| goal + first);
     let to = if order.to_all { vec![RobotId::NONE] } else { (0..robots.len()).map(id).collect() };
     messages.extend(target.iter().flat_map(|&target| {
@@ -283,7 +268,6 @@ pub fn orders(graph: &Graph, robots: &[u8], order: &Order) -> Result<Vec<Vec<u8>
     let frame = |(sequence, message): (u16, &Message)| {
         let header = Header { boot: order.boot, sender: RobotId(STATION.into()), sequence };
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        // Every message fits into a frame, and every number is a valid system id.
         encode(header, message, &mut frame).ok().map(|_| frame.to_vec())
     };
     Ok((0..).zip(&messages).filter_map(frame).collect())

@@ -1,20 +1,17 @@
 //! Conversion between metres about a shared origin and WGS 84 latitude, longitude and altitude.
 //!
-//! x (east) and y (north) are in the plane that touches the ellipsoid at the origin, at the
-//! origin's altitude. z (up) is the altitude above the origin's, as autopilots define it, not the
-//! distance from that plane: level flight has a constant z.
+//! x (east) and y (north) are in the plane that touches the ellipsoid at the origin. z (up) is the
+//! altitude above the origin's, as autopilots define it: level flight has a constant z.
 //!
-//! The conversion is exact to less than a millimetre. What remains is the Earth's curvature at
-//! distance d from the origin: lengths in the plane are short by at most d^2 / 2R^2 (1.3 mm per km
-//! at 10 km, 130 mm at 100 km), and north deviates from y by about d tan(latitude) / R (2 mrad at
-//! 10 km and 55 degrees). Velocities are *not* corrected for that angle.
+//! The conversion is exact to less than a millimetre. The Earth's curvature remains: at distance d
+//! lengths in the plane are short by at most d^2 / 2R^2 (1.3 mm per km at 10 km, 130 mm at 100 km),
+//! and north deviates from y by about d tan(latitude) / R (2 mrad at 10 km and 55 degrees).
+//! Velocities are *not* corrected for that angle.
 
 use std::f64::consts::PI;
 
-/// Semi-major axis, metres.
 const A_M: f64 = 6_378_137.0;
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
-/// Square of the eccentricity.
 const E2: f64 = FLATTENING * (2.0 - FLATTENING);
 /// Largest distance from the origin, metres.
 pub const FAR_M: f64 = 1_000_000.0;
@@ -62,11 +59,9 @@ impl Global {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Origin {
     place: Global,
-    /// Metres from the centre of the Earth.
     center_m: [f64; 3],
-    /// Sine and cosine.
     latitude: [f64; 2],
-    /// Sine and cosine.
+    /// Sine and cosine, as for the latitude.
     longitude: [f64; 2],
 }
 
@@ -90,8 +85,7 @@ impl Origin {
         self.place
     }
 
-    /// Metres east, north and up of the origin; `None` for an invalid position, or beyond
-    /// [`FAR_M`].
+    /// Metres east, north, up of the origin; `None` for an invalid position or beyond [`FAR_M`].
     #[must_use]
     pub fn to_enu_m(&self, place: &Global) -> Option<[f64; 3]> {
         if !place.is_sound() {
@@ -129,14 +123,12 @@ impl Origin {
         })
     }
 
-    /// From Earth-centred axes to east, north, up.
     fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let ([sin_lat, cos_lat], [sin_lon, cos_lon]) = (self.latitude, self.longitude);
         let outward = x * cos_lon + y * sin_lon;
         [y * cos_lon - x * sin_lon, z * cos_lat - outward * sin_lat, outward * cos_lat + z * sin_lat]
     }
 
-    /// From east, north, up to Earth-centred axes.
     fn turned_back(&self, [east, north, up]: [f64; 3]) -> [f64; 3] {
         let ([sin_lat, cos_lat], [sin_lon, cos_lon]) = (self.latitude, self.longitude);
         let outward = up * cos_lat - north * sin_lat;
@@ -160,7 +152,7 @@ fn radians(degrees: f64) -> f64 {
     degrees * PI / 180.0
 }
 
-/// Earth-centred coordinates, metres: x to longitude 0, z to the north pole.
+/// x points to longitude 0, z to the north pole.
 fn from_center_m(latitude: f64, longitude: f64, altitude_m: f64) -> [f64; 3] {
     let (sin, cos) = (libm::sin(latitude), libm::cos(latitude));
     let normal_m = A_M / (1.0 - E2 * sin * sin).sqrt();
@@ -168,7 +160,7 @@ fn from_center_m(latitude: f64, longitude: f64, altitude_m: f64) -> [f64; 3] {
     [outward * libm::cos(longitude), outward * libm::sin(longitude), (normal_m * (1.0 - E2) + altitude_m) * sin]
 }
 
-/// Latitude and longitude in radians and altitude in metres, by two rounds of Bowring's formula.
+/// Latitude, longitude, altitude by two rounds of Bowring's formula.
 fn geodetic([x, y, z]: [f64; 3]) -> (f64, f64, f64) {
     let outward = libm::hypot(x, y);
     let b_m = A_M * (1.0 - FLATTENING);

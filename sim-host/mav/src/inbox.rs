@@ -1,13 +1,9 @@
-//! Queues of received frames, served round robin, so that a peer that floods delays only itself.
-
 use std::collections::{HashMap, VecDeque};
 use std::net::SocketAddr;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Queue length per peer; more frames are dropped and counted.
 pub(super) const QUEUE: usize = 512;
-/// Answers per second and per burst that one peer can cause.
 const ANSWERS_PER_S: u32 = 1000;
 const ANSWERS_AT_ONCE: u32 = 1000;
 
@@ -31,15 +27,13 @@ pub struct Received {
     pub frame: Vec<u8>,
 }
 
-/// A link and a peer; `None` for all unknown peers of the link together.
 type Source = (usize, Option<Peer>);
 
 #[derive(Debug, Default)]
 struct Waiting {
     queues: HashMap<Source, VecDeque<Received>>,
-    /// Sources with frames, in the order of service.
+    /// Sources in the order of service.
     turn: VecDeque<Source>,
-    /// When the answers to each source are paid for.
     paid_at: HashMap<Source, Instant>,
     served: Option<Source>,
 }
@@ -55,8 +49,7 @@ impl Inbox {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Queues a frame behind those of its peer, or of all unknown peers of its link. Returns false
-    /// if the queue is full.
+    /// Returns false if the queue is full.
     pub(super) fn put(&self, received: Received, is_known: bool) -> bool {
         let source = (received.line, is_known.then_some(received.peer));
         let mut waiting = self.lock();
@@ -72,7 +65,7 @@ impl Inbox {
         true
     }
 
-    /// The next frame, or `None` after the timeout. O(peers).
+    /// O(peers).
     pub(super) fn next(&self, timeout: Duration) -> Option<Received> {
         let until = Instant::now() + timeout;
         let mut waiting = self.lock();
@@ -95,14 +88,12 @@ impl Inbox {
         self.lock().queues.values().map(|queue| queue.len() as u64).sum()
     }
 
-    /// Charges the last served source for its answers. A source above its limit is not served for a
-    /// while.
+    /// A source above its limit is not served for a while.
     pub(super) fn charge(&self, answers: usize) {
         let mut waiting = self.lock();
         let cost = one() * u32::try_from(answers).unwrap_or(u32::MAX).min(1 << 20);
         if let Some(source) = waiting.served.filter(|_| !cost.is_zero()) {
             let now = Instant::now();
-            // Sources without a debt need no entry.
             waiting.paid_at.retain(|_, at| *at > now);
             let at = waiting.paid_at.entry(source).or_insert(now);
             *at += cost;

@@ -4,9 +4,8 @@
 //! - [`companion`] runs controllers next to real autopilots.
 //! - [`formation`] sends a new shape and goal to a swarm.
 //!
-//! All of them use [`Lines`], which opens any number of links and returns whole frames. An
-//! [`Endpoint`] names a link in the notation of other MAVLink programs, [`Tlog`] records frames,
-//! and [`geo`] converts metres to degrees.
+//! All of them use [`Lines`], which opens links ([`Endpoint`]) and returns whole frames. [`Tlog`]
+//! records frames, and [`geo`] converts metres to degrees.
 
 pub mod bridge;
 pub mod cli;

@@ -1,5 +1,3 @@
-//! Several links with one queue of received frames.
-
 use super::endpoint::Endpoint;
 use super::inbox::{Inbox, Peer, Received};
 use super::traffic::{Counts, Outgoing, Shared};
@@ -28,12 +26,11 @@ struct Line {
     threads: Vec<JoinHandle<()>>,
 }
 
-/// Open links. Sending never waits for a slow or absent peer: frames that cannot be sent are lost
-/// and counted, as on a radio. Dropping closes the links.
+/// Open links with one queue of received frames. Sending never waits: frames that cannot be sent
+/// are lost and counted, as on a radio. Dropping closes the links.
 ///
-/// A peer of a listening link counts as unknown until [`Self::believe`]: an unknown sender of
-/// datagrams receives nothing, and an unknown connection is the first to be closed when there are
-/// too many. Every known peer has its own queue; the queues are served in turn.
+/// A peer of a listening link is unknown until [`Self::believe`]: it receives no datagrams, and its
+/// connection is the first to be closed. Every known peer has its own queue, served in turn.
 pub struct Lines {
     lines: Vec<Line>,
     inbox: Arc<Inbox>,
@@ -104,8 +101,7 @@ impl Lines {
         }
     }
 
-    /// Marks a peer as known because it sent a valid (and with a key, authentic) frame.
-    /// [`Self::send`] reaches it as long as such frames keep arriving.
+    /// Marks a peer as known after a valid (with a key, authentic) frame; a silent peer expires.
     pub fn believe(&self, line: usize, peer: Peer) {
         if let Some(line) = self.lines.get(line) {
             line.outgoing.believe(peer);
@@ -118,9 +114,8 @@ impl Lines {
         self.inbox.next(timeout)
     }
 
-    /// Charges the sender of the last received frame for its answers. A peer with 1000 answers more
-    /// than 1000 per second is not served for a while; its frames queue up and are dropped when the
-    /// queue is full.
+    /// Charges the sender of the last received frame for its answers. Above 1000 per second (and
+    /// 1000 at once) it is not served for a while, and its queue may fill up.
     pub fn charge(&self, answers: usize) {
         self.inbox.charge(answers);
     }
@@ -134,8 +129,7 @@ impl Lines {
 }
 
 impl Lines {
-    /// Why the last connection attempt of link `line` failed; `None` if it is connected or needs no
-    /// connection.
+    /// Why the last connection attempt of link `line` failed; `None` without a failure.
     #[must_use]
     pub fn trouble(&self, line: usize) -> Option<String> {
         self.lines.get(line).and_then(|line| line.shared.tally.trouble())
@@ -150,7 +144,6 @@ impl Lines {
         }
         for line in &mut self.lines {
             for thread in line.threads.drain(..) {
-                // A thread that panicked has nothing left to close.
                 let _ = thread.join();
             }
         }

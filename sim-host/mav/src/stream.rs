@@ -1,5 +1,3 @@
-//! Links over byte streams: TCP and serial ports.
-
 use super::inbox::Peer;
 use super::traffic::{GLANCE, Outgoing, Shared};
 use staya_serial::SerialPort;
@@ -12,15 +10,11 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 pub(super) const CONNECTIONS: usize = 32;
-/// A connection without a valid frame for this time is closed.
 const IDLE: Duration = Duration::from_secs(60);
-/// A known peer that was silent for this time can be replaced by a new one.
 const YIELD: Duration = Duration::from_secs(5);
-/// Send queue per peer, frames.
 const QUEUE: usize = 1024;
 const RETRY: Duration = Duration::from_secs(1);
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Timeout of one read or write of a serial port.
 const PAUSE: Duration = Duration::from_millis(500);
 
 type Threads = Vec<JoinHandle<()>>;
@@ -31,7 +25,6 @@ struct Peers(Arc<Mutex<HashMap<Peer, Connected>>>);
 
 struct Connected {
     queue: SyncSender<Vec<u8>>,
-    /// Time of the last valid frame, or of the connection.
     heard: Instant,
     is_believed: bool,
     socket: Option<TcpStream>,
@@ -40,7 +33,6 @@ struct Connected {
 impl Connected {
     fn end(&self) {
         if let Some(socket) = &self.socket {
-            // The other side may have closed already.
             let _ = socket.shutdown(Shutdown::Both);
         }
     }
@@ -51,7 +43,6 @@ impl Peers {
         work(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Adds a peer and returns its send queue.
     fn join(&self, peer: Peer, socket: Option<TcpStream>) -> Receiver<Vec<u8>> {
         let (queue, frames) = sync_channel(QUEUE);
         let connected = Connected { queue, heard: Instant::now(), is_believed: false, socket };
@@ -66,8 +57,8 @@ impl Peers {
         });
     }
 
-    /// Makes room for one more connection. Closes the oldest unknown peer, else the known peer that
-    /// was silent for longest, if that is longer than `YIELD`. Returns whether there is room.
+    /// Closes the oldest unknown peer, else the known peer that was silent for longest, if that is
+    /// longer than `YIELD`. Returns whether there is room.
     fn make_room(&self, now: Instant) -> bool {
         self.with(|peers| {
             if peers.len() < CONNECTIONS {
@@ -124,7 +115,6 @@ impl Outgoing for Stream {
     }
 }
 
-/// Connects to an address, and reconnects after every disconnect.
 pub(super) fn connect(to: SocketAddr, shared: &Shared) -> Opened {
     let peers = Peers::default();
     let stream = Stream { peers: peers.clone(), local: None, shared: shared.clone() };
@@ -141,7 +131,6 @@ pub(super) fn connect(to: SocketAddr, shared: &Shared) -> Opened {
     Ok((Box::new(stream), vec![start("tcp", work)?]))
 }
 
-/// Accepts connections at an address.
 pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
     let listener = TcpListener::bind(at)?;
     listener.set_nonblocking(true)?;
@@ -170,7 +159,6 @@ pub(super) fn listen(at: SocketAddr, shared: &Shared) -> Opened {
             let (with, shared) = (peers.clone(), shared.clone());
             match start("tcp", move || converse_tcp(&socket, peer, frames, &with, &shared)) {
                 Ok(thread) => threads.push(thread),
-                // Without a thread the connection is dropped; the port stays open.
                 Err(_) => drop(peers.with(|peers| peers.remove(&peer))),
             }
         }
@@ -185,7 +173,6 @@ fn start(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHan
     thread::Builder::new().name(name.to_owned()).spawn(work)
 }
 
-/// Opens a serial port, again after it was unplugged.
 pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
     let port = port.clone();
     let open = move || port.open(PAUSE);
@@ -206,7 +193,6 @@ pub(super) fn serial(port: &SerialPort, shared: &Shared) -> Opened {
     Ok((Box::new(stream), vec![start("serial", work)?]))
 }
 
-/// Sleeps until `time` is over or the link closes.
 fn wait(time: Duration, shared: &Shared) {
     let mut left = time;
     while !left.is_zero() && !shared.is_closed() {
@@ -226,11 +212,9 @@ fn converse_tcp(socket: &TcpStream, peer: Peer, frames: Receiver<Vec<u8>>, peers
         converse(socket, socket, peer, frames, peers, shared);
     }
     peers.with(|peers| peers.remove(&peer));
-    // The other side may have closed already.
     let _ = socket.shutdown(Shutdown::Both);
 }
 
-/// Reads frames and writes `frames` until either side ends.
 fn converse(
     mut read: impl Read,
     write: impl Write + Send,
@@ -256,7 +240,6 @@ fn converse(
                 }
             }
         }
-        // The writer ends when no sender is left.
         peers.with(|peers| peers.remove(&peer));
     });
 }

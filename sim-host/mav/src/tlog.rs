@@ -1,17 +1,13 @@
-//! Telemetry logs for MAVExplorer, mavlogdump and QGroundControl.
-
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Largest size of one file, bytes: hours of a few vehicles.
+/// Hours of a few vehicles.
 const LIMIT: u64 = 256 << 20;
 
-/// A tlog file: before each frame its time, microseconds since 1970 as eight bytes, big endian.
-///
-/// A log of 256 MiB is renamed with `.1` appended, which replaces an older one, and continues in a
-/// new file. So at most 512 MiB are kept.
+/// A tlog file: before each frame its time, microseconds since 1970 as a big-endian `u64`. At 256
+/// MiB the file replaces the one with `.1` appended, and a new one begins.
 #[derive(Debug)]
 pub struct Tlog {
     file: BufWriter<File>,
@@ -115,7 +111,6 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.tlog");
         let mut log = Tlog { limit: 40, ..Tlog::create(&path).expect("a log") };
-        // Each frame takes 10 bytes, so a file has four.
         for frame in 0..11 {
             log.add_at(frame, b"ab").expect("room");
         }
@@ -137,7 +132,6 @@ mod tests {
 
     #[test]
     fn a_full_disk_is_an_error() {
-        // /dev/full is always full, where it exists.
         if let Ok(mut log) = Tlog::create(Path::new("/dev/full")) {
             log.add(&[0; 100]).expect("buffered");
             let error = log.finish().expect_err("full");

@@ -1,5 +1,3 @@
-//! Parts common to all kinds of links: received frames, sending, counters.
-
 use super::inbox::{Inbox, Peer, Received};
 use staya_mavlink::frame::{Scan, scan};
 use std::io;
@@ -8,7 +6,6 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// Interval at which waiting threads check whether the link is closed.
 pub(super) const GLANCE: Duration = Duration::from_millis(50);
 
 /// Traffic counters of a link.
@@ -24,7 +21,7 @@ pub struct Counts {
     pub bytes_out: u64,
     /// Received bytes that belong to no frame.
     pub junk_bytes: u64,
-    /// Received frames dropped because the queue of their peer was full.
+    /// Received frames dropped because their peer's queue was full.
     pub lost_in: u64,
     /// Frames that could not be sent, because the peer is absent or reads too slowly.
     pub lost_out: u64,
@@ -60,7 +57,6 @@ impl SharedCounts {
         }
     }
 
-    /// Stores why a connection attempt failed, until one succeeds.
     pub(super) fn noting<T>(&self, tried: io::Result<T>) -> io::Result<T> {
         *self.trouble.lock().unwrap_or_else(PoisonError::into_inner) = tried.as_ref().err().map(ToString::to_string);
         tried
@@ -70,7 +66,6 @@ impl SharedCounts {
         self.trouble.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Counts a frame as sent or lost.
     pub(super) fn sent(&self, frame: &[u8], is_sent: bool) {
         if is_sent {
             add(&self.frames_out, 1);
@@ -81,7 +76,6 @@ impl SharedCounts {
     }
 }
 
-/// The part of a link that its threads share.
 #[derive(Clone, Debug)]
 pub(super) struct Shared {
     pub(super) line: usize,
@@ -95,8 +89,7 @@ impl Shared {
         self.closed.load(Ordering::Relaxed)
     }
 
-    /// Queues the frames at the start of `bytes` and returns the number of bytes used. `is_whole`
-    /// as for [`scan`]. Unknown peers share one queue of the link.
+    /// Queues the frames at the start of `bytes`, and returns the number of bytes used.
     pub(super) fn take(&self, peer: Peer, bytes: &[u8], is_whole: bool, is_known: bool) -> usize {
         let mut used = 0;
         loop {
@@ -124,12 +117,10 @@ impl Shared {
     }
 }
 
-/// The sending side of one kind of link.
 pub(super) trait Outgoing: Send + Sync {
     fn send(&self, frame: &[u8]);
     fn send_to(&self, peer: Peer, frame: &[u8]);
-    /// Marks a peer as known after a valid frame.
     fn believe(&self, peer: Peer);
-    /// Local address; `None` without a socket.
+    /// `None` without a socket.
     fn local(&self) -> Option<SocketAddr>;
 }

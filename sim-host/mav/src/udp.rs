@@ -1,5 +1,3 @@
-//! Links over UDP.
-
 use super::inbox::Peer;
 use super::traffic::{GLANCE, Outgoing, Shared};
 use socket2::SockRef;
@@ -10,28 +8,24 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// A peer without a valid frame for this time is dropped. Ground stations send at 1 Hz.
+/// Ground stations send at 1 Hz.
 const FORGET: Duration = Duration::from_secs(20);
 pub(super) const PEERS: usize = 16;
-/// A peer that was silent for this time can be replaced by a new one.
 const YIELD: Duration = Duration::from_secs(5);
-/// Requested receive buffer of the system, bytes; the system may give less.
+/// The system may give less.
 const KEPT: usize = 4 << 20;
 
 type Opened = io::Result<(Box<dyn Outgoing>, Vec<JoinHandle<()>>)>;
 
-/// Known peers and the time of their last valid frame.
 #[derive(Clone, Default)]
 struct Believed(Arc<Mutex<HashMap<SocketAddr, Instant>>>);
 
-/// Sends datagrams to one address.
 struct Out {
     socket: UdpSocket,
     to: SocketAddr,
     shared: Shared,
 }
 
-/// Sends datagrams to all known peers.
 struct In {
     socket: UdpSocket,
     believed: Believed,
@@ -47,7 +41,6 @@ impl Believed {
         self.lock().contains_key(&peer)
     }
 
-    /// Adds or refreshes a peer, if there is room.
     fn note(&self, peer: SocketAddr, now: Instant) {
         let mut peers = self.lock();
         if peers.len() >= PEERS && !peers.contains_key(&peer) {
@@ -60,7 +53,6 @@ impl Believed {
         peers.insert(peer, now);
     }
 
-    /// Peers that have not timed out.
     fn all(&self, now: Instant) -> Vec<SocketAddr> {
         let mut peers = self.lock();
         peers.retain(|_, heard| now.saturating_duration_since(*heard) < FORGET);
@@ -77,7 +69,6 @@ pub(super) fn open_out(to: SocketAddr, shared: &Shared) -> Opened {
         SocketAddr::V6(_) => "[::1]:0",
     };
     let socket = UdpSocket::bind(local)?;
-    // Only this host is accepted, on any port.
     let reader = read(socket.try_clone()?, shared, move |from| (from.ip() == to.ip()).then_some(from == to))?;
     let shared = shared.clone();
     Ok((Box::new(Out { socket, to, shared }), vec![reader]))
@@ -92,15 +83,13 @@ pub(super) fn open_in(at: SocketAddr, shared: &Shared) -> Opened {
     Ok((Box::new(In { socket, believed, shared }), vec![reader]))
 }
 
-/// Reads datagrams until the link closes. `knows` returns whether a sender is known, or `None` to
-/// ignore it.
+/// `knows` returns whether a sender is known, or `None` to ignore it.
 fn read(
     socket: UdpSocket,
     shared: &Shared,
     knows: impl Fn(SocketAddr) -> Option<bool> + Send + 'static,
 ) -> io::Result<JoinHandle<()>> {
     socket.set_read_timeout(Some(GLANCE))?;
-    // A larger buffer avoids losses in bursts; failure is harmless.
     let _ = SockRef::from(&socket).set_recv_buffer_size(KEPT);
     let shared = shared.clone();
     thread::Builder::new().name(String::from("udp")).spawn(move || {
@@ -187,7 +176,6 @@ mod tests {
     fn an_active_peer_stays_whatever_others_arrive() {
         let believed = Believed::default();
         let began = Instant::now();
-        // A ground station at 1 Hz, and 64 new peers each second.
         for second in 0..60 {
             let now = began + Duration::from_secs(second);
             believed.note(peer(1), now);

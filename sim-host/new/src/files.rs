@@ -1,5 +1,3 @@
-//! The files of each kind of project.
-
 pub(crate) type File = (&'static str, &'static str);
 
 macro_rules! files {
@@ -13,13 +11,11 @@ pub(crate) struct Part {
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
     pub(crate) target: &'static str,
-    /// Whether an emulator of this part can run the law.
     pub(crate) is_emulated: bool,
     pub(crate) rust: &'static [File],
-    /// The repository's lock file with the versions of its firmware's dependencies; `None` if the
-    /// template has its own.
+    /// The repository's lock file for the firmware; `None` if the template has its own.
     pub(crate) lock: Option<&'static str>,
-    /// Files of a C project for this part; empty without a template.
+    /// Empty if there is no C project for this part.
     pub(crate) c: &'static [File],
 }
 

@@ -1,5 +1,5 @@
-//! `staya new NAME` creates a project that compiles and has a running test. The templates are the
-//! files of a project named `my-swarm`, in which `/STAYA` stands for this repository.
+//! `staya new NAME` creates a tested project from templates, in which `my-swarm` stands for its
+//! name and `/STAYA` for this repository.
 
 mod files;
 mod source;
@@ -47,6 +47,7 @@ enum Kind {
 impl NewArgs {
     /// Runs the command.
     ///
+    /// # Errors
     /// An invalid name, a folder that exists or cannot be created, or missing sources of Staya.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let Some(folder) = self.folder.as_deref().filter(|_| !self.list) else {
@@ -89,7 +90,6 @@ fn list() -> String {
     text + "The law of any Rust project also runs on the emulated stm32f405, see its folder hil.\n"
 }
 
-/// Names used inside a project, or not allowed for crates.
 const TAKEN: [&str; 12] =
     ["alloc", "core", "firmware", "hil", "numpy", "proc-macro", "pytest", "serde", "std", "target", "test", "tests"];
 const KEYWORDS: &str = "abstract and as assert async await become box break class const continue crate def del do dyn elif else enum \
@@ -98,7 +98,7 @@ const KEYWORDS: &str = "abstract and as assert async await become box break clas
     where while with yield";
 const LONGEST: usize = 40;
 
-/// The project's name, which must be valid for cargo, C and Python.
+/// The name is valid for cargo, C and Python.
 fn name(folder: &Path) -> Result<&str> {
     let last = folder.file_name().and_then(|name| name.to_str());
     let name = last.with_context(|| format!("{}: no project name; give a folder name", folder.display()))?;
@@ -128,8 +128,7 @@ fn files(kind: Kind, part: &Part) -> Result<Vec<File>> {
     Ok(files)
 }
 
-/// Lock files of a project with those of this repository, so that projects start with tested
-/// versions. Cargo removes unused entries.
+/// Projects start with tested versions, and Cargo removes unused entries.
 fn locks(kind: Kind, part: &Part) -> Vec<(&'static str, &'static str)> {
     let firmware = part.lock.map(|lock| ("firmware/Cargo.lock", lock));
     match kind {
@@ -140,7 +139,7 @@ fn locks(kind: Kind, part: &Part) -> Vec<(&'static str, &'static str)> {
     }
 }
 
-/// Creates the folder, which must not exist, with all files. Removes it after an error.
+/// The folder must not exist, and is removed after an error.
 fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], source: &Source) -> Result<()> {
     let shown = folder.display();
     if let Some(parent) = folder.parent().filter(|parent| !parent.as_os_str().is_empty()) {
@@ -155,7 +154,6 @@ fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], sour
     let locks = locks.iter().filter_map(|(path, own)| Some((folder.join(path), source.lock(own)?)));
     for (path, text) in filled.chain(locks) {
         if let Err(error) = write_file(&path, &text) {
-            // This function created the folder, so all files in it are its own.
             let _ = fs::remove_dir_all(folder);
             bail!("{}: {error}; nothing was created", path.display());
         }

@@ -1,10 +1,7 @@
-//! Locates the sources of Staya for a project.
-
 use anyhow::{Result, ensure};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A clone of Staya's repository on this computer, or its URL.
 pub(crate) enum Source {
     Folder { root: PathBuf, text: String },
     Address(String),
@@ -12,9 +9,6 @@ pub(crate) enum Source {
 
 impl Source {
     /// The given source, or the repository from which this program was built.
-    ///
-    /// # Errors
-    /// A missing folder, or a path or URL that project files cannot contain.
     pub(crate) fn find(said: Option<&str>) -> Result<Self> {
         let is_address = |text: &&str| text.contains("://") || text.starts_with("git@");
         if let Some(address) = said.filter(is_address) {
@@ -43,7 +37,6 @@ impl Source {
         Ok(Self::Folder { root, text })
     }
 
-    /// Replaces the name and the source in a template.
     pub(crate) fn fill(&self, template: &str, name: &str) -> String {
         let text = template.replace("my-swarm", name).replace("my_swarm", &name.replace('-', "_"));
         match self {
@@ -63,7 +56,7 @@ impl Source {
         }
     }
 
-    /// A lock file of the repository; `None` if the source is a URL.
+    /// `None` if the source is a URL.
     pub(crate) fn lock(&self, path: &str) -> Option<String> {
         match self {
             Self::Folder { root, .. } => fs::read_to_string(root.join(path)).ok(),
@@ -72,7 +65,6 @@ impl Source {
     }
 }
 
-/// Whether the text is valid in TOML, Makefiles and shells without quoting.
 fn is_plain(text: &str) -> bool {
     !text.contains(|c: char| c.is_whitespace() || c.is_control() || "\"'`$#\\&;".contains(c))
 }

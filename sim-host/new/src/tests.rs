@@ -1,5 +1,3 @@
-//! Tests of the created projects and of errors.
-
 use super::*;
 use clap::Parser;
 
@@ -70,7 +68,6 @@ fn an_existing_folder_is_unchanged() {
 fn a_failed_file_is_named_and_the_folder_removed() {
     let top = top();
     let folder = top.path().join("pack");
-    // The second path needs the first one to be a folder.
     let files: [File; 2] = [("a", ""), ("a/b", "")];
     let source = Source::Address(String::from("https://example.org/staya.git"));
     let error = write(&folder, "pack", &files, &[], &source).expect_err("a file in a file").to_string();

@@ -1,9 +1,6 @@
-//! Staya for Python: the module `staya._staya`, for which the package in `python/staya` provides
-//! the interface. The package checks all arguments: arrays are contiguous, finite and of the right
-//! shape.
-//!
-//! `simulation` runs scenarios; `behaviors` has single behaviours of the controller, applied to all
-//! robots at once.
+//! The module `staya._staya`; the package in `python/staya` provides its interface and checks all
+//! arguments (arrays are contiguous, finite and of the right shape). [`simulation`] runs scenarios;
+//! [`behaviors`] applies single behaviours to all robots at once.
 #![cfg(feature = "module")]
 
 pub mod behaviors;

@@ -28,7 +28,7 @@ create_exception!(
     "An unreadable or invalid scenario, with file, line, field and remedy."
 );
 
-/// Longest time without the interpreter lock, after which signals such as Ctrl-C are checked.
+/// Signals such as Ctrl-C are checked after this time without the interpreter lock.
 const SLICE: Duration = Duration::from_millis(50);
 /// A speed above that of any body.
 const FAST_MPS: f64 = 1e6;
@@ -43,14 +43,11 @@ pub struct Run {
 
 struct Inner {
     scenario: Scenario,
-    /// Text of the file with overrides.
     text: String,
     engine: Box<dyn Operated>,
     tick: u32,
-    /// Interventions so far, by tick.
     done: Vec<(u32, Intervention)>,
-    /// Commanded velocities, m/s; `None` for robots that follow their own law. Empty before the
-    /// first command.
+    /// Commanded velocities, m/s; `None` for robots with their own law, empty before a command.
     wishes: Vec<Option<Vec3<f32>>>,
     recorder: Option<RunRecorder<Vec<u8>>>,
     trace: Option<Trace>,
@@ -58,7 +55,7 @@ struct Inner {
 }
 
 impl Inner {
-    /// Sends the commanded velocities. O(robots), nothing without commands.
+    /// Sends the commanded velocities, if there are any. O(robots).
     fn command(&mut self) -> PyResult<()> {
         for (index, wish) in self.wishes.iter().enumerate() {
             let wish = wish.map_or(Wish::Own, |velocity_mps| Wish::Velocity { velocity_mps, valid: VALID });
@@ -107,13 +104,11 @@ impl Inner {
     }
 }
 
-/// An order in Python's form.
 #[derive(Deserialize)]
 struct Said {
     order: Intervention,
 }
 
-/// Converts an error of a file to one of arguments.
 fn scenario_error(error: &impl ToString) -> PyErr {
     ScenarioError::new_err(error.to_string().replace("(by --set)", "(by an argument)"))
 }
@@ -286,8 +281,7 @@ impl Run {
         PyArray1::from_iter(py, inner.robots().map(|index| inner.engine.observation(index).neighbors as u32))
     }
 
-    /// Sets the preferred velocities from the next tick for robots whose mask is true; the others
-    /// follow their own law.
+    /// Sets the preferred velocities of robots whose mask is true; others follow their own law.
     fn wish(
         &self,
         py: Python<'_>,
@@ -334,8 +328,7 @@ impl Run {
         serde_json::to_string(&self.lock(py).summary()).map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
 
-    /// The scenario with all orders, with which `staya run` repeats this run; commanded velocities
-    /// cannot be included.
+    /// The scenario with all orders, but without commanded velocities, for `staya run`.
     fn scenario_text(&self, py: Python<'_>) -> PyResult<String> {
         let inner = self.lock(py);
         let Scenario { seed, ticks, tick_us, .. } = inner.scenario;
@@ -369,8 +362,7 @@ impl Run {
         self.inner.lock_py_attached(py).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Repeats `act` while it returns true, without the interpreter lock, and checks signals
-    /// regularly.
+    /// Without the interpreter lock, until `act` returns false. Signals are checked regularly.
     fn in_slices(&self, py: Python<'_>, mut act: impl FnMut(&mut Inner) -> PyResult<bool> + Send) -> PyResult<()> {
         loop {
             let goes_on = py.detach(|| {

@@ -1,19 +1,15 @@
-//! A run as columns named as in `trace.csv` and `series.csv`.
-
 use numpy::IntoPyArray as _;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use staya_sim::engine::{Moment, Operated};
 use staya_sim::record::RobotRow;
 
-/// Wait number of a robot that does not wait.
 const NO_WAIT: u8 = u8::MAX;
 
-/// Lines of robots every n-th tick, and lines of the swarm every tick.
+/// Lines of robots every n-th tick, and of the swarm every tick.
 #[derive(Debug, Default)]
 pub struct Trace {
     every: u32,
-    /// Tick of the last lines of robots.
     last: Option<u32>,
     robots: Robots,
     swarm: Swarm,
@@ -50,8 +46,7 @@ struct Swarm {
 }
 
 impl Trace {
-    /// Creates a trace of `robots` robots. With `every` = 0 the interval is as in `staya run`, one
-    /// tick per started thousand robots.
+    /// With `every` = 0 the interval is that of `staya run`, one tick per started thousand robots.
     pub fn new(every: u32, robots: usize) -> Self {
         let usual = u32::try_from(robots.div_ceil(1000)).unwrap_or(u32::MAX).max(1);
         Self { every: if every == 0 { usual } else { every }, ..Self::default() }
@@ -93,7 +88,6 @@ impl Trace {
     }
 }
 
-/// A dictionary of columns, in this order.
 macro_rules! columns {
     ($py:expr, $($name:literal: $column:expr),* $(,)?) => {{
         let columns = PyDict::new($py);

@@ -36,8 +36,7 @@ pub enum FrameError {
     Figures,
 }
 
-/// Figures of the whole swarm at one moment. `None` stands for figures that the scenario does not
-/// have.
+/// Figures of the whole swarm at one moment; `None` for figures that the scenario does not have.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Figures {
@@ -62,8 +61,7 @@ pub struct Figures {
     pub goals: Vec<[f64; 3]>,
 }
 
-/// One moment of a run. All arrays have one entry per body: the robots by number, then the
-/// intruders.
+/// One moment of a run. Arrays have one entry per body: the robots by number, then the intruders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameData {
     /// Tick number.
@@ -178,8 +176,7 @@ impl FrameData {
         self.position_m.len()
     }
 
-    /// Writes the bytes of the frame to `out`, which is cleared first. Short arrays are padded.
-    /// O(bodies).
+    /// Writes the bytes of the frame to `out`, cleared first; short arrays are padded. O(bodies).
     pub fn encode(&self, out: &mut Vec<u8>) {
         let figures = serde_json::to_vec(&self.figures).unwrap_or_default();
         let bodies = self.bodies();
@@ -243,7 +240,6 @@ impl FrameData {
         if expected != bytes.len() as u64 {
             return Err(FrameError::Length { expected, found: bytes.len() });
         }
-        // Limited by the bytes present.
         let bodies = bodies as usize;
         let mut take = |count: usize| {
             let (taken, left) = rest.split_at(count);

@@ -1,7 +1,5 @@
-//! A page with a recording: one HTML file that needs no server and no network.
-//!
-//! Its modules import each other as `staya/NAME.js`; an import map resolves these names to `data:`
-//! URLs.
+//! A page with a recording: one HTML file without server and network. Its modules import each other
+//! as `staya/NAME.js`, which an import map resolves to `data:` URLs.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -18,7 +16,7 @@ pub struct File {
     pub name: &'static str,
     /// Its media type.
     pub kind: &'static str,
-    /// Content. In HTML, `NONCE` must be replaced by a new random number in each response.
+    /// Content. In HTML, `NONCE` must be replaced by a random number for each response.
     pub text: String,
 }
 
@@ -50,7 +48,6 @@ pub fn with_recording(recording: &[u8]) -> Result<String, PageError> {
 
 type Parts = [(&'static str, String); 4];
 
-/// The replacements for a page in one file.
 fn inside(files: &[(&str, &str)], recording: &[u8]) -> Parts {
     let of_kind = |end: &'static str| files.iter().filter(move |(name, _)| name.ends_with(end));
     let style = of_kind(".css").fold(String::from("<style>"), |style, (_, text)| style + "\n" + text) + "</style>";
@@ -67,7 +64,7 @@ fn inside(files: &[(&str, &str)], recording: &[u8]) -> Parts {
     ]
 }
 
-/// The replacements for a page whose files a server sends. The server replaces `NONCE`.
+/// The server replaces `NONCE`.
 fn beside(files: &[(&str, &str)]) -> Parts {
     let map = import_map(files, |name, _| format!("/{name}"));
     let links = files.iter().filter(|(name, _)| name.ends_with(".css"));
@@ -79,7 +76,7 @@ fn beside(files: &[(&str, &str)]) -> Parts {
     ]
 }
 
-/// The import map. Neither base64 nor the names can contain the end of a script element.
+/// Neither base64 nor the names can contain the end of a script element.
 fn import_map(files: &[(&str, &str)], place: impl Fn(&str, &str) -> String) -> serde_json::Value {
     let modules = files.iter().filter(|(name, _)| name.ends_with(".js"));
     let imports = modules.map(|(name, text)| (format!("staya/{name}"), place(name, text).into()));
@@ -118,7 +115,7 @@ fn assemble(index: &str, parts: &Parts) -> Result<String, PageError> {
     }
 }
 
-/// Splits at the next placeholder: text before it, its name, text after it.
+/// Text before the next placeholder, its name, text after it.
 fn next_mark(text: &str) -> Option<(&str, &str, &str)> {
     let (before, from) = text.split_once("<!-- staya:")?;
     let (name, behind) = from.split_once(" -->")?;

@@ -11,12 +11,11 @@ use staya_sim::world::plane::{self, Shape};
 
 /// Names of the modes by the numbers in frames.
 pub const MODES: [&str; 7] = ["idle", "forming", "cruise", "hold", "arrived", "fault", "passive"];
-/// Displayed radius of robots on a grid, as a fraction of a cell.
+/// A fraction of a cell.
 const GRID_RADIUS: f64 = 0.35;
-/// Margin around the initial view, as a fraction of its longer side.
+/// A fraction of the view's longer side.
 const MARGIN: f64 = 0.08;
-/// Distance from starts and goals at which obstacles are in the initial view, as a fraction of its
-/// longer side.
+/// Obstacles this near to starts and goals are in the initial view; a fraction of its longer side.
 const AROUND: f64 = 0.5;
 
 /// The static part of a run.
@@ -33,7 +32,7 @@ pub struct Scene {
     pub ticks: u32,
     /// Motion of bodies.
     pub kind: Kind,
-    /// What a page can do with the run.
+    /// Actions that a page offers.
     pub mode: Mode,
     /// Origin of all positions, metres.
     pub origin_m: [f64; 3],
@@ -71,7 +70,7 @@ pub enum Kind {
     Space,
 }
 
-/// What a page can do with a run.
+/// Actions that a page offers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mode {
@@ -109,8 +108,7 @@ pub struct Land {
     pub origin_m: [f64; 2],
     /// Travel time of the slowest class, ticks.
     pub classes: u8,
-    /// Base64 with one byte per cell, row by row from the south-west: 0 for a wall, otherwise the
-    /// ticks to cross it.
+    /// Base64, one byte per cell by rows from the south-west: 0 for a wall, else ticks to cross.
     pub cells: String,
 }
 
@@ -250,8 +248,7 @@ pub fn wait_names() -> impl Iterator<Item = &'static str> {
     Wait::NAMES.iter().map(|(name, _)| *name)
 }
 
-/// Origin of the positions in a scenario's scene and frames, metres: close enough to the bodies for
-/// `f32`.
+/// Origin of a scenario's scene and frames, metres: near enough to the bodies for `f32`.
 #[must_use]
 pub fn origin_m(scenario: &Scenario) -> [f64; 3] {
     match &scenario.plane {
@@ -334,7 +331,6 @@ fn robots(scenario: &Scenario) -> Robots {
     robots
 }
 
-/// Extent of starts and goals with nearby obstacles.
 fn bounds(scenario: &Scenario, origin_m: [f64; 3]) -> ([f64; 4], [f64; 2]) {
     let mut extent = Extent { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
     let land = &scenario.terrain;
@@ -391,18 +387,16 @@ impl Extent {
         }
     }
 
-    /// Longer horizontal side, at least 1.
+    /// The longer horizontal side, at least 1.
     fn longest(&self) -> f64 {
         (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]).max(1.0)
     }
 
-    /// The box with a margin, a fraction of its longer side.
     fn grown(&self, share: f64) -> Self {
         let by = self.longest() * share;
         Self { low: self.low.map(|low| low - by), high: self.high.map(|high| high + by) }
     }
 
-    /// The point of the box nearest to `at`.
     fn nearest(&self, at: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| at[axis].max(self.low[axis]).min(self.high[axis]))
     }

@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Where each shell looks for completions below a prefix.
+/// Folders of completions, relative to a prefix.
 const COMPLETIONS: [(Shell, &str, &str); 3] = [
     (Shell::Bash, "share/bash-completion/completions", "staya"),
     (Shell::Zsh, "share/zsh/site-functions", "_staya"),

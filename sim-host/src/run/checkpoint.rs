@@ -1,5 +1,3 @@
-//! Checkpoints of a run.
-
 use clap::Args;
 use staya_sim::checkpoint::{CheckpointInterval, Place};
 use staya_sim::engine::Moment;
@@ -25,20 +23,18 @@ pub struct Checkpoints {
     every: CheckpointInterval,
     place: Place,
     began: Instant,
-    /// Duration of the run before its continuation here.
+    /// Seconds before the continuation here.
     before_seconds: f64,
     last: Instant,
 }
 
 impl Checkpoints {
-    /// Starts the clock of checkpoints. `before_seconds` is the duration before a continuation.
     pub fn new(every: CheckpointInterval, place: Place, before_seconds: f64) -> Self {
         let now = Instant::now();
         Self { every, place, began: now, before_seconds, last: now }
     }
 
-    /// Writes a checkpoint if it is due or the run ends early. An error is reported, and the run
-    /// continues.
+    /// Writes a due checkpoint, also at an early end. An error is reported, and the run continues.
     pub fn tick(&mut self, moment: &Moment<'_>, recorder: &mut Recorder, ends_early: bool) {
         let tick = moment.row.tick;
         let is_due = match self.every {

@@ -1,5 +1,3 @@
-//! Additional outputs of a run: recordings, MCAP files, animations, a live page.
-
 use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
@@ -36,12 +34,10 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
-    /// Whether there are files that cannot continue from a checkpoint.
     pub const fn begins_anew(&self) -> bool {
         self.record.is_some() || self.mcap.is_some()
     }
 
-    /// Path of the MCAP file, and ticks between its moments.
     pub fn mcap(&self) -> Option<(&Path, u32)> {
         self.mcap.as_deref().map(|path| (path, self.record_every))
     }
@@ -74,10 +70,6 @@ pub struct RunOutputs<'a> {
 }
 
 impl<'a> RunOutputs<'a> {
-    /// Creates the selected files.
-    ///
-    /// # Errors
-    /// A file cannot be written.
     pub fn begin(args: &'a OutputArgs, scenario: &'a Scenario, observers: Vec<Box<dyn Observer>>) -> Result<Self> {
         let recording = match &args.record {
             Some(path) => Some(RunRecorder::new(create(path)?, path, scenario, args.record_every)?),
@@ -90,23 +82,17 @@ impl<'a> RunOutputs<'a> {
         Ok(Self { args, scenario, recording, observers })
     }
 
-    /// Whether the lines of robots are needed for this moment.
     pub fn wants_rows(&mut self) -> bool {
         // Every observer is asked, since pages read their messages in this call.
         let due = self.observers.iter_mut().map(|observer| observer.is_due()).filter(|is_due| *is_due).count();
         self.recording.is_some() || due > 0
     }
 
-    /// Paths of the additional files.
     pub fn paths(&self) -> impl Iterator<Item = PathBuf> {
         let OutputArgs { record, mcap, gif, .. } = self.args;
         [record, mcap, gif].into_iter().flatten().cloned()
     }
 
-    /// Handles a moment.
-    ///
-    /// # Errors
-    /// A file cannot be written.
     pub fn tick(&mut self, moment: &Moment<'_>, rows: &[RobotRow]) -> Result<()> {
         if let Some(recording) = &mut self.recording {
             recording.tick(moment, rows.iter().copied())?;
@@ -114,17 +100,13 @@ impl<'a> RunOutputs<'a> {
         self.observers.iter_mut().try_for_each(|observer| observer.tick(moment, rows))
     }
 
-    /// Writes buffered data after another error, if possible.
+    /// After another error, if possible.
     pub fn flush(&mut self) {
         if let Some(recording) = &mut self.recording {
             let _ = recording.flush();
         }
     }
 
-    /// Completes the files.
-    ///
-    /// # Errors
-    /// A file cannot be written.
     pub fn finish(self, summary: &impl Serialize, history: &History) -> Result<()> {
         if let Some(recording) = self.recording {
             recording.finish(summary)?;

@@ -1,5 +1,5 @@
-//! Measures the frames per second that a page can get from a run. The client is in the same process
-//! and draws nothing. `cargo xtask bench view` runs it.
+//! Measures the frames per second that a page can get, with a client in this process that draws
+//! nothing. `cargo xtask bench view` runs it.
 
 use staya_sim::engine::{Moment, simulate};
 use staya_sim::record::RobotRow;
@@ -17,12 +17,11 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tungstenite::Message;
 
-/// Number of robots, and the smallest acceptable number of frames per second.
+/// Robots, and least acceptable frames per second.
 const GOALS: [(u32, f64); 3] = [(1000, 60.0), (10_000, 60.0), (100_000, 20.0)];
 const SPAN: Duration = Duration::from_secs(4);
 
 struct Measured {
-    /// Frames per second that the client read.
     read_per_s: f64,
     bytes_per_s: f64,
     /// Time that one frame costs the run, seconds.
@@ -74,7 +73,6 @@ fn measure(robots: u32) -> Result<Measured, Box<dyn Error>> {
         let rows: Vec<_> = rows.collect();
         let began = Instant::now();
         while began.elapsed() < SPAN {
-            // Handles the confirmation of the last frame.
             watcher.is_due();
             let from = Instant::now();
             watcher.show(moment, rows.iter().copied(), &());
@@ -94,7 +92,7 @@ fn measure(robots: u32) -> Result<Measured, Box<dyn Error>> {
     })
 }
 
-/// Reads frames and confirms them like a page. Returns their number and bytes.
+/// Returns the number and bytes of the frames that it confirmed.
 fn client(watcher: &Watcher, stop: Arc<AtomicBool>) -> JoinHandle<(u32, usize)> {
     let url = watcher.server().url().replace("http:", "ws:").replace("/?", "/live?");
     std::thread::spawn(move || {

@@ -1,4 +1,4 @@
-//! The command line of `staya-view`.
+//! The command line.
 
 use crate::command::ViewArgs;
 use crate::observers;

@@ -1,5 +1,3 @@
-//! `staya view` shows a run or a recording in the browser.
-
 use crate::page;
 use crate::playback::Playback;
 use crate::server::{ServeError, Server};
@@ -29,10 +27,6 @@ pub struct ListenArgs {
 }
 
 impl ListenArgs {
-    /// Starts the server and prints the address.
-    ///
-    /// # Errors
-    /// The address is not available.
     fn serve(&self, global: &Global) -> Result<Page> {
         let server = Server::start(self.listen, page::served()?)?;
         if !server.address().ip().is_loopback() {
@@ -62,10 +56,6 @@ impl Page {
         &self.server
     }
 
-    /// Stops the server.
-    ///
-    /// # Errors
-    /// [`ServeError::Ended`] if the server had failed before.
     fn end(self) -> Result<(), ServeError> {
         if self.server.is_alive() { Ok(()) } else { Err(ServeError::Ended) }
     }
@@ -102,7 +92,7 @@ impl ViewArgs {
     /// Runs the command until Ctrl-C.
     ///
     /// # Errors
-    /// An unreadable or invalid scenario or recording, or an address that is not available.
+    /// The scenario or recording is invalid, or the address is not available.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let path = self.source.path();
         let stop = Stop::on_ctrl_c()?;
@@ -137,15 +127,11 @@ impl ViewArgs {
     }
 }
 
-/// A file that leads a browser to the page, since all users of the computer can read the arguments
-/// of a command. Removed on drop.
+/// A file that leads a browser to the page, since others can read a command's arguments.
 struct WayIn(PathBuf);
 
 impl WayIn {
-    /// Creates the file, readable only by this user.
-    ///
-    /// # Errors
-    /// The file cannot be written or exists.
+    /// Creates the file, readable only by this user; an existing file is an error.
     fn new(url: &str, port: u16) -> io::Result<Self> {
         let path = std::env::temp_dir().join(format!("staya-{}-{port}.html", std::process::id()));
         let mut options = OpenOptions::new();
@@ -170,7 +156,6 @@ impl Drop for WayIn {
     }
 }
 
-/// Opens a browser if there is one; the address is printed in any case.
 fn open(url: &str, port: u16) -> Option<WayIn> {
     let has_screen = ["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some());
     let mut command = match std::env::consts::OS {
@@ -200,7 +185,7 @@ mod tests {
             let mode = std::os::unix::fs::PermissionsExt::mode(&path.metadata().expect("it is there").permissions());
             assert_eq!(mode & 0o777, 0o600);
         }
-        // An existing file may belong to another user.
+        // It may belong to another user.
         assert!(WayIn::new(url, 1).is_err() && path.exists());
         drop(way_in);
         assert!(!path.exists());

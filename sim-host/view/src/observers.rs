@@ -1,5 +1,3 @@
-//! Observers for `staya run --mcap` and `staya run --view`.
-
 use crate::mcap::McapWriter;
 use crate::watch::Watcher;
 use anyhow::Result;
@@ -11,7 +9,7 @@ use staya_sim::record::RobotRow;
 use staya_sim::scenario::Scenario;
 use std::fs::File;
 
-/// Creates the observers that the options of a run select.
+/// Creates the observers for `--mcap` and `--view` of `staya run`.
 ///
 /// # Errors
 /// A file cannot be written, or the page's address is not available.

@@ -6,22 +6,19 @@ use std::time::{Duration, Instant};
 pub const SLICE: Duration = Duration::from_millis(15);
 /// A larger delay is not made up for.
 const LATE: Duration = Duration::from_millis(250);
-/// Default ticks per second for long ticks.
 const TICKS_A_SECOND: f64 = 10.0;
 
 /// A clock that runs at a multiple of real time, or is paused.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     tick_s: f64,
-    /// Simulated seconds per second; `None` for no limit.
     speed: Option<f64>,
     is_paused: bool,
     due: Instant,
 }
 
 impl Pace {
-    /// Creates a clock for ticks of `tick_s` seconds. It starts at real time, or at ten ticks per
-    /// second if that is faster.
+    /// Creates a clock at real time, or at ten ticks of `tick_s` per second if that is faster.
     #[must_use]
     pub fn new(tick_s: f64, is_paused: bool) -> Self {
         let speed = Some((tick_s * TICKS_A_SECOND).max(1.0));
@@ -51,8 +48,7 @@ impl Pace {
         self.due = Instant::now();
     }
 
-    /// Sets the speed in simulated seconds per second, limited to 0.001 to 1e6. `None`, NaN or
-    /// infinity remove the limit.
+    /// Sets simulated seconds per second, 0.001 to 1e6; `None`, NaN and infinity: no limit.
     pub fn set_speed(&mut self, speed: Option<f64>) {
         self.speed = speed.filter(|speed| speed.is_finite()).map(|speed| speed.clamp(0.001, 1e6));
         self.due = Instant::now();

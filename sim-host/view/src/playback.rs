@@ -10,13 +10,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
 const STATE: Duration = Duration::from_millis(500);
-/// Rows of figures sent to a new page.
 const ROWS: u32 = 2000;
 
-/// A request of a page.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 enum Wanted {
@@ -36,7 +33,7 @@ enum Wanted {
     Other,
 }
 
-/// A recording and its pages.
+/// Plays a recording for pages, which can pause and seek.
 #[derive(Debug)]
 pub struct Playback {
     reader: Reader,
@@ -109,7 +106,6 @@ impl Playback {
                 self.hear(what, server);
                 word = server.next(Duration::ZERO);
             }
-            // Frames that no page could show are skipped.
             let start = Instant::now();
             while self.pace.until_due(start) == Some(Duration::ZERO) {
                 self.step();

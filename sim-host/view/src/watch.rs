@@ -1,8 +1,6 @@
-//! Live pages of a run that they cannot control: with `--view` in `staya run`, hardware in the
-//! loop, the MAVLink bridge and companions.
-//!
-//! Without a page the run pays nothing: the caller polls [`Watcher::is_due`] and makes a frame only
-//! if a page wants one.
+//! Live pages of a run that they cannot control: `staya run --view`, hardware in the loop, the
+//! MAVLink bridge and companions. Without a page the run pays nothing: the caller polls
+//! [`Watcher::is_due`] and makes a frame only if a page wants one.
 
 use crate::frame::{FrameData, Framer, NO_WAIT, NONE};
 use crate::page;
@@ -19,13 +17,12 @@ use staya_sim::scenario::Scenario;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
-/// Page messages handled per poll; faster pages are disconnected by the server.
+/// Messages per poll; the server disconnects faster pages.
 const WORDS: usize = 64;
 const LONGEST: usize = 256;
 
-/// A request of a read-only page; others are ignored.
+/// Other requests are ignored.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase")]
 enum Wanted {
@@ -62,8 +59,7 @@ pub struct About {
 /// Load of a device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct DeviceFigures {
-    /// Instructions of the last step; `None` before the first step, and on boards, which do not
-    /// count them.
+    /// Instructions of the last step; `None` before it, and on boards, which do not count them.
     pub instructions: Option<u64>,
     /// Instructions of the longest step.
     pub most_instructions: Option<u64>,
@@ -113,8 +109,7 @@ pub struct Watcher {
 }
 
 impl Watcher {
-    /// Starts a page if the options of a command select one, and prints its address on standard
-    /// error.
+    /// Starts a page if the options select one, and prints its address on standard error.
     ///
     /// # Errors
     /// The address is not available.

@@ -11,8 +11,8 @@ use staya_controller::geom::{Position, Vec2};
 use staya_controller::robot::RobotId;
 use staya_controller::scalar::cast;
 
-/// Returns the acceleration of a robot in an alpha flock, m/s^2; not limited to what the body can
-/// do. `reference` may be null.
+/// Returns the acceleration in an alpha flock, m/s^2, not limited by the body. `reference` may
+/// be null.
 /// cbindgen:ptrs-as-arrays=[[acceleration_mps2; 3]]
 ///
 /// # Safety
@@ -44,8 +44,7 @@ pub unsafe extern "C" fn staya_lattice_acceleration(
     answer(flock())
 }
 
-/// Returns the preferred velocity of a robot in a goal flock, m/s. Positions are in millimetres;
-/// `goal_mm` may be null.
+/// Returns the preferred velocity of a robot in a goal flock, m/s. `goal_mm` may be null.
 /// cbindgen:ptrs-as-arrays=[[own_mm; 3], [goal_mm; 3], [wish_mps; 3]]
 ///
 /// # Safety

@@ -13,8 +13,7 @@ use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Gain, LatticeParams};
 use staya_controller::scalar::cast;
 
-/// The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3). `staya_lattice_defaults` writes the
-/// paper's values.
+/// The alpha flock (R. Olfati-Saber 2006, algorithms 1 to 3); see `staya_lattice_defaults`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaLattice {
@@ -179,7 +178,6 @@ impl StayaBoids {
     }
 }
 
-/// The guidance law in its initial state: one of the flocks.
 #[cfg(feature = "flocks")]
 pub(super) fn law(setup: &StayaSetup, law: StayaLaw) -> Checked<Law> {
     Ok(match law {
@@ -217,8 +215,7 @@ pub unsafe extern "C" fn staya_lattice_defaults(lattice: *mut StayaLattice, spac
 /// See the header's introduction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn staya_lattice_soften(lattice: *mut StayaLattice, delay_s: f32, rate_hz: f32) -> StayaStatus {
-    // SAFETY: a valid lattice that is not used elsewhere, by the caller's contract, or `shared`
-    // rejects it.
+    // SAFETY: a valid lattice not used elsewhere by contract, or `shared` rejects it.
     let softened = unsafe { shared(lattice) }.and_then(|lattice| lattice.softened(delay_s, rate_hz));
     // SAFETY: as above; the reference has ended.
     answer(softened.and_then(|softened| unsafe { memory::write(lattice, softened) }))

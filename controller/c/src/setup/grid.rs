@@ -27,13 +27,11 @@ pub struct StayaRoute {
     /// Price of a cell between window and target (a3), sixteenths of a tick: about the time that a
     /// cell takes on a good route.
     pub way_gain_16ths: u16,
-    /// A move that costs this much more, in sixteenths of a tick, comes first half as often; 0: the
-    /// cheapest always comes first.
+    /// A move that costs this much more, in 16ths of a tick, comes first half as often; 0: never.
     pub halved_per_16ths: u16,
     /// Radius of the window that is searched, cells; 1 to STAYA_MAX_RADIUS.
     pub radius_cells: u8,
-    /// Other than 0: the window's exit lies on the ray to the target; otherwise it is the best of
-    /// all.
+    /// Other than 0: the window's exit is on the ray to the target; otherwise it is the best one.
     pub exit_on_ray: u8,
     /// Other than 0: a diagonal move is as long as a straight one.
     pub diagonals_count_as_one: u8,
@@ -94,8 +92,7 @@ pub struct StayaFormation {
     pub gain_16ths: u16,
     /// How far a robot may fall behind before the top leader waits, units.
     pub halt_lag_units: u16,
-    /// The lag down to which it must catch up before the leader continues, units; at most
-    /// `halt_lag_units`.
+    /// Lag at which the leader continues, units; at most `halt_lag_units`.
     pub resume_lag_units: u16,
     /// Number of decisions (in the plane seconds) for which robots wait for each other.
     pub patience: u16,
@@ -107,8 +104,7 @@ pub struct StayaFormation {
     pub footprint_16ths: u8,
     /// Other than 0: robots behind a dead robot move up.
     pub closes_ranks: u8,
-    /// Other than 0: predicts others by computing the move that this robot would make in their
-    /// place; expensive.
+    /// Other than 0: predicts others by computing their moves in their place; expensive.
     pub foresees_others: u8,
     /// Other than 0: instead of waiting, the leader heads for where the others are displaced.
     pub turns_back: u8,
@@ -153,10 +149,8 @@ impl StayaFormation {
 
 /// Fills in the place number `own` of a formation, given the cells of all places in any common
 /// frame, the top leader's first, and the edges of its graph. Robots within `hops` edges become
-/// neighbours; the robot at place i has the number i + 1.
-///
-/// `STAYA_STATUS_SHAPE` for a place or an edge that does not exist, `STAYA_STATUS_TOO_MANY` for
-/// more than STAYA_TEMPLATE neighbours.
+/// neighbours; the robot at place i has the number i + 1. `STAYA_STATUS_SHAPE` for a place or edge
+/// that does not exist, `STAYA_STATUS_TOO_MANY` above STAYA_TEMPLATE neighbours.
 ///
 /// # Safety
 /// See the header's introduction.
@@ -177,8 +171,7 @@ pub unsafe extern "C" fn staya_formation_from_graph(
     };
     let placed = || {
         let template = template()?;
-        // SAFETY: a valid formation that is not used elsewhere, by the caller's contract, or
-        // `shared` rejects it.
+        // SAFETY: a valid formation not used elsewhere by contract, or `shared` rejects it.
         let mut filled = unsafe { *shared(formation)? };
         filled.place(&template);
         // SAFETY: as above; the reference has ended.

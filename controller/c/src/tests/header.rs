@@ -1,5 +1,3 @@
-//! The header in `include/` matches the sources.
-
 use std::path::Path;
 use std::{env, fs};
 

@@ -1,5 +1,3 @@
-//! Errors of a C program are reported.
-
 use super::{Memory, nothing, setup, waypoint};
 use crate::agent::*;
 use crate::alone::{StayaAvoider, staya_orca_defaults, staya_orca_init, staya_orca_velocity};
@@ -70,7 +68,6 @@ fn invalid_memory_is_refused() {
         assert_eq!(staya_mode(base.add(4).cast(), &mut mode), StayaStatus::Alignment);
         assert_eq!(staya_init(base.cast(), bytes, &setup, &mut agent), StayaStatus::Ok);
         assert_eq!((staya_mode(agent, &mut mode), mode), (StayaStatus::Ok, 0));
-        // A rejected setup leaves no agent.
         let wrong = StayaSetup { id: 0, ..setup };
         assert_eq!(staya_init(base.cast(), bytes, &wrong, &mut agent), StayaStatus::NoRobot);
         assert_eq!(staya_mode(base.cast(), &mut mode), StayaStatus::NotThere);

@@ -83,7 +83,6 @@ fn orca_without_an_agent_keeps_clear_in_any_order() {
     assert_ne!(velocity(&near), [1.0, 0.0, 0.0]);
 }
 
-/// A formation on the grid, through C and through Rust, over the same land.
 #[cfg(all(feature = "grid", not(feature = "fixed"), not(feature = "small")))]
 #[test]
 fn a_formation_on_the_grid_equals_that_of_rust() {

@@ -1,9 +1,5 @@
-//! Rate limits.
-
 /// A rate limit with a burst of a tenth of a second (the leaky bucket as a meter, also called
-/// GCRA).
-///
-/// Times are microseconds of any clock that never goes back.
+/// GCRA). Times are microseconds of any monotonic clock.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     each_us: u64,
@@ -11,7 +7,6 @@ pub struct Budget {
     even_us: u64,
 }
 
-/// Largest burst, as the time that pays for it.
 const AT_ONCE_US: u64 = 100_000;
 
 impl Budget {

@@ -21,10 +21,8 @@ use staya_mavlink::mavlink_core::MessageData as _;
 
 const HIGHEST_M: f32 = 1000.0;
 
-/// A slower vehicle counts as stationary, m/s.
 const STANDING_MPS: f64 = 0.05;
 
-/// Any MAV_RESULT except accepted.
 pub(super) type Refusal = u8;
 
 #[derive(Clone, Copy, Debug)]
@@ -38,11 +36,10 @@ pub(super) struct Spot {
 struct Command {
     id: u16,
     params: [f32; 7],
-    /// Only in a COMMAND_INT.
+    /// The place in a COMMAND_INT.
     spot: Option<Spot>,
 }
 
-/// Reads a required whole number from 0 to `most`.
 fn whole(x: f32, most: f32) -> Result<u32, Refusal> {
     let is_one = (0.0..=most).contains(&x) && libm::truncf(x) == x;
     if is_one { Ok(x as u32) } else { Err(MAV_RESULT_DENIED) }
@@ -151,7 +148,6 @@ impl Vehicle {
         }
     }
 
-    /// The id of a message that these vehicles can send.
     fn stream_id(&self, number: f32) -> Result<u32, Refusal> {
         let id = whole(number, 16_777_215.0)?;
         if self.streams.has(id) { Ok(id) } else { Err(MAV_RESULT_UNSUPPORTED) }
@@ -190,7 +186,6 @@ impl Vehicle {
     fn set_mode(&mut self, number: u32, out: &mut Out) -> Result<(), Refusal> {
         let mode = FlightMode::from_number(number, self.model.flies);
         let mode = mode.ok_or(MAV_RESULT_DENIED)?;
-        // A robot cannot leave its formation alone.
         if mode == FlightMode::Return && self.model.in_formation {
             return Err(MAV_RESULT_DENIED);
         }
@@ -233,7 +228,6 @@ impl Vehicle {
 
     fn reposition(&mut self, command: &Command, out: &mut Out) -> Result<(), Refusal> {
         let [speed_mps, flags, ..] = command.params;
-        // Degrees as 32-bit floats are off by a metre.
         let spot = command.spot.ok_or(MAV_RESULT_COMMAND_INT_ONLY)?;
         let place = self.global_place(spot)?;
         let flags = if flags.is_nan() { 0 } else { whole(flags, 255.0)? };
@@ -246,7 +240,6 @@ impl Vehicle {
         if self.mode != FlightMode::Guided && !changes_mode {
             return Err(MAV_RESULT_TEMPORARILY_REJECTED);
         }
-        // -1, NaN and 0 keep the present speed.
         if speed_mps > 0.0 {
             self.change_speed(speed_mps, out)?;
         }
@@ -257,7 +250,6 @@ impl Vehicle {
         Ok(())
     }
 
-    /// A mission item outside an upload, by which older clients say "go there now".
     pub(super) fn guided_item(
         &mut self,
         from: Sender,
@@ -293,7 +285,6 @@ impl Vehicle {
         Ok(())
     }
 
-    /// East, north, up of a geographic position, metres.
     fn global_place(&self, spot: Spot) -> Result<[f64; 3], Refusal> {
         let origin = &self.model.origin;
         // Home is on the ground at the origin, so heights above home are heights above the ground.
@@ -329,7 +320,6 @@ impl Vehicle {
         self.global_place(spot).ok()
     }
 
-    /// Why a mission item is invalid, as a MAV_MISSION_RESULT; 0 if it is valid.
     pub(super) fn item_fault(&self, item: &super::mission::Item) -> u8 {
         let is_known = match item.command {
             MAV_CMD_NAV_WAYPOINT => true,
@@ -362,13 +352,11 @@ impl Vehicle {
         if self.mission.is_empty() {
             return Err(MAV_RESULT_DENIED);
         }
-        // Item 0 is home, not a goal. A completed mission restarts.
         if self.mission.current() == 0 || self.mission.is_complete() {
             self.mission.set_current(1);
         }
         self.enter(FlightMode::Auto, out);
         self.is_on_mission = true;
-        // Replaces the behaviour that AUTO would start.
         out.actions.clear();
         self.begin_item(out);
         Ok(())

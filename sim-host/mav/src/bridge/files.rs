@@ -3,13 +3,11 @@
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// Answers a file request at once with "file not found", so that the client does not wait for a
-/// timeout.
+/// Answers a file request with "file not found", so that the client does not wait for a timeout.
 pub(super) fn none(from: Sender, asked: &FILE_TRANSFER_PROTOCOL_DATA) -> Option<MavMessage> {
     const NAK: u8 = 129;
     const FILE_NOT_FOUND: u8 = 10;
     let [low, high, session, opcode, ..] = asked.payload;
-    // Opcodes from 128 are answers.
     if opcode >= 128 {
         return None;
     }

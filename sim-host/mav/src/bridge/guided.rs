@@ -21,7 +21,6 @@ struct Setpoint {
     velocity_mps: Option<[f64; 3]>,
 }
 
-/// The fields of a setpoint that its type mask leaves in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Used {
     place: bool,
@@ -157,7 +156,6 @@ impl Vehicle {
         }
     }
 
-    /// Passes an order from the operator to the controller as if it had arrived by radio.
     pub(super) fn receive_orders(&mut self, from: Sender, message: &MavMessage, out: &mut Out) {
         let Some((boot, sequence, message)) = order(message) else {
             return;
@@ -167,7 +165,6 @@ impl Vehicle {
         out.actions.push(Action::Tell(header, message));
     }
 
-    /// Reports once as a text that an order is complete, since the dialect has no acknowledgements.
     fn confirm(&mut self, header: Header, message: &Message, out: &mut Out) {
         if matches!(message, Message::Template(_)) && !self.model.in_formation {
             return self.refuse("STAYA_TEMPLATE: not in a formation", out);

@@ -8,10 +8,8 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// Waits in place for a number of seconds.
 const NAV_DELAY: u16 = 93;
-/// Commands to cameras and gimbals: mounts, triggers, gimbal managers, pictures, videos. These
-/// vehicles have neither, so a mission skips them.
+/// Commands to cameras and gimbals, which these vehicles do not have; a mission skips them.
 const OF_CAMERAS: [u16; 9] = [204, 205, 206, 1000, 1001, 2000, 2001, 2500, 2501];
 
 impl Item {
@@ -20,13 +18,11 @@ impl Item {
         if wait_s.is_finite() { wait_s } else { 0.0 }
     }
 
-    /// Whether the item takes effect wherever the vehicle is; its coordinates, if any, are ignored.
     pub(super) fn has_no_place(&self) -> bool {
         matches!(self.command, NAV_DELAY | MAV_CMD_DO_CHANGE_SPEED) || OF_CAMERAS.contains(&self.command)
     }
 
-    /// Why an item without a place is invalid, as a MAV_MISSION_RESULT; 0 if it is valid. A
-    /// negative speed means "unchanged" and is valid.
+    /// Why an item without a place is invalid, as a MAV_MISSION_RESULT; 0 if it is valid.
     pub(super) fn fault(&self) -> u8 {
         let [first, second, ..] = self.params;
         match self.command {
@@ -38,8 +34,7 @@ impl Item {
 }
 
 impl Vehicle {
-    /// Starts the current item. Items that finish at once are followed by the next, at most once
-    /// through the mission.
+    /// Starts the current item, and the next one if it finishes at once; at most once through all.
     pub(super) fn begin_item(&mut self, out: &mut Out) {
         self.there_since_us = None;
         loop {
@@ -75,7 +70,7 @@ impl Vehicle {
         }
     }
 
-    /// Completes the current item. Returns whether there is a next one.
+    /// Returns whether there is a next item.
     fn finish_item(&mut self, out: &mut Out) -> bool {
         let seq = self.mission.current();
         out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
@@ -89,7 +84,6 @@ impl Vehicle {
         goes_on
     }
 
-    /// Applies a speed item, limited to the speed of the body.
     fn limit_speed(&mut self, speed_mps: f32, out: &mut Out) {
         let most_mps = self.model.max_speed_mps;
         if speed_mps > most_mps {
@@ -97,12 +91,10 @@ impl Vehicle {
             self.text(out, Kind::Setpoint, MAV_SEVERITY_NOTICE, &text);
         }
         if speed_mps > 0.0 {
-            // A grid has no speeds, so a refusal changes nothing.
             let _ = self.change_speed(speed_mps.min(most_mps), out);
         }
     }
 
-    /// Completes the mission if this landing was its last item.
     pub(super) fn finish_landing(&mut self, out: &mut Out) {
         if core::mem::take(&mut self.is_landing_item) {
             self.mission.complete();
@@ -111,7 +103,6 @@ impl Vehicle {
         }
     }
 
-    /// Starts the next item once the vehicle has waited long enough at the current one.
     pub(super) fn go_on_with_mission(&mut self, out: &mut Out) {
         let Some(item) = self.mission.item(self.mission.current()).copied() else {
             return;
@@ -160,7 +151,7 @@ impl Vehicle {
         answer
     }
 
-    /// Why an item is invalid, short enough for a STATUSTEXT with the item number in front.
+    /// The text fits into a STATUSTEXT with the item number in front.
     fn fault_in_words(&self, item: &Item, fault: u8) -> String {
         match fault {
             MAV_MISSION_UNSUPPORTED if self.model.in_formation => String::from("not in a formation"),

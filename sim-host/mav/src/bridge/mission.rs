@@ -1,29 +1,20 @@
-//! The mission of a vehicle: a list of goals, and the protocol that transfers it.
-//!
-//! As with ArduPilot, item 0 is home: it is stored but never flown to.
+//! The mission of a vehicle: a list of goals, and the protocol that transfers it. As with
+//! ArduPilot, item 0 is home: it is stored but never flown to.
 
 use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::frame::Sender;
 
-/// Capacity of a mission, in items.
 pub const ITEMS: u16 = 128;
-/// The second parameter of an item is invalid.
 pub(super) const MAV_MISSION_INVALID_PARAM2: u8 = 7;
-/// Timeout after which a missing item is requested again, microseconds.
 const PATIENCE_US: u64 = 700_000;
-/// Requests per item before the transfer fails.
 const TRIES: u8 = 6;
 
-/// One mission item as in MISSION_ITEM_INT: positions in 1e-7 degrees, or 1e-4 metres in local
-/// frames.
+/// A mission item as in MISSION_ITEM_INT: 1e-7 degrees, or 1e-4 metres in local frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Item {
-    /// MAV_CMD number.
     pub command: u16,
-    /// MAV_FRAME of x, y and z.
     pub frame: u8,
-    /// 1 if the mission continues after this item without a command.
     pub autocontinue: u8,
     pub params: [f32; 4],
     pub x: i32,
@@ -32,7 +23,6 @@ pub struct Item {
 }
 
 impl Item {
-    /// Integer units per unit of MISSION_ITEM's x and y.
     const fn scale(frame: u8) -> f64 {
         match frame {
             MAV_FRAME_LOCAL_NED | MAV_FRAME_LOCAL_OFFSET_NED => 1e4,
@@ -40,7 +30,6 @@ impl Item {
         }
     }
 
-    /// Reads a MISSION_ITEM_INT.
     #[must_use]
     pub const fn from_int(item: &MISSION_ITEM_INT_DATA) -> Self {
         Self {
@@ -54,7 +43,7 @@ impl Item {
         }
     }
 
-    /// Reads a MISSION_ITEM. A position that is not finite becomes one that fails validation.
+    /// A position that is not finite becomes one that fails validation.
     #[must_use]
     pub fn from_float(item: &MISSION_ITEM_DATA) -> Self {
         let int = |x: f32| match x.is_finite() {
@@ -125,11 +114,9 @@ struct Upload {
     tries: u8,
 }
 
-/// A mission and its progress.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mission {
     items: Vec<Item>,
-    /// The item that is next or in progress.
     current: u16,
     /// Whether the last item is completed, or started if it is a return.
     is_complete: bool,
@@ -139,11 +126,10 @@ pub struct Mission {
 impl Mission {
     #[must_use]
     pub fn len(&self) -> u16 {
-        // At most `ITEMS`.
         self.items.len() as u16
     }
 
-    /// Whether the mission has no goal.
+    /// A mission with home alone is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.items.len() < 2
@@ -154,13 +140,11 @@ impl Mission {
         self.current
     }
 
-    /// Item `seq`; `None` beyond the last one.
     #[must_use]
     pub fn item(&self, seq: u16) -> Option<&Item> {
         self.items.get(usize::from(seq))
     }
 
-    /// Makes item `seq` the current one. Returns whether it exists.
     pub fn set_current(&mut self, seq: u16) -> bool {
         let is_there = seq < self.len();
         if is_there {
@@ -173,13 +157,11 @@ impl Mission {
         self.is_complete = true;
     }
 
-    /// Whether the mission was completed since it was loaded or an item was last selected.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.is_complete
     }
 
-    /// Handles MISSION_COUNT, which starts an upload. Returns the answer.
     pub fn count(&mut self, from: Sender, told: &MISSION_COUNT_DATA, now_us: u64) -> MavMessage {
         if told.mission_type != MAV_MISSION_TYPE_MISSION {
             return ack(from, told.mission_type, MAV_MISSION_UNSUPPORTED);
@@ -198,8 +180,7 @@ impl Mission {
         request(from, 0)
     }
 
-    /// Handles one uploaded item and returns the answer. `fault` validates the item: a
-    /// MAV_MISSION_RESULT, 0 if valid.
+    /// Returns the answer to an uploaded item; `fault` returns a MAV_MISSION_RESULT, 0 if valid.
     pub fn take(
         &mut self,
         from: Sender,
@@ -234,7 +215,6 @@ impl Mission {
         ack(from, MAV_MISSION_TYPE_MISSION, MAV_MISSION_ACCEPTED)
     }
 
-    /// Requests an overdue item again, or cancels the upload after the last try.
     pub fn poll(&mut self, now_us: u64) -> Option<MavMessage> {
         let upload = self.upload.as_mut()?;
         if now_us.saturating_sub(upload.asked_us) < PATIENCE_US {
@@ -251,7 +231,7 @@ impl Mission {
         Some(request(from, upload.items.len() as u16))
     }
 
-    /// Answers MISSION_REQUEST_LIST. Lists other than missions (fences, rally points) are empty.
+    /// Lists other than missions (fences, rally points) are empty.
     #[must_use]
     pub fn list(&self, from: Sender, mission_type: u8) -> MavMessage {
         let is_known = mission_type == MAV_MISSION_TYPE_MISSION;
@@ -263,7 +243,6 @@ impl Mission {
         })
     }
 
-    /// Answers a request for item `seq`, as MISSION_ITEM_INT or MISSION_ITEM.
     #[must_use]
     pub fn tell(&self, from: Sender, seq: u16, mission_type: u8, as_int: bool) -> MavMessage {
         let item = self.item(seq);
@@ -278,7 +257,6 @@ impl Mission {
         }
     }
 
-    /// Handles MISSION_CLEAR_ALL and returns the answer.
     pub fn clear(&mut self, from: Sender, mission_type: u8) -> MavMessage {
         // 255 means all lists.
         if matches!(mission_type, MAV_MISSION_TYPE_MISSION | 255) {
@@ -301,7 +279,6 @@ const fn request(to: Sender, seq: u16) -> MavMessage {
     })
 }
 
-/// MISSION_ACK, which ends a transfer.
 #[must_use]
 pub const fn ack(to: Sender, mission_type: u8, result: u8) -> MavMessage {
     MavMessage::MISSION_ACK(MISSION_ACK_DATA {
@@ -326,7 +303,7 @@ mod tests {
         Item { command: MAV_CMD_NAV_WAYPOINT, x, ..Item::default() }
     }
 
-    /// The number of the requested item, or the negative result if the transfer ended.
+    /// The requested item, or the negative result if the transfer ended.
     fn wanted(answer: &MavMessage) -> i32 {
         match answer {
             MavMessage::MISSION_REQUEST_INT(request) => request.seq.into(),

@@ -1,10 +1,9 @@
-//! The MAVLink bridge of the simulation: every simulated robot appears as a vehicle to ground
-//! stations and scripts.
+//! The MAVLink bridge of the simulation: every robot appears as a vehicle to ground stations and
+//! scripts.
 //!
-//! [`Vehicle`] is one robot's side of the protocol, without sockets or a clock. [`Swarm`] runs a
-//! scenario in real time and connects its vehicles to the links. An operator's command becomes a
-//! goal of the robot's controller ([`Commanded`](staya_controller::agent::Commanded)), so the
-//! safety layer still applies; no command changes the state of a robot directly.
+//! [`Swarm`] runs a scenario in real time; [`Vehicle`] is one robot's side of the protocol, without
+//! sockets or a clock. A command becomes a goal of the robot's controller
+//! ([`Commanded`](staya_controller::agent::Commanded)), so the safety layer still applies.
 
 mod budget;
 mod commands;

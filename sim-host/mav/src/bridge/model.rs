@@ -1,5 +1,3 @@
-//! Description of a robot as a vehicle: its world, its capabilities and its flight modes.
-
 use crate::geo::Origin;
 use staya_controller::agent::SafetyKind;
 use staya_controller::agent::Wish;
@@ -10,12 +8,12 @@ use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario};
 use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 
-/// Properties shared by all vehicles of a scenario.
+/// World and capabilities of all vehicles of a scenario.
 #[derive(Clone, Debug)]
 pub struct VehicleModel {
     /// Whether the vehicles can fly. The ground is z = 0.
     pub flies: bool,
-    /// The map, if the vehicles move from cell to cell; such vehicles accept no velocities.
+    /// The map of vehicles that move from cell to cell; these accept no velocities.
     pub grid: Option<Terrain>,
     /// Whether the vehicles form a team on the grid and so have no goals of their own.
     pub in_formation: bool,
@@ -74,8 +72,7 @@ impl VehicleModel {
     }
 }
 
-/// The source of a vehicle's goals. The numbers and names are ArduPilot's: those of Copter for
-/// flying vehicles, of Rover otherwise.
+/// The source of a vehicle's goals, named and numbered as in ArduPilot's Copter or Rover.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlightMode {
     /// The behaviour of the scenario, or the mission once it is started.
@@ -101,7 +98,6 @@ impl FlightMode {
             (Self::Guided, false) => 15,
             (Self::Hold, false) => 4,
             (Self::Return, false) => 11,
-            // Unused: ground vehicles never enter this mode.
             (Self::Land, _) => 9,
             (Self::Auto, true) => 3,
             (Self::Guided, true) => 4,

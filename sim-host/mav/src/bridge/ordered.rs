@@ -1,22 +1,19 @@
-//! The orders that a vehicle last received, so that each is confirmed once.
+//! The orders that a vehicle last received.
 
 use staya_controller::robot::RobotId;
 use staya_controller::wire::{Header, Message};
 
-/// Sender of an order, its boot counter, and the order's version.
 type Order = Option<(RobotId, u8, u8)>;
 
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Ordered {
     goal: Order,
     template: Order,
-    /// Received parts of the template, one bit each.
     parts: u64,
 }
 
 impl Ordered {
-    /// Records an order. Returns the confirmation for the operator the first time that an order is
-    /// complete. O(1).
+    /// Returns a confirmation the first time that the order is complete. O(1).
     pub(super) fn hear(&mut self, header: Header, message: &Message) -> Option<String> {
         let order = |version| Some((header.sender, header.boot, version));
         match message {

@@ -1,12 +1,10 @@
-//! MAVLink parameters of a vehicle: those of the controller, and the timeout of velocity setpoints.
-
 use super::model::VehicleModel;
 use staya_controller::agent::Parameter;
 use staya_controller::names::Named as _;
 use staya_mavlink::constants::MAV_PARAM_TYPE_REAL32;
 use staya_mavlink::dialect::PARAM_VALUE_DATA;
 
-/// Default timeout of a velocity setpoint, simulated seconds; equal to ArduPilot Rover's.
+/// ArduPilot Rover's default, simulated seconds.
 const SETPOINT_TIMEOUT_S: f32 = 3.0;
 
 /// The setting behind a parameter.
@@ -30,7 +28,6 @@ struct Entry {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
     entries: Vec<Entry>,
-    /// Next parameter to list, and the number still to list.
     next: usize,
     left: usize,
 }
@@ -44,7 +41,7 @@ pub enum NotSet {
     OutOf([f32; 2]),
 }
 
-/// Name of a parameter in MAVLink, at most 16 characters.
+/// At most 16 characters, by the protocol.
 const fn name(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::Radius => "RADIUS_M",
@@ -92,8 +89,7 @@ const fn name(parameter: Parameter) -> &'static str {
 }
 
 impl Parameters {
-    /// Creates the parameters that a robot has. `value` returns the present value, or `None` if the
-    /// robot lacks the setting.
+    /// Creates the parameters that a robot has; `value` is `None` for a setting that it lacks.
     #[must_use]
     pub fn new(model: &VehicleModel, value: impl Fn(Parameter) -> Option<f32>) -> Self {
         let own = Parameter::NAMES.iter().filter_map(|&(_, parameter)| {
@@ -134,8 +130,7 @@ impl Parameters {
         self.entries.len()
     }
 
-    /// Starts listing all parameters. A request during a listing restarts the count, so the client
-    /// also gets the ones it missed; each parameter is sent once per request.
+    /// Starts listing each parameter once; during a listing the count restarts.
     pub const fn list(&mut self) {
         self.left = self.count();
     }
@@ -154,7 +149,7 @@ impl Parameters {
         told
     }
 
-    /// Index of the parameter with this name, as the field `param_id` has it.
+    /// Index of the parameter that `param_id` names.
     #[must_use]
     pub fn find(&self, id: &[u8; 16]) -> Option<usize> {
         let end = id.iter().position(|letter| *letter == 0);
@@ -176,7 +171,6 @@ impl Parameters {
     pub fn set(&mut self, index: usize, value: f32) -> Result<Meaning, NotSet> {
         let entry = self.entries.get_mut(index).ok_or(NotSet::Unknown)?;
         let [least, greatest] = entry.range;
-        // NaN fails this test too.
         if !(least..=greatest).contains(&value) {
             return Err(NotSet::OutOf(entry.range));
         }

@@ -1,5 +1,3 @@
-//! Statistics of a bridge run.
-
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -52,8 +50,8 @@ impl Refused {
     }
 }
 
-/// Statistics of a bridge run. `frames_in` over all links equals `frames_heard` + `frames_ignored`
-/// + `frames_refused` + `lost_in` + `frames_waiting`.
+/// Statistics of a bridge run. The `frames_in` of all links are `frames_heard` + `frames_ignored` +
+/// `frames_refused` + `lost_in` + `frames_waiting`.
 #[derive(Clone, Debug, Serialize)]
 pub struct BridgeReport {
     /// Number of vehicles, one for each robot.
@@ -64,16 +62,15 @@ pub struct BridgeReport {
     pub sim_seconds: f64,
     /// Real time, seconds.
     pub wall_seconds: f64,
-    /// Ticks that became due before the previous one was finished. The simulation is late by this
-    /// number of ticks.
+    /// Ticks that became due before the previous one was finished, by which the simulation is late.
     pub deadlines_missed: u32,
     /// Longest time from when a tick was due to the end of its work, seconds.
     pub slowest_seconds: f64,
-    /// Frames for at least one vehicle, and heartbeats.
+    /// Heartbeats, and frames for at least one vehicle.
     pub frames_heard: u64,
     /// Frames for unknown vehicles or with unknown messages.
     pub frames_ignored: u64,
-    /// Frames rejected for a missing or invalid signature, those with a future timestamp included.
+    /// Frames rejected for a missing or invalid signature or a future timestamp.
     pub frames_refused: u64,
     /// Rejected frames by reason.
     pub refused: Refused,
@@ -81,8 +78,7 @@ pub struct BridgeReport {
     pub frames_ahead: u64,
     /// Frames still queued at the end.
     pub frames_waiting: u64,
-    /// Whether the signing timestamps are used up, so that the bridge refuses all commands until it
-    /// has a new key.
+    /// Whether the signing timestamps are used up; the bridge then needs a new key.
     pub is_exhausted: bool,
     /// Answers to commands, by result.
     pub commands: BTreeMap<&'static str, u64>,
@@ -90,8 +86,7 @@ pub struct BridgeReport {
     pub lines: Vec<LineReport>,
     /// Overlaps between bodies, summed over ticks.
     pub collisions: u64,
-    /// Smallest distance between the surfaces of two bodies, metres; null on a grid, or if no two
-    /// bodies came near.
+    /// Smallest gap between the surfaces of two bodies, metres; null on a grid or if all kept away.
     pub least_gap_m: Option<f64>,
     /// Trace hash, 16 hex digits; equal to that of `staya run` if no command arrived.
     pub trace_hash: String,

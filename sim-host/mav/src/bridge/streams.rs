@@ -1,14 +1,10 @@
-//! Message streams: the rate of each telemetry message.
-
 use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
 
-/// Shortest interval of a stream, microseconds.
 const SHORTEST_US: u64 = 1000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stream {
     id: u32,
-    /// Default interval; 0 for off.
     default_us: u64,
     every_us: u64,
     due_us: u64,
@@ -18,15 +14,13 @@ struct Stream {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Streams(Vec<Stream>);
 
-/// Interval in microseconds; 0 for a rate of 0.
 fn every(rate_hz: f64) -> u64 {
     if rate_hz > 0.0 { (1e6 / rate_hz) as u64 } else { 0 }
 }
 
 impl Streams {
     /// Creates the default streams: each position message at `position_hz`, attitude at half of
-    /// that, the others at about 1 Hz. `phase` from 0 to 1 shifts the first messages, so that
-    /// vehicles do not all send at once.
+    /// that, the others at about 1 Hz. `phase` (0 to 1) shifts the first messages.
     #[must_use]
     pub fn new(position_hz: f64, phase: f64) -> Self {
         let second = every(1.0);
@@ -83,8 +77,7 @@ impl Streams {
         })
     }
 
-    /// Applies SET_MESSAGE_INTERVAL: -1 for off, 0 for the default. Returns whether the interval is
-    /// possible.
+    /// Applies SET_MESSAGE_INTERVAL: -1 for off, 0 for the default. Returns whether it is possible.
     pub fn set_interval(&mut self, id: u32, interval_us: f32, now_us: u64) -> bool {
         let Some(stream) = self.0.iter_mut().find(|stream| stream.id == id) else {
             return false;

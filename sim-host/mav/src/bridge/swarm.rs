@@ -1,8 +1,7 @@
 //! Runs the simulation in real time and connects its vehicles to the links.
 //!
-//! A tick runs when it is due. Between ticks the bridge handles received frames and sends due
-//! messages, so answers do not wait for ticks. Message rates follow the real clock whatever the
-//! `speed` of the simulation; setpoints and missions follow simulated time.
+//! Received frames are handled between ticks, so answers do not wait for ticks. Message rates
+//! follow the real clock at any `speed`; setpoints and missions follow simulated time.
 
 use super::budget::Budget;
 use super::model::{Sample, VehicleModel};
@@ -27,16 +26,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const LAST_SYSTEM: u32 = 254;
-/// Longest wait before due messages are checked.
 const GLANCE: Duration = Duration::from_millis(4);
-/// Frames handled between two ticks even if the ticks leave no time.
+/// Frames handled between two ticks even if no time is left.
 const AT_LEAST: usize = 8;
-/// Listed parameters per second, over all vehicles.
 const PARAMETERS_PER_S: u32 = 2000;
-/// With fewer timestamps left to sign with, commands are refused because they could not be
-/// answered.
+/// With fewer signing timestamps left, commands are refused because they could not be answered.
 const RESERVE: u64 = 1 << 16;
-/// Interval of the warning that timestamps are used up.
 const COMPLAIN_US: u64 = 10_000_000;
 
 /// Options of a bridge run.
@@ -87,7 +82,6 @@ pub struct Swarm {
     engine: Box<dyn Operated>,
     vehicles: Vec<Vehicle>,
     boots: Vec<u8>,
-    /// Next sequence number of each vehicle; wraps.
     sequences: Vec<u8>,
     model: Arc<VehicleModel>,
     lines: Lines,
@@ -98,7 +92,6 @@ pub struct Swarm {
     began: Instant,
     missed: u32,
     slowest: Duration,
-    /// Vehicle that sends first in the next round.
     first: usize,
     listing: Budget,
     complained_us: Option<u64>,
@@ -186,8 +179,8 @@ impl Swarm {
 
     /// Runs like [`Swarm::run`], and calls `onlooker` after each tick.
     ///
+    /// # Errors
     /// [`BridgeError::Log`] if the log cannot be written.
-    /// When the log cannot be written.
     pub fn run_watched(
         mut self,
         mut is_over: impl FnMut(u32) -> bool,
@@ -221,7 +214,6 @@ impl Swarm {
         Ok(self.report())
     }
 
-    /// Handles received frames for a short time, barely beyond `due`.
     fn listen(&mut self, due: Instant) -> Result<(), BridgeError> {
         if let Some(signing) = &mut self.options.signing {
             signing.advance_to(timestamp());
@@ -245,7 +237,7 @@ impl Swarm {
         u64::try_from(self.began.elapsed().as_micros()).unwrap_or(u64::MAX)
     }
 
-    /// Handles one received frame. Returns the number of answers.
+    /// Returns the number of answers.
     fn take(&mut self, received: &Received) -> Result<usize, BridgeError> {
         let Some(frame) = RawFrame::new(&received.frame) else {
             self.ignored += 1;
@@ -281,7 +273,6 @@ impl Swarm {
         let mut answers = 0;
         let (from, now_us) = (frame.sender(), self.now_us());
         let system = message.target_system_id().unwrap_or(0);
-        // Heartbeats have no target. Other messages without a target are for all vehicles.
         let is_for_some = !matches!(message, MavMessage::HEARTBEAT(_));
         let mut is_heard = false;
         for index in 0..self.vehicles.len() {
@@ -297,7 +288,6 @@ impl Swarm {
         Ok(answers)
     }
 
-    /// Sends due messages, one vehicle after the other, until the next tick is due.
     fn speak(&mut self, due: Instant) -> Result<(), BridgeError> {
         let now_us = self.now_us();
         self.complain(now_us)?;
@@ -317,7 +307,7 @@ impl Swarm {
         Ok(())
     }
 
-    /// Warns that signing timestamps are running out, while some are left to sign the warning.
+    /// The warning comes while some timestamps are left to sign it.
     fn complain(&mut self, now_us: u64) -> Result<(), BridgeError> {
         let is_early = |last: u64| now_us.saturating_sub(last) < COMPLAIN_US;
         if !self.is_exhausted() || self.complained_us.is_some_and(is_early) {
@@ -356,14 +346,12 @@ impl Swarm {
         Ok(())
     }
 
-    /// Applies the actions and sends the messages of vehicle `index`. Returns the number of
-    /// messages.
+    /// Returns the number of messages.
     fn carry_out(&mut self, index: usize) -> Result<usize, BridgeError> {
         let mut refused = Vec::new();
         for action in self.out.actions.drain(..) {
             match action {
                 Action::Tell(header, message) => self.engine.tell(index, header, &message),
-                // The vehicle has already checked what its robot can do.
                 Action::Wish(wish) => {
                     let _ = self.engine.command(index, wish);
                 }
@@ -396,9 +384,7 @@ impl Swarm {
             }
             if let Some(signing) = &mut self.options.signing {
                 match signing.sign(&mut frame) {
-                    // The buffer has room for a signed frame.
                     Ok(signature) => drop(frame.extend_from_slice(&signature)),
-                    // An unsigned frame must not be sent.
                     Err(_) => continue,
                 }
             }
@@ -455,10 +441,8 @@ impl Swarm {
     }
 }
 
-/// Parameters per second that the slowest link carries: a third of a serial line, the rest is for
-/// telemetry.
+/// A third of the slowest serial link's rate; the rest is for telemetry.
 fn parameters_per_s(endpoints: &[Endpoint]) -> u32 {
-    /// Size of a signed PARAM_VALUE on a serial line: 10 bits per byte.
     const BITS: u32 = 10 * 50;
     let serial = endpoints.iter().filter_map(|endpoint| match endpoint {
         Endpoint::Serial(port) => Some((port.baud / BITS / 3).max(1)),

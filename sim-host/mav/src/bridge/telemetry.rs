@@ -1,5 +1,3 @@
-//! Telemetry messages of a vehicle.
-
 use super::model::FlightMode;
 use super::vehicle::Vehicle;
 use crate::geo::ned;
@@ -8,11 +6,9 @@ use staya_mavlink::constants::*;
 use staya_mavlink::dialect::*;
 use staya_mavlink::mavlink_core::MessageData as _;
 
-/// MAVLink's value for "not known".
 const UNKNOWN: u16 = u16::MAX;
 
 impl Vehicle {
-    /// Telemetry message `id`; `None` if the vehicle cannot send it.
     pub(super) fn telemetry(&self, id: u32) -> Option<MavMessage> {
         let sample = &self.sample;
         let time_boot_ms = (self.uptime_us() / 1000) as u32;
@@ -21,7 +17,7 @@ impl Vehicle {
         let [vx, vy, vz] = velocity.map(|v| v as f32);
         let speed_mps = libm::hypot(velocity[0], velocity[1]);
         let cm = |v: f64| libm::round(v * 100.0) as i16;
-        // 0 to 360 degrees, in units of 0.01 degrees.
+        // Units of 0.01 degrees.
         let heading = libm::round(f64::from(self.yaw).to_degrees() * 100.0) as i32;
         let heading = heading.rem_euclid(36_000) as u16;
         let place = |at_m: [f64; 3]| {
@@ -105,7 +101,6 @@ impl Vehicle {
                 throttle: 0,
             }),
             BATTERY_STATUS_DATA::ID => MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA {
-                // The simulation has no battery model.
                 current_consumed: -1,
                 energy_consumed: -1,
                 temperature: i16::MAX,
@@ -158,7 +153,6 @@ impl Vehicle {
         MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: self.mode.number(flies),
             mavtype: if flies { MAV_TYPE_QUADROTOR } else { MAV_TYPE_GROUND_ROVER },
-            // Mode numbers are ArduPilot's, see `FlightMode`.
             autopilot: MAV_AUTOPILOT_ARDUPILOTMEGA,
             base_mode,
             system_status: match (self.is_armed, self.sample.mode) {

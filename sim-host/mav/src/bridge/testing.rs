@@ -1,5 +1,3 @@
-//! Test fixtures for vehicles.
-
 use super::model::{Sample, VehicleModel};
 use super::params::Parameters;
 use super::streams::Streams;
@@ -52,7 +50,6 @@ pub(super) fn sample() -> Sample {
     }
 }
 
-/// Vehicle 7 with the output of the last call.
 pub(super) struct Bench {
     pub(super) vehicle: Vehicle,
     pub(super) sample: Sample,
@@ -108,7 +105,6 @@ impl Bench {
         self.result()
     }
 
-    /// The result of the only acknowledgement, which is the first message.
     pub(super) fn result(&self) -> u8 {
         let acks = self.out.messages.iter().filter_map(|message| match message {
             MavMessage::COMMAND_ACK(ack) => Some(ack.result),

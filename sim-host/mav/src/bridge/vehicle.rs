@@ -1,8 +1,7 @@
 //! One robot as a MAVLink vehicle, without sockets or a clock. Start with [`Vehicle::receive`].
 //!
-//! A client's message becomes an [`Action`] for the robot's controller, or is refused. Commands
-//! (`commands`) are always answered, setpoints (`guided`) never, as the protocol demands; a
-//! STATUSTEXT says why a setpoint was refused.
+//! A message becomes an [`Action`] for the robot's controller, or is refused. Commands are always
+//! answered, setpoints never, as the protocol demands; a STATUSTEXT says why one was refused.
 
 use super::files;
 use super::mission::{Item, Mission};
@@ -23,7 +22,6 @@ use std::sync::Arc;
 
 mod tuning;
 
-/// Shortest interval between texts of one kind, microseconds.
 const TEXT_EVERY_US: u64 = 2_000_000;
 
 /// An action for the robot's controller.
@@ -57,30 +55,23 @@ pub struct Vehicle {
     pub(super) parameters: Parameters,
     pub(super) mission: Mission,
     pub(super) sample: Sample,
-    /// Simulated time at which the onboard computer started.
     started_us: u64,
-    /// Position at the start.
     pub(super) home_m: [f64; 3],
-    /// Heading, radians from north to east.
+    /// Radians from north to east.
     pub(super) yaw: f32,
     pub(super) mode: FlightMode,
     pub(super) is_armed: bool,
     starts_armed: bool,
-    /// Whether the mission is active, and since when the vehicle is at the current item, simulated
-    /// time.
     pub(super) is_on_mission: bool,
     pub(super) there_since_us: Option<u64>,
-    /// Whether it lands because of a mission item.
     pub(super) is_landing_item: bool,
     pub(super) ordered: Ordered,
-    /// Time of the last text of each kind.
     texts: [Option<u64>; Kind::COUNT],
     pub(super) now_us: u64,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
-    /// Not limited in rate.
     News,
     Parameter,
     Setpoint,
@@ -93,8 +84,7 @@ impl Kind {
 }
 
 impl Vehicle {
-    /// Creates a vehicle that has just started, disarmed unless `starts_armed`. `streams` are its
-    /// telemetry messages.
+    /// Creates a vehicle that has just started, disarmed unless `starts_armed`, with its streams.
     #[must_use]
     pub fn new(
         system: u8,
@@ -213,7 +203,7 @@ impl Vehicle {
         }
     }
 
-    /// Sends a text. All kinds but `News` are limited in rate.
+    /// All kinds but `News` are limited in rate.
     pub(super) fn text(&mut self, out: &mut Out, kind: Kind, severity: u8, text: &str) {
         if !matches!(kind, Kind::News) {
             let last = &mut self.texts[kind as usize];
@@ -325,7 +315,6 @@ impl Vehicle {
             MavMessage::MISSION_ITEM(item) if item.current < 2 => {
                 self.take_item(from, item.seq, Item::from_float(item), out)
             }
-            // Older clients send a mission item outside an upload for "go there now".
             MavMessage::MISSION_ITEM_INT(item) => self.guided_item(from, item.current, &Item::from_int(item), out),
             MavMessage::MISSION_ITEM(item) => self.guided_item(from, item.current, &Item::from_float(item), out),
             MavMessage::MISSION_REQUEST_LIST(wanted) => self.mission.list(from, wanted.mission_type),
@@ -375,7 +364,6 @@ impl Vehicle {
         self.model.flies && self.sample.position_m[2] > low_m
     }
 
-    /// Distance at which a goal counts as reached, metres.
     pub(super) fn tolerance_m(&self) -> f32 {
         let tolerance = Meaning::Controller(Parameter::Tolerance);
         self.parameters.get(tolerance).unwrap_or(0.0)
@@ -398,7 +386,6 @@ impl Vehicle {
             FlightMode::Auto if self.is_on_mission => return self.begin_item(out),
             FlightMode::Auto => Wish::Own,
             FlightMode::Guided | FlightMode::Hold => Wish::Hold,
-            // At the present height; it lands on arrival.
             FlightMode::Return => {
                 let [home_x, home_y, _] = self.home_m;
                 self.goal([home_x, home_y, z]).unwrap_or(Wish::Hold)
@@ -408,9 +395,8 @@ impl Vehicle {
         out.actions.push(Action::Wish(wish));
     }
 
-    /// The goal for a position; `None` if it is not finite, too far, or inside an obstacle.
+    /// `None` if the position is not finite, too far, or inside an obstacle.
     pub(super) fn goal(&self, [x, y, z]: [f64; 3]) -> Option<Wish<f32>> {
-        // A ground vehicle keeps its height.
         let place_m = [x, y, if self.model.flies { z } else { self.sample.position_m[2] }];
         let is_near = place_m.iter().all(|m| m.abs() <= FAR_M);
         if !is_near || !self.model.has_room(place_m) {
@@ -422,7 +408,6 @@ impl Vehicle {
         Some(Wish::Waypoint { waypoint: Waypoint::fixed(Position::from_metres(place_m)?), valid: None })
     }
 
-    /// Whether the vehicle is within `near_m` of a position, by its own estimate.
     pub(super) fn is_at(&self, place_m: [f64; 3], near_m: f64) -> bool {
         if self.model.grid.is_some() {
             return self.model.cell(place_m) == Some(self.sample.cell);
@@ -434,7 +419,6 @@ impl Vehicle {
         all <= near_m * near_m
     }
 
-    /// Continues a return, a landing or a mission from the present position.
     fn go_on(&mut self, out: &mut Out) {
         if !self.is_armed {
             return;

@@ -1,5 +1,3 @@
-//! `staya bridge SCENARIO` connects a simulated swarm to ground stations and scripts over MAVLink.
-
 use crate::Endpoint;
 use crate::bridge::{BridgeReport, Options, Refused, Swarm};
 use crate::geo::{Global as Place, Origin};
@@ -97,7 +95,6 @@ fn origin(text: &str) -> Result<Origin, String> {
     place.and_then(Origin::new).ok_or_else(|| "give LAT,LON,ALT: -90 to 90 degrees, -180 to 180 degrees, metres".into())
 }
 
-/// The links as given, with the local address of those that listen.
 fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
     let named = endpoints.iter().enumerate().map(|(line, endpoint)| {
         let local = swarm.lines().local(line);
@@ -108,7 +105,6 @@ fn lines(swarm: &Swarm, endpoints: &[Endpoint]) -> String {
 
 fn say(remark: Option<&str>) {
     if let Some(remark) = remark {
-        // Standard error may be closed; a remark may be lost.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
 }
@@ -117,8 +113,7 @@ impl BridgeArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// An unreadable or invalid scenario or key, too many robots, a link that cannot be opened, or
-    /// a log that cannot be written.
+    /// The scenario or key is invalid, a link cannot be opened, or a log cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let overrides = Overrides { seed: self.seed, ticks: None };
         let scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
@@ -152,7 +147,6 @@ impl BridgeArgs {
         let swarm = Swarm::new(&scenario, options)?;
         let count = scenario.robots.len();
         let lines = lines(&swarm, &self.mavlink);
-        // A run without an end shows no progress.
         let mut progress = ticks.map(|ticks| Progress::new(&scenario.name, ticks.into(), global));
         if progress.is_none() && !global.quiet {
             say(Some(&format!("{count} vehicles at {lines}; press Ctrl-C to stop")));

@@ -1,5 +1,3 @@
-//! `staya companion CONFIG.toml` controls vehicles with real autopilots.
-
 mod page;
 
 use crate::Tlog;
@@ -57,8 +55,7 @@ impl CompanionArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// An unreadable or invalid configuration, a link that cannot be opened, or a log that cannot
-    /// be written.
+    /// The configuration is invalid, a link cannot be opened, or a log cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let mut config = Config::load(&self.config)?;
         for (given, kept) in [(&self.key, &mut config.key), (&self.link_key, &mut config.link_key)] {

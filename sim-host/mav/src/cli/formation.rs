@@ -1,5 +1,3 @@
-//! `staya formation SHAPE --to LINE` sends a new shape and goal to a formation.
-
 use crate::Endpoint;
 use crate::formation::station::{Given, Members, Places, give, numbers};
 use crate::formation::{Graph, Order, Shape};
@@ -122,10 +120,8 @@ impl FormationArgs {
     /// Runs the command.
     ///
     /// # Errors
-    /// An unknown shape or an invalid file, a link that cannot be opened, no robot found, or robots
-    /// that did not answer or refused.
+    /// The shape is unknown or invalid, a link cannot be opened, no robot is found, or one refuses.
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        // The file is read before robots are searched.
         let wanted = match Shape::from_name(&self.shape) {
             Some(shape) => Wanted::Shape(shape),
             None => Wanted::Graph(self.read(Path::new(&self.shape))?),

@@ -1,4 +1,4 @@
-//! The companion's `CONFIG.toml`. docs/autopilots.md lists the fields too.
+//! The companion's `CONFIG.toml`; docs/autopilots.md describes its fields, units and defaults.
 
 use super::kind::Kind;
 use super::medium::MediumSetup;
@@ -15,94 +15,57 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 const LIST: &str = "docs/autopilots.md";
-/// Number of MAVLink system ids for vehicles.
 const SYSTEMS: u32 = 254;
-/// Largest routing window, cells.
 const RADIUS: u8 = 16;
 
-/// The whole file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ConfigFile {
-    /// The behaviour of the swarm: a scenario with `[plane]`.
     scenario: PathBuf,
-    /// Geographic position of the scenario's (0, 0).
     origin: OriginTable,
-    /// Network to companions in other processes.
     #[serde(default)]
     air: AirTable,
-    /// Key file: sign all messages on all links, and accept only signed ones. Default: none.
     link_key: Option<PathBuf>,
-    /// Rules of control.
     #[serde(default)]
     rules: RulesTable,
-    /// The vehicles of this process.
     #[serde(default)]
     vehicle: Vec<VehicleTable>,
 }
 
-/// `[origin]`.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct OriginTable {
     latitude_deg: f64,
     longitude_deg: f64,
-    /// Metres above sea level, for flying swarms. Default: 0.
     #[serde(default)]
     altitude_m: f64,
 }
 
-/// `[air]`.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct AirTable {
-    /// `GROUP:PORT`, an IPv4 multicast group shared by all companions.
     multicast: Option<String>,
-    /// Own address in the group's network. Default: chosen by the system.
     interface: Option<Ipv4Addr>,
-    /// `HOST:PORT` at which packets of `peers` arrive.
     bind: Option<String>,
-    /// `HOST:PORT` of each other companion.
     peers: Vec<String>,
-    /// Send packets over the MAVLink links, as broadcast TUNNEL messages. Default: false.
     tunnel: bool,
-    /// Key file: encrypt packets, and accept only encrypted ones. Default: none.
     key: Option<PathBuf>,
-    /// With a key: time for which the old key stays valid after the file changes, seconds. The new
-    /// key is used for sending after half of it. Default: 60.
     overlap_s: Option<f64>,
 }
 
-/// `[rules]`.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct RulesTable {
-    /// Selection of GUIDED or OFFBOARD: `"wait"` (the pilot; the default) or `"once"` (the
-    /// companion, once after its start).
     entry: Entry,
-    /// With `"once"`: also arm. Default: false.
     arm: bool,
-    /// With `arm`: also take off to `altitude_m`. Default: false.
     takeoff: bool,
-    /// Takeoff height above home, metres. It is also the flight height if the scenario is in the
-    /// plane. Default: none; the controller commands vertical velocities.
     altitude_m: Option<f64>,
-    /// Age at which a position is stale and the vehicle is stopped, seconds. Default: 1.
     stale_s: f64,
-    /// Timeout of an autopilot's heartbeat, seconds. Default: 3.
     link_lost_s: f64,
-    /// Setpoint rate, Hz. Default: 20.
     setpoint_hz: f64,
-    /// Position rate requested from the autopilot, Hz. Default: 10.
     position_hz: f64,
-    /// Time constant with which a vehicle follows a velocity, seconds; braking starts earlier by
-    /// this time. Default: 0.5.
     lag_s: f64,
-    /// Largest distance from the origin, metres; vehicles beyond it are not controlled. Default:
-    /// 10000.
     reach_m: f64,
-    /// Largest position error of a vehicle with stale or untrusted telemetry, metres; other
-    /// vehicles keep up to this much more distance. Default: 10.
     error_m: f64,
 }
 
@@ -124,22 +87,14 @@ impl Default for RulesTable {
     }
 }
 
-/// `[[vehicle]]`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct VehicleTable {
-    /// Robot number in the scenario.
     robot: u32,
-    /// MAVLink system id. Default: the robot number.
     system: Option<u32>,
-    /// Link to the autopilot, for example `udpin:127.0.0.1:14550`. Several vehicles may share one.
     link: String,
-    /// `"ardupilot-rover"`, `"ardupilot-copter"`, `"px4-copter"` (or `"px4"`), `"px4-rover"`.
     autopilot: Kind,
-    /// `[latitude, longitude]` in degrees, a goal that replaces the scenario's; for guidance
-    /// "waypoint".
     goal_deg: Option<[f64; 2]>,
-    /// Replaces `altitude_m` of `rules`.
     altitude_m: Option<f64>,
 }
 
@@ -199,8 +154,7 @@ impl Config {
         Self::parse(&text, path)
     }
 
-    /// Validates `text` as if it was read from `path`, which resolves relative paths and appears in
-    /// errors.
+    /// Validates `text` as the content of `path`, to which relative paths and errors refer.
     ///
     /// # Errors
     /// See [`Config::load`].
@@ -218,8 +172,7 @@ impl Config {
         })?;
         check_rules(&source, &file.rules)?;
         let mut scenario = Scenario::load(&source.folder().join(&file.scenario), &Overrides::default())?;
-        // A vehicle with an uncertain position reports a radius that is larger by the error, and
-        // its position jumps once telemetry is good again.
+        // A vehicle with an uncertain position adds the error to its radius, and may jump later.
         scenario.plausibility.max_radius_m += file.rules.error_m as f32;
         scenario.plausibility.slack_m += file.rules.error_m as f32;
         check_scenario(&source, &scenario)?;
@@ -364,7 +317,6 @@ fn rules(table: &RulesTable, vehicle: &VehicleTable, safety: SafetyKind) -> Rule
     }
 }
 
-/// Collects the links, assigns vehicles to them, and writes geographic goals into the scenario.
 fn vehicles(
     source: &Source<'_>,
     file: &ConfigFile,

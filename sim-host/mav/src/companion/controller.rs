@@ -1,5 +1,4 @@
-//! The controller of one vehicle. Telemetry and the scenario's map are its inputs, a velocity is
-//! its output.
+//! The controller of one vehicle: telemetry and the scenario's map in, a velocity out.
 
 use staya_controller::agent::{
     Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
@@ -26,18 +25,16 @@ pub struct Body {
     pub error_m: f64,
 }
 
-/// Limits the speed near a goal so that the vehicle does not overshoot.
 #[derive(Clone, Copy, Debug)]
 struct Brake {
     place_m: [f64; 3],
     tolerance_m: f64,
 }
 
-/// The scenario's guidance, unless the pilot controls the vehicle.
 type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
 type ControllerAgent<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
-/// An agent with its map and its senses.
+/// The agent of one vehicle with its map and senses.
 pub struct Controller<W> {
     index: usize,
     ground: Arc<PlaneGround>,
@@ -55,9 +52,9 @@ pub struct Controller<W> {
 }
 
 impl<W: Wire> Controller<W> {
-    /// Creates the controller of robot `index` of the scenario on the map `ground`. `boot` must
-    /// differ between starts. Lost neighbours get the margin of the scenario, but at least
-    /// `error_m` metres, because an autopilot whose companion died keeps moving for a while.
+    /// Creates the controller of robot `index` on the map `ground`. `boot` must differ between
+    /// starts. Lost neighbours get a margin of at least `error_m`, because an autopilot whose
+    /// companion died keeps moving for a while.
     #[must_use]
     pub fn new(
         scenario: &Scenario,
@@ -86,7 +83,6 @@ impl<W: Wire> Controller<W> {
         let brake = group.zip(places).and_then(|(group, places)| {
             let place = match group.guidance.kind() {
                 kind if kind.is_on_grid() => None,
-                // The last waypoint.
                 GuidanceKind::Waypoint => places.last(),
                 _ => places.first(),
             };
@@ -152,17 +148,14 @@ impl<W: Wire> Controller<W> {
         self.agent.neighbors().len()
     }
 
-    /// Radius of a known neighbour, metres.
     #[cfg(test)]
     pub fn known_radius_m(&self, robot: u32) -> Option<f32> {
         self.agent.neighbors().iter().find(|known| known.id.0 == robot).map(|known| known.radius_m)
     }
 
-    /// Runs one step of the agent.
-    ///
-    /// A vehicle that is not controlled (the pilot flies it, or its telemetry is stale) still sends
-    /// beacons: they say that it does not give way, and its radius includes the position error so
-    /// that others stay clear.
+    /// Runs one step of the agent. An uncontrolled vehicle (flown by the pilot, or with stale
+    /// telemetry) still sends beacons: it does not give way, and its radius includes the position
+    /// error.
     pub fn step(&mut self, body: &Body, steers: bool, inbox: &[u8], now: Duration) -> &Outputs<f32> {
         let [x, y, z] = body.position_m;
         // In the plane heights have no meaning, and altitudes of two receivers differ by metres.
@@ -172,7 +165,6 @@ impl<W: Wire> Controller<W> {
         inputs.inbox = inbox;
         let wish = if steers { Wish::Own } else { Wish::Off };
         if *self.agent.guidance().wish() != wish {
-            // Every guidance accepts both commands.
             let _ = self.agent.guidance_mut().command(wish);
         }
         let plane = match &mut inputs.surroundings {
@@ -185,7 +177,6 @@ impl<W: Wire> Controller<W> {
         }
         let [least, greatest] = Parameter::Radius.range();
         let radius_m = (self.radius_m + body.error_m) as f32;
-        // Every agent has a radius.
         let _ = self.agent.set_parameter(Parameter::Radius, radius_m.clamp(least, greatest));
         // The agent's clock wraps; steps are much closer to each other.
         let now = Instant::from_micros(now.as_micros() as u32);
@@ -204,9 +195,8 @@ impl<W: Wire> Controller<W> {
         }
     }
 
-    /// The velocity that the vehicle will soon have: the last command, limited to what it can reach
-    /// from the measured velocity. Acceleration is limited from there; limited from the measured
-    /// velocity, a lagging vehicle would never speed up.
+    /// The last command, limited to the velocities in reach of the measured one. With an
+    /// acceleration limited from the measured velocity, a lagging vehicle would never speed up.
     fn own_velocity(&self, measured_mps: [f64; 3]) -> [f64; 3] {
         let Some(commanded) = self.commanded_mps else {
             return measured_mps;
@@ -219,8 +209,7 @@ impl<W: Wire> Controller<W> {
     }
 }
 
-/// Largest speed from which the vehicle stops within the tolerance of its goal despite its lag. It
-/// brakes with half of its acceleration.
+/// Largest speed from which the vehicle stops at its goal with its lag and half its acceleration.
 fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag_s: f64) -> f64 {
     let way = [0, 1, 2].map(|axis| brake.place_m[axis] - position_m[axis]);
     let distance_m = way.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -228,7 +217,7 @@ fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag
         return f64::INFINITY;
     }
     let slow = brake.tolerance_m / (2.0 * lag_s);
-    // With half of the acceleration a: v^2 / a + v lag = remaining distance, solved for v.
+    // v^2 / a + v lag = remaining distance, solved for v, with half of the acceleration a.
     let by_lag = acceleration_mps2 * lag_s / 2.0;
     let fast = if acceleration_mps2.is_finite() {
         (by_lag * by_lag + acceleration_mps2 * distance_m).sqrt() - by_lag
@@ -238,7 +227,6 @@ fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag
     slow.max(fast)
 }
 
-/// Gives lost neighbours a margin of at least `error_m` metres.
 fn with_room(mut safety: SafetySetup, error_m: f64) -> SafetySetup {
     if let SafetySetup::Orca { inflation, .. } | SafetySetup::Fly { inflation, .. } = &mut safety {
         inflation.max_m = inflation.max_m.max(error_m as f32);

@@ -1,5 +1,3 @@
-//! Differences between autopilots.
-
 use serde::{Deserialize, Serialize};
 
 /// An autopilot and its type of vehicle.
@@ -19,7 +17,7 @@ pub enum Kind {
     Px4Rover,
 }
 
-/// PX4's main mode OFFBOARD, the third byte of the custom mode in a heartbeat.
+/// The third byte of the custom mode in a PX4 heartbeat.
 const OFFBOARD: u32 = 6;
 
 impl Kind {
@@ -70,7 +68,6 @@ mod tests {
         assert!(Kind::ArduCopter.is_outside_control(4));
         assert!(Kind::Px4Copter.is_outside_control(6 << 16));
         assert!(!Kind::Px4Copter.is_outside_control(6));
-        // AUTO.LOITER.
         assert!(!Kind::Px4Rover.is_outside_control((4 << 16) | (3 << 24)));
     }
 }

@@ -1,7 +1,5 @@
-//! Packets between companions: the same frames that robots exchange by radio.
-//!
-//! On a LAN a datagram contains the frames of one agent in one step. Over MAVLink they become one
-//! or more broadcast TUNNEL messages with up to 128 bytes each.
+//! Packets between companions: the frames that robots exchange by radio. A datagram on a LAN has
+//! those of one agent in one step; a TUNNEL message over MAVLink has up to 128 bytes of them.
 
 use socket2::{Domain, Protocol, Socket, Type};
 use staya_controller::wire::Wire;
@@ -10,9 +8,8 @@ use std::collections::VecDeque;
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 
-/// Payload type of Staya's TUNNEL messages. Private types start at 32768.
+/// Private payload types start at 32768.
 const PAYLOAD_TYPE: u16 = 0xD53A;
-/// Datagrams read per call, and own datagrams remembered.
 const AT_A_TIME: usize = 256;
 
 /// The network to companions in other processes.
@@ -42,9 +39,7 @@ pub enum MediumSetup {
 #[derive(Debug, thiserror::Error)]
 #[error("cannot exchange packets with other companions over {over}: {source}; check the addresses in [air]")]
 pub struct MediumError {
-    /// Address of the group or own address.
     over: String,
-    /// Cause.
     source: io::Error,
 }
 
@@ -53,7 +48,7 @@ pub struct MediumError {
 pub struct Medium {
     socket: Option<UdpSocket>,
     to: Vec<SocketAddr>,
-    /// The last datagrams sent, since a multicast group returns them to the sender.
+    /// Recent own datagrams, which a multicast group returns to the sender.
     sent: VecDeque<Vec<u8>>,
 }
 
@@ -65,7 +60,6 @@ impl Medium {
     pub fn open(setup: &MediumSetup) -> Result<Self, MediumError> {
         let medium = |socket, to| Self { socket, to, sent: VecDeque::new() };
         match setup {
-            // Tunnelled packets need no socket.
             MediumSetup::Here | MediumSetup::Tunnel => Ok(medium(None, Vec::new())),
             MediumSetup::Multicast { group, interface } => match join(*group, *interface) {
                 Ok(socket) => Ok(medium(Some(socket), vec![SocketAddr::V4(*group)])),
@@ -108,14 +102,13 @@ impl Medium {
                     Some(own) => drop(self.sent.remove(own)),
                     None => heard(&buffer[..len]),
                 },
-                // No datagram, or an ICMP error of an earlier one.
                 Err(_) => return,
             }
         }
     }
 }
 
-/// Opens a multicast socket that other processes on this computer can open too.
+/// Other processes on this computer can open the same group.
 fn join(group: SocketAddrV4, interface: Ipv4Addr) -> io::Result<UdpSocket> {
     let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))?;
     socket.set_reuse_address(true)?;
@@ -132,8 +125,7 @@ fn join(group: SocketAddrV4, interface: Ipv4Addr) -> io::Result<UdpSocket> {
     Ok(socket.into())
 }
 
-/// Packs the frames of an agent into broadcast TUNNEL messages, whole frames only. A frame above
-/// 128 bytes would be left out; none is that long.
+/// Packs whole frames into broadcast TUNNEL messages. No frame is longer than their 128 bytes.
 pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
     let mut parts = Vec::<Vec<u8>>::new();
     let mut rest = frames;
@@ -142,7 +134,6 @@ pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
         if wire.next_frame(&mut rest).is_none() {
             break;
         }
-        // The frame with its delimiters.
         let frame = &before[..before.len() - rest.len()];
         match parts.last_mut() {
             Some(part) if part.len() + frame.len() <= 128 => part.extend_from_slice(frame),
@@ -165,7 +156,7 @@ pub fn tunnel<W: Wire>(wire: &W, frames: &[u8]) -> Vec<MavMessage> {
         .collect()
 }
 
-/// The frames in a TUNNEL message; `None` if it is not one of Staya's.
+/// `None` if the message is not one of Staya's.
 #[must_use]
 pub fn tunnelled(message: &TUNNEL_DATA) -> Option<&[u8]> {
     let frames = message.payload.get(..message.payload_length.into())?;

@@ -1,10 +1,9 @@
-//! The companion: one controller per vehicle with a real autopilot. Telemetry gives its position
-//! and velocity; velocity setpoints are its output.
+//! The companion: one controller per vehicle with a real autopilot, from telemetry to velocities.
 //!
-//! The behaviour of the swarm is a scenario in the plane, the same file that `staya run` simulates.
-//! [`Config`] adds the geographic position and assigns vehicles to robots. [`OffboardStateMachine`]
-//! speaks MAVLink to one autopilot, [`Controller`] is the agent, [`Medium`] connects companions,
-//! and [`run`] is the main loop.
+//! The behaviour of the swarm is a scenario in the plane, as for `staya run`. [`Config`] adds the
+//! geographic position and assigns vehicles to robots. [`OffboardStateMachine`] speaks MAVLink to
+//! an autopilot, [`Controller`] is the agent, [`Medium`] connects companions, [`run`] is the main
+//! loop.
 
 mod config;
 mod controller;

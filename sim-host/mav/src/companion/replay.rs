@@ -1,5 +1,3 @@
-//! Replays recorded flights of ArduPilot's simulator into the state machine of one vehicle.
-
 use super::kind::Kind;
 use super::offboard::{AUTOPILOT, Event, OffboardStateMachine, Rules};
 use crate::geo::{Global, Origin};
@@ -11,11 +9,9 @@ use std::io::Read as _;
 use std::path::Path;
 use std::time::Duration;
 
-/// System id of the recording ground station.
 const STATION: u8 = 250;
 const STEP: Duration = Duration::from_millis(10);
 
-/// Length of the frame at the start of `bytes`, by its header.
 fn frame_len(bytes: &[u8]) -> usize {
     const SIGNED: u8 = 1;
     match *bytes {
@@ -25,11 +21,10 @@ fn frame_len(bytes: &[u8]) -> usize {
     }
 }
 
-/// Messages of the autopilots, with times relative to the first one.
+/// Times are relative to the first message.
 pub struct Recording(Vec<(Duration, Vec<u8>)>);
 
 impl Recording {
-    /// Reads the flight `name` from `tests/data/ardupilot`.
     pub fn load(name: &str) -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/ardupilot");
         let path = folder.join(format!("{name}.tlog.gz"));
@@ -46,7 +41,6 @@ impl Recording {
             let at = Duration::from_micros(micros - *first.get_or_insert(micros));
             let (frame, behind) = frames.split_at(frame_len(frames));
             rest = behind;
-            // Messages outside the dialect are skipped.
             if RawFrame::new(frame).is_some_and(|frame| frame.sender().component == AUTOPILOT) {
                 all.push((at, frame.to_vec()));
             }
@@ -54,13 +48,11 @@ impl Recording {
         Self(all)
     }
 
-    /// All frames of the vehicles' autopilots.
     pub fn frames(self) -> Vec<(Duration, Vec<u8>)> {
         let vehicle = |frame: &[u8]| RawFrame::new(frame).is_some_and(|frame| frame.sender().system < STATION);
         self.0.into_iter().filter(|(_, frame)| vehicle(frame)).collect()
     }
 
-    /// The messages of autopilot `system`.
     pub fn of(&self, system: u8) -> impl Iterator<Item = (Duration, MavMessage)> {
         self.0.iter().filter_map(move |(at, frame)| {
             let frame = RawFrame::new(frame).filter(|frame| frame.sender().system == system)?;
@@ -68,8 +60,6 @@ impl Recording {
         })
     }
 
-    /// Feeds the messages of `system` into a polled state machine. `look` receives the state
-    /// machine and the sent messages after each poll.
     pub fn replay(
         &self,
         system: u8,
@@ -101,7 +91,6 @@ mod tests {
         matches!(message, MavMessage::SET_POSITION_TARGET_LOCAL_NED(_))
     }
 
-    /// The autopilot's landed state at a time.
     fn landed_at(recording: &Recording, system: u8, at: Duration) -> Option<u8> {
         let said = recording.of(system).take_while(|(then, _)| *then <= at);
         let landed = said.filter_map(|(_, message)| match message {
@@ -148,7 +137,6 @@ mod tests {
         assert!((19.5..=20.5).contains(&rate), "{rate} setpoints a second");
     }
 
-    /// Position north and east of ArduPilot's default home, metres.
     fn north_east_m(offboard: &OffboardStateMachine) -> [f64; 2] {
         let place = offboard.fix().expect("a position").place;
         let origin = Origin::new(Global { latitude_deg: -35.363_262, longitude_deg: 149.165_237, altitude_m: 584.0 });

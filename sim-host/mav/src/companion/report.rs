@@ -1,5 +1,3 @@
-//! Report of a companion run.
-
 use super::kind::Kind;
 use super::offboard::{OffboardCounters, State};
 use crate::Counts;
@@ -35,17 +33,13 @@ pub struct VehicleReport {
     pub neighbors: usize,
 }
 
-/// Statistics of one link.
 #[derive(Clone, Debug, Serialize)]
 pub struct LineReport {
-    /// The endpoint, as opened.
     pub link: String,
-    /// Traffic counters.
     #[serde(flatten)]
     pub counts: Counts,
     /// Why the link is not connected; null if it is, or needs no connection.
     pub trouble: Option<String>,
-    /// Frames rejected for a missing, wrong or replayed signature.
     pub refused: u32,
     /// Whether the signing timestamps are used up, so that the link sends no more.
     pub is_exhausted: bool,

@@ -1,5 +1,4 @@
-//! Key change while a companion runs: the key file is read again when it changes, and both keys are
-//! valid for a while.
+//! Key change while a companion runs: the key file is watched, and both keys are valid for a while.
 
 use staya_controller::auth::Key;
 use staya_sim::key::KeyFile;
@@ -11,7 +10,6 @@ use std::time::Duration;
 
 const LOOK: Duration = Duration::from_secs(1);
 
-/// A step of a key change.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Turn {
     /// Accept the new key too.
@@ -22,9 +20,8 @@ pub enum Turn {
     Forget,
 }
 
-/// Schedule of a key change. Every companion accepts the new key at once, sends with it after half
-/// of the overlap, and drops the old key after all of it. So companions stay in contact if their
-/// files change within half of the overlap of each other.
+/// A companion accepts the new key at once, sends with it after half of the overlap, and drops the
+/// old key after all of it. Files that change within half of the overlap keep contact.
 #[derive(Clone, Debug)]
 pub struct Roll {
     generation: u16,
@@ -33,14 +30,12 @@ pub struct Roll {
 }
 
 impl Roll {
-    /// Creates a schedule without a key change. With `has_old` the previous key is accepted from
-    /// the start and dropped after the overlap.
+    /// With `has_old` the previous key is accepted from the start and dropped after the overlap.
     #[must_use]
     pub fn new(overlap: Duration, has_old: bool) -> Self {
         Self { generation: has_old.into(), overlap, due: has_old.then_some((overlap, Turn::Forget)) }
     }
 
-    /// Starts the change to a new key.
     #[must_use]
     pub fn begin(&mut self, now: Duration, key: Key) -> Turn {
         self.generation = self.generation.saturating_add(1);
@@ -48,7 +43,6 @@ impl Roll {
         Turn::Hear(key)
     }
 
-    /// Returns the next step, if it is due.
     #[must_use]
     pub fn turn(&mut self, now: Duration) -> Option<Turn> {
         let (_, turn) = self.due.take_if(|(at, _)| now >= *at)?;
@@ -58,7 +52,6 @@ impl Roll {
         Some(turn)
     }
 
-    /// Applies a step to a robot's wire format.
     pub fn apply(&self, turn: &Turn, wire: &mut HostWire) {
         match (wire, turn) {
             (HostWire::Sealed(sealed), Turn::Hear(key)) => sealed.ring_mut().hear_key(self.generation, key),
@@ -67,7 +60,6 @@ impl Roll {
             (HostWire::Signed(signed), Turn::Hear(key)) => signed.signing_mut().hear(key.clone()),
             (HostWire::Signed(signed), Turn::Speak) => signed.signing_mut().speak(),
             (HostWire::Signed(signed), Turn::Forget) => signed.signing_mut().forget(),
-            // Formats without a key.
             (HostWire::Postcard(_) | HostWire::Mavlink(_), _) => {}
         }
     }
@@ -78,8 +70,7 @@ impl Roll {
 pub struct KeyWatch(Receiver<Result<Key, String>>);
 
 impl KeyWatch {
-    /// Starts to watch `path`. Each key that differs from the previous one (first `key`) is
-    /// reported, each error once.
+    /// Reports each key that differs from the previous one, and each error once.
     #[must_use]
     pub fn start(path: PathBuf, mut key: Key) -> Self {
         let (sender, receiver) = channel();
@@ -104,12 +95,10 @@ impl KeyWatch {
                 }
             }
         };
-        // If the thread cannot start, the key stays.
         let _ = thread::Builder::new().name("key".into()).spawn(watch);
         Self(receiver)
     }
 
-    /// The next key or error, if there is one.
     pub fn news(&self) -> Option<Result<Key, String>> {
         self.0.try_recv().ok()
     }
@@ -134,8 +123,6 @@ mod tests {
         by.decode(frame).map(drop)
     }
 
-    /// Two companions whose files change up to half of the overlap apart stay in contact. A
-    /// companion with the old key is locked out.
     #[test]
     fn companions_hear_each_other_while_the_key_changes() {
         let folder = tempfile::tempdir().unwrap();

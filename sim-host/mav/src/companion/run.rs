@@ -1,5 +1,4 @@
-//! The main loop of companions: receives frames, runs the agents and state machines when they are
-//! due, sends frames.
+//! The main loop of companions.
 
 mod demo;
 mod machine;
@@ -34,12 +33,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use vehicle::{Vehicle, is_within};
 
-/// Longest wait for a frame: with a LAN to poll, and without.
+/// Longest waits: with a LAN to poll, and without.
 const GLANCES: [Duration; 2] = [Duration::from_millis(5), Duration::from_millis(20)];
 /// Zero-velocity setpoints at the end, and their interval.
 const FAREWELLS: (u32, Duration) = (5, Duration::from_millis(40));
 
-/// Ground stations are warned when only this number of signing timestamps is left.
 const FEW_TIMESTAMPS: u64 = 1000;
 const LOOK: Duration = Duration::from_secs(1);
 /// Smallest age limit of positions in a dry run.
@@ -101,9 +99,7 @@ pub enum RunError {
 
 struct Link {
     name: String,
-    /// Last reported reason for a missing connection.
     trouble: Option<String>,
-    /// Whether the low number of timestamps was reported.
     is_end_told: bool,
 }
 
@@ -111,17 +107,14 @@ struct Companions<'a> {
     origin: Origin,
     reach_m: f64,
     tick: Duration,
-    /// Longest wait for a frame.
     glance: Duration,
     is_tunnel: bool,
     machine: Box<dyn Machine>,
     links: Vec<Link>,
     next_look: Duration,
     vehicles: Vec<Vehicle>,
-    /// One for each link, if there is a key of links.
     signing: Option<Vec<Signing>>,
     wire: AnyWire,
-    /// Key changes of the packets' key.
     roll: Roll,
     options: &'a Options,
     log_error: Option<TlogError>,
@@ -132,8 +125,7 @@ struct Companions<'a> {
 /// Runs the companions of a configuration until the time is over or `is_wanted` returns false.
 /// `look` observes them between two steps and must be fast.
 ///
-/// No other error ends the run. A log that cannot be written is reported on standard error, to the
-/// ground stations and in the report. At any end, controlled vehicles are told to stop.
+/// A log that cannot be written does not end the run. At any end, controlled vehicles stop.
 ///
 /// # Errors
 /// [`RunError`] if something cannot be opened at the start, or standard output fails in a dry run.
@@ -149,7 +141,7 @@ pub fn run(
     let remarks =
         [seal.as_ref().and_then(|seal| seal.remark.as_ref()), link_key.as_ref().and_then(|file| file.remark.as_ref())];
     for remark in remarks.into_iter().flatten() {
-        // A closed standard error must not stop the run.
+        // Standard error may be closed.
         let _ = writeln!(io::stderr(), "staya: {remark}");
     }
     let tlog = options.tlog.take();
@@ -256,8 +248,7 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// Runs until the time is over or `is_wanted` returns false. Returns the duration in seconds
-    /// and whether it was interrupted.
+    /// Returns the duration in seconds, and whether the run was interrupted.
     fn run(&mut self, is_wanted: impl Fn() -> bool, look: &mut dyn FnMut(&Sight<'_>)) -> (f64, bool) {
         let limit = self.options.seconds.or(self.options.demo.then_some(DEMO_S)).map(Duration::from_secs_f64);
         let mut interrupted = false;
@@ -292,7 +283,6 @@ impl<'a> Companions<'a> {
         self.machine.now()
     }
 
-    /// Waits for a frame until something is due, then does the due work.
     fn turn(&mut self) {
         let now = self.now();
         let due = |vehicle: &Vehicle| vehicle.next_step.min(vehicle.offboard.due(now));
@@ -321,7 +311,6 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// Reads the key file's changes and applies due steps.
     fn roll_key(&mut self, now: Duration) {
         let turn = match self.machine.new_key() {
             None => self.roll.turn(now),
@@ -351,7 +340,6 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// Ends the log; the vehicles are controlled without it.
     fn log_fails(&mut self, error: TlogError) {
         self.say(&format!("staya: {error}; continuing without a log"));
         self.log_error = Some(error);
@@ -454,7 +442,6 @@ impl<'a> Companions<'a> {
         self.speak(index, &said);
     }
 
-    /// Delivers frames to all other robots in this and other processes.
     fn speak(&mut self, index: usize, said: &[u8]) {
         if said.is_empty() {
             return;
@@ -490,7 +477,6 @@ impl<'a> Companions<'a> {
         }
     }
 
-    /// Sends a message to a vehicle's autopilot; a dry run shows it.
     fn send(&mut self, index: usize, message: &MavMessage) {
         let vehicle = &mut self.vehicles[index];
         let sender = Sender { system: vehicle.setup.system, component: COMPONENT, sequence: vehicle.sequence };
@@ -498,7 +484,6 @@ impl<'a> Companions<'a> {
             return self.show(index, message);
         }
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
-        // A frame has room for any message.
         if encode_message(sender, message, &mut frame).is_err() {
             return;
         }
@@ -508,7 +493,6 @@ impl<'a> Companions<'a> {
             signing.advance_to(key::timestamp());
             // Autopilots reject unsigned frames.
             let Ok(signature) = signing.sign(&mut frame) else { return };
-            // The buffer has room for a signature.
             let _ = frame.extend_from_slice(&signature);
         }
         self.machine.send(line, peer, &frame);

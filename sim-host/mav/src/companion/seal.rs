@@ -1,5 +1,3 @@
-//! The key of packets between agents, and the counter of starts that belongs to it.
-
 use super::roll::{KeyWatch, Roll, Turn};
 use staya_controller::auth::Key;
 use staya_controller::wire::{Format, Sealed};
@@ -25,8 +23,7 @@ pub enum SealError {
         /// Cause.
         source: std::io::Error,
     },
-    /// The counter is missing. A counter that restarts at 0 would make recorded packets valid
-    /// again, and other robots would reject the new ones.
+    /// The counter is missing. From 0 it would make recorded packets valid again.
     #[error(
         "{} is missing, it counts how often this computer used the key; if the key is unused here, run `echo 0 > {}`; else write a \
         number into it that is greater than all earlier ones, or give a new key",
@@ -67,7 +64,7 @@ pub struct Seal {
     pub remark: Option<String>,
 }
 
-/// Replaces a file atomically: after a power failure it has the old or the new content.
+/// After a power failure the file has the old or the new content.
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     let mut name = path.as_os_str().to_owned();
     name.push(".new");
@@ -76,7 +73,7 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     file.write_all(text.as_bytes())?;
     file.sync_all()?;
     std::fs::rename(&new, path)?;
-    // Makes the rename itself durable, which only Unix supports.
+    // The rename itself is durable only on Unix.
     #[cfg(unix)]
     if let Some(folder) = path.parent() {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -87,7 +84,7 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
 
 impl Seal {
     /// Reads the key in `path`, the previous key in the file with `.old` appended if it exists, and
-    /// the counter of starts in the file with `.starts` appended. Stores the next counter there.
+    /// the counter of starts in the file with `.starts` appended, and stores the next counter.
     ///
     /// # Errors
     /// [`SealError`] with file and remedy.
@@ -190,7 +187,6 @@ mod tests {
         std::fs::write(&path, "passphrase: one for all\n").unwrap();
         let kept = folder.path().join("swarm.key.starts");
         std::fs::write(&kept, "7\n").unwrap();
-        // A folder in place of the temporary file.
         std::fs::create_dir(folder.path().join("swarm.key.starts.new")).unwrap();
         assert!(matches!(Seal::read(&path), Err(SealError::Write { .. })));
         assert_eq!(std::fs::read_to_string(&kept).unwrap(), "7\n");

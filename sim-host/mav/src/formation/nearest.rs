@@ -1,10 +1,9 @@
-//! Assignment of places to robots with short paths that do not cross.
+//! Assignment of places to robots with short paths that do not cross (M. Turpin, N. Michael, V.
+//! Kumar 2014, CAPT: concurrent assignment and planning of trajectories for multiple robots,
+//! International Journal of Robotics Research 33(1), section 4).
 //!
-//! Source: M. Turpin, N. Michael, V. Kumar 2014, CAPT: concurrent assignment and planning of
-//! trajectories for multiple robots, International Journal of Robotics Research 33(1), section 4.
 //! With the smallest sum of squared distances, no two robots collide if all move straight at
-//! constant speeds and arrive at the same time. Assignments differ in that sum only by products of
-//! positions and places, so neither the offset nor the scale of the places matters.
+//! constant speeds and arrive at the same time. Offset and scale of the places do not matter.
 
 use super::Graph;
 use pathfinding::kuhn_munkres::kuhn_munkres;
@@ -12,13 +11,13 @@ use pathfinding::matrix::Matrix;
 use staya_controller::agent::TEMPLATE;
 use staya_controller::grid::Cell;
 
-/// Resolution of positions across the swarm. Products of positions and places fit into 64 bits.
+/// Position steps across the swarm; products of positions and places fit into 64 bits.
 const STEPS: f64 = 1e6;
 
 impl Graph {
-    /// Reorders the places for robots at `positions` (east and north, any unit and origin) so that
-    /// the sum of squared distances is minimal. A robot without a neighbour of a smaller number,
-    /// which it would follow, gets an extra edge to the nearest one with capacity. O(n^3).
+    /// Reorders the places for robots at `positions` (east, north, any unit and origin) for a
+    /// minimal sum of squared distances. A robot without a neighbour of a smaller number to follow
+    /// gets an edge to the nearest one with capacity. O(n^3).
     #[must_use]
     pub fn nearest(&self, positions: &[[f64; 2]]) -> Self {
         let count = self.robots().min(positions.len());

@@ -12,13 +12,11 @@ use staya_mavlink::wire::MAX_ROBOT;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
-/// Interval of own heartbeats and of repeated orders.
 const EVERY: Duration = Duration::from_millis(500);
-/// Robots send heartbeats at 1 Hz, so after the first one the others follow within this time.
+/// Robots send heartbeats at 1 Hz, so all follow the first one within this time.
 const GATHER: Duration = Duration::from_millis(1500);
-/// Frames sent in one burst, less than the capacity of a peer's queue.
+/// Less than the capacity of a peer's queue.
 const AT_ONCE: usize = 100;
-/// Longest wait for frames per turn.
 const GLANCE: Duration = Duration::from_millis(20);
 
 /// Confirmations of the orders.
@@ -95,7 +93,7 @@ struct Station<'a> {
     lines: Lines,
     signing: Option<&'a mut Signing>,
     heard: BTreeSet<u8>,
-    /// Position of each robot: longitude and latitude, 1e-7 degrees.
+    /// Longitude and latitude, 1e-7 degrees.
     at: BTreeMap<u8, [i32; 2]>,
     greeted: Option<Instant>,
     sequence: u8,
@@ -108,15 +106,13 @@ impl Station<'_> {
         if let Some(signing) = &mut self.signing {
             match signing.sign(&mut frame) {
                 Ok(signature) => frame.extend_from_slice(&signature),
-                // An unsigned frame must not be sent.
                 Err(_) => return,
             }
         }
         self.lines.send(0, &frame);
     }
 
-    /// Sends a heartbeat if it is due: a listening link sends only to peers from which it received
-    /// frames.
+    /// A listening link sends only to peers from which it received frames.
     fn greet(&mut self) {
         if self.greeted.is_some_and(|at| at.elapsed() < EVERY) {
             return;
@@ -124,7 +120,7 @@ impl Station<'_> {
         self.greeted = Some(Instant::now());
         let sender = Sender { system: STATION, component: 190, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
-        // 8 means "not an autopilot".
+        // 8: not an autopilot.
         let beat =
             HEARTBEAT_DATA { mavtype: MAV_TYPE_GCS, autopilot: 8, mavlink_version: 3, ..HEARTBEAT_DATA::DEFAULT };
         let mut frame = heapless::Vec::<u8, MAX_FRAME_LEN>::new();
@@ -171,8 +167,7 @@ impl Station<'_> {
         }
     }
 
-    /// Waits for the selected robots, or for all, and for their positions if the assignment needs
-    /// them.
+    /// Positions are needed for nearest places only.
     fn gather(&mut self, endpoint: &Endpoint, wanted: &Members, until: Instant) -> Result<BTreeSet<u8>, StationError> {
         let mut first = None;
         loop {
@@ -207,7 +202,7 @@ impl Station<'_> {
         Ok(robots)
     }
 
-    /// Positions of the robots relative to one of them, east and north in a common unit.
+    /// Positions relative to one robot, in a common unit.
     fn positions(&self, robots: &BTreeSet<u8>) -> Vec<[f64; 2]> {
         let at: Vec<_> = robots.iter().filter_map(|robot| self.at.get(robot)).collect();
         let Some(&&[lon, lat]) = at.first() else {
@@ -241,8 +236,7 @@ pub fn numbers(robots: &BTreeSet<u8>) -> String {
     runs.iter().map(text).collect::<Vec<_>>().join(", ")
 }
 
-/// Sends the orders to the swarm at `endpoint` until every robot has confirmed them or `wait` is
-/// over.
+/// Sends the orders to the swarm at `endpoint` until all robots confirm them or `wait` is over.
 ///
 /// # Errors
 /// [`StationError`]. Robots without a confirmation are not an error: see [`Given`].

@@ -16,8 +16,6 @@ fn shapes_have_their_expected_places() {
     assert_eq!(of(Shape::Circle, 1), [(0, 0)]);
 }
 
-/// Every robot of every shape receives all parts of a template, with its own place and its
-/// neighbours' places.
 #[test]
 fn orders_of_every_shape_and_size_are_consistent() {
     for (name, shape) in Shape::NAMES {
@@ -97,8 +95,6 @@ fn a_file_parses_and_its_errors_are_reported() {
     assert!(matches!(graph.turned(Dir::NorthEast), Err(GraphError::Shared(..))));
 }
 
-/// Robots in a column that form a line in order of numbers cross each other; with nearest places
-/// they do not.
 #[test]
 fn nearest_places_have_shorter_paths_without_crossings() {
     use staya_controller::rand::Rng;
@@ -116,15 +112,13 @@ fn nearest_places_have_shorter_paths_without_crossings() {
             let to = |graph: &Graph, robot: usize| [graph.places[robot].x, graph.places[robot].y].map(f64::from);
             for a in 0..count {
                 for b in 0..a {
-                    // Robots on straight paths at constant speeds do not meet if the paths keep the
-                    // direction between them.
+                    // Robots do not meet if their paths keep the direction between them.
                     let (pa, pb) = (to(&near, a), to(&near, b));
                     let off = [at[a][0] - at[b][0], at[a][1] - at[b][1]];
                     let dot = off[0] * (pa[0] - pb[0]) + off[1] * (pa[1] - pb[1]);
                     assert!(dot > -0.1, "{name} {count}: {a} and {b} by {dot}");
                 }
             }
-            // Every robot but the first follows another one, and the orders fit.
             for robot in 1..count as u16 {
                 assert!(near.edges.iter().any(|&(_, larger)| larger == robot), "{name} {count}: {robot}");
             }
@@ -163,7 +157,6 @@ fn offset_and_scale_of_positions_do_not_change_the_assignment() {
     assert_ne!(near.places, graph.places);
     let moved = at.map(|[x, y]| [7e8 + 90.0 * x, -3e8 + 90.0 * y]);
     assert_eq!(graph.nearest(&moved), near);
-    // With all robots at one place any assignment is valid.
     assert_eq!(graph.nearest(&[[1.0, 2.0]; 5]).robots(), 5);
 }
 

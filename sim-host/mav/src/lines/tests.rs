@@ -32,7 +32,7 @@ fn pair(listening: &str, calling: &str) -> (Lines, Lines) {
     (listening, open(&format!("{calling}:127.0.0.1:{port}")))
 }
 
-/// Sends until the frame arrives: a connection takes time, and a datagram may be lost.
+/// A connection takes time, and a datagram may be lost.
 fn arrives(from: &Lines, to: &Lines, x: i16) -> Received {
     let began = Instant::now();
     while began.elapsed() < PATIENCE {
@@ -54,7 +54,6 @@ fn both_ways(listening: &Lines, calling: &Lines) {
     listening.send(0, &framed(7));
     let answer = calling.receive(PATIENCE).expect("an answer");
     assert_eq!(goal(&answer), 7);
-    // A frame is counted shortly after it can be read.
     let bytes = 2 * framed(6).len() as u64;
     let began = Instant::now();
     while listening.counts(0).bytes_out < bytes && began.elapsed() < PATIENCE {
@@ -125,8 +124,7 @@ fn datagrams(socket: &UdpSocket) -> usize {
     std::iter::from_fn(|| socket.recv(&mut buffer).ok()).count()
 }
 
-/// The attack: one byte, or one unauthenticated frame, from many (possibly spoofed) ports would
-/// make each of them a receiver of all frames.
+/// The attack: one frame from each of many spoofed ports would make all of them receivers.
 #[test]
 fn unknown_senders_receive_nothing() {
     let listening = open("udpin:127.0.0.1:0");
@@ -137,7 +135,6 @@ fn unknown_senders_receive_nothing() {
         stranger.send_to(b"x", address).expect("sent");
         stranger.send_to(&framed(1), address).expect("sent");
     }
-    // A peer that becomes known.
     let friend = open(&format!("udpout:{address}"));
     friend.send(0, &framed(77));
     let mut heard = 0;
@@ -156,7 +153,6 @@ fn unknown_senders_receive_nothing() {
     assert_eq!(strangers.iter().map(datagrams).sum::<usize>(), 0);
 }
 
-/// The attack: idle connections use up all descriptors or threads.
 #[test]
 fn silent_connections_are_closed_for_new_ones() {
     let listening = open("tcpin:127.0.0.1:0");
@@ -164,10 +160,8 @@ fn silent_connections_are_closed_for_new_ones() {
     let friend = open(&format!("tcpout:{address}"));
     arrives(&friend, &listening, 1);
     let idle: Vec<_> = (0..2 * CONNECTIONS).map(|_| TcpStream::connect(address).expect("a queue")).collect();
-    // A new connection after all others.
     let late = open(&format!("tcpout:{address}"));
     assert_eq!(goal(&arrives(&late, &listening, 2)), 2);
-    // Older connections are closed; the known peer stays.
     let ended = |mut socket: &TcpStream| {
         let _ = socket.set_read_timeout(Some(Duration::from_millis(1)));
         matches!(socket.read(&mut [0; 1]), Ok(0))

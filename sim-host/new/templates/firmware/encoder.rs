@@ -23,7 +23,7 @@ pub async fn count<P: InputPin + Wait>(mut a: P, mut b: P, edges: &Cell<u16>) ->
     }
 }
 
-/// Quarter of an encoder line, 0 to 3.
+/// Quarter of a line, 0 to 3.
 fn phase<P: InputPin>(a: &mut P, b: &mut P) -> u8 {
     let (a, b) = (a.is_high().unwrap_or(false), b.is_high().unwrap_or(false));
     u8::from(a) << 1 | u8::from(a != b)

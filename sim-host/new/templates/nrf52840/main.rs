@@ -55,7 +55,6 @@ async fn wire(p: Peripherals) -> Option<()> {
     None
 }
 
-/// One output of a PWM unit.
 struct Motor(SimplePwm<'static>);
 
 impl ErrorType for Motor {

@@ -80,9 +80,8 @@ pub fn lattice_acceleration<'py>(
     Ok(simulation::rows(py, answers.into_iter()))
 }
 
-/// Preferred velocities of a goal flock, m/s (V. E. and V. V. Pavlovsky). `gains` are those of the
-/// goal, of the neighbours' centre and of repulsion. Runs on all cores, without the interpreter
-/// lock.
+/// Preferred velocities of a goal flock, m/s (V. E. and V. V. Pavlovsky), on all cores. `gains` are
+/// those of the goal, of the neighbours' centre and of repulsion.
 ///
 /// # Errors
 /// `ValueError` for parameters that the law refuses.
@@ -125,9 +124,8 @@ pub fn goal_wish<'py>(
     Ok(simulation::rows(py, wishes.into_iter()))
 }
 
-/// Headings of boids one step later, unit vectors (V. A. Starovoitova 2018). `values` are crowded
-/// and closest, metres, and the largest turns towards and away from neighbours, radians. Runs on
-/// all cores, without the interpreter lock.
+/// Headings of boids one step later, unit vectors (V. A. Starovoitova 2018), on all cores. `values`
+/// are crowded and closest, metres, and the largest turns towards and away from others, radians.
 ///
 /// # Errors
 /// `ValueError` for arrays that cannot be read.
@@ -144,7 +142,7 @@ pub fn boids_steer<'py>(
     let params = BoidsParams::new(crowded_m, closest_m, turn, turn_away);
     let (positions_m, headings, radii_m) = (rows::<3>(&positions_m)?, rows::<3>(&headings)?, radii_m.as_slice()?);
     let next = py.detach(|| {
-        // All boids have one speed, so headings replace velocities.
+        // One common speed makes headings sufficient.
         let robots = Robots { positions_m, velocities_mps: headings, radii_m };
         let neighborhood = Neighborhood::new(robots, f64::from(closest_m), torus_m);
         let each = (0..positions_m.len()).into_par_iter().with_min_len(BATCH);

@@ -1,5 +1,4 @@
-//! Single behaviours of the controller, applied to all robots at once. Neighbours come from exact
-//! positions, not from a radio.
+//! Single behaviours, applied to all robots at once. Neighbours come from exact positions.
 
 pub mod flock;
 pub mod orca;
@@ -33,7 +32,7 @@ pub(super) struct Neighborhood<'a> {
 }
 
 impl<'a> Neighborhood<'a> {
-    /// Creates a search with a range, on a torus if circumferences are given.
+    /// On a torus if circumferences are given.
     pub fn new(robots: Robots<'a>, range_m: f64, torus_m: Option<[f64; 2]>) -> Self {
         let torus = torus_m.and_then(|[x, y]| Space::torus([x, y, f64::MAX]));
         let mut cells = Cells::new(torus.unwrap_or(Space::OPEN), range_m);
@@ -41,8 +40,7 @@ impl<'a> Neighborhood<'a> {
         Self { robots, range_m, cells }
     }
 
-    /// The nearest robots around robot `index`, nearest first, up to the capacity of an agent.
-    /// `found` is scratch memory.
+    /// Nearest first, up to the capacity of an agent. `found` is scratch memory.
     pub fn of(&self, index: usize, found: &mut Vec<Found<f64, 3>>) -> heapless::Vec<Nearby<f32>, NEIGHBORS> {
         let query = Query {
             at: self.robots.positions_m[index],
@@ -92,7 +90,6 @@ impl Obstacles<'_> {
     }
 }
 
-/// Robots in arrays have numbers from 1.
 fn id(index: usize) -> RobotId {
     RobotId(u32::try_from(index).unwrap_or(u32::MAX >> 1).saturating_add(1))
 }

@@ -62,8 +62,8 @@ impl Avoiders {
     }
 
     /// Returns the velocities until the next step, m/s. Each robot considers the 16 nearest robots
-    /// that it could meet within the horizon. O(robots * 16) and the neighbour search, on all
-    /// cores, without the interpreter lock.
+    /// in reach. O(robots * 16) and the neighbour search, on all cores, without the interpreter
+    /// lock.
     #[expect(clippy::too_many_arguments, reason = "Python gives them by name")]
     fn velocities<'py>(
         &self,

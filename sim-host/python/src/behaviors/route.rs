@@ -15,10 +15,9 @@ use staya_sim::walk::{Task, Walk, Walker};
 /// Cells of each path, times in ticks, and whether each path ends at the goal.
 type Routes<'py> = (Vec<Bound<'py, PyArray2<i16>>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<bool>>);
 
-/// Moves robots from their starts to their goals with the knowledge of their windows. Returns the
-/// cells of each path (x, y), its travel time in ticks, and whether it arrived. `land` is row by
-/// row from the south, 0 for a wall. `gains` are a0 to a3, from 0 to 4095. Runs on all cores,
-/// without the interpreter lock.
+/// Moves robots from their starts to their goals by their windows. Returns the cells of each path
+/// (x, y), its travel time in ticks, and whether it arrived. `land` is row by row from the south, 0
+/// for a wall; `gains` are a0 to a3, 0 to 4095. Runs on all cores, without the interpreter lock.
 ///
 /// # Errors
 /// `ValueError` for a map of an unsupported size.

@@ -1,7 +1,6 @@
 use super::*;
 use proptest::prelude::*;
 
-/// Random frames whose figures survive JSON exactly.
 pub fn frames() -> impl Strategy<Value = FrameData> {
     let float = any::<i32>().prop_map(|n| n as f32 / 1024.0);
     let body = ((prop::array::uniform3(float.clone()), prop::array::uniform3(float)), any::<(u32, u8, u8)>());

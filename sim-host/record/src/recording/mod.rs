@@ -1,8 +1,6 @@
-//! A run in a file: the scene, all frames, the orders and the summary, in blocks that are
-//! compressed and checked one by one (`PROTOCOL.md`, Recordings).
-//!
-//! [`Writer`] creates a recording during a run. [`Reader`] finds any moment without loading the
-//! whole file.
+//! A run in a file: the scene, all frames, the orders and the summary, in compressed and checked
+//! blocks (`PROTOCOL.md`, Recordings). [`Writer`] creates a recording during a run; [`Reader`]
+//! finds any moment without loading the whole file.
 
 mod read;
 mod run;
@@ -19,13 +17,12 @@ use std::path::{Path, PathBuf};
 pub const MAGIC: [u8; 8] = *b"STAYAREC";
 /// Version of the format.
 pub const VERSION: u32 = 1;
-/// Bytes of magic number and version.
+/// Magic number and version.
 const FILE_HEAD: u64 = 12;
-/// Bytes of the header of each block.
 const BLOCK_HEAD: usize = 13;
 /// Largest uncompressed size of a block, bytes.
 pub const MOST_RAW: u32 = 1 << 30;
-/// Limit of DEFLATE's compression ratio (1032, with a margin for its header).
+/// DEFLATE's largest compression ratio (1032), with a margin for its header.
 const MOST_PACKED_BY: u64 = 1040;
 
 const SCENE: u8 = 1;
@@ -45,7 +42,7 @@ pub enum RecordingError {
         path: PathBuf,
         /// Cause.
         source: io::Error,
-        /// What the user can do.
+        /// Remedy for the user.
         remedy: &'static str,
     },
     /// The file is not a recording, or is damaged.
@@ -57,7 +54,7 @@ pub enum RecordingError {
         at: u64,
         /// The problem.
         what: String,
-        /// What the user can do.
+        /// Remedy for the user.
         remedy: &'static str,
     },
 }

@@ -1,5 +1,3 @@
-//! Reads recordings.
-
 use super::{
     BLOCK_HEAD, END, FILE_HEAD, FRAMES, MAGIC, MOST_PACKED_BY, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION,
 };
@@ -25,7 +23,7 @@ struct Block {
     packed: u32,
     crc: u32,
     tick: u32,
-    /// Index of the block with the scene of its frames.
+    /// Index of the block with its scene.
     scene: usize,
 }
 
@@ -33,7 +31,6 @@ struct Block {
 struct Unpacked {
     block: usize,
     bytes: Vec<u8>,
-    /// Tick and range of each frame.
     frames: Vec<(u32, Span)>,
 }
 
@@ -43,7 +40,6 @@ pub struct Reader<R = BufReader<File>> {
     source: R,
     path: PathBuf,
     blocks: Vec<Block>,
-    /// Indices of the blocks with frames.
     frames: Vec<usize>,
     unpacked: Option<Unpacked>,
     last_tick: u32,
@@ -51,12 +47,11 @@ pub struct Reader<R = BufReader<File>> {
 }
 
 impl Reader {
-    /// Reads the index of a recording and checks all blocks. O(bytes of the file) in constant
-    /// memory.
+    /// Reads the index of a recording and checks all blocks, in O(bytes) time and constant memory.
+    /// A file that ends inside a block is read up to that block.
     ///
     /// # Errors
-    /// The file cannot be read, is not a recording, or is damaged. A file that ends inside a block
-    /// is read up to that block.
+    /// The file cannot be read, is not a recording, or is damaged.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let file = open(path).map_err(RecordingError::reading(path))?;
         Self::new(BufReader::with_capacity(1 << 16, file), path)
@@ -93,13 +88,11 @@ impl<R: Read + Seek> Reader<R> {
         Ok(this)
     }
 
-    /// Finds the first tick of each block and the last tick of the recording.
     fn place_frames(&mut self) -> Result<(), RecordingError> {
         let mut before = None;
         for at in self.frames.clone() {
             let block = self.blocks[at];
-            // Length, magic number and tick of the first frame are enough; the rest is checked when
-            // it is read.
+            // The first bytes of a block are enough; the rest is checked when it is read.
             let packed = self.packed(&block)?;
             let beginning = match decompress_to_vec_with_limit(&packed, 12) {
                 Ok(bytes) => bytes,
@@ -145,7 +138,6 @@ impl<R: Read + Seek> Reader<R> {
     /// # Errors
     /// See [`Reader::scene_text`].
     pub fn scene_text_at(&mut self, tick: u32) -> Result<String, RecordingError> {
-        // A valid index begins with a scene.
         let block = self.blocks[self.block_of(tick).map_or(0, |at| self.blocks[at].scene)];
         let bytes = self.raw(&block)?;
         String::from_utf8(bytes).map_err(|_| RecordingError::damage(&self.path, block.at, "this scene is not UTF-8"))
@@ -159,8 +151,7 @@ impl<R: Read + Seek> Reader<R> {
         self.json(self.blocks[0])
     }
 
-    /// Bytes of the last frame at or before `tick`, else of the first frame. The last uncompressed
-    /// block is cached.
+    /// Bytes of the last frame at or before `tick`, else of the first frame; caches one block.
     ///
     /// # Errors
     /// There are no frames, or the file cannot be read or is damaged.
@@ -203,7 +194,6 @@ impl<R: Read + Seek> Reader<R> {
         self.blocks.iter().rfind(|block| block.kind == kind).copied()
     }
 
-    /// Index of the block with the frame of a tick.
     fn block_of(&self, tick: u32) -> Option<usize> {
         let number = self.frames.partition_point(|&at| self.blocks[at].tick <= tick).saturating_sub(1);
         self.frames.get(number).copied()
@@ -218,7 +208,6 @@ impl<R: Read + Seek> Reader<R> {
     fn packed(&mut self, block: &Block) -> Result<Vec<u8>, RecordingError> {
         let io = RecordingError::reading(&self.path);
         self.source.seek(SeekFrom::Start(block.at + BLOCK_HEAD as u64)).map_err(&io)?;
-        // The index limits it to the length of the file.
         let mut packed = vec![0; block.packed as usize];
         self.source.read_exact(&mut packed).map_err(&io)?;
         if crc32fast::hash(&packed) == block.crc {
@@ -234,7 +223,6 @@ impl<R: Read + Seek> Reader<R> {
             .ok_or_else(|| RecordingError::damage(&self.path, block.at, "this block is damaged (decompression failed)"))
     }
 
-    /// Uncompresses block `at` of the index.
     fn unpack(&mut self, at: usize) -> Result<&Unpacked, RecordingError> {
         let unpacked = match self.unpacked.take() {
             Some(unpacked) if unpacked.block == at => unpacked,
@@ -251,7 +239,7 @@ impl<R: Read + Seek> Reader<R> {
     }
 }
 
-/// Undoes the XOR and locates the frames; `None` if lengths or ticks are invalid.
+/// Undoes the XOR and locates the frames; `None` if a length or tick is invalid.
 fn spans(bytes: &mut [u8]) -> Option<Vec<(u32, Span)>> {
     let (mut frames, mut at, mut before) = (Vec::<(u32, Span)>::new(), 0, 0..0);
     while at < bytes.len() {
@@ -270,13 +258,13 @@ fn spans(bytes: &mut [u8]) -> Option<Vec<(u32, Span)>> {
     (!frames.is_empty()).then_some(frames)
 }
 
-/// A little-endian number; the caller has checked the length.
+/// The caller has checked the length.
 fn word(bytes: &[u8], at: usize) -> u32 {
     let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
     four.map_or(0, u32::from_le_bytes)
 }
 
-/// The blocks, and the byte at which an incomplete file ends.
+/// Returns the blocks, and the byte at which an incomplete file ends.
 fn index(
     source: &mut (impl Read + Seek),
     path: &Path,

@@ -1,5 +1,3 @@
-//! Records a run.
-
 use super::{RecordingError, Sink, Writer};
 use crate::frame::{FrameData, Framer};
 use crate::scene::{self, Mode, Scene};
@@ -20,11 +18,9 @@ pub struct RunRecorder<W: Sink> {
     is_written: bool,
     every: u32,
     scene: Scene,
-    /// Ticks before which an intervention changes the map or obstacles, latest first.
+    /// Ticks before which an intervention changes the scene, latest first.
     changes: Vec<u32>,
-    /// The map's own changes over time.
     rules: Vec<LandChange>,
-    /// Tick of the last moment.
     seen: u32,
     orders: Vec<Value>,
 }
@@ -116,7 +112,7 @@ fn changes_scene(what: &Intervention) -> bool {
     )
 }
 
-/// An order as pages send it: robots by index, positions relative to the scene's origin.
+/// Robots by index and positions relative to the scene's origin, as pages send them.
 fn order(what: &Intervention, scene: &Scene) -> Value {
     let mut order = serde_json::to_value(what).unwrap_or_default();
     if let Some(robot) = what.robot() {

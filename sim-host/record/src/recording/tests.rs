@@ -46,12 +46,10 @@ fn all(bytes: &[u8]) -> Result<Vec<FrameData>, RecordingError> {
         if tick >= last {
             return Ok(frames);
         }
-        // The next frame is at most a few ticks later.
         tick += 1;
     }
 }
 
-/// Frames with rising ticks.
 fn runs() -> impl Strategy<Value = Vec<FrameData>> {
     prop::collection::vec((frames(), 1..4_u32), 1..12).prop_map(|frames| {
         let mut tick = 0;
@@ -163,7 +161,6 @@ fn errors_name_the_file_and_byte_of_the_damage() {
     assert!(spoilt(8).contains("byte 8: unsupported version 65"), "{}", spoilt(8));
     let damaged = spoilt(scene_end + 20);
     assert!(damaged.starts_with(&format!("a.rec: byte {scene_end}: this block is damaged")), "{damaged}");
-    // A length above the limit of compression.
     assert!(spoilt(scene_end + 4).contains("invalid block header"), "{}", spoilt(scene_end + 4));
     assert!(all(b"").is_err() && all(&good[..12]).is_err());
     // An incomplete file is read up to its end.
@@ -174,7 +171,6 @@ fn errors_name_the_file_and_byte_of_the_damage() {
 
 #[test]
 fn a_full_disk_leaves_complete_blocks() {
-    /// A sink with a limited capacity.
     struct Full(Vec<u8>, usize);
     impl std::io::Write for Full {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

@@ -1,5 +1,3 @@
-//! Writes recordings.
-
 use super::{BLOCK_HEAD, END, FRAMES, MAGIC, MOST_RAW, ORDERS, RecordingError, SCENE, VERSION};
 use crate::frame::FrameData;
 use crate::scene::Scene;
@@ -8,9 +6,9 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Uncompressed size of a block, bytes. A page unpacks one block to show one moment.
+/// A page unpacks one block to show one moment.
 const BLOCK: usize = 1 << 18;
-/// Within a few per cent of the slower levels.
+/// Packs within a few per cent of the slower levels.
 const LEVEL: u8 = 6;
 
 /// An output that can be truncated after a failed write.
@@ -31,13 +29,11 @@ impl Sink for Vec<u8> {
     }
 }
 
-/// Writes a recording block by block. At any time the file ends with a complete block. Memory: one
-/// block and one frame.
+/// Writes a recording, which always ends with a complete block. Memory: one block and one frame.
 #[derive(Clone, Debug)]
 pub struct Writer<W: Sink> {
     out: W,
     path: PathBuf,
-    /// Bytes of complete blocks in the file.
     written: u64,
     raw: Vec<u8>,
     /// The previous frame, for the XOR.

@@ -1,20 +1,16 @@
-//! Bodies, goals and obstacles as `foxglove.SceneUpdate`.
-
 use super::proto::Bytes;
 use crate::frame::FrameData;
 use crate::scene::{Kind, Scene, Solid};
 use staya_sim::world::plane::Shape;
 
-/// The coordinate frame of all messages.
 pub const FRAME: &str = "map";
-/// Colours (red, green, blue) of consecutive robots or groups, by Okabe and Ito.
+/// Colours by Okabe and Ito.
 const COLOURS: [[u8; 3]; 7] =
     [[0, 114, 178], [213, 94, 0], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233], [90, 90, 90]];
 const INTRUDER: [f64; 4] = [0.8, 0.1, 0.1, 1.0];
 const OBSTACLE: [f64; 4] = [0.44, 0.41, 0.36, 1.0];
-/// Height of a disc or wall as a multiple of a robot's radius.
+/// A multiple of a robot's radius.
 const HEIGHT: f64 = 1.0;
-/// Above this number of robots, colours show groups.
 const MANY: usize = 100;
 
 pub fn stamp(out: &mut Bytes, at_ns: u64) {
@@ -30,7 +26,6 @@ fn rgba(out: &mut Bytes, values: [f64; 4]) {
     (1..).zip(values).for_each(|(number, value)| out.double(number, value));
 }
 
-/// A position and a rotation about z, radians.
 pub fn pose(out: &mut Bytes, at_m: [f64; 3], heading: f64) {
     out.message(1, |out| vector(out, at_m));
     out.message(2, |out| {
@@ -39,20 +34,19 @@ pub fn pose(out: &mut Bytes, at_m: [f64; 3], heading: f64) {
     });
 }
 
-/// Direction of a velocity, radians from east; 0 for zero velocity.
+/// From east; 0 for zero velocity.
 pub fn heading([x, y, _]: [f32; 3]) -> f64 {
     libm::atan2(y.into(), x.into())
 }
 
-/// A position, and the attitude of a body that faces its velocity without roll.
+/// The attitude of a body that faces its velocity without roll.
 pub fn looking(out: &mut Bytes, at_m: [f64; 3], velocity_mps: [f32; 3]) {
     let quaternion = quaternion(velocity_mps);
     out.message(1, |out| vector(out, at_m));
     out.message(2, |out| (1..).zip(quaternion).for_each(|(number, value)| out.double(number, value)));
 }
 
-/// The quaternion (x, y, z, w) of [`attitude`](staya_sim::metrics::flock::attitude): a rotation
-/// about z to the heading, then a pitch.
+/// As [`attitude`](staya_sim::metrics::flock::attitude): a rotation to the heading, then a pitch.
 fn quaternion(velocity_mps: [f32; 3]) -> [f64; 4] {
     let [x, y, z] = velocity_mps.map(f64::from);
     let (sin, cos) = libm::sincos(heading(velocity_mps) / 2.0);
@@ -60,7 +54,7 @@ fn quaternion(velocity_mps: [f32; 3]) -> [f64; 4] {
     [-sin * down, cos * down, sin * level, cos * level]
 }
 
-/// An entity, which replaces the previous one with this id.
+/// Replaces the previous entity with this id.
 fn entity(update: &mut Bytes, id: &str, at_ns: u64, fill: impl FnOnce(&mut Bytes)) {
     update.message(2, |out| {
         out.message(1, |out| stamp(out, at_ns));
@@ -179,7 +173,7 @@ pub fn obstacles(scene: &Scene, at_ns: u64) -> Vec<u8> {
     update.0
 }
 
-/// A wall as two lines, at its foot and its top, with posts between them.
+/// Lines at the foot and the top, with posts between them.
 fn wall(out: &mut Bytes, points_m: &[[f64; 2]], high: f64) {
     let at = |[x, y]: [f64; 2], z: f64| [x, y, z];
     let sides = points_m.windows(2).flat_map(|pair| {
@@ -195,7 +189,6 @@ mod tests {
     use super::*;
     use staya_sim::metrics::flock::attitude;
 
-    /// The columns of the rotation matrix of a unit quaternion.
     fn columns([x, y, z, w]: [f64; 4]) -> [[f64; 3]; 3] {
         [
             [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],

@@ -32,13 +32,12 @@ use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// Size of a chunk, bytes. A killed run loses its last chunk.
+/// A killed run loses its last chunk.
 const CHUNK: u64 = 1 << 20;
-/// `foxglove.Log.Level`.
 const INFO: u64 = 2;
 const WARNING: u64 = 3;
 
-/// Topics and schemas (without package), by the index of the channel.
+/// Topic and schema (without package) of each channel.
 const TOPICS: [(&str, &str); 7] = [
     ("/tf", "FrameTransforms"),
     ("/land", "Grid"),
@@ -62,7 +61,7 @@ pub struct McapWriter<W: Write + Seek> {
     out: mcap::Writer<W>,
     path: PathBuf,
     scene: Scene,
-    /// Channel number in the file, and messages so far.
+    /// Number in the file, and messages so far.
     channels: Vec<(u16, u32)>,
     goals: Vec<[u32; 3]>,
     modes: Vec<u8>,
@@ -86,8 +85,7 @@ impl<W: Write + Seek> McapWriter<W> {
     /// `out` cannot be written.
     pub fn new(out: W, path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
         let error = failed(path);
-        // Without seeking, each complete chunk is final, so a file that is cut off is valid up to
-        // there.
+        // Without seeking, each complete chunk is final, so a file that is cut off is valid.
         let options = WriteOptions::new().compression(None).chunk_size(Some(CHUNK)).disable_seeking(true);
         let mut out = options.library(concat!("staya ", env!("CARGO_PKG_VERSION"))).create(out).map_err(&error)?;
         let (descriptors, mut channels) = (schema::descriptors(), Vec::new());
@@ -139,7 +137,6 @@ impl<W: Write + Seek> McapWriter<W> {
         Ok(())
     }
 
-    /// Writes the static messages.
     fn begin(&mut self, at_ns: u64) -> Result<(), RecordingError> {
         let origin_m = self.scene.origin_m;
         let mut frames = Bytes::default();
@@ -176,7 +173,7 @@ impl<W: Write + Seek> McapWriter<W> {
         self.send(OBSTACLES, at_ns, &obstacles)
     }
 
-    /// Logs changed modes; for the first frame only the number of robots.
+    /// The first frame only logs the number of robots.
     fn events(&mut self, frame: &FrameData, robots: usize, at_ns: u64) -> Result<(), RecordingError> {
         let now = frame.mode.get(..robots).unwrap_or_default();
         let before = std::mem::replace(&mut self.modes, now.to_vec());
@@ -214,7 +211,7 @@ impl<W: Write + Seek> McapWriter<W> {
     }
 }
 
-/// Simulated time in nanoseconds; 0 for negative times and NaN.
+/// 0 for negative times and NaN.
 fn nanos(time_s: f64) -> u64 {
     libm::round(time_s * 1e9) as u64
 }

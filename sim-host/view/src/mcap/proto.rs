@@ -1,20 +1,13 @@
-//! The part of Protocol Buffers that MCAP needs: encoding of fields, and descriptors of messages.
+//! The part of Protocol Buffers that MCAP needs: encoded fields, and descriptors of messages.
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// 64-bit float.
     Double,
-    /// Signed 64-bit integer, as a varint.
     Int64,
-    /// Signed 32-bit integer, as a varint.
     Int32,
-    /// Unsigned 32-bit integer in four bytes.
     Fixed32,
-    /// Boolean.
     Bool,
-    /// String.
     Text,
-    /// Bytes.
     Bytes,
     /// Another message, by its full name.
     Message(&'static str),
@@ -70,7 +63,6 @@ impl Bytes {
         self.varint(u64::from(number) << 3 | wire);
     }
 
-    /// Integer, boolean or enumeration value.
     pub fn int(&mut self, number: u32, value: u64) {
         self.tag(number, 0);
         self.varint(value);
@@ -103,7 +95,7 @@ impl Bytes {
     }
 }
 
-/// A `google.protobuf.FileDescriptorSet`, which describes these files to readers.
+/// Describes these files to readers.
 pub fn descriptor_set(files: &[&File]) -> Vec<u8> {
     let mut set = Bytes::default();
     for file in files {

@@ -1,6 +1,5 @@
-//! Foxglove's schemas, as far as runs need them. Names, numbers and types of the fields equal those
-//! of Foxglove's .proto files
-//! (<https://docs.foxglove.dev/docs/visualization/message-schemas/introduction>).
+//! The parts of Foxglove's schemas that runs need, with names, numbers and types as in its .proto
+//! files (<https://docs.foxglove.dev/docs/visualization/message-schemas/introduction>).
 
 use super::proto::{Field, File, Kind, Type, descriptor_set, many, one};
 use Kind::{Bool, Bytes, Double, Enum, Fixed32, Int32, Int64, Message, Text};
@@ -154,7 +153,6 @@ pub fn descriptors() -> Vec<u8> {
     descriptor_set(&[&TIMESTAMP, &DURATION, &FOXGLOVE])
 }
 
-/// JSON Schema of the channel `/figures`.
 pub const FIGURES: &str = r#"{
   "$schema": "https://json-schema.org/draft/2020-12/schema",
   "title": "staya.Figures",

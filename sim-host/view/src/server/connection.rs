@@ -1,5 +1,3 @@
-//! One browser connection: a request, then a file or a WebSocket.
-
 use super::request::{LONGEST, Refused, Request, Rules};
 use crate::page::File;
 use mio::Registry;
@@ -13,9 +11,9 @@ use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, Utf8Bytes, WebSocket};
 
 const LONGEST_MESSAGE: usize = 64 << 10;
-/// Texts queued for a page that does not read; more close it.
+/// Limit of queued texts, beyond which a page is disconnected.
 const UNREAD: usize = 512;
-/// Bytes queued for a page: a scene and a frame of a million robots.
+/// A scene and a frame of a million robots.
 const MOST_BYTES: usize = 256 << 20;
 
 /// Frames in transit to a page that confirms them.
@@ -23,32 +21,26 @@ const AHEAD: u64 = 3;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// The connection continues.
     Goes,
-    /// The connection became a page.
+    /// It became a page.
     Opened,
-    /// The request was rejected, and the answer is being sent.
+    /// The answer is being sent.
     Refused,
-    /// The connection ended.
     Ended,
 }
 
 enum State {
-    /// Receives a request, with a deadline.
     Asking { heard: Vec<u8>, until: Instant },
-    /// Sends an answer, with a deadline.
     Answering { left: Vec<u8>, at: usize, until: Instant },
-    /// A page connected by WebSocket.
     Live(Box<Live>),
 }
 
 struct Live {
     texts: VecDeque<Utf8Bytes>,
     frame: Option<Bytes>,
-    /// Whether data wait in the WebSocket's buffer.
     is_behind: bool,
     sent: u64,
-    /// Number of frames that the page confirmed; `None` if it confirms none.
+    /// `None` if it confirms none.
     seen: Option<u64>,
 }
 
@@ -79,10 +71,9 @@ impl Connection {
         }
     }
 
-    /// Removes the connection from the poll. With `is_over` a page is told that the server ends.
+    /// With `is_over` a page gets the message that the server ends.
     pub fn end(self, registry: &Registry, is_over: bool) {
         match self.stream {
-            // The stream is closed in any case.
             Some(Stream::Plain(mut stream)) => drop(registry.deregister(&mut stream)),
             Some(Stream::Socket(mut socket)) => {
                 let farewell = CloseFrame { code: CloseCode::Away, reason: "over".into() };
@@ -94,8 +85,7 @@ impl Connection {
         }
     }
 
-    /// Reads received data. `has_room`: whether another page is allowed. `hear` takes a message and
-    /// returns whether there was room for it.
+    /// `has_room`: another page is allowed. `hear` returns whether it had room for a message.
     pub fn read(
         &mut self,
         rules: &Rules,
@@ -131,7 +121,6 @@ impl Connection {
                     return if is_refusal { Outcome::Refused } else { Outcome::Goes };
                 }
             }
-            // Data received during an answer are ignored.
             _ => Outcome::Goes,
         }
     }
@@ -145,7 +134,6 @@ impl Connection {
             "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
              Sec-WebSocket-Accept: {accept}\r\n\r\n"
         );
-        // The first bytes on a connection always fit into its buffer.
         if stream.write(head.as_bytes()).ok() != Some(head.len()) {
             return Outcome::Ended;
         }
@@ -160,28 +148,25 @@ impl Connection {
         Outcome::Opened
     }
 
-    /// Queues a text for the page.
     pub fn say(&mut self, text: Utf8Bytes) {
         if let State::Live(live) = &mut self.state {
             live.texts.push_back(text);
         }
     }
 
-    /// Queues a frame, which replaces one that was not sent yet.
+    /// Replaces a frame that was not sent yet.
     pub fn show(&mut self, frame: Bytes) {
         if let State::Live(live) = &mut self.state {
             live.frame = Some(frame);
         }
     }
 
-    /// Records that the page has drawn this number of frames.
     pub fn seen(&mut self, frames: u64) {
         if let State::Live(live) = &mut self.state {
             live.seen = Some(frames.min(live.sent));
         }
     }
 
-    /// Sends as much as possible.
     pub fn write(&mut self) -> Outcome {
         match (&mut self.stream, &mut self.state) {
             (Some(Stream::Plain(stream)), State::Answering { left, at, .. }) => {
@@ -248,7 +233,7 @@ fn read_words(socket: &mut WebSocket<TcpStream>, hear: &mut dyn FnMut(String) ->
     }
 }
 
-/// The answer to a request that does not become a WebSocket, and whether the request was rejected.
+/// The answer to a request other than for a WebSocket, and whether it is a rejection.
 fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
     let file = match request {
         Request::File(name) => files.iter().find(|file| file.name == name),
@@ -267,7 +252,6 @@ fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
         }
         _ => ("400 Bad Request", "text/plain", "Invalid request.\n"),
     };
-    // Without a nonce the page runs no inline script.
     let nonce = super::random_hex().unwrap_or_default();
     let text = if kind == "text/html" { text.replace("NONCE", &nonce) } else { text.to_owned() };
     let length = text.len();

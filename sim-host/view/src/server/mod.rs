@@ -1,10 +1,10 @@
 //! A web server for live pages. One thread serves files and WebSockets and never makes the run
 //! wait.
 //!
-//! The run sends texts ([`Server::say`]) and frames ([`Server::show`]). A slow page gets fewer
-//! frames, and a page that does not read is disconnected. The run polls the requests of pages
-//! ([`Server::next`]). The number of connections and the memory of each are limited; a new
-//! connection replaces the oldest one without a complete request.
+//! The run sends texts ([`Server::say`]) and frames ([`Server::show`]) and polls the requests of
+//! pages ([`Server::next`]). A slow page gets fewer frames; a page that does not read is
+//! disconnected. The connections and the memory of each are limited; a new connection replaces the
+//! oldest one without a complete request.
 
 mod connection;
 mod request;
@@ -26,9 +26,8 @@ use tungstenite::{Bytes, Utf8Bytes};
 
 const CONNECTIONS: usize = 256;
 const PAGES: usize = 32;
-/// Queue of page messages for the run.
 const UNHEARD: usize = 1024;
-/// Timeout of a request and of its answer.
+/// Timeout of a request, and of its answer.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 const LISTENER: Token = Token(0);
@@ -45,8 +44,7 @@ pub struct Counts {
     pub connections: u64,
     /// Rejected requests: malformed, wrong token, other origin, or too many pages.
     pub refused: u64,
-    /// Connections closed by the server: requests too slow, pages that do not read or send too
-    /// much, the oldest of too many.
+    /// Connections closed by the server: too slow, too talkative, not reading, or too many.
     pub left: u64,
 }
 
@@ -193,8 +191,7 @@ impl Server {
         let _ = self.waker.wake();
     }
 
-    /// Records that a page has drawn this number of frames since it connected. It gets no more
-    /// while three are in transit.
+    /// Records how many frames a page has drawn; it gets no more while three are in transit.
     pub fn seen(&self, client: Client, frames: u64) {
         self.send(ToPages::Seen(client, frames));
     }
@@ -220,7 +217,7 @@ impl Drop for Server {
     }
 }
 
-/// Locks data that are valid even after a panic of the other thread.
+/// The data are valid even after a panic of the other thread.
 fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -236,7 +233,7 @@ struct Pages {
     listener: TcpListener,
     rules: Rules,
     files: Vec<File>,
-    /// By token; tokens rise, so the oldest connection is first.
+    /// Keys are tokens, which rise: the oldest connection is first.
     connections: BTreeMap<usize, Connection>,
     next: usize,
     heard: SyncSender<FromPage>,
@@ -249,7 +246,6 @@ impl Pages {
     fn run(mut self) {
         let mut events = Events::with_capacity(CONNECTIONS);
         loop {
-            // An interrupted poll returns no events.
             let _ = self.poll.poll(&mut events, Some(Duration::from_secs(1)));
             for event in &events {
                 match event.token() {
@@ -274,7 +270,6 @@ impl Pages {
     }
 
     fn accept(&mut self) {
-        // An error means that no connection waits, or that it was closed already.
         while let Ok((mut stream, _)) = self.listener.accept() {
             lock(&self.counts).connections += 1;
             if self.connections.len() >= CONNECTIONS {
@@ -315,7 +310,7 @@ impl Pages {
         }
     }
 
-    /// Delivers the run's messages. Returns true once the run has dropped the server.
+    /// Returns true once the run has dropped the server.
     fn pass_on(&mut self) -> bool {
         while let Ok(what) = self.out.try_recv() {
             match what {
@@ -353,7 +348,6 @@ impl Pages {
             let was_live = connection.is_live();
             connection.end(self.poll.registry(), false);
             if was_live {
-                // A run that does not read messages does not learn of this one either.
                 let _ = self.heard.try_send(FromPage::Closed(Client(number)));
             }
         }

@@ -1,8 +1,8 @@
 //! Parses and authorises HTTP/1.1 requests without bodies.
 //!
 //! Any web page that the user visits can send requests to this computer. Therefore the Host header
-//! must be an address of this server (not a name from a foreign DNS), the Origin must be its own
-//! page, and requests for the page or the WebSocket need the token of the printed address.
+//! must be an address of this server, the Origin must be its page, and the page and the WebSocket
+//! need the token.
 
 use std::net::{IpAddr, SocketAddr};
 
@@ -11,36 +11,30 @@ const HEADERS: usize = 64;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Request {
-    /// Incomplete.
     Partial,
-    /// A file of the page; empty for the page itself.
+    /// Empty for the page itself.
     File(String),
-    /// The WebSocket, with the key of its handshake.
+    /// With the key of its handshake.
     Live(String),
-    /// A rejected request.
     Refused(Refused),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refused {
-    /// Not valid HTTP.
     Malformed,
     /// Wrong host, wrong origin or missing token.
     Forbidden,
-    /// A method other than GET.
     Method,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Rules {
-    /// The address that the server listens on.
     pub address: SocketAddr,
-    /// The token in the page's address.
     pub token: String,
 }
 
 impl Rules {
-    /// Whether the Host header is an address of this server: a number or localhost, with its port.
+    /// A number or localhost, with its port.
     fn is_own_host(&self, host: &str) -> bool {
         let (name, port) = match host.rsplit_once(':') {
             Some((name, port)) if !port.ends_with(']') => (name, port.parse().ok()),
@@ -55,13 +49,12 @@ impl Rules {
         is_own_name && port == Some(self.address.port())
     }
 
-    /// Compares in a time that does not depend on the number of correct characters.
+    /// Takes a time that does not depend on the number of correct characters.
     fn is_token(&self, given: &str) -> bool {
         let pairs = self.token.bytes().zip(given.bytes());
         given.len() == self.token.len() && pairs.fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
     }
 
-    /// Parses a request.
     pub fn read(&self, bytes: &[u8]) -> Request {
         let mut headers = [httparse::EMPTY_HEADER; HEADERS];
         let mut request = httparse::Request::new(&mut headers);

@@ -99,7 +99,6 @@ fn garbage_and_many_connections_do_not_block_a_page() {
     assert!(get(&server, &format!("/?token={}", server.token)).starts_with("HTTP/1.1 200 OK"));
     server.say(None, "still there");
     assert_eq!(page.read().expect("it is"), Message::Text("still there".into()));
-    // A message that is too long or binary disconnects the page.
     page.send(Message::Text("x".repeat(100_000).into())).ok();
     assert_eq!(server.next(Duration::from_secs(10)), Some(FromPage::Closed(client)));
     drop(crowd);

@@ -1,10 +1,6 @@
-//! Past frames of a run.
-
-/// Largest total size of the stored frames, bytes.
 const MOST: usize = 256 << 20;
 
-/// Frames by tick. When they exceed the limit, every second one is dropped, and from then on only
-/// every second is added.
+/// Frames by tick. Above the limit every second one is dropped, and added from then on.
 #[derive(Debug)]
 pub(super) struct Memory {
     frames: Vec<(u32, Box<[u8]>)>,
@@ -20,7 +16,7 @@ impl Default for Memory {
 }
 
 impl Memory {
-    /// Stores the frame of a tick and drops frames from this tick on.
+    /// Drops frames from this tick on.
     pub fn put(&mut self, tick: u32, frame: &[u8]) {
         self.forget_from(tick);
         if !tick.is_multiple_of(self.every) {
@@ -53,7 +49,7 @@ impl Memory {
         self.frames.get(behind.checked_sub(1)?).map(|(_, frame)| &**frame)
     }
 
-    /// At most `most` frames, evenly spaced, oldest first.
+    /// Evenly spaced, oldest first.
     pub fn some(&self, most: usize) -> impl Iterator<Item = &[u8]> {
         let every = self.frames.len().div_ceil(most.max(1)).max(1);
         self.frames.iter().step_by(every).map(|(_, frame)| &**frame)

@@ -1,4 +1,4 @@
-//! JSON messages between a session and its pages; `PROTOCOL.md` describes them.
+//! JSON messages between a session and its pages (`PROTOCOL.md`).
 
 use super::Session;
 use crate::frame::FrameData;
@@ -17,7 +17,6 @@ use staya_sim::world::plane::Shape;
 
 const LINKS: usize = 20_000;
 
-/// A request of a page, see `PROTOCOL.md`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(super) enum Wanted {
@@ -35,11 +34,10 @@ pub(super) enum Wanted {
     Order { order: Order },
 }
 
-/// A request that cannot be parsed.
 #[derive(Clone, Debug)]
 pub(super) struct NotUnderstood {
     pub text: String,
-    /// Whether the text is JSON at all; if not, the sender is not a page.
+    /// If not, the sender is not a page.
     pub is_json: bool,
 }
 
@@ -60,7 +58,7 @@ impl Wanted {
     }
 }
 
-/// An intervention as sent by a page: robots by index, positions relative to the scene's origin.
+/// Robots by index, positions relative to the scene's origin.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) struct Order(serde_json::Map<String, Value>);
 
@@ -149,7 +147,6 @@ impl Session {
         json!(scene).to_string()
     }
 
-    /// The radio with all interventions so far.
     fn radio(&self) -> scene::Radio {
         let mut radio = scene::Radio::of(&self.scenario);
         let planned = self.scenario.interventions.iter().filter(|(tick, _)| *tick < self.tick);
@@ -179,7 +176,7 @@ impl Session {
         .to_string()
     }
 
-    /// Figures of the ticks so far; `None` before the first tick.
+    /// `None` before the first tick.
     pub(super) fn rows(&self, most: usize) -> Option<String> {
         let frames = self.memory.some(most).filter_map(|bytes| FrameData::figures_of(bytes).ok());
         let rows: Vec<_> = frames.map(|(tick, figures)| json!([tick, figures])).collect();
@@ -279,8 +276,7 @@ fn orca(choice: &Choice) -> Value {
     })
 }
 
-/// The section of a half-space at one vertical velocity: a point of its border and the unit vector
-/// into it; `None` if it permits all or no velocities there.
+/// A point of the border and the unit vector into the half-space; `None` without a border there.
 fn section(permitted: &Permitted, climb_mps: f32) -> Option<([f32; 2], [f32; 2])> {
     let Permitted { point_mps: [px, py, pz], normal: [nx, ny, nz], .. } = *permitted;
     let length = libm::hypotf(nx, ny);

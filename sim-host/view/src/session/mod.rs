@@ -1,8 +1,8 @@
 //! An interactive run; [`Session::run`] is its loop.
 //!
-//! The engine is stepped in the calling thread. Another thread serves the pages and never makes the
-//! engine wait. Each action of a page is an [`Intervention`] before the next tick, so the run is
-//! reproducible bit for bit: to go back in time, the engine restarts and repeats all ticks.
+//! The engine runs in the calling thread and never waits for pages. Each action of a page is an
+//! [`Intervention`] before the next tick, so the run is reproducible bit for bit: to go back in
+//! time, the engine restarts and repeats all ticks.
 
 mod memory;
 mod message;
@@ -23,13 +23,10 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Shortest interval of frames.
 const FRAME: Duration = Duration::from_millis(16);
 const STATE: Duration = Duration::from_millis(500);
-/// Shortest interval of scenes of a changing map.
 const SCENE: Duration = Duration::from_millis(250);
 const EVENTS: usize = 20;
-/// Rows of figures sent to a new page.
 const ROWS: usize = 2000;
 
 /// Why a session cannot start.
@@ -60,20 +57,18 @@ pub struct Session {
     frame: FrameData,
     bytes: Vec<u8>,
     memory: Memory,
-    /// Interventions of pages by tick.
     done: Vec<(u32, Intervention)>,
     events: HashMap<usize, VecDeque<(u32, String)>>,
     pace: Pace,
-    /// Tick up to which the engine repeats the run after a seek.
+    /// The engine repeats the run up to this tick after a seek.
     catches_up_to: Option<u32>,
     /// Requests that wait for the end of the repetition.
     deferred: VecDeque<(Client, Wanted)>,
-    /// Whether any robot ever had a distance to go. If not, only the last tick ends the run.
+    /// Without any distance to go, only the last tick ends the run.
     has_work: bool,
     is_over: bool,
     pages: BTreeMap<Client, Looks>,
     is_new: bool,
-    /// Whether the map changed since the last scene.
     has_new_land: bool,
     scene_told: Instant,
     shown: Instant,
@@ -153,7 +148,6 @@ impl Session {
         }
     }
 
-    /// Runs due ticks for a limited time.
     fn work(&mut self, server: &Server) {
         let start = Instant::now();
         while start.elapsed() < SLICE {
@@ -170,7 +164,6 @@ impl Session {
         }
     }
 
-    /// Advances by one tick beyond all stored frames.
     fn advance(&mut self, server: &Server) {
         let tick = self.tick;
         self.done.retain(|(at, _)| *at <= tick);
@@ -185,7 +178,6 @@ impl Session {
         self.is_over = is_over;
     }
 
-    /// Whether all robots with a goal have arrived, or the last tick is reached.
     fn is_at_end(&self) -> bool {
         self.tick >= self.scenario.ticks || (self.has_work && self.engine.is_over())
     }
@@ -208,7 +200,6 @@ impl Session {
 
     fn repeat(&mut self, goal: u32, server: &Server) {
         for (_, what) in self.done.iter().filter(|(tick, _)| *tick == self.tick) {
-            // It was valid the first time.
             let _ = self.engine.intervene(what);
         }
         if self.tick < goal {
@@ -227,17 +218,14 @@ impl Session {
         }
     }
 
-    /// Restarts the engine if `tick` is in the past; the ticks are then repeated.
     fn go_back_to(&mut self, tick: u32) {
         if tick < self.tick {
             match operated(&self.scenario) {
                 Ok(engine) => (self.engine, self.tick, self.has_work) = (engine, 0, false),
-                // The robots fitted at the first start.
                 Err(_) => return,
             }
             self.events.clear();
         } else if tick > self.tick {
-            // The interventions of this tick are already applied.
             self.step();
         } else {
             return;
@@ -277,7 +265,6 @@ impl Session {
         }
     }
 
-    /// Sends details that pages have selected beside the frame.
     fn look_closer(&self, server: &Server) {
         let mut robots = BTreeMap::new();
         let mut links = None;
@@ -381,7 +368,6 @@ impl Session {
         self.tell(server);
     }
 
-    /// Records an intervention and shows its effect.
     fn note(&mut self, what: Intervention, server: &Server) {
         let tick = self.tick;
         self.done.retain(|(at, _)| *at <= tick);
@@ -419,7 +405,7 @@ impl Session {
         self.memory.last().map_or(self.tick, |last| last.max(self.tick))
     }
 
-    /// Sends the scene and state, without which frames have no meaning.
+    /// Frames have no meaning without scene and state.
     fn begin_anew(&mut self, to: Option<Client>, server: &Server) {
         server.begin_anew(to, self.scene());
         self.has_new_land &= to.is_some();
@@ -427,7 +413,7 @@ impl Session {
             server.say(to, rows);
         }
         self.is_new = true;
-        // Shows the next frame soon rather than after the usual interval.
+        // The next frame comes soon rather than after the usual interval.
         self.shown = self.shown.checked_sub(FRAME).unwrap_or(self.shown);
     }
 

@@ -14,13 +14,12 @@ const IN_PLANE: &str = "name = \"t\"\nseed = 3\nticks = 2000\ntick_s = 0.05\n[ra
      [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [6, 0]\n\
      [[plane.robots.list]]\nstart_m = [6, 0.1]\ngoal_m = [0, 0]\n[[plane.ball]]\ncenter_m = [4, 2]\nradius_m = 0.3\n";
 
-/// A session in a thread, with one page.
 struct Running {
     page: WebSocket<MaybeTlsStream<TcpStream>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
     url: String,
-    /// Last frame; frames and texts are not ordered.
+    /// Frames and texts are not ordered.
     last: Option<FrameData>,
 }
 
@@ -41,7 +40,7 @@ impl Running {
         let url = server.url().replace("http:", "ws:").replace("/?", "/live?");
         let stop = Arc::new(AtomicBool::new(false));
         let stops = Arc::clone(&stop);
-        // The engine cannot move between threads, so the session is created in its own.
+        // The engine cannot move between threads.
         let thread = std::thread::spawn(move || session.run(&server, &|| stops.load(Ordering::Relaxed)));
         let (mut page, _) = tungstenite::connect(&url).expect("it lets its pages in");
         if let MaybeTlsStream::Plain(stream) = page.get_mut() {
@@ -55,7 +54,6 @@ impl Running {
         self.page.send(Message::Text(word.to_string().into())).expect("it reads");
     }
 
-    /// The next message for which `is` returns a value.
     fn until<T>(&mut self, mut is: impl FnMut(Result<Value, FrameData>) -> Option<T>) -> T {
         loop {
             let found = match self.page.read().expect("a message") {
@@ -145,7 +143,6 @@ fn a_saved_scenario_repeats_the_actions_of_a_page() {
     run.say(&json!({ "do": "play" }));
     let state = run.state(|state| state["at_end"] == true);
     assert_eq!(state["radio"], json!({ "loss": 0.5, "range_m": null }));
-    // After a seek the interventions remain.
     let last = state["tick"].as_u64().expect("a number");
     run.say(&json!({ "do": "seek", "tick": 5 }));
     run.state(|state| state["tick"] == 5);
@@ -157,7 +154,6 @@ fn a_saved_scenario_repeats_the_actions_of_a_page() {
     let said = format!("# Trace hash after tick {last}: {}", hash(text));
     assert!(text.contains(&said), "{said}\n{text}");
     assert_ne!(hash(text), hash(IN_PLANE));
-    // Playing from an earlier moment drops later interventions.
     run.say(&json!({ "do": "seek", "tick": 5 }));
     run.state(|state| state["tick"] == 5);
     run.last = None;
@@ -229,7 +225,6 @@ fn invalid_requests_are_answered_and_other_data_disconnect() {
         .tick,
         1
     );
-    // Data other than JSON close only this connection.
     let (mut stranger, _) = tungstenite::connect(&run.url).expect("it knows the token");
     stranger.send(Message::Text("garbage".into())).expect("it reads");
     while stranger.read().is_ok() {}
@@ -262,7 +257,6 @@ fn a_run_without_goals_continues_until_a_robot_gets_one() {
          [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\n";
     let mut run = Running::new(nowhere);
     run.text("scene");
-    // 2000 ticks per second.
     run.say(&json!({ "do": "speed", "x": 100 }));
     run.say(&json!({ "do": "play" }));
     run.state(|state| state["paused"] == false && state["at_end"] == false && state["tick"].as_u64() > Some(20));

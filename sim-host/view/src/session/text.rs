@@ -1,13 +1,9 @@
-//! Scenario files of interactive runs: saved ones, and generated ones.
-
 use staya_controller::rand::Rng;
 use staya_sim::scenario::{Intervention, Scenario, with_interventions};
 use std::fmt::Write as _;
 
-/// Separates this module's random numbers from others.
 const RANDOM: u32 = u32::from_be_bytes(*b"view");
 
-/// Sets a top-level field in the text of a scenario.
 pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
     let mut lines: Vec<&str> = text.lines().collect();
     let top = lines.iter().position(|line| line.trim_start().starts_with('[')).unwrap_or(lines.len());
@@ -20,7 +16,6 @@ pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-/// The scenario that repeats a run with its interventions.
 pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)], tick: u32, hash: &str) -> String {
     let text = with_top_field(text, "seed", &scenario.seed.to_string());
     let text = with_top_field(&text, "ticks", &scenario.ticks.max(tick).to_string());
@@ -31,8 +26,7 @@ pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)
     head + &with_interventions(&text, scenario.tick_us, done)
 }
 
-/// Parameters of a generated run (V. E. and V. V. Pavlovsky, PAV): robots flock to goals among
-/// obstacles.
+/// Parameters of a run in which robots flock to goals among obstacles (V. E. and V. V. Pavlovsky).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
     /// Number of robots, 1 to 2000.
@@ -53,12 +47,10 @@ impl Configuration {
         Self { robots: robots.clamp(1, 2000), goals: goals.clamp(1, 4), obstacles: obstacles.min(200), seed }
     }
 
-    /// Generates the scenario: robots start in the west, goals are in the east, obstacles lie
-    /// between them with a gap to both.
+    /// Generates the scenario: starts in the west, goals in the east, obstacles between.
     #[must_use]
     pub fn scenario(self) -> String {
         let Self { robots, goals, obstacles, seed } = self.clamped();
-        // Each robot needs about one square metre.
         let side_m = libm::ceil(libm::sqrt(f64::from(robots))) * 1.2 + 3.0;
         let width_m = side_m * 2.0 + 16.0;
         let mut draws = Rng::keyed(seed, RANDOM, robots, obstacles);

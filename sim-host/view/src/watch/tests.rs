@@ -13,7 +13,6 @@ const THREE: &str = "name = \"t\"\nseed = 3\nticks = 40\ntick_s = 0.05\n[radio]\
      [plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [6, 0]\n\
      [[plane.robots.list]]\nstart_m = [6, 1]\ngoal_m = [0, 1]\n[[plane.robots.list]]\nstart_m = [3, 5]\n";
 
-/// Robot 2 knows robot 1 at an old position; robot 3 is known from beacons only.
 struct Some3;
 
 impl Insight for Some3 {

@@ -8,7 +8,6 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 const PATIENCE: Duration = Duration::from_secs(20);
-/// The last timestamp that 48 bits hold.
 const LAST: u64 = (1 << 48) - 1;
 
 fn key() -> Key {
@@ -65,7 +64,6 @@ impl Client {
         self.said += 1;
     }
 
-    /// Sends an arm command to vehicle 3 until it is answered.
     fn is_obeyed(&mut self) -> bool {
         let began = Instant::now();
         while began.elapsed() < PATIENCE {
@@ -77,7 +75,6 @@ impl Client {
         false
     }
 
-    /// Whether a matching message arrives before the socket is silent for a moment.
     fn hears(&self, is_it: impl Fn(&MavMessage) -> bool) -> bool {
         let mut buffer = [0; 512];
         let frames = std::iter::from_fn(|| self.socket.recv(&mut buffer).ok().map(|len| buffer[..len].to_vec()));
@@ -96,7 +93,6 @@ fn arm(system: u8) -> MavMessage {
     })
 }
 
-/// Runs the swarm in parallel with a test and returns its report.
 fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
     let is_over = AtomicBool::new(false);
     struct Ends<'a>(&'a AtomicBool);
@@ -114,8 +110,7 @@ fn beside(swarm: Swarm, test: impl FnOnce()) -> BridgeReport {
     })
 }
 
-/// The attack: a frame signed with the key and the last possible timestamp is recorded and replayed
-/// by an attacker without the key.
+/// The attack: an attacker without the key replays a frame with the last possible timestamp.
 #[test]
 fn a_frame_of_the_far_future_does_not_mute_the_bridge() {
     let (swarm, address) = ten(Some(Signing::new(key(), 0, timestamp())));
@@ -155,7 +150,6 @@ fn a_bridge_without_timestamps_refuses_commands_and_reports_why() {
     assert!(report.commands.is_empty(), "{:?}", report.commands);
 }
 
-/// The attack: commands from one port as fast as possible.
 #[test]
 fn a_flood_from_one_client_does_not_delay_answers_to_others() {
     let (swarm, address) = ten(None);
@@ -174,7 +168,6 @@ fn a_flood_from_one_client_does_not_delay_answers_to_others() {
             }
         });
         let report = beside(swarm, || {
-            // Waits until the flood arrives.
             while sent.load(Ordering::Relaxed) < 20_000 {
                 assert!(client.is_obeyed());
             }
@@ -211,7 +204,6 @@ fn every_frame_is_accounted_for() {
         (0..5).for_each(|_| stranger.say(&heartbeat));
         (0..6).for_each(|_| forger.say(&heartbeat));
         (0..7).for_each(|_| hasty.say(&heartbeat));
-        // No vehicle has this number.
         (0..8).for_each(|_| client.say(&arm(77)));
         assert!(client.is_obeyed());
         std::thread::sleep(Duration::from_millis(300));

@@ -57,7 +57,6 @@ fn place_mm(wish: Option<Wish<f32>>) -> [i32; 3] {
     }
 }
 
-/// DO_REPOSITION to a position in metres east and north of the origin.
 fn reposition(east: f64, north: f64, flags: f32) -> COMMAND_INT_DATA {
     let place = origin().to_global([east, north, 0.0]).expect("near");
     let [x, y, _] = place.to_e7();
@@ -89,7 +88,6 @@ fn item(seq: u16, east: f64, north: f64) -> MISSION_ITEM_INT_DATA {
     }
 }
 
-/// Uploads items and returns the result of the transfer.
 fn load(bench: &mut Bench, items: &[MISSION_ITEM_INT_DATA]) -> u8 {
     bench.give(MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
         count: items.len() as u16,

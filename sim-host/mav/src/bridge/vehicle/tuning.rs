@@ -1,5 +1,3 @@
-//! Parameters set by a client.
-
 use super::super::params::{Meaning, NotSet};
 use super::{Action, Kind, Out, Vehicle};
 use staya_controller::agent::Parameter;
@@ -34,8 +32,7 @@ impl Vehicle {
         }
     }
 
-    /// Reports the value in use after the controller refused a value: it conflicts with another
-    /// parameter, or the robot is down.
+    /// Reports the value in use after the controller refused a value that conflicts with another.
     pub(in super::super) fn set_back(&mut self, parameter: Parameter, value: Option<f32>, out: &mut Out) {
         let meaning = Meaning::Controller(parameter);
         let Some(index) = value.and_then(|value| self.parameters.set_back(meaning, value)) else {

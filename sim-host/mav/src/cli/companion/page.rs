@@ -1,5 +1,5 @@
-//! Live page of the controlled vehicles, in its own thread. The controlling thread hands over a
-//! copy of its state if a page is open; it never waits for the page.
+//! Live page of the controlled vehicles. Its thread gets copies of the controlling thread's state,
+//! which never waits for the page.
 
 use crate::companion::{Seen, Sight};
 use anyhow::{Context as _, Result};
@@ -16,7 +16,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 const EVERY: Duration = Duration::from_millis(50);
-/// A robot counts as heard now if its last beacon is at most this old, seconds.
+/// A robot counts as heard with a beacon of at most this age.
 const NOW_S: f64 = 1.0;
 
 #[derive(Debug)]
@@ -25,23 +25,16 @@ struct Copied {
     vehicles: Vec<Seen>,
 }
 
-/// The end of the page in the controlling thread.
 pub struct Page {
     is_wanted: Arc<AtomicBool>,
-    /// `None` only during drop.
     copies: Option<SyncSender<Copied>>,
     copied: Instant,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Page {
-    /// Starts the thread for the vehicles of `scenario`.
-    ///
-    /// # Errors
-    /// The thread cannot be started.
     pub fn new(watcher: Watcher, scenario: &Scenario) -> Result<Self> {
         let is_wanted = Arc::new(AtomicBool::new(false));
-        // One copy in transit is enough.
         let (sender, copies) = sync_channel(1);
         let shown = Shown::new(scenario);
         let wanted = Arc::clone(&is_wanted);
@@ -58,7 +51,6 @@ impl Page {
         }
         self.copied = Instant::now();
         if let Some(copies) = &self.copies {
-            // A busy page misses the copy.
             let _ = copies.try_send(Copied { at: sight.now(), vehicles: sight.vehicles() });
         }
     }
@@ -75,7 +67,6 @@ impl Drop for Page {
 
 struct Shown {
     tick_s: f64,
-    /// Number and radius (metres) of each robot.
     robots: Vec<(u32, f64)>,
 }
 
@@ -86,7 +77,6 @@ impl Shown {
         Self { tick_s: scenario.tick_s(), robots: robots.map(|(index, robot)| (robot.id.0, radius_m(index))).collect() }
     }
 
-    /// Sends copies to the pages until the controlling thread ends.
     fn serve(&self, mut watcher: Watcher, copies: &Receiver<Copied>, is_wanted: &AtomicBool) {
         loop {
             let copy = match copies.recv_timeout(EVERY) {
@@ -135,8 +125,7 @@ impl Shown {
     }
 }
 
-/// All robots at one moment: vehicles of this program by telemetry, the others by the beacons
-/// received from them.
+/// Vehicles of this program by telemetry, the others by the beacons received from them.
 struct Swarm<'a> {
     shown: &'a Shown,
     vehicles: &'a [Seen],
@@ -173,7 +162,6 @@ impl Swarm<'_> {
         }
     }
 
-    /// Gaps between the surfaces of all vehicles of this program, metres.
     fn gaps_m(&self) -> Vec<f64> {
         let radius_m = |seen: &Seen| self.shown.robots.get(seen.index).map_or(0.0, |(_, radius_m)| *radius_m);
         let placed = |seen: &Seen| Some((seen.position_m?, radius_m(seen)));

@@ -7,7 +7,6 @@ fn parse(text: &str) -> Result<Config, ScenarioError> {
     Config::parse(text, &folder.join("test.toml"))
 }
 
-/// A valid file, with `top` before its tables and `bottom` at the end of its only vehicle.
 fn text(top: &str, bottom: &str) -> String {
     format!(
         "scenario = \"{SCENARIO}\"\norigin = {{ latitude_deg = 55.75, longitude_deg = 37.62 }}\n{top}\n[[vehicle]]\nrobot = 3\n\

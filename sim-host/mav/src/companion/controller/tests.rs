@@ -8,7 +8,6 @@ const TICK: Duration = Duration::from_millis(100);
 fn controllers(count: usize) -> Vec<Controller<Postcard>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let mut scenario = Scenario::load(&path, &Overrides::default()).unwrap();
-    // Like `rules.error_m` in a companion's configuration.
     scenario.plausibility.max_radius_m += 10.0;
     let plane = scenario.plane.as_ref().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
@@ -69,8 +68,7 @@ fn a_lagging_vehicle_does_not_overshoot_its_tolerance() {
     assert!((body.position_m[0] - 50.0).abs() < 1.0);
 }
 
-/// Smallest distance between the second vehicle and the first, which is uncontrolled and stands
-/// beside the second one's path.
+/// Smallest distance to an uncontrolled vehicle that stands beside the path.
 fn least_distance(error_m: f64) -> f64 {
     let mut controllers = controllers(2);
     let mut second = controllers.remove(1);

@@ -1,5 +1,3 @@
-//! Events of a companion, for operators.
-
 use super::{ARM_DISARM, DO_SET_MODE, Doubt, NAV_TAKEOFF, State};
 use std::fmt;
 use std::time::Duration;
@@ -18,7 +16,7 @@ pub enum Event {
     HandedOver(u32),
     /// The autopilot restarted.
     Restarted,
-    /// Its positions are no more trusted.
+    /// Its positions are not trusted.
     Doubts(Doubt),
     /// The autopilot does not send the status of its estimator despite requests.
     NoHealth,
@@ -61,7 +59,7 @@ impl State {
         matches!(self, Self::Steering | Self::Stopped | Self::Distrusted)
     }
 
-    /// Whether the operator should act: `MAV_SEVERITY_WARNING` rather than `_INFO`.
+    /// Whether the operator should act.
     #[must_use]
     pub const fn is_worrying(self) -> bool {
         matches!(self, Self::Silent | Self::Restarted | Self::Stopped | Self::Distrusted)

@@ -1,8 +1,5 @@
-//! Trust in an autopilot's position and velocity estimate.
-//!
-//! An estimator that lost GPS keeps sending positions that look fresh but drift. This module
-//! evaluates the status messages that autopilots send beside them. An autopilot that sends none is
-//! trusted.
+//! Trust in an autopilot's position estimate. An estimator that lost GPS keeps sending positions
+//! that look fresh but drift, so status messages decide. An autopilot that sends none is trusted.
 
 use staya_mavlink::constants::{
     EKF_GPS_GLITCHING, EKF_UNINITIALIZED, ESTIMATOR_ACCEL_ERROR, ESTIMATOR_ATTITUDE, ESTIMATOR_CONST_POS_MODE,
@@ -12,29 +9,24 @@ use staya_mavlink::constants::{
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
-/// Time without any problem until positions are trusted again.
 pub const WELL_FOR: Duration = Duration::from_secs(5);
-/// Timeout of a receiver's report.
 const REPORT_VALID: Duration = Duration::from_secs(2);
 /// ArduPilot's failsafe (`FS_EKF_THRESH`) triggers at this innovation ratio.
 const EKF_LIMIT: f32 = 0.8;
 /// PX4's estimator rejects measurements at this innovation ratio.
 const ESTIMATOR_LIMIT: f32 = 1.0;
 
-/// Why a position is not trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
     /// `GPS_RAW_INT`, `GPS2_RAW`: no receiver has a 3D fix, although one had.
     Gps,
-    /// `EKF_STATUS_REPORT` or `ESTIMATOR_STATUS`: no position, no velocity, or innovations that are
-    /// too large.
+    /// `EKF_STATUS_REPORT` or `ESTIMATOR_STATUS`: no position, no velocity, or large innovations.
     Estimator,
     /// `SYS_STATUS`: GPS or attitude is enabled but unhealthy.
     Sensors,
 }
 
 impl Doubt {
-    /// Text for the operator, at most 40 bytes.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -45,21 +37,16 @@ impl Doubt {
     }
 }
 
-/// Status of one autopilot since its last boot.
 #[derive(Clone, Debug, Default)]
 pub struct Health {
     had_fix: bool,
-    /// Time of the last fix of each of two receivers.
     fixed_at: [Option<Duration>; 2],
-    /// Present problems, indexed by [`Doubt`].
     is_bad: [bool; 3],
     well_at: Duration,
-    /// Number of estimator reports.
     pub reports: u64,
 }
 
-/// Whether flags and innovations (as fractions of the accepted limit) mean that position and
-/// velocity are known.
+/// `innovations` are fractions of the accepted limit.
 fn is_well(flags: u16, bad: u16, innovations: [f32; 2]) -> bool {
     const NEEDED: u16 = ESTIMATOR_ATTITUDE | ESTIMATOR_VELOCITY_HORIZ | ESTIMATOR_POS_HORIZ_ABS;
     // NaN stands for a quantity that PX4 does not measure; it is not an error.
@@ -67,7 +54,7 @@ fn is_well(flags: u16, bad: u16, innovations: [f32; 2]) -> bool {
 }
 
 impl Health {
-    /// Handles a message. Returns the problem that it starts, if any.
+    /// Returns the problem that the message starts.
     pub fn hear(&mut self, message: &MavMessage, now: Duration) -> Option<Doubt> {
         let (doubt, is_bad) = match message {
             MavMessage::GPS_RAW_INT(gps) => (Doubt::Gps, self.has_lost_fix(0, gps.fix_type, now)),
@@ -103,8 +90,7 @@ impl Health {
         is_new.then_some(doubt)
     }
 
-    /// Whether this report means that no receiver has a fix. A vehicle that never had one does not
-    /// need GPS.
+    /// A vehicle that never had a fix does not need GPS.
     fn has_lost_fix(&mut self, receiver: usize, fix_type: u8, now: Duration) -> bool {
         let has_fix = fix_type >= GPS_FIX_TYPE_3D_FIX;
         if let Some(fixed_at) = self.fixed_at.get_mut(receiver) {
@@ -115,7 +101,6 @@ impl Health {
         self.had_fix && !self.fixed_at.iter().any(is_fixed)
     }
 
-    /// Whether positions are trusted.
     pub fn is_trusted(&self, now: Duration) -> bool {
         now >= self.well_at && !self.is_bad.contains(&true)
     }

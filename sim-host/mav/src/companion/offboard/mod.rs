@@ -1,15 +1,12 @@
-//! The companion's side of external control as a state machine without I/O or clock: telemetry and
-//! time in, messages out. Start with [`OffboardStateMachine::poll`].
+//! External control of one vehicle as a state machine without I/O or clock: telemetry and time in,
+//! messages out. Start with [`OffboardStateMachine::poll`].
 //!
-//! The state machine sends heartbeats at 1 Hz, requests the telemetry that it needs, and sends
-//! velocity setpoints at a steady rate only while it has control. It has control while heartbeats
-//! arrive, the external control mode is active, the vehicle is armed (and in the air, if it flies),
-//! and its position is fresh.
+//! The companion sends setpoints only while it has control: heartbeats arrive, the external control
+//! mode is active, the vehicle is armed (and in the air, if it flies), and its position is fresh.
 //!
-//! The pilot decides about that mode. With [`Entry::Once`] the companion requests the mode (and
-//! what its rules add) once after its start; any action of a pilot ends these requests. Setpoints
-//! stop with the first heartbeat in another mode. After a restart of the autopilot its mode is not
-//! a permission: the pilot must leave it and select it again.
+//! The pilot decides about that mode. With [`Entry::Once`] the companion requests it once after its
+//! start, until a pilot acts. Setpoints stop with the first heartbeat in another mode. After a
+//! restart the mode is not a permission: the pilot must leave it and select it again.
 
 mod event;
 mod health;
@@ -36,39 +33,34 @@ pub const COMPONENT: u8 = 191;
 /// Component id of the autopilot.
 pub const AUTOPILOT: u8 = 1;
 
-/// Interval of own heartbeats.
 const HEARTBEAT: Duration = Duration::from_secs(1);
-/// Time without any setpoint after the pilot took control.
 const QUIET: Duration = Duration::from_secs(5);
-/// Largest step back in the time since boot that counts as a reordered message; a larger one is a
-/// restart.
+/// A larger step back in the time since boot is a restart, a smaller one a reordered message.
 const OVERTAKEN_MS: i32 = 2000;
-/// This number of consecutive messages, each later than the last but all behind the known time,
-/// means a restart soon after boot rather than reordering.
+/// Consecutive rising messages, all behind the known time, that mean a restart soon after boot.
 const BEHIND: u8 = 4;
-/// A larger step ahead in the time since boot means a restart behind a clock that had wrapped.
+/// A larger step ahead means a restart behind a clock that had wrapped.
 const DAY_MS: i32 = 86_400_000;
-/// A slower climb ends a takeoff, m/s.
+/// A slower climb ends a takeoff.
 const CLIMB_OVER_MPS: f64 = 0.3;
-/// A vehicle below this height above home counts as on the ground if it reports no landed state,
-/// metres.
+/// Below this height above home a vehicle without a landed state counts as on the ground.
 const LOW_M: f64 = 1.0;
 
-/// Who selects the external control mode.
+/// Selection of the external control mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Entry {
-    /// The pilot.
+    /// The pilot selects the mode.
     #[default]
     Wait,
-    /// The companion, once after its start.
+    /// The companion selects the mode, once after its start.
     Once,
 }
 
 /// Rules by which a companion controls a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
-    /// Who selects the mode.
+    /// Selection of the external control mode.
     pub entry: Entry,
     /// Whether [`Entry::Once`] also arms. Otherwise it waits for arming by the pilot.
     pub arm: bool,
@@ -76,8 +68,7 @@ pub struct Rules {
     pub takeoff: bool,
     /// Takeoff height above home, metres.
     pub altitude_m: Option<f64>,
-    /// Whether that height is kept in flight, as in the plane. Otherwise the agent commands
-    /// vertical velocities.
+    /// Whether that height is kept in flight; otherwise the agent commands vertical velocities.
     pub keeps_altitude: bool,
     /// Age at which a position is stale.
     pub stale: Duration,
@@ -172,19 +163,16 @@ pub struct OffboardStateMachine {
     rules: Rules,
     state: State,
     beat: Option<Beat>,
-    /// Last trusted position, and whether it is from the present boot.
     fix: Option<Fix>,
     is_of_boot: bool,
     health: Health,
     boot_ms: Option<u32>,
-    /// Time since boot of the last message that seemed reordered, and the number of consecutive
-    /// ones.
     behind: Option<(u32, u8)>,
-    /// Velocity of `LOCAL_POSITION_NED`, which is finer, with its time.
+    /// Time and velocity of `LOCAL_POSITION_NED`, which is finer.
     velocity: Option<(Duration, [f64; 3])>,
     landed: Option<u8>,
     may_enter: bool,
-    /// Whether the mode is not a permission until it has been left.
+    /// Whether the mode is not a permission until it was left.
     must_be_left: bool,
     quiet_until: Duration,
     streaming_since: Option<Duration>,
@@ -309,14 +297,13 @@ impl OffboardStateMachine {
                 if let Some(doubt) = self.health.hear(message, now) {
                     self.tally.doubts += 1;
                     self.events.push_back(Event::Doubts(doubt));
-                    // Applied at once, not at the next poll.
                     self.settle(now);
                 }
             }
         }
     }
 
-    /// Updates the autopilot's clock. Returns false for a reordered message.
+    /// Returns false for a reordered message.
     fn is_in_order(&mut self, boot_ms: u32) -> bool {
         let since = self.boot_ms.map(|last| boot_ms.wrapping_sub(last).cast_signed());
         match since {
@@ -376,7 +363,6 @@ impl OffboardStateMachine {
             self.must_be_left = false;
         }
         self.beat = Some(beat);
-        // Applied at once, not at the next poll.
         self.settle(now);
     }
 
@@ -396,15 +382,13 @@ impl OffboardStateMachine {
             return;
         }
         let refused = (!is_done).then_some((command, result));
-        // A repeated refusal is reported once.
         if let Some((command, result)) = refused.filter(|_| refused != self.refused) {
             self.events.push_back(Event::Refused { command, result });
         }
         self.refused = refused;
     }
 
-    /// Whether a flying vehicle can be controlled. A takeoff must be complete: takeoff and landing
-    /// belong to the pilot or the entry.
+    /// A takeoff must be complete: takeoff and landing belong to the pilot or the entry.
     fn is_in_air(&self, fix: &Fix) -> bool {
         if !self.kind.flies() {
             return true;
@@ -423,7 +407,6 @@ impl OffboardStateMachine {
         }
     }
 
-    /// Whether the vehicle has left the ground, by its landed state or else by its height.
     fn is_taking_off(&self) -> bool {
         match self.landed {
             Some(MAV_LANDED_STATE_TAKEOFF | MAV_LANDED_STATE_IN_AIR) => true,
@@ -443,7 +426,6 @@ impl OffboardStateMachine {
         if self.rules.rehearses {
             return if fix.is_some() { State::Steering } else { State::NoPosition };
         }
-        // The entry waits until a position makes control possible.
         let enters = self.may_enter && fix.is_some() && (beat.is_armed || self.rules.arm);
         if !beat.is_controlled {
             return if enters { State::Entering } else { State::Pilot };
@@ -459,7 +441,6 @@ impl OffboardStateMachine {
                 State::Steering | State::Stopped | State::Distrusted if !self.health.is_trusted(now) => {
                     State::Distrusted
                 }
-                // Stays until a position is trusted.
                 State::Distrusted => State::Distrusted,
                 State::Steering | State::Stopped => State::Stopped,
                 _ => State::NoPosition,
@@ -472,14 +453,12 @@ impl OffboardStateMachine {
         State::Steering
     }
 
-    /// Changes the state if necessary and reports the change.
     fn settle(&mut self, now: Duration) {
         let (from, to) = (self.state, self.next_state(now));
         if from == to {
             return;
         }
         if to == State::Steering && !self.rules.rehearses {
-            // The entry has succeeded.
             self.end_entry(None);
         }
         if to == State::Stopped {

@@ -1,5 +1,3 @@
-//! Messages that a companion sends.
-
 use super::{AUTOPILOT, Kind};
 use staya_mavlink::dialect::{
     COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
@@ -13,13 +11,10 @@ pub const NAV_TAKEOFF: u16 = 22;
 pub const DO_SET_MODE: u16 = 176;
 pub const ARM_DISARM: u16 = 400;
 pub const SET_MESSAGE_INTERVAL: u16 = 511;
-/// `POSITION_TARGET_TYPEMASK` that ignores position, acceleration, yaw and yaw rate.
 const VELOCITY_ONLY: u16 = 0xDC7;
-/// As `VELOCITY_ONLY`, with the yaw rate in use.
 const VELOCITY_AND_YAW_RATE: u16 = 0x5C7;
 const LOCAL_NED: u8 = 1;
 
-/// Heartbeat of an active onboard controller.
 pub fn heartbeat() -> MavMessage {
     MavMessage::HEARTBEAT(HEARTBEAT_DATA {
         mavtype: 18,
@@ -60,7 +55,7 @@ pub fn takeoff(system: u8, altitude_m: f64) -> MavMessage {
     command(system, NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, altitude_m])
 }
 
-/// Requests positions at `position_hz`, and from flying vehicles the landed state at 2 Hz.
+/// Positions, and from flying vehicles the landed state at 2 Hz.
 pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item = MavMessage> {
     let state = kind.flies().then_some((EXTENDED_SYS_STATE_DATA::ID, 2.0));
     [(GLOBAL_POSITION_INT_DATA::ID, position_hz), (LOCAL_POSITION_NED_DATA::ID, position_hz)]
@@ -69,7 +64,6 @@ pub fn intervals(system: u8, kind: Kind, position_hz: f64) -> impl Iterator<Item
         .map(move |(id, hz)| interval(system, id, hz))
 }
 
-/// Requests the status messages that [`Health`](super::Health) evaluates.
 pub fn health_intervals(system: u8, kind: Kind) -> impl Iterator<Item = MavMessage> {
     const HEALTH_HZ: f64 = 4.0;
     let estimator = if kind.is_px4() { ESTIMATOR_STATUS_DATA::ID } else { EKF_STATUS_REPORT_DATA::ID };
@@ -81,8 +75,8 @@ fn interval(system: u8, id: u32, hz: f64) -> MavMessage {
     command(system, SET_MESSAGE_INTERVAL, [f64::from(id), 1e6 / hz, 0.0, 0.0, 0.0, 0.0, 0.0])
 }
 
-/// Velocity setpoint, north, east, down. Below 0.05 m/s an ArduPilot rover is also told not to
-/// turn: it derives its heading from the velocity, and a velocity of 0 would mean north.
+/// Below 0.05 m/s an ArduPilot rover also gets a yaw rate of 0: it derives its heading from the
+/// velocity, and a velocity of 0 would mean north.
 pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duration) -> MavMessage {
     const SLOW_MPS: f64 = 0.05;
     let [north, east, _] = velocity_ned_mps;
@@ -91,7 +85,6 @@ pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duratio
         if stands { (VELOCITY_AND_YAW_RATE, [0.0; 3]) } else { (VELOCITY_ONLY, velocity_ned_mps) };
     let [vx, vy, vz] = velocity.map(|v| v as f32);
     MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        // Wraps, as MAVLink's clock does.
         time_boot_ms: now.as_millis() as u32,
         target_system: system,
         target_component: AUTOPILOT,
@@ -104,7 +97,7 @@ pub fn setpoint(system: u8, kind: Kind, velocity_ned_mps: [f64; 3], now: Duratio
     })
 }
 
-/// STATUSTEXT for the ground station, cut off at 50 bytes.
+/// Cut off at 50 bytes.
 pub fn status_text(text: &str, is_worrying: bool) -> MavMessage {
     MavMessage::STATUSTEXT(STATUSTEXT_DATA {
         severity: if is_worrying { 4 } else { 6 },

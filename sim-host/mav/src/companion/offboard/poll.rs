@@ -1,25 +1,20 @@
-//! Schedule of the messages that a companion sends.
-
 use super::{Ask, Event, HEARTBEAT, OffboardStateMachine, Rules, State, out};
 use staya_mavlink::dialect::MavMessage;
 use std::time::Duration;
 
-/// Interval of checks of the position rate.
 const LOOK: Duration = Duration::from_secs(3);
-/// Checks in which the estimator status is requested; not every autopilot has it.
+/// Requests of the estimator status, which not every autopilot has.
 const HEALTH_LOOKS: u8 = 3;
-/// Time for which PX4 receives setpoints before the mode is requested.
+/// PX4 receives setpoints for this time before the mode is requested.
 const STREAM: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_secs(2);
-/// Retries of one request: two minutes, since autopilots refuse arming and modes long after their
-/// first position.
+/// Two minutes, since autopilots refuse arming and modes long after their first position.
 pub(super) const ATTEMPTS: u8 = 60;
-/// Timeout of the agent's command.
 const COMMAND_VALID: Duration = Duration::from_millis(500);
 
 impl OffboardStateMachine {
-    /// Appends the messages due at `now`, which must not go back. Call it more often than setpoints
-    /// are due. At most one message of each kind and three requests are sent per call.
+    /// Appends the messages due at `now`, which must not go back: at most one of each kind and
+    /// three requests. Call it more often than setpoints are due.
     pub fn poll(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         self.settle(now);
         if now >= self.next_heartbeat {
@@ -49,15 +44,13 @@ impl OffboardStateMachine {
         }
     }
 
-    /// Time at which [`poll`](Self::poll) has a message to send, if no message arrives and no
-    /// timeout passes before.
+    /// Time of the next message of [`poll`](Self::poll) without new input.
     #[must_use]
     pub fn due(&self, now: Duration) -> Duration {
         let setpoint = self.setpoint(now).map(|_| self.next_setpoint);
         setpoint.map_or(self.next_heartbeat, |due| due.min(self.next_heartbeat))
     }
 
-    /// The setpoint to send, north, east, down.
     fn setpoint(&self, now: Duration) -> Option<[f64; 3]> {
         const STAND: [f64; 3] = [0.0; 3];
         match self.state {
@@ -79,8 +72,7 @@ impl OffboardStateMachine {
         }
     }
 
-    /// Adds the climb to the set height, which is held afterwards unless the agent controls the
-    /// height.
+    /// Adds the climb to the set height, and holds it unless the agent controls the height.
     fn at_altitude(&self, [north, east, down]: [f64; 3]) -> [f64; 3] {
         let is_armed = self.beat.is_some_and(|beat| beat.is_armed && beat.is_controlled);
         let is_told = self.rules.keeps_altitude || self.state == State::Entering;
@@ -89,7 +81,6 @@ impl OffboardStateMachine {
         [north, east, down]
     }
 
-    /// Requests telemetry until it has the right rate, and a few times the estimator status.
     fn look(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         if self.next_look.is_some_and(|at| now < at) {
             return;
@@ -116,7 +107,6 @@ impl OffboardStateMachine {
         self.next_look = Some(now + LOOK);
     }
 
-    /// Requests the mode, arming and takeoff, each until it has happened.
     fn enter(&mut self, now: Duration, out: &mut Vec<MavMessage>) {
         let Some(beat) = self.beat else { return };
         let ask = match (beat.is_controlled, beat.is_armed) {
@@ -158,7 +148,6 @@ impl OffboardStateMachine {
         }
     }
 
-    /// Shows all requests of the entry once, for a dry run.
     fn rehearse_entry(&mut self, out: &mut Vec<MavMessage>) {
         if !std::mem::take(&mut self.may_enter) {
             return;
@@ -170,7 +159,7 @@ impl OffboardStateMachine {
         out.extend(height.map(|altitude_m| out::takeoff(self.system, altitude_m)));
     }
 
-    /// The message to send a few times before the companion ends: zero velocity, if it has control.
+    /// Zero velocity, if the companion has control; send it a few times before the end.
     #[must_use]
     pub fn farewell(&self, now: Duration) -> Option<MavMessage> {
         self.state.has_control().then(|| out::setpoint(self.system, self.kind, [0.0; 3], now))

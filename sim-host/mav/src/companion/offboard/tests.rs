@@ -7,7 +7,6 @@ use staya_mavlink::dialect::{
     LOCAL_POSITION_NED_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 
-/// The defaults of a configuration.
 pub(crate) const RULES: Rules = Rules {
     entry: Entry::Wait,
     arm: false,
@@ -29,7 +28,6 @@ const POSITION_CONTROL: u32 = 3 << 16;
 const ARMED: u8 = 0x81;
 const DISARMED: u8 = 0x01;
 
-/// A state machine with an autopilot that repeats its telemetry.
 struct Bench {
     offboard: OffboardStateMachine,
     now: Duration,
@@ -38,11 +36,9 @@ struct Bench {
     base: u8,
     above_home_m: f64,
     climb_mps: f64,
-    /// Vertical velocity that the agent commands.
     down_mps: f64,
     beats: bool,
     fixes: bool,
-    /// Whether it sends `ekf_flags` as its estimator status.
     reports: bool,
     ekf_flags: u16,
     sent: Vec<MavMessage>,
@@ -102,7 +98,7 @@ impl Bench {
         self.offboard.hear(&report, self.now);
     }
 
-    /// Runs in steps of 10 ms and returns the messages sent.
+    /// Steps of 10 ms.
     fn run(&mut self, seconds: f64) -> Vec<MavMessage> {
         self.sent.clear();
         for _ in 0..(seconds * 100.0).round() as u32 {
@@ -273,7 +269,6 @@ fn setpoints_end_exactly_at_the_link_timeout() {
     bench.offboard.poll(at + RULES.link_lost + Duration::from_micros(1), &mut sent);
     assert_eq!(bench.state(), State::Silent);
     assert_eq!(setpoints(&sent).len(), 0);
-    // The link returns in the same boot and in the pilot's mode, so control resumes.
     bench.now += Duration::from_secs(10);
     bench.boot_ms += 10_000;
     (bench.beats, bench.fixes) = (true, true);
@@ -295,7 +290,6 @@ fn the_pilot_gets_control_with_the_first_heartbeat_in_another_mode() {
         assert_eq!(commands(&sent, out::DO_SET_MODE), 0, "control is not requested back");
         assert!(bench.events().contains(&Event::HandedOver(MANUAL)));
         assert_eq!(bench.offboard.tally().hand_overs, 1);
-        // The pilot selects the mode again.
         bench.mode = GUIDED;
         bench.run(1.5);
         assert_eq!(bench.state(), State::Steering);

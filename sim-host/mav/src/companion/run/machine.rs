@@ -1,5 +1,4 @@
-//! The environment of the main loop. Errors here never end the loop: they are reported, or the data
-//! is lost as on a radio.
+//! The environment of the main loop. Its errors never end the loop.
 
 use crate::companion::medium::Medium;
 use crate::companion::roll::KeyWatch;
@@ -8,58 +7,36 @@ use staya_controller::auth::Key;
 use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
-/// Time, links, the network between companions, a log and a terminal.
 pub trait Machine {
     fn now(&self) -> Duration;
 
     fn pause(&mut self, time: Duration);
 
-    /// The next frame of any link, waiting for at most `wait`.
     fn receive(&mut self, wait: Duration) -> Option<Received>;
 
-    /// Sends a frame on a link, to one peer or to all.
     fn send(&mut self, line: usize, peer: Option<Peer>, frame: &[u8]);
 
-    /// Marks `peer` on link `line` as authenticated, so that it may receive frames.
     fn believe(&mut self, line: usize, peer: Peer);
 
     fn counts(&self, line: usize) -> Counts;
 
     fn trouble(&self, line: usize) -> Option<String>;
 
-    /// Passes packets of companions in other processes to `heard`.
     fn hear_others(&mut self, heard: &mut dyn FnMut(&[u8]));
 
-    /// Sends packets to companions in other processes.
     fn tell_others(&mut self, frames: &[u8]);
 
-    /// Writes a frame to the log.
-    ///
-    /// # Errors
-    /// The log cannot be written; it is not called again.
+    /// After an error it is not called again.
     fn log(&mut self, frame: &[u8]) -> Result<(), TlogError>;
 
-    /// Closes the log.
-    ///
-    /// # Errors
-    /// The end of the log cannot be written.
     fn close_log(&mut self) -> Result<(), TlogError>;
 
-    /// A new key for packets, or an error of its file.
     fn new_key(&mut self) -> Option<Result<Key, String>> {
         None
     }
 
-    /// Writes a line to standard output.
-    ///
-    /// Standard output is closed.
-    /// Standard output is closed.
     fn show(&mut self, line: &str) -> io::Result<()>;
 
-    /// Writes a line to standard error.
-    ///
-    /// Standard error is closed.
-    /// Standard error is closed.
     fn tell(&mut self, line: &str) -> io::Result<()>;
 }
 

@@ -1,10 +1,8 @@
-//! Output of a dry run.
-
 use crate::companion::offboard::{ARM_DISARM, DO_SET_MODE, NAV_TAKEOFF, SET_MESSAGE_INTERVAL};
 use staya_mavlink::dialect::{COMMAND_LONG_DATA, MavMessage};
 use staya_mavlink::mavlink_core::Message as _;
 
-/// Text of a message; `None` for heartbeats and packets to other companions.
+/// `None` for heartbeats and packets to other companions.
 pub fn words(message: &MavMessage) -> Option<String> {
     Some(match message {
         MavMessage::HEARTBEAT(_) | MavMessage::TUNNEL(_) => return None,

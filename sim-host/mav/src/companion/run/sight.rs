@@ -1,5 +1,3 @@
-//! The vehicles as the live page shows them.
-
 use super::{Companions, State, Vehicle};
 use crate::geo::Origin;
 use staya_controller::agent::Wait;

@@ -1,5 +1,3 @@
-//! Messages for operators: events as they happen, and the report at the end.
-
 use super::{Companions, FEW_TIMESTAMPS, LOOK, Vehicle, shown, status_text};
 use crate::companion::config::Config;
 use crate::companion::offboard::{AUTOPILOT, State};
@@ -11,7 +9,6 @@ use staya_mavlink::frame::Sender;
 use staya_mavlink::signing::Signing;
 use std::time::Duration;
 
-/// Interval of velocities that a dry run shows.
 const SHOWN: Duration = Duration::from_secs(1);
 
 impl Companions<'_> {
@@ -22,12 +19,11 @@ impl Companions<'_> {
 
     pub(super) fn say(&mut self, line: &str) {
         if !self.options.quiet {
-            // A closed standard error must not stop the companion.
             let _ = self.machine.tell(line);
         }
     }
 
-    /// Shows a message in a dry run; velocities at 1 Hz.
+    /// Velocities at 1 Hz.
     pub(super) fn show(&mut self, index: usize, message: &MavMessage) {
         let (now, vehicle) = (self.machine.now(), &mut self.vehicles[index]);
         if let MavMessage::SET_POSITION_TARGET_LOCAL_NED(_) = message {
@@ -42,7 +38,6 @@ impl Companions<'_> {
         }
     }
 
-    /// Reports links without a connection, once for each reason.
     pub(super) fn look_at_links(&mut self, now: Duration) {
         if now < self.next_look {
             return;
@@ -62,8 +57,6 @@ impl Companions<'_> {
         }
     }
 
-    /// Warns once for each link that its signing timestamps are nearly used up, also at the ground
-    /// stations of its vehicles.
     pub(super) fn look_at_timestamps(&mut self) {
         for line in 0..self.links.len() {
             let is_ending = self.signing_of(line).is_some_and(|signing| signing.left() < FEW_TIMESTAMPS);

@@ -10,7 +10,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Calls of the environment that can fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Call {
     Receive,
@@ -22,18 +21,13 @@ enum Call {
     Show,
 }
 
-/// Which calls of one kind fail.
 #[derive(Clone, Copy, Debug)]
 enum Failure {
-    /// Only the call with this number, from 1.
     One(usize),
-    /// This call and all later ones.
     From(usize),
-    /// This call panics.
     Panic(usize),
 }
 
-/// A rover that follows commands at once and reports its position.
 struct Rover {
     system: u8,
     north_east_m: [f64; 2],
@@ -42,7 +36,6 @@ struct Rover {
     warnings: Vec<String>,
 }
 
-/// A simulated environment with rovers on the first link. Time passes while the loop waits.
 struct World {
     now: Duration,
     rovers: Vec<Rover>,
@@ -241,7 +234,7 @@ fn config() -> Config {
     Config::parse(&text, &folder.join("test.toml")).unwrap()
 }
 
-/// Runs a flight with failing calls. The report is `None` if the run ended with an error.
+/// The report is `None` if the run ended with an error.
 fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<CompanionReport>) {
     let options = Options { seconds: Some(SECONDS), ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(failing)));
@@ -254,7 +247,6 @@ fn fly(config: &Config, failing: Option<(Call, Failure)>) -> (World, Option<Comp
     (Rc::into_inner(world).expect("the loop has ended").into_inner(), ended.ok())
 }
 
-/// Asserts that each vehicle was controlled until the end and then told to stop.
 fn assert_steered(world: &World, what: &str) {
     for rover in &world.rovers {
         let all = &rover.setpoints;
@@ -272,7 +264,6 @@ fn assert_steered(world: &World, what: &str) {
 fn no_single_failure_ends_control_or_the_final_stop() {
     let config = config();
     for call in [Call::Receive, Call::Send, Call::HearOthers, Call::TellOthers, Call::Log, Call::Tell] {
-        // The calls are counted first, without a failure.
         let (quiet, _) = fly(&config, Some((call, Failure::One(usize::MAX))));
         assert!(quiet.calls > 0, "{call:?} is never made");
         for number in 1..=quiet.calls {
@@ -294,7 +285,6 @@ fn permanent_failures_do_not_end_control() {
             assert!(report.is_some());
         }
     }
-    // Without any traffic the run still ends after its duration.
     for call in [Call::Receive, Call::Send] {
         let (_, report) = fly(&config, Some((call, Failure::From(1))));
         assert!(report.expect("the run ended normally").seconds >= SECONDS);
@@ -345,7 +335,6 @@ fn used_up_timestamps_are_reported_while_signing_is_possible() {
     assert!(report.links[0].is_exhausted && report.to_string().contains("timestamps used up"), "{report}");
 }
 
-/// Runs a dry run and returns its duration in seconds.
 fn rehearse(failing: Option<(Call, Failure)>) -> (World, f64) {
     let options = Options { seconds: Some(SECONDS), dry_run: true, ..Options::default() };
     let world = Rc::new(RefCell::new(World::new(failing)));

@@ -1,5 +1,3 @@
-//! A vehicle and its companion.
-
 use crate::Peer;
 use crate::companion::config::VehicleSetup;
 use crate::companion::controller::{Body, Controller};
@@ -8,7 +6,7 @@ use crate::geo::{Origin, enu};
 use staya_sim::radio::HostWire;
 use std::time::Duration;
 
-/// Capacity for packets until the agent's next step, bytes; more are lost, as on a radio.
+/// Packets beyond this are lost, as on a radio.
 const INBOX: usize = 16 * 1024;
 
 pub struct Vehicle {
@@ -18,15 +16,12 @@ pub struct Vehicle {
     pub offboard: OffboardStateMachine,
     pub controller: Controller<HostWire>,
     pub peer: Option<Peer>,
-    /// Whether a signature problem was reported.
     pub is_signing_told: bool,
     pub sequence: u8,
-    /// When a dry run last showed a velocity.
     pub shown: Option<Duration>,
     pub inbox: Vec<u8>,
     pub next_step: Duration,
     pub has_arrived: bool,
-    /// Whether it is too far from the origin to be controlled.
     pub is_far: bool,
     pub heard: u64,
     pub refused: u64,
@@ -39,9 +34,8 @@ impl Vehicle {
         }
     }
 
-    /// Position and velocity at `now`, extrapolated. With stale or untrusted telemetry the position
-    /// error grows with its age up to `error_m`, since the vehicle may still roll or be driven by a
-    /// pilot.
+    /// Extrapolated to `now`. With stale or untrusted telemetry the error grows with its age up to
+    /// `error_m`, since the vehicle may still roll or be driven by a pilot.
     pub fn body(&self, origin: &Origin, now: Duration) -> Option<Body> {
         let last = self.offboard.fix()?;
         let at = origin.to_enu_m(&last.place)?;
@@ -56,7 +50,6 @@ impl Vehicle {
     }
 }
 
-/// Whether the horizontal distance to the origin is at most `reach_m`.
 pub fn is_within(body: &Body, reach_m: f64) -> bool {
     let [x, y, _] = body.position_m;
     x * x + y * y <= reach_m * reach_m

@@ -1,5 +1,3 @@
-//! Commands and their addressing.
-
 use super::*;
 
 #[test]
@@ -11,7 +9,6 @@ fn arming_enables_motion_and_disarming_stops_it() {
     assert_eq!(bench.texts(), ["disarmed"]);
     assert_eq!(bench.command(arm, NONE), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.wish(), None, "it was disarmed already");
-    // Unused parameters may be NaN.
     assert_eq!(bench.command(arm, [1.0, NAN, NAN, NAN, NAN, NAN, NAN]), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.wish(), Some(Wish::Own));
     for bad in [NAN, 2.0, -1.0, 0.5, f32::INFINITY] {
@@ -39,12 +36,10 @@ fn disarming_in_the_air_or_while_moving_needs_force() {
 fn unknown_modes_are_denied_and_unknown_commands_unsupported() {
     let mut bench = Bench::new(model());
     let mode = MAV_CMD_DO_SET_MODE;
-    // An unknown mode, Copter's LAND, a mode without the custom flag, NaN.
     for bad in [two(1.0, 99.0), two(1.0, 9.0), two(0.0, 15.0), two(NAN, 15.0), two(1.0, NAN)] {
         assert_eq!(bench.command(mode, bad), MAV_RESULT_DENIED, "{bad:?}");
     }
     assert_eq!(bench.vehicle.mode, FlightMode::Auto);
-    // A takeoff and a landing of a ground vehicle, a servo, unknown numbers.
     for command in [MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND, 183, 0, u16::MAX] {
         assert_eq!(bench.command(command, NONE), MAV_RESULT_UNSUPPORTED, "{command}");
     }
@@ -111,7 +106,6 @@ fn messages_for_other_systems_are_ignored() {
     for (system, component) in [(7, 0), (7, 1), (0, 0), (0, 1)] {
         assert_eq!(bench.give(command(system, component)).results, [MAV_RESULT_ACCEPTED]);
     }
-    // PARAM_SET as a broadcast is ignored.
     let set = MavMessage::PARAM_SET(PARAM_SET_DATA {
         param_id: "SPEED_MPS".into(),
         param_value: 0.5,
@@ -171,7 +165,6 @@ fn a_parameter_is_set_within_limits_and_always_reported() {
     bench.vehicle.now_us += 10_000_000;
     bench.give(read(count as i16));
     assert_eq!(bench.texts(), ["unknown parameter"]);
-    // The setpoint timeout is a parameter of the vehicle, not of the controller.
     let mut bench = guided(model());
     assert!(bench.give(param_set("SETPOINT_S", 0.5)).actions.is_empty());
     let Some(Wish::Velocity { valid, .. }) = set(&mut bench, local(0xDC7, 1)) else {

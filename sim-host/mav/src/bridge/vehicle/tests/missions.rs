@@ -1,5 +1,3 @@
-//! Missions, and the dialect's orders to a formation.
-
 use super::*;
 use crate::bridge::mission::MAV_MISSION_INVALID_PARAM2;
 
@@ -19,7 +17,6 @@ fn a_mission_runs_item_by_item() {
             _ => None,
         })
     };
-    // At the goal, then 0.3 s of waiting.
     for expected in [None, None, None, Some(1)] {
         let out = bench.tick(|sample| sample.position_m = [10.0, 0.02, 0.0]);
         assert_eq!(reached(out), expected);
@@ -30,7 +27,6 @@ fn a_mission_runs_item_by_item() {
     assert_eq!(reached(out), Some(2));
     assert_eq!((bench.wish(), bench.vehicle.is_on_mission), (Some(Wish::Hold), false));
     assert_eq!(bench.texts(), ["mission done: holding"]);
-    // A change of mode ends the mission.
     assert_eq!(bench.command(MAV_CMD_DO_SET_MISSION_CURRENT, first(1.0)), MAV_RESULT_ACCEPTED);
     assert_eq!(bench.command(MAV_CMD_DO_SET_MODE, two(1.0, 10.0)), MAV_RESULT_ACCEPTED);
     assert!(bench.vehicle.is_on_mission);
@@ -47,7 +43,6 @@ fn reached(out: &Out) -> Vec<u16> {
     messages.collect()
 }
 
-/// A mission as MAVSDK writes it: every waypoint is followed by a speed and camera items.
 #[test]
 fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     let mut bench = Bench::new(model());
@@ -73,7 +68,6 @@ fn speed_wait_and_camera_items_do_not_stop_a_mission() {
     assert_eq!(reached(&bench.out), [1]);
     assert!(bench.out.actions.contains(&Action::Set(Parameter::Speed, 0.5)));
     assert!((place_mm(bench.wish())[0] - 10_000).abs() < 10);
-    // The body is limited to 2 m/s.
     let out = bench.tick(|sample| sample.position_m = [10.0, 0.0, 0.0]);
     assert_eq!(reached(out), [2, 3]);
     assert!(out.actions.contains(&Action::Set(Parameter::Speed, 2.0)));
@@ -166,7 +160,6 @@ fn orders_of_the_dialect_reach_the_controller() {
     };
     assert_eq!((header.boot, header.sender.0, header.sequence), (1, 255, 4));
     assert_eq!((told.to.0, told.version, told.target), (0, 9, Cell::new(3, -2)));
-    // A template whose part does not match its count is invalid.
     let template = STAYA_TEMPLATE_DATA { target_system: 7, count: 3, parts: 1, ..STAYA_TEMPLATE_DATA::DEFAULT };
     assert!(bench.give(MavMessage::STAYA_TEMPLATE(template.clone())).actions.is_empty());
     let template = STAYA_TEMPLATE_DATA { count: 1, entry_x: [5, 0], entry_id: [6, 0], ..template };

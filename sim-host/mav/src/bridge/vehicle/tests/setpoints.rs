@@ -1,5 +1,3 @@
-//! Setpoints and DO_REPOSITION.
-
 use super::*;
 
 #[test]
@@ -11,7 +9,7 @@ fn setpoints_of_each_frame_and_mask_become_goals() {
     assert_eq!(place_mm(set(&mut bench, local(0xDF8, 7))), [23_000, 15_000, 0]);
     let velocity = |x, y| Some(Wish::Velocity { velocity_mps: Vec3::new(x, y, 0.0), valid });
     assert_eq!(set(&mut bench, local(0xDC7, 1)), velocity(0.5, 1.0));
-    // MAVSDK's mask.
+    // Mask of MAVSDK.
     assert_eq!(set(&mut bench, local(2503, 1)), velocity(0.5, 1.0));
     let both = set(&mut bench, local(0xDC0, 1));
     let Some(Wish::Waypoint { waypoint, valid: Some(until) }) = both else {
@@ -102,7 +100,6 @@ fn invalid_setpoints_are_refused_with_a_text() {
         bench.vehicle.now_us += 10_000_000;
         assert_eq!(set(&mut bench, target), None);
         assert_eq!(bench.texts().len(), 1);
-        // A repeated refusal is silent.
         let mut target = local(0xDF8, 1);
         change(&mut target);
         assert_eq!(set(&mut bench, target), None);
@@ -114,7 +111,6 @@ fn invalid_setpoints_are_refused_with_a_text() {
     refused(&|t| t.x = NAN);
     refused(&|t| t.y = f32::INFINITY);
     refused(&|t| t.x = 1e12);
-    // Fields excluded by the mask may be NaN.
     let mut target = local(0xDF8, 1);
     (target.vx, target.afx, target.yaw) = (NAN, NAN, NAN);
     assert!(set(&mut bench, target).is_some());
@@ -144,7 +140,6 @@ fn reposition_moves_the_vehicle_or_answers_why_not() {
     let frame = MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME;
     assert_eq!(bad(&|c| c.frame = MAV_FRAME_BODY_NED), frame);
     assert_eq!(bad(&|c| c.x = i32::MAX), MAV_RESULT_DENIED);
-    // On the other side of the Earth.
     assert_eq!(bad(&|c| c.y = -1_700_000_000), MAV_RESULT_DENIED);
     assert_eq!(bad(&|c| c.param2 = 0.5), MAV_RESULT_DENIED);
     assert_eq!(bad(&|c| c.param1 = 99.0), MAV_RESULT_DENIED, "too fast");
@@ -160,7 +155,6 @@ fn goals_inside_a_wall_are_denied() {
     let ball = Solid::Ball { center_m: [8.0, 2.0, 0.0], radius_m: 1.0 };
     let mut bench = Bench::new(VehicleModel { solids: vec![ball], ..model() });
     assert_eq!(bench.command_int(reposition(8.5, 2.0, 1.0)), MAV_RESULT_DENIED);
-    // The edge of the body would be in the wall.
     assert_eq!(bench.command_int(reposition(9.2, 2.0, 1.0)), MAV_RESULT_DENIED);
     assert_eq!(bench.command_int(reposition(9.3, 2.0, 1.0)), MAV_RESULT_ACCEPTED);
 }

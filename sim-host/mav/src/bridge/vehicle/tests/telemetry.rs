@@ -1,5 +1,3 @@
-//! Telemetry and its rates.
-
 use super::*;
 
 fn second(bench: &mut Bench, from_us: u64) -> Vec<MavMessage> {
@@ -35,7 +33,6 @@ fn streams_have_the_requested_rates() {
     assert_eq!(bench.command(MAV_CMD_GET_MESSAGE_INTERVAL, first(attitude)), MAV_RESULT_ACCEPTED);
     let told = MESSAGE_INTERVAL_DATA { interval_us: 200_000, message_id: 30 };
     assert_eq!(bench.out.messages[1], MavMessage::MESSAGE_INTERVAL(told));
-    // Too fast, negative, NaN, an unknown message, and the heartbeat.
     for (bad, result) in [
         (two(position, 10.0), MAV_RESULT_DENIED),
         (two(position, -2.0), MAV_RESULT_DENIED),

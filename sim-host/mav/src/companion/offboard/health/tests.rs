@@ -64,7 +64,6 @@ fn one_of_two_receivers_is_enough_until_it_times_out() {
         (1.5, gps(1), None),
         (3.0, second_gps(3), None),
         (4.9, gps(1), None),
-        // The second receiver has timed out.
         (5.1, gps(1), Some(Doubt::Gps)),
         (5.2, second_gps(3), None),
         (11.0, second_gps(3), None),
@@ -73,7 +72,6 @@ fn one_of_two_receivers_is_enough_until_it_times_out() {
     ] {
         assert_eq!(health.hear(&message, s(seconds)), doubt, "{seconds} {message:?}");
     }
-    // A vehicle with only a second receiver.
     let mut second = Health::default();
     assert_eq!(second.hear(&gps(0), s(0.5)), None);
     assert_eq!(second.hear(&second_gps(6), s(1.0)), None);
@@ -89,7 +87,6 @@ fn trust_returns_after_a_time_without_problems() {
     let _ = health.hear(&ekf(0, 0.0), s(2.0));
     let _ = health.hear(&gps(6), s(3.0));
     assert!(!health.is_trusted(s(20.0)), "the estimator is still bad");
-    // The last problem was at 3 s.
     let _ = health.hear(&ekf(SOUND, 0.0), s(4.0));
     assert!(!health.is_trusted(s(7.9)));
     assert!(health.is_trusted(s(8.0)));
@@ -107,7 +104,6 @@ fn an_estimator_needs_position_velocity_and_small_innovations() {
         (ekf(SOUND & !ESTIMATOR_POS_HORIZ_ABS, 0.0), Some(Doubt::Estimator)),
         (ekf(SOUND | EKF_UNINITIALIZED, 0.0), Some(Doubt::Estimator)),
         (ekf(SOUND | EKF_GPS_GLITCHING, 0.0), Some(Doubt::Estimator)),
-        // As recorded: good, after dead reckoning ended, and stationary.
         (ekf(0x33F, 0.0), None),
         (ekf(0x27, 0.0), Some(Doubt::Estimator)),
         (ekf(0xA7, 0.0), Some(Doubt::Estimator)),

@@ -1,5 +1,3 @@
-//! Entry into external control.
-
 use super::super::poll::ATTEMPTS;
 use super::*;
 
@@ -40,7 +38,6 @@ fn requests_end_after_the_last_retry() {
 fn any_action_of_the_pilot_ends_the_requests() {
     let mut bench = Bench::new(Kind::ArduRover, ONCE, MANUAL, ARMED);
     bench.run(1.0);
-    // HOLD.
     bench.mode = 4;
     let sent = bench.run(30.0);
     assert_eq!(commands(&sent, out::DO_SET_MODE), 0);
@@ -85,7 +82,6 @@ fn a_refusal_is_reported_once() {
 
 #[test]
 fn a_copter_is_armed_takes_off_and_is_controlled_at_its_height() {
-    // Copter's GUIDED.
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 0, DISARMED);
     assert_eq!(commands(&bench.run(1.0), out::DO_SET_MODE), 1);
     bench.mode = 4;
@@ -129,7 +125,6 @@ fn a_flying_vehicle_is_not_controlled_on_the_ground() {
     bench.above_home_m = 1.0;
     bench.run(0.5);
     assert_eq!(bench.state(), State::Steering);
-    // The landed state takes precedence over the height.
     bench.offboard.hear(&landed(1), bench.now);
     bench.run(0.5);
     assert_eq!(bench.state(), State::Grounded);
@@ -181,7 +176,6 @@ fn a_started_takeoff_is_not_requested_again() {
     assert_eq!(commands(&bench.run(3.0), out::NAV_TAKEOFF), 2, "the takeoff has not started");
     bench.offboard.hear(&landed(3), bench.now);
     assert_eq!(commands(&bench.run(10.0), out::NAV_TAKEOFF), 0);
-    // The height replaces a missing landed state.
     let mut bench = Bench::new(Kind::ArduCopter, FLY, 4, ARMED);
     bench.run(1.0);
     bench.above_home_m = 1.0;
@@ -223,7 +217,6 @@ fn px4_gets_setpoints_for_its_pilots_offboard_but_none_after_a_hand_over() {
     assert!(!offered.is_empty() && offered.iter().all(stands));
 }
 
-/// No request is granted, and positions arrive at 1 Hz.
 #[test]
 fn a_dry_run_shows_its_requests_and_then_velocities() {
     let rules = Rules { rehearses: true, stale: Duration::from_secs(3), ..FLY };

@@ -1,5 +1,3 @@
-//! Telemetry in and out of order.
-
 use super::*;
 
 #[test]
@@ -127,7 +125,6 @@ fn a_restart_within_two_seconds_of_boot_is_not_taken_for_reordering() {
     bench.boot_ms = 0;
     bench.run(1.0);
     assert_eq!((bench.state(), bench.offboard.tally().restarts), (State::Restarted, 1));
-    // Late messages between current ones are not a restart, in any number.
     let mut bench = Bench::rover(RULES);
     bench.run(1.0);
     for _ in 0..20 {
@@ -137,7 +134,6 @@ fn a_restart_within_two_seconds_of_boot_is_not_taken_for_reordering() {
         bench.boot_ms = now + 10;
         bench.fix();
     }
-    // Nor are late messages in falling order.
     for behind in 1..20 {
         bench.boot_ms -= behind;
         bench.fix();

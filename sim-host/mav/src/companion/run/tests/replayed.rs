@@ -1,10 +1,6 @@
-//! Recorded flights of six rovers through the whole loop: what the others learn of a vehicle in
-//! trouble.
-
 use super::*;
 use crate::companion::replay::Recording;
 
-/// An environment with the time and frames of a recording.
 struct Replay {
     now: Duration,
     frames: VecDeque<(Duration, Vec<u8>)>,
@@ -27,7 +23,6 @@ impl Machine for Replay {
         }
         self.now = self.now.max(*at);
         let (_, frame) = self.frames.pop_front()?;
-        // Vehicle n of the recording is on link n - 1.
         let line = usize::from(RawFrame::new(&frame)?.sender().system) - 1;
         Some(Received { line, peer: Peer::Wire, frame })
     }
@@ -65,8 +60,7 @@ impl Machine for Replay {
     }
 }
 
-/// What robot 1 knows of robot 3 over time: seconds, and the radius in metres, `None` while
-/// unknown.
+/// Seconds, and the radius in metres that robot 1 knows, `None` while unknown.
 fn known_of_the_third(name: &str, until: f64) -> Vec<(f64, Option<f32>)> {
     let recording = Recording::load(name);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/six-rovers-crossing.toml");
