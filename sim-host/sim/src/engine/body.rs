@@ -36,9 +36,9 @@ impl Kinematics {
         Self { frame: GridFrame { origin_m: Vec2::new(x, y), cell_m: terrain.cell_m }, tick_s }
     }
 
-    /// The pose at `now_units`. A body holds its new cell from the start of a crossing, but reaches
-    /// the centre at the end, at constant speed. It keeps this speed while it can still continue
-    /// without losing a fraction of a tick (see [`World::advance`](crate::world::World::advance)).
+    /// A body holds its new cell from the start of a crossing but reaches the centre at its end, at
+    /// constant speed. It keeps this speed while it can continue without losing a fraction of a
+    /// tick.
     pub(super) fn pose(&self, body: &Body, now_units: u64) -> Pose {
         let center = self.frame.center(body.cell);
         let at_rest = Pose { position_m: [center.x, center.y], velocity_mps: [0.0; 2] };

@@ -27,7 +27,7 @@ pub enum Change<'a> {
     Remove(usize),
     /// See [`Intervention::Cell`].
     Cell([i16; 2], u8),
-    /// Cells with their new class, changed by a rule of the scenario
+    /// Cells with their new class, by a rule of the scenario
     /// ([`LandChange`](crate::terrain::change::LandChange)). A robot inside a closing cell may
     /// leave; no robot may enter.
     Land(&'a [(Cell, u8)]),
@@ -106,7 +106,6 @@ where
         self.robots.binary_search_by_key(&id, |robot| robot.id).ok()
     }
 
-    /// Index of a robot in this process, if it is here.
     pub(super) fn index_of(&self, id: RobotId) -> Option<usize> {
         let number = self.number_of(id)?;
         match self.here.len() == self.robots.len() && self.here[number] as usize == number {
@@ -172,7 +171,6 @@ where
     }
 }
 
-/// Sets the changed parameters of robot `number` in an agent that starts.
 pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(Parameter, f32) -> bool) {
     for Tuned { parameter, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
         set(*parameter, *value);

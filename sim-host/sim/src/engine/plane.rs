@@ -362,7 +362,6 @@ impl Ground for PlaneGround {
         for (index, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
             if guidance == GuidanceKind::Waypoint && index == 0 {
-                // A new first goal replaces all waypoints before it.
                 waypoints.clear();
             }
             let waypoint = waypoint(target, age_s);

@@ -73,8 +73,7 @@ pub struct Outcome {
     pub formation: Option<FormationQuality>,
     /// Distance of robots in the plane from their formation places, after the time for forming.
     pub place_error: Option<PlaceError>,
-    /// Quality of each formation, in the order of
-    /// [`Scenario::formations`](crate::scenario::Scenario::formations).
+    /// Quality of each formation, in the order of [`Scenario::formations`].
     pub formations: Vec<FormationKept>,
     /// Smallest distances between bodies and to obstacles; `None` on the grid.
     pub clearance: Option<Clearance>,
@@ -143,9 +142,7 @@ pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
 /// Engines of both worlds; instantiated only here, to compile the generic code once.
 pub(super) enum AnyEngine {
-    /// In the plane or in space.
     Plane(Box<Engine<PlaneGround, GuidanceOf, SafetyOf>>),
-    /// On the grid.
     Cells(Box<Engine<Grid, GuidanceOf, SafetyOf>>),
 }
 

@@ -1,8 +1,5 @@
-//! Saves and restores the state of single robots and of whole runs.
-//!
-//! Constant data is not saved: the state must be restored into an engine of the same scenario. The
-//! bytes are in postcard format and valid only for this version of the program; floats keep their
-//! bits. The bytes contain keys.
+//! Saves and restores single robots and whole runs, in postcard format. The bytes contain keys.
+//! Constant data is not saved: restore into an engine of the same scenario and program version.
 
 use super::{Engine, Ground, HostLaw, OnboardComputer, Status};
 use crate::engine::attacker::AttackerState;
@@ -183,10 +180,9 @@ where
         write(&self.radio.end(index), bytes);
     }
 
-    /// Restores a robot from the bytes of [`Engine::pack`] in an engine of the same scenario.
-    /// Returns the number of bytes read. O(bytes).
-    ///
-    /// Robots can be restored one by one. Until all are restored, two may be in one cell.
+    /// Restores a robot from the bytes of [`Engine::pack`] in an engine of the same scenario, and
+    /// returns the number of bytes read. Until all robots are restored, two may be in one cell.
+    /// O(bytes).
     ///
     /// # Errors
     /// The bytes are damaged or belong to another robot. The robot may then be partly restored.
@@ -276,8 +272,7 @@ where
         }
     }
 
-    /// Restores the state of [`Engine::save`] in an engine of the same scenario before its first
-    /// tick.
+    /// Restores [`Engine::save`] in an engine of the same scenario before its first tick.
     ///
     /// # Errors
     /// The bytes are damaged or from another scenario or program. Discard the engine then.

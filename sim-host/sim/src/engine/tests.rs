@@ -36,7 +36,6 @@ struct Known {
     others: Vec<(u32, Cell)>,
 }
 
-/// Goes east and records its inputs.
 struct Scout(Arc<Mutex<Vec<Known>>>);
 
 impl Teamwork for Scout {}
@@ -243,7 +242,6 @@ fn a_formation_is_measured_and_arrives() {
     assert!(keeping.best_fit_error_per_agent <= keeping.error_per_agent + 1.0);
 }
 
-/// All results of a run that could depend on threads.
 fn trace(scenario: &Scenario, threads: usize) -> (Outcome, Vec<RobotRow>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
@@ -287,7 +285,6 @@ fn different_seeds_give_different_runs() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// No radio faults and robot failures cause collisions, panics or wrong sums.
     #[test]
     fn any_radio_and_any_fault_leave_a_sound_run(
         seed: u64,

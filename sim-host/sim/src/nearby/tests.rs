@@ -17,7 +17,6 @@ fn answers<R: Real, const D: usize>(
     queries.iter().map(answer).collect()
 }
 
-/// Asserts that all searches give equal results, the grid for any side.
 fn agree<R: Real, const D: usize>(
     space: Space<R, D>,
     sides: &[R],

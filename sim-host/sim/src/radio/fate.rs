@@ -81,7 +81,6 @@ impl Fates {
         self.loss = loss;
     }
 
-    /// Random generator for everything that happens to `packet` at `receiver`.
     pub(super) fn draws(&self, packet: &Packet, receiver: RobotId, tick: u32) -> Rng {
         Rng::keyed(packet.key, packet.number, receiver.0, tick)
     }
@@ -102,8 +101,8 @@ impl Fates {
         Verdict::Arrives { copies }
     }
 
-    /// Arrival time of a packet sent in `tick`, microseconds after the start; `None` if packets
-    /// always arrive before the next step.
+    /// Arrival time, microseconds after the start; `None` if packets always arrive before the next
+    /// step.
     pub(super) fn due_us(&self, draws: &mut Rng, tick: u32) -> Option<u64> {
         let always_in_time = self.delay_us == 0 && self.jitter_us == 0 && self.reorder == 0;
         if always_in_time {
@@ -121,8 +120,8 @@ impl Fates {
         (u64::from(tick) + 1) * self.tick_us
     }
 
-    /// Flips bits of a received packet and returns whether any flipped. The zero byte at the end is
-    /// never changed, since the radio itself separates packets.
+    /// Returns whether any bit flipped. Spares the zero byte at the end: the radio separates
+    /// packets.
     pub(super) fn damage(&self, draws: &mut Rng, packet: &mut [u8]) -> bool {
         if self.ln_intact == 0.0 {
             return false;
@@ -155,9 +154,8 @@ impl Channel {
         Self { renewal: q32(leave / (1.0 - burst.share)), share: q32(burst.share), loss: q32(burst.loss) }
     }
 
-    /// State of the link's Markov chain at `tick`, found by walking back to the last redraw. This
-    /// needs no memory per link and is an exact Gilbert-Elliott channel. Takes about mean * (1 -
-    /// share) ticks of work.
+    /// Walks back to the last redraw of the link's state: an exact Gilbert-Elliott channel without
+    /// memory per link, for about mean * (1 - share) ticks of work.
     fn is_bad(&self, seed: u64, sender: RobotId, receiver: RobotId, tick: u32) -> bool {
         let link = Rng::keyed(seed, LINK, sender.0, receiver.0).next_u64();
         (0..=tick)
@@ -171,7 +169,7 @@ impl Channel {
     }
 }
 
-/// A probability as Q0.32; `u32::MAX` means always.
+/// `u32::MAX` means always.
 fn q32(probability: f64) -> u32 {
     (probability * 4_294_967_296.0) as u32
 }

@@ -44,7 +44,6 @@ struct Buckets {
     tokens: Vec<u64>,
 }
 
-/// Packets of a tick, sorted into square cells of the radio's range.
 #[derive(Clone, Debug)]
 pub(super) struct Medium {
     wire: AnyWire,
@@ -60,7 +59,6 @@ pub(super) struct Medium {
     lattice: Lattice,
 }
 
-/// Square cells over the bounding box of all robots.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lattice {
     corner_m: [f64; 2],
@@ -100,7 +98,6 @@ impl Medium {
         self.range_m
     }
 
-    /// Remaining tokens of sender `index`; `None`: no limit.
     pub(super) fn tokens(&self, index: usize) -> Option<u64> {
         self.buckets.as_ref().map(|buckets| buckets.tokens[index])
     }
@@ -115,7 +112,6 @@ impl Medium {
         true
     }
 
-    /// Replaces the packets with those sent in `tick`; the inputs have one entry per robot.
     pub(super) fn fill(
         &mut self,
         tick: u32,
@@ -215,8 +211,7 @@ impl Medium {
         }
     }
 
-    /// Indices of the packets in range of a position, sorted by sender and number, without those of
-    /// `own`.
+    /// Packets in range of a position, sorted by sender and number, without those of `own`.
     pub(super) fn heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
         heard.clear();
         self.add_heard_at(at_m, own, heard);

@@ -26,10 +26,7 @@ impl Radio {
         (self.inbox(index), held, bytes, self.medium.tokens(index))
     }
 
-    /// Restores the state of robot `index`.
-    ///
-    /// # Errors
-    /// The state belongs to another radio, or is invalid.
+    /// Fails if the state belongs to another radio, or is invalid.
     pub(crate) fn set_end(&mut self, index: usize, end: End) -> Result<(), &'static str> {
         let End { inbox, held, bytes, tokens } = end;
         let is_there = |held: &Held| {

@@ -87,7 +87,6 @@ pub struct LineFile {
 }
 
 impl LineFile {
-    /// Creates the file with only `header`.
     pub fn create(path: &Path, header: &str) -> Result<Self, Error> {
         let mut this = Self {
             file: File::create(path).map_err(Error::new("make", path))?,
@@ -99,7 +98,7 @@ impl LineFile {
         Ok(this)
     }
 
-    /// Appends to a file that ends with a complete block.
+    /// The file must end with a complete block.
     pub fn resume(path: &Path) -> Result<Self, Error> {
         let file = File::options().append(true).open(path).map_err(Error::new("open", path))?;
         let written = file.metadata().map_err(Error::new("read", path))?.len();
@@ -112,12 +111,10 @@ impl LineFile {
         Ok((self.path.clone(), self.written))
     }
 
-    /// Buffer for new lines; [`LineFile::end_block`] completes the block.
     pub const fn pending(&mut self) -> &mut Vec<u8> {
         &mut self.pending
     }
 
-    /// Ends a block; writes the buffer if it is full.
     pub fn end_block(&mut self) -> Result<(), Error> {
         if self.pending.len() < BLOCK {
             return Ok(());

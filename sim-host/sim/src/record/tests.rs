@@ -37,7 +37,6 @@ fn run(recorder: &mut Recorder, ticks: u32, robots: u32) {
     }
 }
 
-/// Reads a file: the header, then rows with as many columns; asserts a newline at the end.
 fn read(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let text = fs::read_to_string(path).unwrap();
     assert!(text.ends_with('\n'));

@@ -27,7 +27,6 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
 }
 
-/// Checks that the radio's format can encode the ids of robots and beaconing intruders.
 pub(super) fn numbers(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -221,7 +220,6 @@ pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result
     Ok(())
 }
 
-/// Refuses fields that the chosen formation law does not use.
 fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let law = file.formation.law.unwrap_or_default();
     let is_paper = law == FormationLaw::Paper;

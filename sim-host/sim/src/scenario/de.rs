@@ -14,10 +14,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A value that does not fit its field.
 #[derive(Debug)]
 pub struct Error {
-    /// Cause of the error.
     pub message: String,
     /// Position of the value or its key in the text, bytes.
     pub span: Option<Range<usize>>,
@@ -45,10 +43,6 @@ impl serde::de::Error for Error {
     }
 }
 
-/// Deserializes a whole file.
-///
-/// # Errors
-/// A field is unknown, is missing, or has a value of another type.
 pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeTable<'de>>) -> Result<T, Error> {
     T::deserialize(Table(root.get_ref())).map_err(|error| error.at(root.span()))
 }

@@ -27,7 +27,6 @@ impl Entry<'_> {
         self.source.error(&self.field(name), what, remedy)
     }
 
-    /// Converts a time to ticks, at least one.
     fn ticks(&self, name: &str, seconds: Option<f64>, tick_s: f64) -> Result<Option<NonZeroU32>, ScenarioError> {
         let Some(seconds) = seconds else {
             return Ok(None);

@@ -153,8 +153,7 @@ pub struct Scenario {
     pub terrain: Terrain,
     /// Changes of the terrain during the run.
     pub changes: Vec<LandChange>,
-    /// Terrain that robots know before they see it; `None`: nothing, and they remember only what
-    /// their laws store.
+    /// Terrain that robots know before they see it; `None`: only what their laws remember.
     pub scouting: Option<Scouting>,
     /// Rules of movement on the grid.
     pub rules: MoveRules,
@@ -339,7 +338,6 @@ impl Scenario {
     }
 }
 
-/// Fields of a valid scenario, with the effective seed and ticks and without secrets.
 fn parameters(source: &Source<'_>, file: &ScenarioFile) -> serde_json::Value {
     let mut fields: serde_json::Value = source.read(LIST).unwrap_or_default();
     if let Some(fields) = fields.as_object_mut() {

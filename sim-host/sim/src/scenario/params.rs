@@ -1,6 +1,5 @@
-//! `[route]` and `[formation]`: route planning and formation keeping. All fields are optional.
-//! Their defaults are the controller's; scenarios/README.md lists them, and a test compares the
-//! two.
+//! `[route]` and `[formation]`: route planning and formation keeping. The defaults are the
+//! controller's; a test compares them with the list in scenarios/README.md.
 
 use super::ranges::within;
 use super::source::Source;
@@ -70,8 +69,7 @@ pub struct FormationTable {
     pub resume_cells: Option<f64>,
     /// Whether the top leader waits for followers; not with `law = "paper"`, nor in the plane.
     pub waits: Option<bool>,
-    /// Number of missing or surplus robots above which others are asked to choose another
-    /// direction; with `law = "paper"`.
+    /// Missing or surplus robots above which others are asked to turn; with `law = "paper"`.
     pub crowd: Option<u8>,
     /// How far ahead of the top leader's cell the followers aim, cells.
     pub lead: Option<u8>,

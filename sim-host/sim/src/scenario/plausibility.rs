@@ -72,7 +72,6 @@ impl Scenario {
     }
 }
 
-/// Applies the fields of `[plausibility]` to the default limits.
 pub(super) fn said(
     source: &Source<'_>,
     file: &ScenarioFile,

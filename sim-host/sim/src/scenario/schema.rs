@@ -25,11 +25,10 @@ pub struct ScenarioFile {
     /// Seed of all random draws. Default: 0. `--seed` replaces it.
     #[serde(default)]
     pub seed: u64,
-    /// Ticks after which the run ends, 1 or more; it ends earlier when all robots have arrived.
-    /// `--ticks` replaces it.
+    /// Limit of ticks, 1 or more; the run ends earlier when all have arrived. `--ticks` replaces
+    /// it.
     pub ticks: u32,
-    /// Length of a tick in seconds, 0.001 to 60: the time in which a robot crosses a cell of
-    /// impassability 1. Default: 1.
+    /// Tick length, 0.001 to 60 s: the time to cross a cell of impassability 1. Default: 1.
     #[serde(default = "one")]
     pub tick_s: f64,
     /// The terrain; optional with `[plane]`.
@@ -132,8 +131,8 @@ pub struct ChangeTable {
     pub at_s: f64,
     /// Period of repetition, seconds. Default: once.
     pub every_s: Option<f64>,
-    /// With `class`: time after which the cells revert to the map's values, seconds; less than
-    /// `every_s`. Default: never.
+    /// With `class`: seconds until the cells revert to the map; less than `every_s`. Default:
+    /// never.
     pub for_s: Option<f64>,
     /// Individual cells.
     pub cells: Option<Vec<[i16; 2]>>,
@@ -341,13 +340,13 @@ pub enum AttackKind {
 pub enum Lie {
     /// Orders all robots to the lure.
     Orders,
-    /// PlausibilityLimits the largest radius that a beacon can encode, at the lure.
+    /// Claims the largest radius that a beacon can encode, at the lure.
     Radius,
-    /// PlausibilityLimits the highest speed that a beacon can encode, from its place towards the lure.
+    /// Claims the highest speed that a beacon can encode, from its place towards the lure.
     Speed,
-    /// PlausibilityLimits to be at the lure in one tick and at its place in the next.
+    /// Claims to be at the lure in one tick and at its place in the next.
     Jump,
-    /// PlausibilityLimits that further robots exist around the lure.
+    /// Claims that further robots exist around the lure.
     Ghosts,
 }
 
@@ -364,15 +363,13 @@ pub struct AttackTable {
     pub from_s: f64,
     /// End of the attack, seconds. Default: never.
     pub to_s: Option<f64>,
-    /// Place to which it orders the robots, or about which an insider lies, metres; not for
-    /// `"replay"`.
+    /// Place to which it orders the robots, or about which it lies, metres; not for `"replay"`.
     pub lure_m: Option<[f64; 2]>,
     /// Id of the robot that it impersonates. Default: the last one.
     pub claims: Option<u32>,
     /// Replay delay, seconds. Default: 10; only for `"replay"`.
     pub delay_s: Option<f64>,
-    /// Lies of an `"insider"`: one or more of `"orders"`, `"radius"`, `"speed"`, `"jump"`,
-    /// `"ghosts"`.
+    /// Lies of an `"insider"`: any of `"orders"`, `"radius"`, `"speed"`, `"jump"`, `"ghosts"`.
     #[serde(default)]
     pub lies: Vec<Lie>,
     /// Number of invented robots, 1 to 100. Default: 16; only for `"ghosts"`.

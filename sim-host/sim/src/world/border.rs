@@ -1,12 +1,11 @@
 //! Moves on the grid near the borders between MPI ranks.
 //!
-//! Whether a robot may enter a cell depends on the moves before it in the order of the tick's
-//! priorities. This dependency chain may cross a border several times. A rank therefore gets the
-//! bodies of other ranks within [`DEPTH`] cells with their preferred moves, processes all of them
-//! by priority, and leaves moves undecided that depend on bodies farther away. While any move in
-//! the world is undecided, ranks exchange their decisions and start another round. Each round
-//! decides at least the first undecided move, since all moves before it are decided; usually one
-//! round decides all. The result is that of [`World::advance`] for any partition.
+//! Whether a robot may enter a cell depends on the moves before it by priority, a chain that may
+//! cross borders several times. A rank therefore gets the bodies of other ranks within [`DEPTH`]
+//! cells with their preferred moves, processes all by priority, and leaves moves undecided that
+//! depend on bodies farther away. While any move in the world is undecided, ranks exchange their
+//! decisions and start another round, which decides at least the first undecided move; usually one
+//! round suffices. The result is that of [`World::advance`] for any partition.
 
 use super::{Body, PRIORITY, World};
 use serde::{Deserialize, Serialize};
@@ -16,8 +15,8 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 
-/// Distance in cells up to which a rank knows the bodies of others. At least 2, because bodies up
-/// to two cells apart compete for a cell. A larger value takes more bytes and leaves fewer moves
+/// Distance in cells up to which a rank knows the bodies of others; at least 2, because bodies up
+/// to two cells apart compete for a cell. A larger value costs bytes and leaves fewer moves
 /// undecided.
 pub const DEPTH: i16 = 8;
 

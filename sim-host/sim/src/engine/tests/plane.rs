@@ -1,5 +1,3 @@
-//! Runs in the plane.
-
 use super::*;
 use crate::scenario::{Order, Target};
 use staya_controller::wire::{Format, Message, decode, frames};

@@ -9,8 +9,7 @@ const NAMED: usize = 3;
 
 type Loop = Vec<[f64; 2]>;
 
-/// Warns about ticks that are too long for the bodies, closed walls that cross themselves, and
-/// unreachable goals. O(robots x walls + sides of a closed wall squared).
+/// O(robots x walls + sides of a closed wall squared).
 pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> {
     let loops = loops(&setup.solids);
     let mut remarks: Vec<_> = setup.kinds().filter_map(|group| long_tick(group, tick_s)).collect();

@@ -110,8 +110,6 @@ fn check_obstacles(plan: &LandPlan, obstacles: u32) -> Result<(), TerrainError> 
 }
 
 /// `count` different numbers below `total` in random order; all sets are equally likely.
-///
-/// Small samples are drawn by rejection, large ones by a partial shuffle.
 fn sample(total: u32, count: u32, rng: &mut Rng) -> Vec<u32> {
     if u64::from(count) * 4 < u64::from(total) {
         let mut taken = std::collections::HashSet::new();
@@ -154,7 +152,6 @@ impl Hill {
         Self { reach: reach as usize, square: square.collect() }
     }
 
-    /// Raises the terrain around column `x`, row `y` to the hill.
     fn stamp(&self, cells: &mut [u8], width: usize, x: usize, y: usize) {
         let side = 2 * self.reach + 1;
         let height = cells.len() / width;
@@ -180,7 +177,6 @@ mod tests {
 
     const PLAN: LandPlan = LandPlan { width: 100, height: 100, classes: 9, seed: 1 };
 
-    /// Reference implementation of u: the nearest of all obstacles.
     fn by_definition(land: &Terrain, classes: u8, obstacles: &[Cell], norm: Norm) -> Vec<u8> {
         let cell = |at: usize| {
             let width = usize::from(land.width());

@@ -90,7 +90,6 @@ enum Trouble {
     NoNumber,
 }
 
-/// Parses decimal numbers separated by whitespace and comments.
 struct Words<'a> {
     bytes: &'a [u8],
     at: usize,

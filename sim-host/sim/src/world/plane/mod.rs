@@ -1,9 +1,8 @@
 //! Bodies in the plane or in space: discs (balls) that follow velocity commands within the limits
 //! of their inertia and the terrain.
 //!
-//! This is not a physics engine: only its own robot stops a body. Bodies pass through each other
-//! and through obstacles, and each overlap is counted, so that a controller cannot rely on the
-//! world for safety.
+//! This is not a physics engine: bodies pass through each other and through obstacles, and each
+//! overlap is counted, so that a controller cannot rely on the world for safety.
 
 mod border;
 mod sensing;
@@ -65,8 +64,8 @@ pub struct Plane {
     terrain: Option<Terrain>,
     solids: Solids,
     discs: Vec<Disc>,
-    /// By body: cells that closed while it was inside, with their previous class. It may leave
-    /// them; no body may enter.
+    /// By body: cells that closed around it, with their previous class; it may leave, none may
+    /// enter.
     shut: Vec<Vec<(Cell, u8)>>,
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
@@ -208,7 +207,6 @@ impl Plane {
         self.solids.change(|all| *all = solids);
     }
 
-    /// Restores a terrain cell, even if a body is inside.
     pub(crate) fn put_cell(&mut self, cell: Cell, class: u8) {
         if let Some(terrain) = &mut self.terrain {
             terrain.set(cell, class);
@@ -362,7 +360,6 @@ impl Plane {
         clearance
     }
 
-    /// Distance between a body's surface and the nearest obstacle within `within_m`, metres.
     fn solid_gap_m(&self, disc: &Disc, within_m: f64) -> f64 {
         let gaps = self.solids.near(disc.position_m, within_m).map(|solid| solid.distance_m(disc.position_m));
         gaps.fold(f64::INFINITY, f64::min) - disc.radius_m
@@ -414,7 +411,6 @@ impl Disc {
     }
 }
 
-/// See [`Plane::max_speed_mps`].
 fn max_speed_mps(land: Option<&Terrain>, shut: &[(Cell, u8)], abilities: &Abilities, [x, y, _]: [f64; 3]) -> f64 {
     let class = |land: &Terrain| {
         let cell = land.cell_at([x, y])?;
@@ -429,7 +425,6 @@ fn max_speed_mps(land: Option<&Terrain>, shut: &[(Cell, u8)], abilities: &Abilit
     abilities.max_speed_mps / f64::from(ticks)
 }
 
-/// Terrain cells under a body. O(cells).
 fn cells_under(land: &Terrain, disc: &Disc) -> impl Iterator<Item = Cell> {
     let ([x, y, _], r) = (disc.position_m, disc.radius_m);
     let (low, high) = (land.nearest_cell([x - r, y - r]), land.nearest_cell([x + r, y + r]));

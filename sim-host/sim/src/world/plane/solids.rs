@@ -149,7 +149,6 @@ fn flat(solid: &Solid) -> Solid {
     }
 }
 
-/// Bounding box from above; `None` if it is unbounded.
 fn bounds(solid: &Solid) -> Option<[[f64; 2]; 2]> {
     match *solid {
         Solid::Wall([a, b]) => Some([[a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), a[1].max(b[1])]]),
