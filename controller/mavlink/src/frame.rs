@@ -74,7 +74,6 @@ pub enum Scan<'a> {
 }
 
 enum Fault {
-    /// More bytes are needed.
     Short,
     Bad,
 }

@@ -177,9 +177,9 @@ impl<const N: usize> Signing<N> {
     }
 
     /// Sets how far frames may be ahead, in tens of microseconds: of the clock (default
-    /// [`MINUTE`]), or of the own timestamp without a clock ([`MONTH`]). A shorter lead rejects
-    /// robots with another time; a longer one lets an attacker with the key or a recording use up
-    /// more timestamps.
+    /// [`MINUTE`]), or of the own timestamp without a clock ([`MONTH`]). A short lead rejects
+    /// robots with another time; with a long one, an attacker with the key or a recording can use
+    /// up more timestamps.
     #[must_use]
     pub const fn with_lead(mut self, lead: u64) -> Self {
         self.lead = Some(lead);

@@ -74,8 +74,7 @@ impl Place {
     /// one, kept as `FILE.old`, only when the new one is complete.
     ///
     /// # Errors
-    /// The checkpoint cannot be written (the previous one is then unchanged), or records cannot be
-    /// read.
+    /// It cannot be written (the previous one is then unchanged), or records cannot be read.
     ///
     /// # Panics
     /// If some robots of the run have external controllers.
@@ -133,7 +132,6 @@ impl Place {
             Ok(()) => {}
         }
         fs::rename(temporary, &self.path)?;
-        // Syncs the directory, where the system supports it.
         let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
         Ok(())

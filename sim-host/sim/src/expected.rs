@@ -10,7 +10,6 @@ const BEGUN: f64 = 0.05;
 #[derive(Clone, Copy, Debug)]
 pub struct Expected {
     ticks: u32,
-    /// Longest distance seen, metres, and its tick.
     longest: Option<(f64, u32)>,
     left_m: Option<f64>,
 }
@@ -32,8 +31,7 @@ impl Expected {
         self.left_m = Some(self.left_m.map_or(way_m, |left_m| left_m.max(way_m)));
     }
 
-    /// Predicted number of ticks, after all robots of `tick` were recorded; the run's limit if
-    /// unknown.
+    /// Predicted number of ticks, once all robots of `tick` were recorded; else the run's limit.
     pub fn ticks(&mut self, tick: u32) -> u32 {
         let left_m = self.left_m.take();
         let Some(left_m) = left_m else {

@@ -52,7 +52,6 @@ pub struct Summary {
     place_error_worst_m: Option<f64>,
     place_error_worst_robot: Option<u32>,
     place_error_worst_s: Option<f64>,
-    /// Results by group; omitted if all robots are alike.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     groups: Vec<GroupFigures>,
     /// Over the longest time of a robot alone: straight, with full acceleration and braking.
@@ -104,7 +103,6 @@ impl From<&Solid> for Obstacle {
 struct Waited {
     #[serde(rename = "for")]
     reason: Wait,
-    /// Robots that waited for this cause at any time.
     robots: usize,
     at_the_end: usize,
     robot_seconds: f64,
@@ -150,8 +148,7 @@ fn finite(value: Option<f64>) -> Option<f64> {
 }
 
 impl Summary {
-    /// Creates a summary of a run with the written `files`; the caller sets duration and
-    /// interruption.
+    /// Creates the summary of a run with the written `files`; the caller sets the public fields.
     #[must_use]
     pub fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
         let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
@@ -217,8 +214,7 @@ impl Summary {
     }
 
     /// Numeric results in a fixed order, named as in `summary.json`: `packets.sent`, or
-    /// `waits.radio.robots` for a cause of waiting. `None`: the run has no such value. A Boolean is
-    /// 1 or 0.
+    /// `waits.radio.robots` for a cause of waiting. `None`: the run has no such value.
     #[must_use]
     pub fn figures(&self) -> Vec<(String, Option<f64>)> {
         let packets = &self.packets;

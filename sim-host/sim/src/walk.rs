@@ -121,10 +121,10 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
         &self.path
     }
 
-    /// Travel time of the whole path as estimated by the router, in
+    /// Travel time of the whole path as the router estimates it,
     /// [`UNIT`](staya_controller::grid::UNIT)ths of a tick: the least weight of the moves out of
-    /// `from`, with a0 = 1. `None` if there is no path. Exact if `CELLS` and radius 255 cover the
-    /// map; see [`holds`].
+    /// `from`, with a0 = 1. `None` without a path. Exact if `CELLS` and radius 255 cover the map
+    /// ([`holds`]).
     pub fn price(&mut self, land: &Terrain, params: &RouteParams, from: Cell, to: Cell) -> Option<f64> {
         if from == to {
             return Some(0.0);

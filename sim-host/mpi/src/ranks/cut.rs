@@ -1,7 +1,6 @@
 //! Division of the world into blocks of equal load by recursive bisection (M. J. Berger, S. H.
-//! Bokhari, A Partitioning Strategy for Nonuniform Problems on Multiprocessors, 1987). The cuts
+//! Bokhari, A Partitioning Strategy for Nonuniform Problems on Multiprocessors, 1987). Cuts
 //! influence the load but not the results, so samples of robots suffice.
-//! suffice.
 
 use serde::{Deserialize, Serialize};
 

@@ -24,7 +24,6 @@ pub trait Part: Ground {
     /// Appends a body of another rank; restoring the world's state moves it to its position.
     fn admit(&mut self, number: u32, id: RobotId);
 
-    /// Removes a body that moves to another rank; the last body takes its index.
     fn dismiss(&mut self, index: usize);
 
     fn hinders(&self, one: &Region, other: &Region) -> bool;
@@ -43,7 +42,6 @@ pub trait Part: Ground {
 
     fn touches(&self, one: &Region, other: &Region) -> bool;
 
-    /// Data that a neighbour needs about bodies near `region` to count collisions.
     fn bodies(&self, tick: u32, region: &Region) -> Vec<u8>;
 
     fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError>;

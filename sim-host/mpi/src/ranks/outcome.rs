@@ -102,7 +102,6 @@ impl Part {
     }
 }
 
-/// An outcome of zero robots, to which others are added.
 pub(super) fn nothing(has_clearance: bool) -> Outcome {
     Outcome {
         ticks: 0,

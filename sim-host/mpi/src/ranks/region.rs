@@ -18,7 +18,6 @@ pub(super) struct Region {
     pub(super) cells: Option<CellBounds>,
 }
 
-/// A margin for rounding errors.
 const MARGIN: f64 = 1.0 + 1e-9;
 
 impl Bounds {

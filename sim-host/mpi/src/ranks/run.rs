@@ -196,7 +196,6 @@ where
         let keeping = self.keeping(false)?;
         let mut row = self.engine.row(keeping, PacketCounts::default());
         let mut sums = self.tell_sums(PacketCounts::default(), 0.0)?;
-        // The moment of a checkpoint was already observed.
         let mut is_seen = state.is_some();
         loop {
             if !is_seen {

@@ -100,7 +100,6 @@ where
         Ok(())
     }
 
-    /// The caller restores its state.
     fn admit(&mut self, number: u32) -> usize {
         let engine = &mut self.engine;
         let (index, robot) = (engine.here.len(), engine.robots[number as usize]);

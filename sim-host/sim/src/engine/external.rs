@@ -42,7 +42,7 @@ pub struct Decision {
 
 pub(super) struct External {
     pub(super) controllers: Box<dyn ExternalController>,
-    /// Robot index, law and safety layer, sorted by index.
+    /// Sorted by index.
     pub(super) robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
 }
 

@@ -33,7 +33,6 @@ pub enum Change<'a> {
     Land(&'a [(Cell, u8)]),
 }
 
-/// A changed parameter, of one robot (its index in the scenario) or of all.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Tuned {
     robot: Option<usize>,
@@ -122,7 +121,6 @@ where
             return Err(Refusal::new("place_m", "nobody can stand there", "give a place on the map and not in a wall"));
         }
         let robots = number.map_or(0..self.robots.len(), |number| number..number + 1);
-        // Goals of the top leaders: followers get goals relative to them.
         let tops = self.shapes.iter().filter(|_| number.is_none());
         let tops: Vec<_> = tops.map(|members| (members.clone(), self.ground.goal_m(members.start))).collect();
         for number in robots.clone() {

@@ -10,7 +10,6 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
 use staya_controller::wire::{Beacon, Format, Header, Message, Wire as _};
 
-/// A cell outside every map.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 pub struct Intruder {

@@ -85,9 +85,7 @@ pub struct OnboardComputer<G: Guidance<f32>, A> {
     boot: u8,
     /// Tick at which its clock showed 0.
     epoch: u32,
-    /// First tick in which it is up again.
     down_until: u32,
-    /// Bytes since its start.
     sent_bytes: u64,
     heard_bytes: u64,
 }
@@ -137,7 +135,7 @@ type AgentFactory<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
 /// A running scenario in world `W`, with guidance laws `G` and safety layers `A`.
 ///
-/// Fields are public for the crate `staya-mpi`, which steps one part of a world in each process.
+/// Fields are public for `staya-mpi`, which steps a part of a world in each process.
 pub struct Engine<W, G: Guidance<f32>, A> {
     seed: u64,
     format: Format,
@@ -203,9 +201,8 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// Creates the engine before the first tick of `scenario`, with the bodies of `ground`.
-    /// `factory(i)` creates law and safety layer of robot `i` in [`Scenario::robots`] at each of
-    /// its starts.
+    /// Creates the engine before the first tick of `scenario`, with the bodies of `ground`. Each
+    /// start of robot `i` in [`Scenario::robots`] calls `factory(i)` for its law and safety layer.
     pub fn new(scenario: &Scenario, ground: W, factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
         let here = (0..scenario.robots.len() as u32).collect();
         Self::part(scenario, ground, factory, here, true)

@@ -44,13 +44,11 @@ pub trait Operated: Send {
     /// Events of robot `index` in the last tick.
     fn events(&self, index: usize) -> &[Event];
 
-    /// Commands robot `index`; false if its computer is down or its law does not support the
-    /// command.
+    /// Commands robot `index`; false if its computer is down or its law lacks the command.
     fn command(&mut self, index: usize, wish: Wish<f32>) -> bool;
 
     /// Delivers a message to robot `index` in the next tick, in its wire format but without the
-    /// radio; it is lost while the computer is down. Frame numbers are assigned here, not by
-    /// `header`.
+    /// radio; lost while the computer is down. Replaces the sequence number of `header`.
     fn tell(&mut self, index: usize, header: Header, message: &Message);
 
     /// Value of a parameter; `None` if the robot does not have it or is down.

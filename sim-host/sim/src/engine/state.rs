@@ -181,8 +181,7 @@ where
     }
 
     /// Restores a robot from the bytes of [`Engine::pack`] in an engine of the same scenario, and
-    /// returns the number of bytes read. Until all robots are restored, two may be in one cell.
-    /// O(bytes).
+    /// returns how many it read. Until all robots are restored, two may be in one cell. O(bytes).
     ///
     /// # Errors
     /// The bytes are damaged or belong to another robot. The robot may then be partly restored.
@@ -303,7 +302,6 @@ where
         (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
         self.waits.set_ticks(&whole.waited);
         self.radio.set_weather(whole.weather);
-        // Transmitters of other ranks are read and discarded.
         let [attackers, intruders, keepers] = others;
         for at in 0..attackers {
             let state = from.read::<AttackerState>("an attacker")?;
@@ -347,7 +345,7 @@ where
         Ok((at, digest))
     }
 
-    /// Reads and discards a robot of another rank. Returns the number of bytes read.
+    /// Returns the number of bytes read.
     fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
         let _: RobotId = from.read("the number of a robot")?;

@@ -265,7 +265,6 @@ fn neither_a_run_nor_its_hash_depends_on_the_number_of_threads() {
         let (other, other_rows) = trace(&scenario, threads);
         assert_eq!(other.trace_hash, one.trace_hash, "{threads} threads");
         assert_eq!((other.packets, &other.arrival_times, other.ticks), (one.packets, &one.arrival_times, one.ticks));
-        // NaN is not equal to itself.
         let cells =
             |rows: &[RobotRow]| rows.iter().map(|r| (r.id, r.motion.cell, r.mode, r.target)).collect::<Vec<_>>();
         assert_eq!(cells(&other_rows), cells(&rows));

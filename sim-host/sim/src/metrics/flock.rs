@@ -35,8 +35,7 @@ pub struct FlockMeasure {
     pub connectivity: f64,
     /// R, largest distance from the centroid, metres.
     pub radius_m: f64,
-    /// E / d^2: (length - d)^2 summed over ordered pairs, divided by their number plus 1 and by
-    /// d^2.
+    /// E / d^2: sum of (length - d)^2 over ordered pairs, over their number plus 1, over d^2.
     pub deviation_energy: f64,
     /// K / n, (m/s)^2: half the squared velocities relative to their mean, per robot.
     pub velocity_mismatch: f64,
@@ -96,7 +95,6 @@ impl<const D: usize> FlockMeter<D> {
             largest_component,
             connectivity: if robots > 1 { (robots - components) as f64 / (robots - 1) as f64 } else { 1.0 },
             radius_m,
-            // Each pair is two ordered pairs.
             deviation_energy: 2.0 * energy / (2 * edges + 1) as f64 / (self.spacing_m * self.spacing_m),
             velocity_mismatch: kinetic / robots as f64,
             polarisation: polarisation(velocities_mps),
@@ -174,8 +172,7 @@ pub struct AlphaLimits {
 }
 
 impl AlphaLimits {
-    /// e1 = 0.005, e2 = 0.001 (OLF figure 12); nine tenths in a component, all in
-    /// `cohesion_radius_m`.
+    /// e1 = 0.005, e2 = 0.001 (OLF figure 12), nine tenths connected, all in `cohesion_radius_m`.
     #[must_use]
     pub const fn paper(cohesion_radius_m: f64) -> Self {
         Self { deviation_energy: 0.005, velocity_mismatch: 0.001, quasi_flock_share: 0.9, cohesion_radius_m }

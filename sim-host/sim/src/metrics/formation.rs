@@ -8,11 +8,9 @@ use staya_controller::grid::Cell;
 /// Quality of a formation at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormationQuality {
-    /// Mean over the robots of |desired - actual|, cells, with the graph placed at the top leader
-    /// (robot 1). The leader counts, with 0.
+    /// Mean of |desired - actual| over the robots, cells, with the graph at the leader (error 0).
     pub error_per_agent: f64,
-    /// The mean error with the graph placed by the translation that fits all robots best (least
-    /// squares). It distinguishes a distorted formation from one that only lags behind its leader.
+    /// The mean error with the graph at its least-squares place: distortion without mere lag.
     pub best_fit_error_per_agent: f64,
     /// Graph distance, see [`FormationMeter`].
     pub graph_distance: f64,

@@ -48,9 +48,8 @@ impl FormationMeters {
         self.over(|members, meter| meter.measure(&bodies[members]))
     }
 
-    /// Measures the current quality of all formations as [`FormationMeter::look`] does: errors are
-    /// means over robots, graph distances are summed. `bodies[i]` is the position of robot i,
-    /// cells.
+    /// Measures the quality of all formations as [`FormationMeter::look`] does: errors are means
+    /// over robots, graph distances are summed. `bodies[i]` is the position of robot i, cells.
     ///
     /// # Panics
     /// If there are fewer bodies than members.

@@ -25,7 +25,6 @@ pub struct Cells<R, const D: usize> {
     /// Indices of the points by cell, ascending in each.
     order: Vec<u32>,
     points: Vec<[R; D]>,
-    /// Scratch: the cell of each point.
     cell_of: Vec<u32>,
 }
 
@@ -113,7 +112,6 @@ impl<R: Real, const D: usize> Cells<R, D> {
         let Some(period) = around else {
             return straight();
         };
-        // The ball covers the whole axis: every cell once.
         if reach + reach >= period {
             return Span::Around(0, count);
         }

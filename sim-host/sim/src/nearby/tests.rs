@@ -27,7 +27,6 @@ fn agree<R: Real, const D: usize>(
     for &side in sides {
         let mut cells = Cells::new(space, side);
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
-        // Buffers of earlier points do not affect results.
         prop_assert!(answers(&mut cells, &points[..points.len() / 2], queries).len() == queries.len());
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
     }

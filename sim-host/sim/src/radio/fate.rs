@@ -13,7 +13,6 @@ pub(super) enum Verdict {
     Arrives { copies: u32 },
 }
 
-/// Gilbert-Elliott channel of a link, without stored state.
 #[derive(Clone, Copy, Debug)]
 struct Channel {
     /// Probability per tick that the state is redrawn, Q0.32.
@@ -41,8 +40,7 @@ pub(super) struct Fates {
 }
 
 impl RadioParams {
-    /// Age of beacons that robots send every `period_s` seconds, for the design of a flock: the
-    /// delay with the longest jitter, seconds, and the number of received packets per second.
+    /// Longest delay of a beacon, seconds, and received ones per second if sent every `period_s`.
     #[must_use]
     pub fn news(&self, period_s: f64) -> (f64, f64) {
         let burst = self.burst.as_ref().map_or(0.0, |burst| burst.share * burst.loss);
@@ -101,8 +99,7 @@ impl Fates {
         Verdict::Arrives { copies }
     }
 
-    /// Arrival time, microseconds after the start; `None` if packets always arrive before the next
-    /// step.
+    /// In microseconds after the start; `None` if packets always arrive before the next step.
     pub(super) fn due_us(&self, draws: &mut Rng, tick: u32) -> Option<u64> {
         let always_in_time = self.delay_us == 0 && self.jitter_us == 0 && self.reorder == 0;
         if always_in_time {
@@ -120,8 +117,7 @@ impl Fates {
         (u64::from(tick) + 1) * self.tick_us
     }
 
-    /// Returns whether any bit flipped. Spares the zero byte at the end: the radio separates
-    /// packets.
+    /// Returns whether any bit flipped. The radio separates packets, so it spares the last byte.
     pub(super) fn damage(&self, draws: &mut Rng, packet: &mut [u8]) -> bool {
         if self.ln_intact == 0.0 {
             return false;

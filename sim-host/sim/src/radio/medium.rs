@@ -16,7 +16,6 @@ const PACKET: u32 = 0x0052_0001;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Packet {
     pub(super) sender: RobotId,
-    /// Index among the sender's packets of this tick.
     pub(super) number: u32,
     pub(super) key: u64,
     pub(super) from_m: [f64; 2],
@@ -31,7 +30,6 @@ const PART: usize = 1024;
 #[derive(Clone, Debug, Default)]
 struct Part {
     bytes: Vec<u8>,
-    /// Packets with their cells, sorted by sender and number.
     queue: Vec<(u32, Packet)>,
     counts: Counts,
 }
@@ -102,7 +100,7 @@ impl Medium {
         self.buckets.as_ref().map(|buckets| buckets.tokens[index])
     }
 
-    /// Restores the tokens of sender `index`; returns whether both have a limit or both have none.
+    /// Fails unless both have a limit or both have none.
     pub(super) fn set_tokens(&mut self, index: usize, tokens: Option<u64>) -> bool {
         match (&mut self.buckets, tokens) {
             (Some(buckets), Some(tokens)) => buckets.tokens[index] = tokens.min(buckets.capacity),
@@ -179,7 +177,7 @@ impl Medium {
         self.sort();
     }
 
-    /// Changes the number of senders; new ones have full token buckets.
+    /// New senders have full token buckets.
     pub(super) fn resize(&mut self, robots: usize) {
         if let Some(buckets) = &mut self.buckets {
             buckets.tokens.resize(robots, buckets.capacity);
@@ -272,7 +270,6 @@ fn images([x, y]: [f64; 2], [width, height]: [f64; 2]) -> impl Iterator<Item = [
 }
 
 impl Lattice {
-    /// Cells at least as wide as the range, and not many more cells than robots.
     fn over(positions_m: &[[f64; 2]], range_m: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for position in positions_m {

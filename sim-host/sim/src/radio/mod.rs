@@ -77,7 +77,6 @@ struct Receiver {
     /// Range of its inbox in its block's [`Inboxes`].
     inbox: Range<u32>,
     late: Option<Box<Late>>,
-    /// Fate of the last tick's packets, if the log is enabled.
     log: Option<Vec<(RobotId, Reception)>>,
 }
 
@@ -91,7 +90,6 @@ struct Late {
 
 const BLOCK: usize = 64;
 
-/// Concatenated inboxes of a block of receivers.
 type Inboxes = Vec<u8>;
 
 /// Fate of one packet at one receiver.
@@ -176,8 +174,7 @@ impl Radio {
     /// the next tick, and returns this tick's statistics. `positions_m[i]` and `outbox(i)` belong
     /// to robot `i`.
     ///
-    /// O(n k) for k robots in range, in parallel; allocates 16 bytes per robot once buffers have
-    /// grown.
+    /// O(n k) for k robots in range, in parallel; allocates 16 bytes per robot after warming up.
     ///
     /// # Panics
     /// If there are fewer positions than robots.
@@ -228,7 +225,6 @@ impl Receiver {
             for copy in 0..copies {
                 let due_us = fates.due_us(&mut draws, tick);
                 let buffer = match due_us {
-                    // Without delays, packets go directly to the inbox.
                     None => &mut *inboxes,
                     Some(_) => &mut self.late.get_or_insert_default().bytes,
                 };

@@ -8,7 +8,6 @@ pub(crate) struct End {
     inbox: Vec<u8>,
     held: Vec<Held>,
     bytes: Vec<u8>,
-    /// Tokens of the bandwidth limit; `None`: no limit.
     tokens: Option<u64>,
 }
 

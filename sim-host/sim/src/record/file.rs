@@ -42,7 +42,6 @@ pub fn prepare_dir(dir: &Path) -> Result<(), Error> {
     make_dir(dir)?;
     let probe = dir.join(format!(".{}.tmp", std::process::id()));
     let written = std::fs::write(&probe, "?").map_err(Error::new("write to", dir));
-    // The file may not exist.
     let _ = std::fs::remove_file(&probe);
     written
 }
@@ -73,7 +72,6 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> Result<(), Error> 
     write_atomically(&path, &text)
 }
 
-/// Bytes that are buffered before they are written.
 const BLOCK: usize = 1 << 16;
 
 /// A text file that grows by blocks of whole lines.

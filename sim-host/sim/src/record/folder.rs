@@ -1,11 +1,8 @@
-//! Atomic replacement of a results folder.
-//!
-//! A run writes to `.NAME.partial-PID` next to the target. Then the old folder is renamed to
-//! `.NAME.old-PID` and the new one to `NAME`; after an interruption, one of these is complete. The
-//! next run restores or removes the remains of a dead run, which it recognises by a file lock. Only
-//! the files listed in [`MARKER`] are replaced; others move to the new folder. A folder that no run
-//! created is never renamed: files move into it one by one, the summary last, and a run is refused
-//! at the start if the folder has a file with the name of a result.
+//! Atomic replacement of a results folder. A run writes to `.NAME.partial-PID`; then the old folder
+//! is renamed to `.NAME.old-PID` and the new one to `NAME`. After an interruption one of these is
+//! complete, and the next run restores or removes the remains of a dead run (known by a file lock).
+//! Only files listed in [`MARKER`] are replaced; others move to the new folder. Into a folder that
+//! no run created, files move one by one, the summary last, unless it has a file named as a result.
 
 use super::Error;
 use std::collections::BTreeSet;
@@ -37,7 +34,6 @@ const KNOWN: [&str; 13] = [
 ];
 /// Age after which a folder without a locked list counts as dead: active runs lock at once.
 const YOUNG: Duration = Duration::from_secs(60);
-/// Attempts to move a folder while other processes interfere.
 const TRIES: usize = 32;
 
 static BEGUN: AtomicU32 = AtomicU32::new(0);
@@ -152,7 +148,6 @@ impl Results {
                 Ok(()) => aside.push(old),
                 // Another run is at the same point.
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
-                // For example a mount point.
                 Err(_) => {
                     outcome = Ok(false);
                     break;

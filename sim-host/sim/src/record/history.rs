@@ -94,7 +94,6 @@ pub struct History {
     ticks: u32,
     /// Samples of all frames; counting them for each frame would take quadratic time.
     samples: usize,
-    /// Latest frame; stored even if its tick is not due.
     latest: Frame,
     max_samples: usize,
     frame_every: u32,

@@ -174,8 +174,7 @@ impl AddAssign for PacketCounts {
 /// Amount of recorded data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Ticks between samples in `trace.csv`; 0: robots / 1000, rounded up (at most 1000 rows a
-    /// tick).
+    /// Ticks between samples in `trace.csv`; 0: robots / 1000, rounded up.
     pub trace_every: u32,
     /// Largest number of robot samples in the [`History`], 32 bytes each. When it is reached, every
     /// second frame is dropped and the interval doubles; the first and the last frame always stay.

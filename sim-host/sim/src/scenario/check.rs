@@ -104,7 +104,6 @@ fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), Scena
 
 /// Measured lower bound of the memory per robot in bytes: agent, neighbours and packets.
 const ROBOT_BYTES: u64 = 4 << 10;
-/// Bytes per terrain cell during a run.
 const CELL_BYTES: u64 = 4;
 
 /// Refuses scenarios that do not fit into memory, before the system kills the process.
@@ -199,7 +198,6 @@ fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> Scen
     source.error(field, error.to_string(), remedy)
 }
 
-/// Refuses tables and options that robots without a formation would ignore.
 pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let in_formation = file.in_formation();
     if !in_formation && source.has("formation") {

@@ -22,7 +22,6 @@ pub struct Error {
 }
 
 impl Error {
-    /// Adds a place unless a nearer one is known.
     fn at(mut self, span: Range<usize>) -> Self {
         self.span.get_or_insert(span);
         self

@@ -12,8 +12,7 @@ pub struct FormationEntry {
     pub rows: Option<u16>,
     /// Robots in a row.
     pub columns: Option<u16>,
-    /// Cells between columns (x) and rows (y), may be negative. Default: `[3, -3]`, first row on
-    /// top.
+    /// Cells between columns (x) and rows (y). Default: `[3, -3]`, with the first row on top.
     pub spacing: Option<[i16; 2]>,
     /// Instead of rows and columns: the place of each robot, in cells relative to the first.
     pub places: Option<Vec<[i16; 2]>>,

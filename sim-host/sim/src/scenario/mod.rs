@@ -177,8 +177,7 @@ pub struct Scenario {
     pub formation_params: FormationParams,
     /// Parameters of the published formation law, if it replaces Staya's; grid only.
     pub published: Option<PublishedParams>,
-    /// Whether followers predict the formation's course
-    /// ([`Course`](staya_controller::formation::Course)); grid only.
+    /// Whether followers predict the course of their formation; grid only.
     pub looks_ahead: bool,
     /// Temporary failures of robots.
     pub faults: Vec<Fault>,

@@ -23,7 +23,6 @@ pub struct GridTable {
     pub corner_cutting: bool,
 }
 
-/// Largest window radius for which the simulator reserves memory.
 const MAX_RADIUS: u8 = 16;
 
 /// `[route]`: windowed routing (KUZ sections 3 and 5). Coefficients are rounded to sixteenths.
@@ -77,8 +76,7 @@ pub struct FormationTable {
     pub footprint: Option<f64>,
     /// Whether robots behind a dead robot move up a place each; otherwise its place stays empty.
     pub closes_ranks: Option<bool>,
-    /// Prediction of the other robots: `"constant"` (they continue as announced) or `"reflexive"`
-    /// (they decide as this robot would in their place).
+    /// Prediction of others: `"constant"` (as announced) or `"reflexive"` (as this robot decides).
     pub prediction: Option<Prediction>,
     /// Reaction of the top leader to lag: `"wait"` or `"def"` (go where the others are heading).
     pub recovery: Option<Recovery>,

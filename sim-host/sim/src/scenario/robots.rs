@@ -20,7 +20,6 @@ use std::ops::Range;
 const PLACES: u32 = 0x0053_0001;
 const GOALS: u32 = 0x0053_0002;
 
-/// Draws of a goal before the scenario is refused as too crowded.
 const TRIES: u32 = 10_000;
 
 /// Largest number of places in a formation: a beacon encodes a place in one byte.

@@ -25,8 +25,7 @@ pub struct ScenarioFile {
     /// Seed of all random draws. Default: 0. `--seed` replaces it.
     #[serde(default)]
     pub seed: u64,
-    /// Limit of ticks, 1 or more; the run ends earlier when all have arrived. `--ticks` replaces
-    /// it.
+    /// Limit of ticks, 1 or more; the run ends when all have arrived. `--ticks` replaces it.
     pub ticks: u32,
     /// Tick length, 0.001 to 60 s: the time to cross a cell of impassability 1. Default: 1.
     #[serde(default = "one")]
@@ -108,8 +107,7 @@ pub struct TerrainTable {
     pub natural: Option<NaturalTable>,
     /// Terrain with a given configuration entropy and total edge (KUZ section 4).
     pub entropy: Option<EntropyTable>,
-    /// Conversion of the file to impassability: `{ swamp, downsample, unknown, classes, slope = {
-    /// classes, max_slope } }`.
+    /// Conversion of the file to impassability; see [`LoadOptions`].
     #[serde(default)]
     pub load: LoadOptions,
     /// Part of the map to use. Default: all of it.
@@ -131,8 +129,7 @@ pub struct ChangeTable {
     pub at_s: f64,
     /// Period of repetition, seconds. Default: once.
     pub every_s: Option<f64>,
-    /// With `class`: seconds until the cells revert to the map; less than `every_s`. Default:
-    /// never.
+    /// With `class`: seconds until the cells revert; less than `every_s`. Default: never.
     pub for_s: Option<f64>,
     /// Individual cells.
     pub cells: Option<Vec<[i16; 2]>>,

@@ -251,7 +251,6 @@ fn first_line(message: &str) -> String {
     message.lines().next().unwrap_or_default().to_owned()
 }
 
-/// Replaces a Rust type name at the end of a message by plain words.
 fn in_words(message: &str) -> String {
     let Some((start, name)) = message.rsplit_once(", expected ") else {
         return message.to_owned();

@@ -391,7 +391,6 @@ fn a_formation_too_large_for_the_controller_is_refused() {
     };
     let too_many = "formation.rho: a robot would have more than 8 neighbours in the formation; give a smaller rho";
     refused(&star(9), too_many);
-    // With 8, only the map is too small.
     refused(&star(8), "is in a wall");
     refused(&star(255), "256 robots are more than a formation holds; give at most 255");
     let wide = "formation = { rows = 16, columns = 16, start = [0, 0], goal = [0, 0] }";

@@ -89,7 +89,6 @@ pub struct World {
     bodies: Vec<Body>,
     /// Per cell of the terrain: index of its body plus 1, or 0.
     occupancy: Vec<u32>,
-    /// Scratch: bodies that want to move in this tick, with their priority.
     movers: Vec<(u64, RobotId, u32)>,
     /// Scratch of the collision check: a bit per cell with a body. Empty between checks.
     seen: Vec<u64>,

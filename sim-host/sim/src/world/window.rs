@@ -49,7 +49,6 @@ pub fn known_window<'a, const N: usize>(
     let side = 2 * u16::from(radius) + 1;
     let closed = |at: usize| origin + Cell::new((at % usize::from(side)) as i16, (at / usize::from(side)) as i16);
     for (at, class) in buffer.iter_mut().enumerate().filter(|(_, class)| **class == BLOCKED) {
-        // The border of the map is certain.
         if map.index(closed(at)).is_some() {
             *class = supposed(*class);
         }

@@ -38,7 +38,6 @@ fn a_silent_intruder_is_grazed_when_seen_and_hit_when_unseen() {
     let mut blind = met_by(0.5, silent);
     blind.plane.as_mut().expect("a plane").general.sight_m = 0.0;
     let unseen = outcome(&blind);
-    // A robot without sight is hit. The overlap is counted separately, since no robot is to blame.
     let clearance = unseen.clearance.expect("bodies have sizes");
     assert!(clearance.intruders_m < -1.5 * 0.5 * 0.1 && clearance.intruder_overlaps > 5, "{clearance:?}");
     assert_eq!((seen.collisions, unseen.collisions), (0, 0));

@@ -7,7 +7,6 @@ fn parse(text: &str) -> Scenario {
     Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario")
 }
 
-/// Flat land of 30 x 7 cells with a wall at x = 15 that has a door of one cell, (15, 3).
 fn door(robots: &str, changes: &str, rest: &str) -> Scenario {
     let wall = "[[terrain.change]]\nclass = 0\ncells = [[15, 0], [15, 1], [15, 2], [15, 4], [15, 5], [15, 6]]\n";
     parse(&format!(
@@ -58,7 +57,6 @@ fn robots_pass_a_gate_once_it_opens() {
 
 #[test]
 fn a_robot_takes_another_route_when_one_closes_ahead() {
-    // A second door is in the far corner; the near one closes three cells ahead.
     for replan in ["each_cell", "until_changed"] {
         let changes = "[[terrain.change]]\nclass = 1\ncells = [[15, 0]]\n\
             [[terrain.change]]\nat_s = 5\nclass = 0\ncells = [[15, 3]]\n";
@@ -202,7 +200,6 @@ fn in_the_plane_a_robot_may_leave_a_closing_cell_and_none_may_enter() {
     assert!(first < 140 && second > 340, "{first} and {second}");
 }
 
-/// Terrain with a sight of three cells, and an outdated map of it.
 fn with_maps(now: &[&str], old: &[&str], rest: &str) -> Scenario {
     let dir = tempfile::tempdir().expect("a folder");
     for (name, rows) in [("now.map", now), ("old.map", old)] {

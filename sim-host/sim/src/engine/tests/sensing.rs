@@ -24,7 +24,6 @@ fn run(scenario: &Scenario) -> Outcome {
 fn robots_swap_places_by_sensors_alone_without_collisions() {
     let outcome = run(&circle(12, "beacons = false", ""));
     assert_eq!((outcome.arrived, outcome.collisions, outcome.packets.sent), (12, 0, 0));
-    // Nearly blind robots collide, so the sensors make the difference.
     let blind = run(&with_range(circle(12, "beacons = false", ""), 0.01));
     assert!(blind.collisions > 0);
 }

@@ -24,7 +24,6 @@ fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, 
     hasher.finish()
 }
 
-/// Runs `ticks` ticks, then resumes from the states saved at each tick of `at` and compares.
 fn goes_on<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, ticks: u32, at: &[u32])
 where
     W: Ground,

@@ -12,7 +12,6 @@ type Places = Vec<[f64; 2]>;
 fn starts(count: u32, box_m: [u64; 2]) -> Vec<([f64; 2], [f64; 2])> {
     let drawn = |index: u32, what: u32, below: u64| (Rng::keyed(7, what, index, 0).next_u64() % below) as f64;
     let start = |index: u32| {
-        // Each robot has its own row, so that starts do not overlap.
         let y = f64::from(index) * (box_m[1] as f64) / f64::from(count);
         let place = [drawn(index, 0, box_m[0] * 1000) / 1000.0, (y * 1000.0).floor() / 1000.0];
         (place, [drawn(index, 1, 200) / 100.0 - 1.0, drawn(index, 2, 200) / 100.0 - 1.0])

@@ -47,7 +47,6 @@ fn two_clusters_are_less_than_connected() {
 
 #[test]
 fn energy_mismatch_radius_and_order_of_three_robots_by_hand() {
-    // Edges of 6 and 8; a distance of 14 is out of range.
     let places = [[0.0, 0.0], [6.0, 0.0], [14.0, 0.0]];
     let velocities = [[1.0, 0.0], [0.0, 2.0], [-1.0, 1.0]];
     let mut meter = FlockMeter::new(7.0, 8.4, Space::OPEN);

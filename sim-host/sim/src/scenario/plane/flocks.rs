@@ -123,7 +123,6 @@ pub(super) fn lattice(
     Ok(Some(GuidanceSetup::Lattice { params, motion }))
 }
 
-/// Warning about explicit gains that are unstable with this radio; `None` if they are stable.
 pub(in super::super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams, tick_s: f64) -> Option<String> {
     let (delay_s, rate_hz) = radio.news(tick_s);
     let news_s = delay_s + 1.0 / rate_hz;

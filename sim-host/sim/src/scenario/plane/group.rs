@@ -99,7 +99,6 @@ const fn waypoint(cruise_mps: f64, tolerance_m: f64) -> GuidanceSetup {
     GuidanceSetup::Waypoint { speed_mps: cruise_mps as f32, tolerance_m: tolerance_m as f32 }
 }
 
-/// Default inflation of silent robots: grows at the highest speed, up to the radius.
 const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32> {
     StalenessInflation { growth_mps: max_speed_mps as f32, max_m: radius_m as f32 }
 }

@@ -199,7 +199,6 @@ pub(super) struct Placed {
     pub parts: Vec<Part>,
 }
 
-/// Checks the table and places the robots; `cells` are the robots of the top-level `[robots]`.
 pub(super) fn build(
     source: &Source<'_>,
     file: &ScenarioFile,

@@ -4,7 +4,6 @@ use super::{PlaneSetup, RobotGroup, Start};
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GuidanceKind, SafetySetup};
 
-/// Number of affected robots that a warning names; it counts the rest.
 const NAMED: usize = 3;
 
 type Loop = Vec<[f64; 2]>;

@@ -77,7 +77,7 @@ pub(super) const fn ten() -> f64 {
     10.0
 }
 
-/// `[plane.sensing]`: robots detect each other with sensors, in addition to the radio or without it.
+/// `[plane.sensing]`: robots detect each other with sensors, besides the radio or without it.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensingTable {
@@ -403,8 +403,7 @@ impl OrcaTable {
 pub struct PushOutTable {
     /// Smallest distance of a centre from others and from obstacles (R_MinDist), metres.
     pub min_distance_m: f64,
-    /// `"radial"` (model 1, along the radius; default) or `"tangential"` (model 2, along the
-    /// border).
+    /// `"radial"` (model 1, along the radius; default) or `"tangential"` (2, along the border).
     #[serde(default)]
     pub model: Model,
     /// Whether only the nearest robot in the way is avoided. Default: false, all are.

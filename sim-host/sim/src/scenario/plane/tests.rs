@@ -414,7 +414,6 @@ proptest! {
     }
 }
 
-/// Gains (c_alpha, c_gamma) of a lattice, and the warnings about it.
 fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
     let text = format!(
         "{HEAD}tick_s = 0.1\n{PLANE}guidance = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\

@@ -1,10 +1,9 @@
 //! Random terrain with a given configuration entropy S and total edge TE (KUZ section 4; A.
 //! Kuznetsov, "Generation of a Random Landscape by given Configuration Entropy and Total Edge",
-//! Computational Technologies 22(4), 2017). The method is our own, since S depends only on the
-//! sizes of the classes, and TE only on their places. S: class sizes fall by a constant ratio,
-//! found by bisection. TE: cells get classes in the order of a field, from white noise (nearly the
-//! greatest TE) over smoother fields to stripes; the first field with at most the target TE is
-//! improved by exchanging cells.
+//! Computational Technologies 22(4), 2017). S depends only on the sizes of the classes, which fall
+//! by a constant ratio found by bisection. TE depends only on their places: cells get classes in
+//! the order of a field, from white noise (nearly the greatest TE) over smoother fields to stripes,
+//! and the first field with at most the target TE is improved by exchanging cells.
 
 use super::super::Terrain;
 use super::super::error::{TerrainError, parameter_error};
@@ -26,7 +25,6 @@ pub struct ByMetrics {
     pub edge_tolerance: u64,
 }
 
-/// Exchanges per cell before the search is aborted.
 const TRIES_PER_CELL: u32 = 200;
 /// Larger radii could overflow the sums of [`smooth`].
 const MAX_RADIUS: u16 = 1024;

@@ -67,7 +67,6 @@ pub fn natural_by(plan: &LandPlan, obstacles: u32, norm: Norm, hills: Hills) -> 
             }
         };
         let nearest = || drawn.iter().map(square).min();
-        // One draw per cell, for any distance.
         let slope = u64::from(rough.below(2 * ONE as u32));
         let fall = match hills {
             Hills::Even => nearest().map(u64::isqrt),

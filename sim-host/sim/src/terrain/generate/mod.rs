@@ -157,7 +157,6 @@ impl Hill {
         let height = cells.len() / width;
         let columns = x.saturating_sub(self.reach)..(x + self.reach + 1).min(width);
         for row in y.saturating_sub(self.reach)..(y + self.reach + 1).min(height) {
-            // Column c of the terrain is column c + reach - x of the square.
             let start = (row + self.reach - y) * side + columns.start + self.reach - x;
             let hill = &self.square[start..start + columns.len()];
             let land = &mut cells[row * width..][columns.clone()];

@@ -145,7 +145,6 @@ mod tests {
         interpret(&picture, &meta, options).unwrap()
     }
 
-    /// Free, unknown, occupied in the north; occupied, free, free in the south.
     const PICTURE: &str = "P2\n3 2\n255\n254 205 0\n0 255 254\n";
 
     #[test]
@@ -167,7 +166,6 @@ mod tests {
     #[test]
     fn scale_maps_are_linear_between_the_thresholds() {
         let meta = format!("{META}mode: scale\n").replace("0.65", "0.8").replace("0.196", "0.2");
-        // p = 0, 0.2, 0.5, 0.8, 1
         let terrain = read(&meta, "P2 5 1 10 10 8 5 2 0", &LoadOptions::default());
         assert_eq!(terrain.cells(), [1, 1, 5, 9, BLOCKED]);
     }

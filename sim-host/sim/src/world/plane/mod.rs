@@ -64,8 +64,7 @@ pub struct Plane {
     terrain: Option<Terrain>,
     solids: Solids,
     discs: Vec<Disc>,
-    /// By body: cells that closed around it, with their previous class; it may leave, none may
-    /// enter.
+    /// By body: cells that closed around it, with their previous class; none may enter.
     shut: Vec<Vec<(Cell, u8)>>,
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
@@ -189,8 +188,7 @@ impl Plane {
         self.solids.all()
     }
 
-    /// The obstacles within `within_m` of a position, metres, in their order. O(obstacles within
-    /// sight and a few around it).
+    /// Obstacles within `within_m` metres of a position, in order. O(obstacles around it).
     pub fn solids_near(&self, place_m: [f64; 3], within_m: f64) -> impl Iterator<Item = &Solid> {
         self.solids.near(place_m, within_m).filter(move |solid| solid.distance_m(place_m) <= within_m)
     }
@@ -431,7 +429,6 @@ fn cells_under(land: &Terrain, disc: &Disc) -> impl Iterator<Item = Cell> {
     let (cell_m, origin_m) = (land.cell_m, land.origin_m);
     let all = (low.y..=high.y).flat_map(move |row| (low.x..=high.x).map(move |column| Cell::new(column, row)));
     all.filter(move |cell| {
-        // Distance from the centre to the nearest point of the cell.
         let off = |at: f64, cells: i16, axis: usize| {
             let west = origin_m[axis] + f64::from(cells) * cell_m;
             (west - at).max(at - west - cell_m).max(0.0)

@@ -26,7 +26,6 @@ struct Grid {
     counts: [usize; 2],
     /// Start of each square's list in `listed`, and the end of the last.
     starts: Vec<usize>,
-    /// Indices of obstacles, sorted within each square.
     listed: Vec<u32>,
     /// Half-spaces; they are in every list.
     endless: Vec<u32>,

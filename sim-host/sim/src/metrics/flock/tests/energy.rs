@@ -96,7 +96,6 @@ fn lattice_of(places: &[[f64; 2]], scale: f64) -> Vec<[f64; 2]> {
     places.iter().map(|place| place.map(|c| c * scale)).collect()
 }
 
-/// Largest rise of H in a step over the total decrease, in 20 s of steps of `dt`.
 fn largest_rise(algorithm: Algorithm, dt: f64) -> f64 {
     let params = params(algorithm);
     let mut meter = meter(&params);

@@ -177,7 +177,6 @@ fn groups_and_robots_override_fields_and_inherit_the_rest() {
     assert_eq!((large.cruise_mps, large.tolerance_m, large.sight_m), (2.0, 0.05, 5.0));
     let ways: Vec<_> = plane.starts[1].places.iter().map(|target| target.position_m).collect();
     assert_eq!(ways, [[3.0, 3.0, 0.0], [2.0, 2.0, 0.0], [0.0; 3]]);
-    // Robots of the last group are placed at random between those before them, without overlaps.
     assert_eq!((plane.starts.len(), plane.group(12).guidance.kind()), (13, GuidanceKind::Boids));
     assert_eq!(plane.group(12).safety, SafetySetup::None);
 }
