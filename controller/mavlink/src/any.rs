@@ -1,5 +1,4 @@
-//! A wire format chosen at run time, for hosts and for firmware whose host chooses the format.
-//! Firmware with a fixed format names its type instead.
+//! A wire format chosen at run time. Firmware with a fixed format names its type instead.
 
 use crate::signed::Signed;
 use crate::signing::Signing;
@@ -14,12 +13,9 @@ use staya_controller::wire::{
     Wire,
 };
 
-/// A wire format chosen at run time. Formats with a key are available if `S` and `G` hold
-/// [`Sealed`] and [`Signed`], such as boxes of them; without these a robot carries no code for
-/// keys.
-///
-/// An agent's digest contains only the format inside, so that agents in the same state have the
-/// same digest in any format.
+/// A wire format chosen at run time. Formats with a key need [`Sealed`] and [`Signed`], or boxes of
+/// them, as `S` and `G`; without these a robot carries no code for keys. A digest covers only the
+/// format inside, so agents in the same state have equal digests in any format.
 #[derive(Clone, Debug)]
 pub enum AnyWire<S = Keyless, G = Keyless> {
     /// The controller's own frames.
@@ -77,9 +73,8 @@ where
     S: From<Sealed<P>> + Deref<Target = Sealed<P>>,
     G: From<Signed<Q>> + Deref<Target = Signed<Q>>,
 {
-    /// Creates the format of this name with a key. Postcard's uses the number of `starts`, by the
-    /// rule of [`Sealed`]; MAVLink's uses the `link` number and the initial `timestamp`, by that of
-    /// [`Signing`]. `None` from 2^20 starts on.
+    /// Creates the format of this name with a key. Postcard counts `starts` as in [`Sealed`];
+    /// MAVLink begins at `timestamp` on `link` as in [`Signing`]. `None` from 2^20 starts on.
     #[must_use]
     pub fn keyed(format: Format, key: &Key, starts: u32, link: u8, timestamp: u64) -> Option<Self> {
         Some(match format {
@@ -89,9 +84,9 @@ where
     }
 }
 
-/// The number of an operator, which differs from those of all robots and fits the format. With a
-/// key there may be two operators, on `link` 0 and 1. If the format has space, their numbers
-/// differ, so that each may count its own frames.
+/// The number of an operator, different from those of all robots. With a key there may be two
+/// operators, on `link` 0 and 1; if the format has room, their numbers differ, so that each can
+/// count its own frames.
 #[must_use]
 pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
     match format {
@@ -101,8 +96,7 @@ pub const fn operator(format: Format, has_key: bool, link: u8) -> RobotId {
     }
 }
 
-/// The largest number of a robot. Numbers from 2^31 on are reserved for
-/// [duplicates](RobotId::duplicate).
+/// The largest robot number; 2^31 and above are reserved for [duplicates](RobotId::duplicate).
 #[must_use]
 pub const fn max_robot(format: Format, has_key: bool) -> RobotId {
     match format {

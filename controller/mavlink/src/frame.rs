@@ -1,8 +1,7 @@
 //! MAVLink frames in bytes: finding, inspecting and encoding them. Start with [`scan`].
 //!
-//! `mavlink-core` reads frames from streams into its own buffers. Robots and bridges already have
-//! the bytes, must keep them unchanged (signatures, logs), and must distinguish foreign messages
-//! from damage.
+//! Unlike `mavlink-core`, which reads streams into its own buffers, this module keeps the bytes
+//! unchanged (for signatures and logs) and distinguishes foreign messages from damage.
 
 use crate::dialect::MavMessage;
 use crc::{CRC_16_MCRF4XX, Crc, Table};
@@ -45,8 +44,7 @@ impl core::fmt::Display for Full {
 
 impl core::error::Error for Full {}
 
-/// A whole frame of MAVLink 1 or 2 with a correct length, and with a correct checksum if the
-/// message is known.
+/// A whole MAVLink 1 or 2 frame of correct length, and correct checksum if the message is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawFrame<'a> {
     bytes: &'a [u8],
@@ -70,27 +68,23 @@ pub enum Scan<'a> {
     },
     /// No whole frame.
     Nothing {
-        /// Number of bytes with which no frame begins; the bytes behind them may be the beginning
-        /// of one.
+        /// Number of bytes that begin no frame; a frame may begin behind them.
         junk: usize,
     },
 }
 
 enum Fault {
-    /// More bytes are needed.
     Short,
-    /// They cannot become a frame.
     Bad,
 }
 
 /// Finds the first frame in `bytes`, after any other bytes. With `is_whole` the bytes are complete
 /// (a datagram); without it more of the stream may follow.
 ///
-/// The checksum of a message that the dialect does not have cannot be verified. Such a message
-/// counts as a frame if it is the end of the bytes, or if another frame could begin behind it.
+/// The checksum of a message outside the dialect cannot be verified. Such a message counts as a
+/// frame if the bytes end behind it or another frame could begin there.
 ///
-/// Bounded work: O(n), and for each byte that could begin a header, one checksum of at most 280
-/// bytes.
+/// Bounded work: O(n), and one checksum of at most 280 bytes per byte that could begin a header.
 #[must_use]
 #[expect(clippy::arithmetic_side_effects, reason = "at most the length of `bytes`")]
 pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
@@ -105,10 +99,8 @@ pub fn scan(bytes: &[u8], is_whole: bool) -> Scan<'_> {
     Scan::Nothing { junk }
 }
 
-/// Removes the next frame from `rest`, together with the bytes before it that belong to no frame.
-/// Returns `None` and empties `rest` when no frame is left. For bytes that are complete.
-///
-/// Bounded work: that of [`scan`].
+/// Removes the next frame, and the bytes before it that belong to no frame, from the complete bytes
+/// `rest`. Returns `None` and empties `rest` when no frame is left. Bounded work: that of [`scan`].
 #[expect(clippy::arithmetic_side_effects, reason = "both lie within `rest`")]
 pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<RawFrame<'a>> {
     match scan(rest, true) {
@@ -187,8 +179,7 @@ fn body(bytes: &[u8], header: usize, len: u8, is_signed: bool) -> Result<(&[u8],
     Ok((payload, checksum, total))
 }
 
-/// The byte that the checksum of a message covers in addition to its bytes; `None` if the dialect
-/// does not have the message.
+/// `None` if the dialect does not have the message.
 fn extra_crc(message_id: u32) -> Option<u8> {
     // No known message has 0 (verified by a test), which stands for unknown ones.
     Some(MavMessage::extra_crc(message_id)).filter(|extra| *extra != 0)
@@ -274,12 +265,10 @@ impl<'a> RawFrame<'a> {
     }
 }
 
-/// Appends an unsigned MAVLink 2 frame and returns its length.
+/// Appends an unsigned MAVLink 2 frame and returns its length. Bounded work: O(payload).
 ///
 /// # Errors
 /// [`Full`] if it does not fit.
-///
-/// Bounded work: O(payload).
 pub fn encode<D: MessageData, const N: usize>(sender: Sender, data: &D, out: &mut Vec<u8, N>) -> Result<usize, Full> {
     let mut payload = [0; 255];
     let len = data.ser(MavlinkVersion::V2, &mut payload);

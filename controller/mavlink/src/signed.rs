@@ -7,11 +7,8 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 use staya_controller::wire::{DecodeError, EncodeError, Frame, Header, Message, Wire};
 
-/// [`Mavlink`] with signatures: its own frames are signed, and frames not signed with the key are
-/// rejected.
-///
-/// It costs 13 bytes per frame. [`Signing`] defines the timestamps of a robot without a clock after
-/// a start, and the frames that are accepted.
+/// [`Mavlink`] with signatures of 13 bytes: own frames are signed, and frames not signed with the
+/// key are rejected. [`Signing`] defines the accepted frames, and the timestamps after a start.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Signed<const N: usize = STREAMS> {
     signing: Signing<N>,

@@ -108,43 +108,41 @@ impl Counts {
     }
 }
 
-/// Signs the frames that one end of a link sends, and verifies those it receives from up to `N`
-/// senders.
+/// Signs the frames of one end of a link, and verifies frames of up to `N` senders.
 ///
 /// # Timestamps
 ///
-/// Each signed frame has a timestamp in units of 10 us since 2015, greater than all before it of
-/// the same system, component and link id. It increases by at least 1 per frame, and never falls
-/// behind an accepted one, so that a swarm without clocks agrees on a timestamp.
+/// A timestamp counts 10 us since 2015. That of a frame is greater than all before it of the same
+/// system, component and link id. It increases by at least 1 per frame and never falls behind an
+/// accepted one, so that a swarm without clocks agrees on a timestamp.
 ///
-/// - **With a clock:** pass the time to [`Self::new`], and from time to time (once a second
-///   suffices) to [`Self::advance_to`].
+/// - **With a clock:** pass the time to [`Self::new`], and about once a second to
+///   [`Self::advance_to`].
 /// - **Without a clock:** the first timestamp comes with the key, as in MAVLink's SETUP_SIGNING.
-///   Store [`Self::timestamp`] in persistent memory at least once a minute, and start with the
-///   stored one plus [`MINUTE`]. A robot that starts with an older one is rejected (by pymavlink,
-///   Staya and autopilots alike) until it has caught up, which happens with the first frame that it
-///   accepts. Robots that all lost their timestamp receive each other, but are rejected by those
-///   that still know it.
+///   Store [`Self::timestamp`] persistently at least once a minute, and start with the stored one
+///   plus [`MINUTE`]. A robot with an older one is rejected, also by pymavlink and autopilots,
+///   until it accepts a frame and thereby catches up. Robots that all lost their timestamp receive
+///   each other, but robots that still know it reject them.
 ///
 /// # Accepted frames
 ///
 /// A correctly signed frame is fresh if its timestamp is greater than all of its stream (system,
 /// component, link id), or at most 31 behind and not received before. So frames with counters may
 /// overtake each other, as with [`ReplayGuard`]; with a clock, 31 is a third of a millisecond. The
-/// first frame of a stream must not be more than [`MINUTE`] older than the newest known timestamp.
-/// So after a restart with a proper timestamp at most the last minute can be replayed, and only of
-/// senders that were not received since. A full table refuses new streams.
+/// first frame of a stream may be at most [`MINUTE`] older than the newest known timestamp, which
+/// limits replays after a restart to the last minute and to senders not received since. A full
+/// table refuses new streams.
 ///
 /// # Timestamps too far ahead
 ///
-/// MAVLink's own rule has no upper bound. A single frame with the last possible timestamp silences
-/// all receivers, since they have no timestamps left, and locks its stream out; a recording of it
-/// does so again after each restart, without the key. Therefore a frame is rejected as
-/// [`Verdict::Ahead`], without any effect, if it is more than [`MINUTE`] ahead of the clock, or, if
-/// the time was never set, more than [`MONTH`] ahead of the own timestamp; [`Self::with_lead`] sets
-/// another bound. A robot without a clock that was off for longer than that rejects all robots that
-/// have one, until its owner sets its time. To exhaust the timestamps takes a thousand frames, each
-/// a month ahead of the last, all signed with the key.
+/// MAVLink's own rule has no upper bound. One frame with the last possible timestamp would silence
+/// all receivers, since they have no timestamps left, and lock its stream out; a recording of it
+/// would do so after each restart, without the key. Therefore a frame is rejected as
+/// [`Verdict::Ahead`], without any effect, if it is more than [`MINUTE`] ahead of the clock, or
+/// more than [`MONTH`] ahead of the own timestamp if the time was never set. A robot without a
+/// clock that was off for longer rejects all robots with one until its owner sets its time.
+/// Exhausting the timestamps takes a thousand frames, each a month ahead of the last, all signed
+/// with the key.
 ///
 /// Serde serializes the whole state, including the key; digests omit the key.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -155,9 +153,7 @@ pub struct Signing<const N: usize = STREAMS> {
     #[serde(with = "staya_controller::digest::uncounted")]
     also: Option<Key>,
     link: u8,
-    /// Of the next frame.
     timestamp: u64,
-    /// The last known time, if there is a clock.
     clock: Option<u64>,
     lead: Option<u64>,
     streams: ReplayGuard<N>,
@@ -165,7 +161,7 @@ pub struct Signing<const N: usize = STREAMS> {
 }
 
 impl<const N: usize> Signing<N> {
-    /// Creates a signer with this key, as link number `link` of its system, from this timestamp on.
+    /// Creates a signer with this key as link number `link` of its system, from `timestamp` on.
     #[must_use]
     pub const fn new(key: Key, link: u8, timestamp: u64) -> Self {
         Self {
@@ -180,18 +176,17 @@ impl<const N: usize> Signing<N> {
         }
     }
 
-    /// Sets how far frames may be ahead of the clock, or without one of the own timestamp: tens of
-    /// microseconds, by default [`MINUTE`] and [`MONTH`]. A shorter lead rejects robots with
-    /// another time; with a longer one, an attacker with the key or a recording can use up more of
-    /// the remaining timestamps.
+    /// Sets how far frames may be ahead, in tens of microseconds: of the clock (default
+    /// [`MINUTE`]), or of the own timestamp without a clock ([`MONTH`]). A short lead rejects
+    /// robots with another time; with a long one, an attacker with the key or a recording can use
+    /// up more timestamps.
     #[must_use]
     pub const fn with_lead(mut self, lead: u64) -> Self {
         self.lead = Some(lead);
         self
     }
 
-    /// Also accepts frames signed with this key, in addition to the one for sending; at most one
-    /// such key.
+    /// Also accepts frames signed with this key, besides the key for sending; at most one such key.
     pub fn hear(&mut self, key: Key) {
         self.also = Some(key);
     }
@@ -220,8 +215,7 @@ impl<const N: usize> Signing<N> {
         self.timestamp
     }
 
-    /// Sets the time from a clock; 0, the time of a clock that was never set, has no effect. The
-    /// timestamp never decreases.
+    /// Sets the time; 0 (a clock that was never set) has no effect. The timestamp never decreases.
     pub const fn advance_to(&mut self, time: u64) {
         if time > 0 {
             self.clock = Some(time);
@@ -247,12 +241,10 @@ impl<const N: usize> Signing<N> {
     }
 
     /// Signs an unsigned frame: changes its flags and checksum in place, and returns the signature
-    /// to append to it.
+    /// to append. Bounded work: SHA-256 over at most 307 bytes.
     ///
     /// # Errors
     /// See [`SignError`]; the frame is then unchanged.
-    ///
-    /// Bounded work: SHA-256 over at most 307 bytes.
     #[expect(clippy::arithmetic_side_effects, reason = "10, 255 and 2")]
     pub fn sign(&mut self, frame: &mut [u8]) -> Result<[u8; SIGNATURE_LEN], SignError> {
         let total = frame.len();
@@ -275,9 +267,8 @@ impl<const N: usize> Signing<N> {
         Ok([self.link, a, b, c, d, e, f, p, q, r, s, t, u])
     }
 
-    /// Verifies a frame, counts it, and records it if it is authentic.
-    ///
-    /// Bounded work: SHA-256 over at most 307 bytes, twice during a key change, and O(N).
+    /// Verifies and counts a frame, and records it if it is authentic. Bounded work: O(N), and
+    /// SHA-256 over at most 307 bytes, twice during a key change.
     pub fn verify(&mut self, frame: &RawFrame<'_>) -> Verdict {
         let verdict = self.judge(frame);
         self.counts.count(verdict);

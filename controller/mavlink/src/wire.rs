@@ -1,15 +1,13 @@
-//! The swarm's messages as MAVLink 2 frames: [`Mavlink`], a [`Wire`] like the controller's own
-//! postcard.
+//! The swarm's messages as MAVLink 2 frames: [`Mavlink`], a [`Wire`] like postcard.
 //!
-//! Each of the controller's messages is one `STAYA_*` message of the dialect, with boot and
-//! sequence of its [`Header`] in the payload: MAVLink's own 8-bit sequence is too short to detect
-//! repeated frames. A robot's number is its system: 1 to 254, and 255 for a ground station. Its
-//! component is [`COMPONENT`].
+//! Each message of the controller is one `STAYA_*` message of the dialect, with boot and sequence
+//! of its [`Header`] in the payload: MAVLink's 8-bit sequence is too short to detect repeated
+//! frames. A robot's number is its system: 1 to 254, and 255 for a ground station. Its component is
+//! [`COMPONENT`].
 //!
 //! Other systems may share the band. MAVLink messages that are not `STAYA_*` give
-//! [`DecodeError::Foreign`]; a robot ignores them and does not count them as damage.
-//! [`Wire::next_frame`] returns all other bytes between frames as one piece, which [`Wire::decode`]
-//! rejects, so that it is counted.
+//! [`DecodeError::Foreign`] and do not count as damage. [`Wire::next_frame`] returns all other
+//! bytes between frames as one piece, which [`Wire::decode`] rejects, so that it is counted.
 
 use crate::dialect::{
     STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PAYLOAD_DATA, STAYA_PLACE_DATA,
@@ -48,7 +46,6 @@ impl Wire for Mavlink {
         BEACON_LEN
     }
 
-    /// Bounded work: O(bytes of the frame).
     fn encode<const N: usize>(
         &mut self,
         header: Header,
@@ -58,21 +55,17 @@ impl Wire for Mavlink {
         encode(header, message, out)
     }
 
-    /// Bounded work: O(bytes of the frame).
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError> {
         decode(frame)
     }
 
-    /// Bounded work: that of [`scan`].
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]> {
         next_frame(rest)
     }
 }
 
-/// Removes the next frame from `rest`, or the bytes before it that belong to no frame; `None` when
-/// nothing is left. For bytes that are complete.
-///
-/// Bounded work: that of [`scan`].
+/// Removes the next frame, or the bytes before it that belong to no frame, from the complete bytes
+/// `rest`; `None` when nothing is left. Bounded work: that of [`scan`].
 pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let len = match scan(rest, true) {
         Scan::Frame { junk: 0, frame } => frame.bytes().len(),
@@ -83,14 +76,11 @@ pub fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     (!piece.is_empty()).then_some(piece)
 }
 
-/// Appends a message as one unsigned MAVLink 2 frame and returns its length.
+/// Appends an unsigned MAVLink 2 frame and returns its length. Bounded work: O(frame bytes).
 ///
 /// # Errors
-/// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NONE`], [`EncodeError::Robot`]
-/// if a robot number is above 255, [`EncodeError::Full`] if the frame does not fit. Nothing is
-/// written in these cases.
-///
-/// Bounded work: O(bytes of the frame).
+/// [`EncodeError::NoSender`] if the sender is [`RobotId::NONE`], [`EncodeError::Robot`] if a robot
+/// number is above 255, [`EncodeError::Full`] if the frame does not fit. Nothing is written then.
 pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
     if !header.sender.is_some() {
         return Err(EncodeError::NoSender);
@@ -208,14 +198,12 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
     written.map_err(|Full| EncodeError::Full)
 }
 
-/// Decodes one MAVLink 2 frame, ignoring any signature.
+/// Decodes one MAVLink 2 frame, ignoring any signature. Bounded work: O(frame bytes).
 ///
 /// # Errors
 /// [`DecodeError::Crc`] if the bytes are not an intact frame, [`DecodeError::Foreign`] if it is not
 /// a `STAYA_*` message, [`DecodeError::NoSender`] for system 0, [`DecodeError::Body`] for an
 /// invalid field (an unknown mode, more neighbours than a part holds, ...).
-///
-/// Bounded work: O(bytes of the frame).
 pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
     if bytes.is_empty() {
         return Err(DecodeError::Empty);
@@ -371,7 +359,6 @@ fn template_part(data: &STAYA_TEMPLATE_DATA) -> Parts {
     Ok((data.boot, data.sequence, Message::Template(part)))
 }
 
-/// The system of a robot number; 0 for [`RobotId::NONE`].
 fn system(id: RobotId) -> Result<u8, EncodeError> {
     u8::try_from(id.0).map_err(|_| EncodeError::Robot(id))
 }

@@ -1,7 +1,5 @@
-//! Connects ranks by MPI.
-//!
-//! The main thread makes all MPI calls, and the run is in another thread. So the run receives
-//! signals even while MPI waits for a dead rank.
+//! Connects ranks by MPI. The main thread makes all MPI calls, and the run has its own thread, so
+//! that it receives signals even while MPI waits for a dead rank.
 
 use mpi::datatype::PartitionMut;
 use mpi::request::{WaitGuard, scope};
@@ -12,8 +10,7 @@ use staya_mpi::ranks::{Exchange, Lost};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// Time between a signal and giving up on ranks that do not answer. mpirun kills a second after its
-/// signal.
+/// Time between a signal and giving up on silent ranks; mpirun kills a second after its signal.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 pub enum Call {
@@ -37,7 +34,6 @@ pub struct Server {
     answers: Sender<Vec<Vec<u8>>>,
 }
 
-/// Creates both ends for this rank.
 pub fn connect(world: SimpleCommunicator, stop: Stop) -> (Link, Server) {
     let (calls, called) = channel();
     let (answers, answered) = channel();
@@ -47,7 +43,7 @@ pub fn connect(world: SimpleCommunicator, stop: Stop) -> (Link, Server) {
 }
 
 impl Link {
-    /// Waits for the answer of MPI. `whom` lists the ranks that must answer.
+    /// `whom`: the ranks that must answer.
     fn call(&self, call: Call, whom: &[usize]) -> Result<Vec<Vec<u8>>, Lost> {
         let lost = || {
             let others = (0..self.ranks).filter(|&rank| rank != self.rank);

@@ -1,7 +1,5 @@
 //! The program `staya-mpi`: `mpirun -n 4 staya-mpi run SCENARIO`, with the trace hash of `staya
-//! run`.
-//!
-//! Rank 0 writes and prints the results. docs/sweeps.md describes the build and the costs.
+//! run`. Rank 0 writes and prints the results. docs/sweeps.md describes the build and the costs.
 
 mod link;
 mod run;

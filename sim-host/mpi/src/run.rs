@@ -53,14 +53,12 @@ pub struct RunArgs {
 #[derive(Debug, Serialize)]
 struct Sent {
     rank: usize,
-    /// Processor time without MPI, which uses the processor while it waits, seconds; null if
-    /// unknown.
+    /// Processor time without MPI, which computes while it waits, seconds; null if unknown.
     busy_seconds: Option<f64>,
     #[serde(flatten)]
     traffic: Traffic,
 }
 
-/// Summary of a run with the traffic of its ranks.
 #[derive(Debug, Serialize)]
 struct Report<'a> {
     #[serde(flatten)]
@@ -81,7 +79,6 @@ impl Display for Agreed {
 impl std::error::Error for Agreed {}
 
 impl RunArgs {
-    /// Loads the scenario on all ranks, or on none.
     fn load(&self, link: &mut Link) -> Result<(Scenario, Option<Checkpoint>)> {
         let overrides = Overrides { seed: self.seed, ticks: self.ticks };
         let loaded = Scenario::load_with(&self.scenario, &overrides, &self.settings).map_err(anyhow::Error::from);
@@ -105,7 +102,6 @@ impl RunArgs {
         Err(Agreed.into())
     }
 
-    /// Runs the command on one rank.
     pub fn run(&self, global: &Global, mut link: Link, stop: &Stop) -> Result<Ended> {
         let (scenario, from) = self.load(&mut link)?;
         if link.rank() > 0 {
@@ -155,7 +151,6 @@ impl RunArgs {
         })
     }
 
-    /// Runs the scenario on rank 0 and records it in `dir`, which becomes `out`.
     fn record(
         &self,
         scenario: &Scenario,
@@ -214,7 +209,6 @@ impl RunArgs {
         Ok((summary, sent.collect()))
     }
 
-    /// Paths of the results; draws the pictures.
     fn files(&self, scenario: &Scenario, history: &History, dir: &Path, out: &Path) -> Result<Vec<PathBuf>> {
         let mut files = ["summary.json", "series.csv", "series.schema.json"].map(|name| out.join(name)).to_vec();
         let trace = ["trace.csv", "trace.schema.json"];

@@ -5,9 +5,9 @@
 //! each as length:u64 bytes crc32:u32, of length and bytes
 //! ```
 //!
-//! Integers are little-endian; head, state and history are in postcard format. The file is replaced
-//! atomically: it is written to a temporary file, synced and renamed. The previous checkpoint is
-//! kept as `FILE.old`. The file contains keys of the scenario, so only its owner can read it.
+//! Integers are little-endian; head, state and history are in postcard format. The file is synced
+//! under a temporary name and renamed; the previous one is kept as `FILE.old`. Only its owner can
+//! read it, because it contains keys of the scenario.
 
 pub use crate::engine::CheckpointInterval;
 
@@ -70,12 +70,11 @@ impl Place {
         &self.path
     }
 
-    /// Writes a checkpoint of a run at `tick` that has taken `wall_seconds`. The previous
-    /// checkpoint is replaced only when the new one is complete; it is kept as `FILE.old`.
+    /// Writes a checkpoint of a run at `tick` that has taken `wall_seconds`. Replaces the previous
+    /// one, kept as `FILE.old`, only when the new one is complete.
     ///
     /// # Errors
-    /// The checkpoint cannot be written, or the records cannot be read. The previous checkpoint is
-    /// unchanged.
+    /// It cannot be written (the previous one is then unchanged), or records cannot be read.
     ///
     /// # Panics
     /// If some robots of the run have external controllers.
@@ -121,7 +120,7 @@ impl Place {
         })
     }
 
-    /// Replaces the checkpoint and keeps the old one. A checkpoint exists at every moment.
+    /// A checkpoint exists at every moment.
     fn replace(&self, temporary: &Path) -> io::Result<()> {
         let link = beside(&self.path, &format!(".old.{}.tmp", std::process::id()));
         let old = beside(&self.path, ".old");
@@ -133,7 +132,6 @@ impl Place {
             Ok(()) => {}
         }
         fs::rename(temporary, &self.path)?;
-        // Syncs the directory, where the system supports it.
         let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
         Ok(())
@@ -183,7 +181,6 @@ fn copy(length: u64, from: &mut dyn Read, crc: &mut Hasher, out: &mut dyn Write)
 
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    /// Offset of the first byte.
     at: u64,
     length: u64,
 }
@@ -316,8 +313,8 @@ impl Checkpoint {
         self.parts[TRACE].length > 0
     }
 
-    /// Creates a recorder in folder `dir` that continues the saved records. It records robots if
-    /// `keeps_robots` is set and the checkpoint has their records.
+    /// Creates a recorder in folder `dir` that continues the saved records, also those of robots if
+    /// `keeps_robots` is set and the checkpoint has them.
     ///
     /// # Errors
     /// The saved records cannot be read, or the files cannot be written.

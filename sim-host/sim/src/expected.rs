@@ -10,9 +10,7 @@ const BEGUN: f64 = 0.05;
 #[derive(Clone, Copy, Debug)]
 pub struct Expected {
     ticks: u32,
-    /// Longest distance seen, metres, and its tick.
     longest: Option<(f64, u32)>,
-    /// Longest remaining distance in the current tick, metres.
     left_m: Option<f64>,
 }
 
@@ -33,8 +31,7 @@ impl Expected {
         self.left_m = Some(self.left_m.map_or(way_m, |left_m| left_m.max(way_m)));
     }
 
-    /// Predicted number of ticks; call it after all robots of `tick` were recorded. Without a
-    /// prediction, it is the run's limit.
+    /// Predicted number of ticks, once all robots of `tick` were recorded; else the run's limit.
     pub fn ticks(&mut self, tick: u32) -> u32 {
         let left_m = self.left_m.take();
         let Some(left_m) = left_m else {
@@ -65,7 +62,6 @@ mod tests {
     use crate::scenario::{Overrides, Scenario};
     use std::ops::ControlFlow;
 
-    /// From a third of the way on, the prediction is within a third of the actual end.
     #[test]
     fn the_end_is_predicted_early() {
         let text = "name = 'duel'\nticks = 700\ntick_s = 0.1\n[plane]\nradius_m = 0.3\nmax_speed_mps = 1\n\

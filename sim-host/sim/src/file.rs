@@ -63,7 +63,6 @@ pub fn has_memory(bytes: u64) -> bool {
     available().is_none_or(|available| bytes <= available) && can_be_reserved()
 }
 
-/// Available memory in bytes according to Linux; `None` on other systems.
 fn available() -> Option<u64> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;

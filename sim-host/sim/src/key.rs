@@ -1,8 +1,6 @@
-//! Files with the secret key of a swarm.
-//!
-//! A key file is a text file with one line, apart from empty lines and lines that begin with `#`.
-//! The line is either the key as 64 hexadecimal digits, or `passphrase: WORDS`. The SHA-256 of the
-//! words is the key, as in MAVProxy and Mission Planner. Spaces around the words are ignored.
+//! Files with the secret key of a swarm: one line, besides empty lines and lines that begin with
+//! `#`. The line is the key as 64 hexadecimal digits, or `passphrase: WORDS`; then the SHA-256 of
+//! the trimmed words is the key, as in MAVProxy and Mission Planner.
 //!
 //! ```text
 //! # openssl rand -hex 32 > swarm.key && chmod 600 swarm.key

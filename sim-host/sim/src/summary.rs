@@ -30,7 +30,6 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// Whether the run was stopped by Ctrl-C.
     pub interrupted: bool,
-    /// Number of robots that are at their goal and report it.
     arrived: usize,
     /// Mean and longest travel time, simulated seconds; null if no robot arrived.
     arrival_mean_seconds: Option<f64>,
@@ -41,7 +40,6 @@ pub struct Summary {
     pub arrivals: Option<Vec<Arrival>>,
     packets: PacketCounts,
     is_authenticated: bool,
-    /// Packets that exceeded a robot's bandwidth and were not transmitted.
     packets_throttled: u64,
     waits: Vec<Waited>,
     /// dPhi per robot, cells, with the graph placed on the top leader; null without a formation.
@@ -49,24 +47,18 @@ pub struct Summary {
     /// dPhi per robot, cells, with the graph placed by the best-fitting translation.
     formation_error_per_agent_best_fit: Option<f64>,
     graph_distance_mean: Option<f64>,
-    /// Distance of robots in the plane from their formation places relative to robot 1, metres,
-    /// after the first 10 s: mean and largest, with the robot and time of the latter. Null on the
-    /// grid or without a formation.
+    /// In the plane, after the first 10 s; null on the grid or without a formation.
     place_error_mean_m: Option<f64>,
     place_error_worst_m: Option<f64>,
     place_error_worst_robot: Option<u32>,
     place_error_worst_s: Option<f64>,
-    /// Results by group; omitted if all robots are alike.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     groups: Vec<GroupFigures>,
-    /// Arrival time of the last robot, divided by the longest time that a robot would need alone:
-    /// straight to its goal on easy land, with full acceleration and braking. Null without a
-    /// formation in the plane, or if not all robots arrived.
+    /// Over the longest time of a robot alone: straight, with full acceleration and braking.
     time_over_free_time: Option<f64>,
     /// Smallest gap between two bodies, metres; null on the grid, or if none came close.
     least_gap_m: Option<f64>,
     least_obstacle_gap_m: Option<f64>,
-    /// Smallest gap between a robot and an intruder, metres; null without intruders.
     least_intruder_gap_m: Option<f64>,
     /// Robots that overlap an intruder, summed over ticks; not counted as collisions.
     intruder_overlaps: u64,
@@ -111,9 +103,7 @@ impl From<&Solid> for Obstacle {
 struct Waited {
     #[serde(rename = "for")]
     reason: Wait,
-    /// Robots that waited for this cause at any time.
     robots: usize,
-    /// Robots that wait for this cause at the end.
     at_the_end: usize,
     robot_seconds: f64,
     longest_seconds: f64,
@@ -158,8 +148,7 @@ fn finite(value: Option<f64>) -> Option<f64> {
 }
 
 impl Summary {
-    /// Creates a summary of a run with the written `files`. The caller sets the duration and
-    /// whether the run was stopped.
+    /// Creates the summary of a run with the written `files`; the caller sets the public fields.
     #[must_use]
     pub fn new(scenario: &Scenario, outcome: &Outcome, files: Vec<PathBuf>) -> Self {
         let units: Vec<u64> = outcome.arrival_times.iter().flatten().copied().collect();
@@ -224,9 +213,8 @@ impl Summary {
         &self.trace_hash
     }
 
-    /// Numeric results of the run, named as in `summary.json` and always in the same order:
-    /// `packets.sent`, or `waits.radio.robots` for a cause of waiting. `None`: the run does not
-    /// have this value. A Boolean is 1 or 0.
+    /// Numeric results in a fixed order, named as in `summary.json`: `packets.sent`, or
+    /// `waits.radio.robots` for a cause of waiting. `None`: the run has no such value.
     #[must_use]
     pub fn figures(&self) -> Vec<(String, Option<f64>)> {
         let packets = &self.packets;

@@ -54,18 +54,14 @@ pub struct Task<'a> {
 }
 
 impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
-    /// Simulates a walk.
-    ///
-    /// The router cuts the window to its radius around the robot, as if the sensors saw farther.
-    /// The robot takes the cheapest move whose cell is free (KUZ algorithm 4, without the shuffle).
-    /// A walk ends at the target, when no move is left, or after 200 moves per cell of width +
-    /// height.
+    /// Simulates a walk. The robot takes the cheapest move whose cell is free (KUZ algorithm 4,
+    /// without the shuffle), and the router plans on a window of its radius. A walk ends at the
+    /// target, when no move is left, or after 200 moves per cell of width + height.
     pub fn walk(&mut self, task: &Task<'_>, params: &RouteParams, replan: Replan) -> Walk {
         self.walk_shuffled(task, params, replan, Sharpness::Greedy, &mut Rng::new(0))
     }
 
-    /// Simulates a walk with the shuffle (KUZ section 7): the order in which moves are tried is
-    /// drawn by their weights.
+    /// Simulates a walk with the shuffle (KUZ section 7): the order of moves is drawn by weight.
     pub fn walk_shuffled(
         &mut self,
         task: &Task<'_>,
@@ -125,10 +121,10 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
         &self.path
     }
 
-    /// Travel time of the whole path as estimated by the router, in
+    /// Travel time of the whole path as the router estimates it,
     /// [`UNIT`](staya_controller::grid::UNIT)ths of a tick: the least weight of the moves out of
-    /// `from`, with a0 = 1. It is exact if `CELLS` and the largest radius (255) cover the whole
-    /// map; see [`holds`]. `None` if there is no path.
+    /// `from`, with a0 = 1. `None` without a path. Exact if `CELLS` and radius 255 cover the map
+    /// ([`holds`]).
     pub fn price(&mut self, land: &Terrain, params: &RouteParams, from: Cell, to: Cell) -> Option<f64> {
         if from == to {
             return Some(0.0);
@@ -142,8 +138,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> Walker<CELLS, M, L> {
     }
 }
 
-/// Width of the wall border around the map, as in [`World::window`](crate::world::World::window):
-/// the radius. 0 if a window always covers the whole map, or would be too large for the search.
+/// Wall border around the map; 0 if a window covers the map or would be too large for the search.
 fn margin(cells: usize, land: &Terrain, radius: u8) -> u16 {
     let side = 2 * usize::from(radius) + 3;
     let is_larger = u16::from(radius) + 1 >= land.width().max(land.height());
@@ -153,7 +148,6 @@ fn margin(cells: usize, land: &Terrain, radius: u8) -> u16 {
     u16::from(radius)
 }
 
-/// Writes the terrain with `margin` cells of wall on each side.
 fn wall(walled: &mut Vec<u8>, land: &Terrain, margin: u16) {
     let margin = usize::from(margin);
     let row = usize::from(land.width()) + 2 * margin;

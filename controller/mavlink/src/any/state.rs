@@ -1,5 +1,4 @@
-//! Serializes a format's whole state. Digests do not include which format it is, since a whole
-//! swarm uses the same one.
+//! Serializes a format's state. Digests skip which format it is: a whole swarm uses one.
 
 use super::AnyWire;
 use core::fmt;
@@ -9,7 +8,6 @@ use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use staya_controller::digest::uncounted;
 
-/// A value that digests skip.
 #[derive(Serialize)]
 struct Uncounted<T: Serialize>(#[serde(with = "uncounted")] T);
 

@@ -68,7 +68,6 @@ fn no_known_message_has_the_extra_crc_of_unknown_ones() {
     }
 }
 
-/// A frame with a message that the dialect does not have.
 fn foreign() -> [u8; 15] {
     [START_V2, 3, 0, 0, 1, 1, 1, 0x30, 0xFA, 0x00, 1, 2, 3, 9, 9]
 }
@@ -110,7 +109,6 @@ fn full_buffer_is_unchanged() {
 }
 
 proptest! {
-    /// Twenty frames between arbitrary bytes are all found, in order.
     #[test]
     fn frames_are_found_after_junk(junk in vec(vec(any::<u8>().prop_filter("looks like a frame's start", |b| !matches!(*b, START_V1 | START_V2)), 0..40), 20)) {
         let mut bytes = std::vec::Vec::new();
@@ -125,7 +123,6 @@ proptest! {
         prop_assert_eq!(next_frame(&mut rest), None);
     }
 
-    /// A stream in pieces gives the same frames as the whole stream.
     #[test]
     fn stream_in_pieces_loses_nothing(cuts in vec(1..40_usize, 1..30)) {
         let mut stream = std::vec::Vec::new();

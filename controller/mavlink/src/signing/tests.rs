@@ -4,8 +4,7 @@ use crate::frame::{MAX_FRAME_LEN, Sender, encode, encode_message};
 use heapless::Vec;
 use proptest::prelude::*;
 
-/// Frames made by pymavlink with the key 0, 1, 2, ... 31; tests/python/test_signing.py compares
-/// them with pymavlink.
+/// Made by pymavlink with the key 0, 1, 2, ... 31; see tests/python/test_signing.py.
 const GOLDEN: &str = include_str!("../../../../tests/golden/signed-frames.txt");
 const NOW: u64 = 37_000_000_000_000;
 
@@ -144,7 +143,6 @@ fn a_properly_restarted_sender_is_accepted_and_its_old_frames_are_not() {
     for frame in &recorded {
         assert_eq!(judged(&mut receiver, frame), Verdict::Authentic);
     }
-    // Stored before the frames were sent.
     let mut sender = Signing::<2>::new(key(), 0, 100 + MINUTE);
     let anew = signed(&mut sender, &heartbeat(1, 0));
     assert_eq!(judged(&mut receiver, &anew), Verdict::Authentic);
@@ -173,8 +171,7 @@ fn the_state_does_not_hold_the_key() {
     assert_ne!(of(key()), staya_controller::digest::digest(&Signing::<2>::new(key(), 1, 3)));
 }
 
-/// The attack: a frame with the last timestamp, made with the key, is recorded and replayed after
-/// each restart without the key.
+/// A frame with the last timestamp, made with the key, is replayed after each restart without it.
 #[test]
 fn a_frame_of_the_far_future_silences_and_locks_out_no_robot() {
     let evil = signed(&mut Signing::<1>::new(key(), 0, LAST_TIMESTAMP), &heartbeat(7, 0));
@@ -205,7 +202,6 @@ fn the_lead_is_a_minute_with_a_clock_a_month_without_or_as_set() {
             None => receiver,
         }
     };
-    // A clock that was never set counts as absent; one that was set back counts as it is.
     for (clock, lead, last) in [
         (None, None, NOW + MONTH),
         (Some(0), None, NOW + MONTH),
@@ -227,7 +223,6 @@ fn the_lead_is_a_minute_with_a_clock_a_month_without_or_as_set() {
 }
 
 proptest! {
-    /// With any bit flipped, even with a corrected checksum, the frame is not authentic.
     #[test]
     fn every_flipped_bit_is_refused(bit in 0_usize..34 * 8, sequence: u8) {
         let mut frame = signed(&mut Signing::<2>::new(key(), 3, NOW), &heartbeat(1, sequence));

@@ -1,8 +1,6 @@
-//! Division of the world into blocks of equal load by recursive bisection.
-//!
-//! Source: M. J. Berger, S. H. Bokhari, A Partitioning Strategy for Nonuniform Problems on
-//! Multiprocessors (1987). The cuts influence the load but not the results, so samples of robots
-//! suffice.
+//! Division of the world into blocks of equal load by recursive bisection (M. J. Berger, S. H.
+//! Bokhari, A Partitioning Strategy for Nonuniform Problems on Multiprocessors, 1987). Cuts
+//! influence the load but not the results, so samples of robots suffice.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,17 +11,13 @@ pub(super) struct Sample {
     pub(super) load: f64,
 }
 
-/// The division of the world into one block per rank.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Cut {
-    /// A single block.
     Rank(usize),
-    /// A cut at a position along an axis, with the blocks below and above.
     At { axis: usize, place_m: f64, below: Box<Cut>, above: Box<Cut> },
 }
 
 impl Cut {
-    /// Divides the world into `ranks` blocks of about equal load.
     pub(super) fn new(samples: &mut [Sample], ranks: usize) -> Self {
         Self::bisect(samples, 0, ranks.max(1))
     }
@@ -85,7 +79,6 @@ mod tests {
     fn blocks_have_equal_loads_for_any_number_of_ranks() {
         let mut draws = Rng::new(1);
         let mut unit = || f64::from(draws.below(1_000_000)) / 1e6;
-        // Denser towards one corner, and twice the load in one half.
         let places = (0..20_000).map(|_| [unit() * unit() * 300.0, unit() * unit() * 200.0]);
         let samples: Vec<_> =
             places.map(|at| Sample { place_m: at, load: if at[0] < 50.0 { 2.0 } else { 1.0 } }).collect();

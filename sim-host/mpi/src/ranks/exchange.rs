@@ -4,8 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 
-/// Connects ranks by MPI, or by channels between threads. All ranks must call the same functions in
-/// the same order.
+/// Connects ranks by MPI or channels. All ranks must call the same functions in the same order.
 pub trait Exchange {
     /// Number of this rank, from 0.
     fn rank(&self) -> usize;
@@ -20,8 +19,8 @@ pub trait Exchange {
     fn gather(&mut self, own: Vec<u8>) -> Result<Vec<Vec<u8>>, Lost>;
 
     /// Sends at most one message to each rank in `out`, and receives one from each rank in `from`,
-    /// in that order. Those ranks must send to this one in the same call. This rank is in neither
-    /// list.
+    /// in that order. Those ranks must send to this one in the same call, and this rank is in
+    /// neither.
     ///
     /// # Errors
     /// A rank does not answer.
@@ -119,7 +118,6 @@ pub(super) fn encode(message: &impl Serialize) -> Vec<u8> {
     postcard::to_stdvec(message).expect("encoding to memory cannot fail")
 }
 
-/// Decodes a message from a rank; `what` names it in errors.
 pub(super) fn decode<T: DeserializeOwned>(rank: usize, what: &'static str, bytes: &[u8]) -> Result<T, RankError> {
     postcard::from_bytes(bytes).map_err(|error| RankError::Garbled { rank, what, error })
 }

@@ -11,11 +11,9 @@ use staya_sim::world::border::{Beside, DEPTH, Settled};
 use staya_sim::world::plane::{self, Clearance};
 use staya_sim::world::scouts::Scouts;
 
-/// Communication while bodies move.
 pub trait Talk {
     fn sum(&mut self, own: u64) -> Result<u64, RankError>;
 
-    /// Sends a message to each neighbour. Returns their messages with their ranks.
     fn swap(&mut self, message: &dyn Fn(&Region) -> Vec<u8>) -> Result<Vec<(usize, Vec<u8>)>, RankError>;
 }
 
@@ -23,20 +21,16 @@ pub trait Talk {
 pub trait Part: Ground {
     fn keep(&mut self, here: &[u32]);
 
-    /// Adds a body for a robot from another rank behind the existing ones; restoring the world's
-    /// state moves it to its position.
+    /// Appends a body of another rank; restoring the world's state moves it to its position.
     fn admit(&mut self, number: u32, id: RobotId);
 
-    /// Removes a body that moves to another rank; the last body takes its index.
     fn dismiss(&mut self, index: usize);
 
-    /// Whether bodies of two regions can obstruct each other's moves.
     fn hinders(&self, one: &Region, other: &Region) -> bool;
 
     /// Data that a neighbour needs about bodies near `region` before they move.
     fn wishes(&self, tick: u32, region: &Region, commands: &[Command<f32>]) -> Vec<u8>;
 
-    /// As [`Ground::advance`], with the data of the neighbours.
     fn advance_beside(
         &mut self,
         tick: u32,
@@ -46,16 +40,12 @@ pub trait Part: Ground {
         talk: &mut dyn Talk,
     ) -> Result<(), RankError>;
 
-    /// Whether bodies of two regions can collide.
     fn touches(&self, one: &Region, other: &Region) -> bool;
 
-    /// Data that a neighbour needs about bodies near `region` to count collisions.
     fn bodies(&self, tick: u32, region: &Region) -> Vec<u8>;
 
-    /// Counts collisions with bodies of other ranks, after [`Ground::count_collisions`].
     fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError>;
 
-    /// Replaces the clearance statistics. Returns the previous ones; nothing on a grid.
     fn replace_clearance(&mut self, clearance: Clearance) -> Clearance;
 
     fn is_taken(&self, cell: Cell) -> bool;
@@ -63,7 +53,6 @@ pub trait Part: Ground {
     /// Position of a body for [`Part::keeping_of`], cells; `None` if there is no formation.
     fn place(&self, index: usize) -> Option<[f64; 2]>;
 
-    /// As [`Ground::keeping`], with the positions of all robots.
     fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality>;
 }
 

@@ -1,16 +1,13 @@
-//! Runs one scenario on several ranks, with the bits of a run on one.
+//! Runs one scenario on several ranks, bit for bit as on one.
 //!
 //! Every rank has the scenario and an [`Engine`](staya_sim::engine::Engine) with the robots in its
-//! block of the world. In each tick it decides for these robots. It exchanges with its neighbours
-//! the packets that cross a border (`radio/border.rs`), bodies near the border with their moves
+//! block of the world, for which it decides. In each tick it exchanges with its neighbours the
+//! packets that cross a border (`radio/border.rs`), bodies near the border with their moves
 //! (`world/border.rs`), and possible collisions. Everything else about the whole run is a sum.
+//! Robots move with their whole state to the rank of their position.
 //!
 //! Packet losses and the order of moves are functions of (seed, robot, tick), and the trace hash is
-//! a sum over robots, so the assignment of robots to ranks does not matter. Robots move with their
-//! whole state to the rank of their position.
-//!
-//! [`Exchange`] connects ranks: MPI in the program `staya-mpi`, channels between threads
-//! ([`Threads`]) in tests.
+//! a sum over robots, so the assignment of robots to ranks does not matter.
 
 mod cut;
 mod exchange;

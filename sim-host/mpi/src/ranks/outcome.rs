@@ -10,7 +10,6 @@ use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::{Motion, PacketCounts, RobotRow};
 use staya_sim::world::plane::Clearance;
 
-/// Results of a rank after a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Sums {
     pub(super) arrived: u64,
@@ -40,15 +39,13 @@ impl Sums {
     }
 }
 
-/// Results of a rank at the end.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Part {
     collisions: u64,
     packets: PacketCounts,
     throttled: u64,
     waits: Vec<(u8, u64, u64, u64, u32)>,
-    /// Gaps to bodies, obstacles and intruders; overlaps, intrusions, overlaps with intruders,
-    /// downwash.
+    /// Gaps to bodies, obstacles, intruders; overlaps, intrusions, intruder overlaps, downwash.
     clearance: Option<([f64; 3], [u64; 4])>,
     hash: u64,
     arrived: u64,
@@ -74,7 +71,6 @@ impl Part {
         }
     }
 
-    /// Adds the results of a rank to the outcome on rank 0.
     pub(super) fn add_to(&self, outcome: &mut Outcome) {
         outcome.collisions += self.collisions;
         outcome.packets += self.packets;
@@ -106,7 +102,6 @@ impl Part {
     }
 }
 
-/// An outcome of zero robots, to which others are added.
 pub(super) fn nothing(has_clearance: bool) -> Outcome {
     Outcome {
         ticks: 0,
@@ -125,7 +120,6 @@ pub(super) fn nothing(has_clearance: bool) -> Outcome {
     }
 }
 
-/// Number of a reason to wait, its index in the list of names.
 fn number_of(wait: Wait) -> u8 {
     let at = Wait::NAMES.iter().position(|&(_, named)| named == wait);
     at.and_then(|at| u8::try_from(at).ok()).unwrap_or(u8::MAX)
@@ -165,7 +159,7 @@ impl Row {
         self.id
     }
 
-    /// Adds the formation error, which only rank 0 knows.
+    /// Only rank 0 knows the formation error.
     pub(super) fn with_error(self, formation_error_cells: f32) -> RobotRow {
         let Self { id, cell, position_m, velocity_mps, mode, leader, target, target_m, wait, radius_m, has_cells } =
             self;

@@ -10,8 +10,7 @@ pub(super) struct Bounds {
     high_m: [f64; 2],
 }
 
-/// The actual positions of all radios and bodies on a rank, including robots outside of the rank's
-/// block.
+/// The actual positions of all radios and bodies on a rank, also of robots outside its block.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Region {
     /// A rectangle around the robots, then a point for each other radio or body.
@@ -19,7 +18,6 @@ pub(super) struct Region {
     pub(super) cells: Option<CellBounds>,
 }
 
-/// A margin for rounding errors.
 const MARGIN: f64 = 1.0 + 1e-9;
 
 impl Bounds {
@@ -35,7 +33,6 @@ impl Bounds {
 }
 
 impl Region {
-    /// The region of robots at these positions and cells, and of other radios and bodies.
     pub(super) fn new(
         robots: impl Iterator<Item = ([f64; 2], Cell)> + Clone,
         others_m: impl Iterator<Item = [f64; 2]>,
@@ -53,7 +50,6 @@ impl Region {
         }
     }
 
-    /// Whether a member of the region may be within `reach_m` of a position.
     pub(super) fn is_near(&self, place_m: [f64; 2], reach_m: f64) -> bool {
         let place = Bounds::at(place_m);
         self.parts.iter().any(|part| part.squared_distance(&place) <= reach_m * reach_m * MARGIN)
@@ -65,7 +61,6 @@ impl Region {
         pairs.into_iter().any(|squared| squared <= reach_m * reach_m * MARGIN)
     }
 
-    /// Whether bodies of both regions may be within `reach` cells of each other; symmetric.
     pub(super) fn is_beside_in_cells(&self, other: &Self, reach: i16) -> bool {
         self.cells.zip(other.cells).is_some_and(|(one, two)| one.distance_to(&two) <= i32::from(reach))
     }

@@ -22,16 +22,15 @@ use std::time::Instant;
 /// How ranks share their work. No setting changes a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sharing {
-    /// Interval in ticks at which robots outside of their rank's block move to the right rank. A
-    /// longer interval saves bytes for these robots but costs bytes for packets around them.
+    /// Ticks between moves of robots to the rank of their block. A longer interval saves bytes for
+    /// these robots but costs bytes for packets around them.
     pub every_ticks: u32,
     /// The world is divided again when a rank's load exceeds this multiple of the mean.
     pub above: f64,
     /// Whether rank 0 receives each robot in each tick, for its records.
     pub records: bool,
-    /// Interval at which `watch` gets the whole run to save it ([`Moment::run`]), which costs as
-    /// much as sending all robots to rank 0. With an interval the run is also saved when it is
-    /// stopped.
+    /// Interval at which `watch` gets the whole run to save it ([`Moment::run`]), also when it is
+    /// stopped; costs as much as sending all robots to rank 0.
     pub checkpoints: Option<CheckpointInterval>,
 }
 
@@ -44,8 +43,7 @@ impl Default for Sharing {
 /// Result of a run on ranks.
 #[derive(Clone, Debug)]
 pub struct Ended {
-    /// Outcome of the whole run, as on one process. Other ranks than 0 lack arrival times and
-    /// formation statistics.
+    /// Outcome of the whole run; ranks other than 0 lack arrival times and formation statistics.
     pub outcome: Outcome,
     /// Traffic of each rank.
     pub traffic: Vec<Traffic>,
@@ -58,8 +56,7 @@ const RECEPTION: f64 = 0.1;
 /// Whether `ranks` ranks can share a scenario.
 ///
 /// # Errors
-/// [`RankError`] if there are more ranks than robots, or the scenario has a feature without support
-/// for ranks.
+/// [`RankError`] for more ranks than robots, or a feature that ranks do not support.
 pub fn check(scenario: &Scenario, ranks: usize) -> Result<(), RankError> {
     let robots = scenario.robots.len();
     if ranks > 1 && scenario.torus_m().is_some() {
@@ -88,8 +85,8 @@ pub fn remark(scenario: &Scenario) -> Option<String> {
     })
 }
 
-/// As [`simulate`](staya_sim::engine::simulate), on all ranks together. `watch` is called on rank
-/// 0. When it breaks, one more tick is done, because other ranks have already started it.
+/// As [`simulate`](staya_sim::engine::simulate), on all ranks together. Rank 0 calls `watch`; when
+/// it breaks, one more tick is done, because other ranks have already started it.
 ///
 /// # Errors
 /// Robots that cannot be placed, more ranks than robots, or a rank that does not answer.
@@ -102,8 +99,7 @@ pub fn simulate_on(
     go(scenario, None, exchange, sharing, watch)
 }
 
-/// Continues from the state in a checkpoint, written by one process or any number of ranks. `watch`
-/// sees only later ticks.
+/// Continues from a checkpoint's state, written by any number of ranks; `watch` sees later ticks.
 ///
 /// # Errors
 /// As [`simulate_on`]; or the state belongs to another scenario or program.
@@ -140,9 +136,7 @@ pub(super) struct Rank<'a, W, G: Guidance<f32>, A> {
     pub(super) engine: Engine<W, G, A>,
     pub(super) cut: Cut,
     pub(super) wire: Wire<'a>,
-    /// Ticks since the last division of the world.
     pub(super) age: u32,
-    /// Cost of the last tick on each rank.
     pub(super) loads: Vec<f64>,
     stops: bool,
     saved_at: Instant,
@@ -202,7 +196,6 @@ where
         let keeping = self.keeping(false)?;
         let mut row = self.engine.row(keeping, PacketCounts::default());
         let mut sums = self.tell_sums(PacketCounts::default(), 0.0)?;
-        // The moment of a checkpoint was already observed.
         let mut is_seen = state.is_some();
         loop {
             if !is_seen {
@@ -218,7 +211,6 @@ where
         }
     }
 
-    /// One tick as in [`Engine::step`], with the communication between ranks.
     fn step(&mut self) -> Result<(TickRow, Sums), RankError> {
         self.agree_on_cells()?;
         let engine = &mut self.engine;
@@ -339,7 +331,6 @@ where
         })
     }
 
-    /// Sends the region of this rank, and receives the others'.
     pub(super) fn tell_region(&mut self) -> Result<(), RankError> {
         let engine = &self.engine;
         let attackers = engine.attackers.iter().map(|attacker| attacker.place_m());
@@ -415,7 +406,6 @@ where
         Ok(())
     }
 
-    /// The lines of all robots by number, on rank 0.
     fn rows(&mut self) -> Result<Vec<RobotRow>, RankError> {
         let own: Vec<Row> = self.engine.rows().map(Row::from).collect();
         let heard = self.wire.gather_first(encode(&own))?;

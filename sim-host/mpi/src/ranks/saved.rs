@@ -32,7 +32,6 @@ struct Share {
     robots: Vec<(u32, Vec<u8>)>,
 }
 
-/// Statistics that are sums over ranks.
 struct Totals {
     collisions: u64,
     packets: PacketCounts,
@@ -54,7 +53,6 @@ impl Totals {
         }
     }
 
-    /// Swaps these statistics with those of an engine.
     fn exchange<W: Ground, G: HostLaw, A: Safety<f32> + Send>(self, engine: &mut Engine<W, G, A>) -> Self {
         let waited = engine.waits.ticks();
         engine.waits.set_ticks(&self.waited);
@@ -122,7 +120,7 @@ where
         Ok(Some(Saved(bytes)))
     }
 
-    /// Restores a checkpoint: each rank takes its own robots, rank 0 the statistics.
+    /// Each rank takes its own robots, rank 0 the statistics.
     pub(super) fn restore(&mut self, bytes: &[u8]) -> Result<(), RankError> {
         let heard = self.engine.ground.heard().count();
         let others = [self.scenario.attacks.len(), heard, usize::from(self.scenario.keeping.is_some())];

@@ -1,5 +1,4 @@
-//! Assignment of robots to ranks: robots move to the rank of their position, and blocks follow the
-//! load.
+//! Assignment of robots to ranks: robots follow their position, and blocks follow the load.
 
 use super::cut::{Cut, Sample};
 use super::exchange::{RankError, decode, encode};
@@ -12,8 +11,7 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Positions per rank for a new division of the world.
 const SAMPLES_A_RANK: usize = 512;
-/// Smallest interval of divisions, in units of
-/// [`Sharing::every_ticks`](super::Sharing::every_ticks).
+/// Least interval of divisions, unit [`Sharing::every_ticks`](super::Sharing::every_ticks).
 const REST: u32 = 8;
 
 impl<W, G, A> Rank<'_, W, G, A>
@@ -22,8 +20,6 @@ where
     G: HostLaw + State,
     A: Safety<f32> + Send + State,
 {
-    /// Moves robots to the rank of their block, and divides the world again if the load has
-    /// shifted.
     pub(super) fn share(&mut self) -> Result<(), RankError> {
         self.age += 1;
         if self.wire.exchange.ranks() == 1 || !self.engine.tick.is_multiple_of(self.sharing.every_ticks.max(1)) {
@@ -54,7 +50,6 @@ where
         Ok(())
     }
 
-    /// Sends robots that are in other blocks, and receives those in this one.
     fn send_robots(&mut self) -> Result<(), RankError> {
         let own = self.wire.rank();
         let mut leaving = BTreeMap::<usize, Vec<u32>>::new();
@@ -105,7 +100,6 @@ where
         Ok(())
     }
 
-    /// Adds a robot behind the existing ones; its state must be restored.
     fn admit(&mut self, number: u32) -> usize {
         let engine = &mut self.engine;
         let (index, robot) = (engine.here.len(), engine.robots[number as usize]);
@@ -123,7 +117,6 @@ where
         index
     }
 
-    /// Removes a robot; the last one takes its index.
     fn dismiss(&mut self, index: usize) {
         let engine = &mut self.engine;
         let robots = engine.here.len();

@@ -7,12 +7,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 
-/// Runs a scenario on ranks that are threads. Returns the result of each rank.
 fn on_ranks(scenario: &Scenario, ranks: usize, sharing: &Sharing) -> Vec<Result<Ended, RankError>> {
     go_on(scenario, ranks, sharing, None, &Mutex::default())
 }
 
-/// Runs from the state of a checkpoint; appends new checkpoints to `saved`.
 fn go_on(
     scenario: &Scenario,
     ranks: usize,
@@ -61,7 +59,6 @@ fn compare(name: &str, scenario: &Scenario, ranks: &[usize]) {
     }
 }
 
-/// Runs `ticks` ticks of every scenario of at most `most` robots on each of these numbers of ranks.
 fn every_scenario(ticks: u32, most: usize, ranks: &[usize]) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios");
     for entry in std::fs::read_dir(folder).expect("scenarios").flatten() {
@@ -129,7 +126,6 @@ const CHANGES: &str = "[scouting]\nradius = 9\nunknown = 0.2\nwrong = 0.2\npatch
     for_s = 5\nclass = 0\nrectangle = { x = 12, y = 5, width = 6, height = 20 }\n\
     [[terrain.change]]\nevery_s = 2\ndrift = { share = 0.05, step = 2 }\n";
 
-/// A changing map for discs.
 const PLANE_CHANGES: &str = "name = 'plane-on-land'\nseed = 5\nticks = 120\ntick_s = 0.1\n[radio]\nrange_m = 4\n\
     [terrain]\nuniform = { width = 20, height = 12, classes = 2 }\n[[terrain.change]]\nat_s = 2\nfor_s = 4\nclass = 0\n\
     rectangle = { x = 7, y = 0, width = 5, height = 11 }\n[scouting]\nunknown = 0.3\nwrong = 0.2\n\

@@ -7,7 +7,6 @@ use super::region::Region;
 pub(super) struct Wire<'a> {
     pub(super) exchange: &'a mut dyn Exchange,
     pub(super) regions: Vec<Region>,
-    /// Ranks whose robots may be near enough.
     neighbors: Vec<usize>,
     pub(super) traffic: Traffic,
 }
@@ -26,7 +25,6 @@ impl<'a> Wire<'a> {
         Ok(self.exchange.gather(own)?)
     }
 
-    /// Selects the neighbours by a symmetric relation.
     pub(super) fn choose(&mut self, is_beside: impl Fn(&Region, &Region) -> bool) {
         let own = self.rank();
         let others = (0..self.regions.len()).filter(|&rank| rank != own);

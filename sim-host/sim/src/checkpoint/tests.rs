@@ -102,7 +102,6 @@ fn only_the_owner_can_read_a_checkpoint() {
     assert_eq!(fs::metadata(place.path()).expect("it is there").permissions().mode() & 0o777, 0o600);
 }
 
-/// Tests damage and truncation at every `step`-th byte of a checkpoint.
 fn refuses_damage(step: usize) {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");

@@ -20,14 +20,12 @@ const STARTS: u8 = u8::MAX;
 const TAKEN: u8 = 1;
 const RING_M: f64 = 1.5;
 
-/// An attacker's radio and state.
 pub struct Attacker {
     attack: Attack,
     cell_m: f64,
     tick_us: u32,
     /// Ids of invented robots start after this one.
     last: u32,
-    /// Radius of the body that an insider controls, millimetres.
     radius_mm: u16,
     wire: HostWire,
     starts: u8,

@@ -36,9 +36,8 @@ impl Kinematics {
         Self { frame: GridFrame { origin_m: Vec2::new(x, y), cell_m: terrain.cell_m }, tick_s }
     }
 
-    /// The pose at `now_units`. A body holds its new cell from the start of a crossing, but reaches
-    /// the centre at the end, at constant speed. It keeps this speed while it can still continue
-    /// without losing a fraction of a tick (see [`World::advance`](crate::world::World::advance)).
+    /// A body holds its new cell from the start of a crossing, but reaches the centre at its end.
+    /// It keeps its speed while it can continue without losing a fraction of a tick.
     pub(super) fn pose(&self, body: &Body, now_units: u64) -> Pose {
         let center = self.frame.center(body.cell);
         let at_rest = Pose { position_m: [center.x, center.y], velocity_mps: [0.0; 2] };
@@ -79,7 +78,6 @@ mod tests {
         assert_eq!(pose(&world, 0), start);
         let east = Command::Move([Dir::East].into_iter().collect());
         world.advance(10, &[east]);
-        // Four ticks of half a second for ten metres.
         for (ticks, x, speed) in [(10, 105.0, 5.0), (12, 110.0, 5.0), (14, 115.0, 5.0), (15, 115.0, 0.0)] {
             let now = pose(&world, ticks);
             assert_eq!(now.position_m, [x, -5.0], "after {ticks} ticks");

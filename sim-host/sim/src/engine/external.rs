@@ -7,8 +7,8 @@ use staya_controller::time::Instant;
 
 /// Controllers outside this process. Robots are numbered as in the scenario.
 ///
-/// In each tick, the engine calls [`ExternalController::send`] for each robot that is up, steps its
-/// own robots, and then calls [`ExternalController::collect`], so that all controllers work in
+/// Each tick calls [`ExternalController::send`] for each robot that is up, steps the engine's own
+/// robots, and then calls [`ExternalController::collect`], so that all controllers work in
 /// parallel. The implementation keeps its errors; the swarm continues without the robot.
 pub trait ExternalController: Send {
     /// Sorted indices of the robots whose controllers are external.
@@ -17,8 +17,7 @@ pub trait ExternalController: Send {
     /// Restarts the controller of robot `index`; `setup.agent.boot` counts its starts.
     fn start(&mut self, index: usize, setup: Setup, task: Task);
 
-    /// Whether the controller of robot `index` has lost its state since the last call and waits for
-    /// a restart. Called once at the beginning of each tick.
+    /// Whether controller `index` has lost its state and waits for a restart; called once per tick.
     fn has_restarted(&mut self, index: usize) -> bool;
 
     /// Starts the step of robot `index`.
@@ -43,7 +42,7 @@ pub struct Decision {
 
 pub(super) struct External {
     pub(super) controllers: Box<dyn ExternalController>,
-    /// Robot index, law and safety layer, sorted by index.
+    /// Sorted by index.
     pub(super) robots: Vec<(usize, GuidanceSetup, SafetySetup)>,
 }
 
@@ -85,7 +84,6 @@ where
         }
     }
 
-    /// Stores the decisions of external controllers and counts the frames that they rejected.
     pub(super) fn collect(&mut self) -> u64 {
         let Some(external) = &mut self.external else {
             return 0;

@@ -9,8 +9,7 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// Takes computers down whose fault begins in this tick. A restarted computer keeps only its
-    /// id, its parameters and its task.
+    /// Takes down computers whose fault begins; they restart with only id, parameters and task.
     pub fn apply_faults(&mut self) {
         for at in 0..self.faults.len() {
             let fault = self.faults[at];
@@ -30,7 +29,6 @@ where
         self.revive();
     }
 
-    /// Restarts external controllers that have lost their state.
     fn revive(&mut self) {
         let Some(external) = &mut self.external else {
             return;

@@ -78,10 +78,8 @@ impl Grid {
     }
 }
 
-/// Cells that interventions have changed, with their class.
 pub(super) type Changed = BTreeMap<(i16, i16), u8>;
 
-/// Mutable state of a body.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct GridBody {
     cell: Cell,

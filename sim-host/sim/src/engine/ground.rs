@@ -58,8 +58,7 @@ pub trait Ground: Send + Sync {
     /// Sensor data of the robot of body `index` at the start of `tick`; the inbox is empty.
     fn sense<'a>(&'a self, index: usize, tick: u32, scratch: &'a mut Self::Scratch) -> AnyInputs<'a, f32>;
 
-    /// Replaces `sightings` with the robots that the robot of body `index` detects at the start of
-    /// `tick`.
+    /// Replaces `sightings` with the robots that body `index` detects at the start of `tick`.
     fn sightings(&self, _index: usize, _tick: u32, sightings: &mut Vec<Sighting<f32>>) {
         sightings.clear();
     }
@@ -106,8 +105,7 @@ pub trait Ground: Send + Sync {
     /// The cell, obstacle or goal does not exist in this world.
     fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal>;
 
-    /// Current quality of the formations, if there are any. If `counts` is set, the values are
-    /// added to the run's statistics.
+    /// Current quality of the formations, if any; `counts` adds it to the run's statistics.
     fn keeping(&mut self, _counts: bool) -> Option<FormationQuality> {
         None
     }
@@ -127,7 +125,6 @@ pub trait Ground: Send + Sync {
         let Some(meters) = self.formations() else {
             return (None, None, Vec::new());
         };
-        // On the grid, places are cells.
         let place_error = meters.place_error().filter(|_| self.has_bodies());
         (meters.mean(), place_error, meters.each(self.has_bodies()))
     }
@@ -137,8 +134,7 @@ pub trait Ground: Send + Sync {
         f64::NAN
     }
 
-    /// Smallest distances to other bodies and to obstacles over the whole run, and overlaps summed
-    /// over ticks; `None` if bodies have no size.
+    /// Smallest gaps over the whole run and overlaps summed over ticks; `None` without body sizes.
     fn clearance(&self) -> Option<Clearance> {
         None
     }

@@ -25,8 +25,8 @@ pub struct Known {
     pub age_s: f64,
 }
 
-/// The neighbours of an agent at `now`, in the order of its table. `own` is the agent's estimate of
-/// its own position, `own_m` the same place in world coordinates, metres. O(neighbours).
+/// Neighbours of an agent at `now`, in table order. `own` is the agent's estimate of its position,
+/// `own_m` the same place in world coordinates, metres. O(neighbours).
 pub fn known<'a, P>(
     neighbors: &'a [Neighbor<f32, P>],
     own: Position,

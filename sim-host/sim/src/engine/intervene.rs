@@ -27,13 +27,12 @@ pub enum Change<'a> {
     Remove(usize),
     /// See [`Intervention::Cell`].
     Cell([i16; 2], u8),
-    /// Cells with their new class, changed by a rule of the scenario
+    /// Cells with their new class, by a rule of the scenario
     /// ([`LandChange`](crate::terrain::change::LandChange)). A robot inside a closing cell may
     /// leave; no robot may enter.
     Land(&'a [(Cell, u8)]),
 }
 
-/// A changed parameter, of one robot (its index in the scenario) or of all.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Tuned {
     robot: Option<usize>,
@@ -106,7 +105,6 @@ where
         self.robots.binary_search_by_key(&id, |robot| robot.id).ok()
     }
 
-    /// Index of a robot in this process, if it is here.
     pub(super) fn index_of(&self, id: RobotId) -> Option<usize> {
         let number = self.number_of(id)?;
         match self.here.len() == self.robots.len() && self.here[number] as usize == number {
@@ -123,7 +121,6 @@ where
             return Err(Refusal::new("place_m", "nobody can stand there", "give a place on the map and not in a wall"));
         }
         let robots = number.map_or(0..self.robots.len(), |number| number..number + 1);
-        // Goals of the top leaders: followers get goals relative to them.
         let tops = self.shapes.iter().filter(|_| number.is_none());
         let tops: Vec<_> = tops.map(|members| (members.clone(), self.ground.goal_m(members.start))).collect();
         for number in robots.clone() {
@@ -172,7 +169,6 @@ where
     }
 }
 
-/// Sets the changed parameters of robot `number` in an agent that starts.
 pub(super) fn retune(tuned: &[Tuned], number: usize, mut set: impl FnMut(Parameter, f32) -> bool) {
     for Tuned { parameter, value, .. } in tuned.iter().filter(|tuned| tuned.robot.is_none_or(|robot| robot == number)) {
         set(*parameter, *value);

@@ -10,13 +10,10 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::time::Instant;
 use staya_controller::wire::{Beacon, Format, Header, Message, Wire as _};
 
-/// A cell outside every map.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
-/// Radio of an intruder.
 pub struct Intruder {
     pub id: RobotId,
-    /// Current position, metres.
     pub position_m: [f64; 2],
     wire: HostWire,
     sequence: u16,

@@ -14,7 +14,6 @@ const AGAIN_TICKS: u32 = 5;
 /// Attempts after which all robots are contacted again, since one of them may have restarted.
 const ROUNDS: u32 = 20;
 
-/// The key server and its radio.
 pub struct KeyServer {
     wire: OperatorWire<{ radio::PEERS }>,
     place_m: [f64; 2],

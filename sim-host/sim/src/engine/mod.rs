@@ -1,12 +1,10 @@
-//! The simulation loop, with one [`Agent`] per robot. Start with [`Engine::step`].
+//! The simulation loop, with one [`Agent`] per robot. [`simulate`] runs a whole scenario.
 //!
-//! A tick has two phases. In the first, all robots decide in parallel. Each robot sees only its own
-//! pose and cell, the land around it and the bytes that the radio delivered. In the second, the
-//! radio transmits the frames and the world moves the bodies. An action therefore affects other
-//! robots in the next tick at the earliest, and neither the number of threads nor the order of
-//! robots matters.
-//!
-//! [`simulate`] runs a whole scenario with its guidance law.
+//! A tick ([`Engine::step`]) has two phases. In the first, all robots decide in parallel. Each
+//! robot sees only its own pose and cell, the land around it and the bytes that the radio
+//! delivered. In the second, the radio transmits the frames and the world moves the bodies. An
+//! action therefore affects other robots in the next tick at the earliest, and neither the number
+//! of threads nor the order of robots matters.
 
 mod attacker;
 mod body;
@@ -87,9 +85,7 @@ pub struct OnboardComputer<G: Guidance<f32>, A> {
     boot: u8,
     /// Tick at which its clock showed 0.
     epoch: u32,
-    /// First tick in which it is up again.
     down_until: u32,
-    /// Bytes since its start.
     sent_bytes: u64,
     heard_bytes: u64,
 }
@@ -134,12 +130,12 @@ impl<W: Ground> Tick<'_, W> {
     }
 }
 
-/// Creates the law and the safety layer of a robot by its index in [`Scenario::robots`].
+/// Takes the robot's index in [`Scenario::robots`].
 type AgentFactory<G, A> = Box<dyn Fn(usize) -> (G, A) + Send + Sync>;
 
 /// A running scenario in world `W`, with guidance laws `G` and safety layers `A`.
 ///
-/// Fields are public for the crate `staya-mpi`, which steps one part of a world in each process.
+/// Fields are public for `staya-mpi`, which steps a part of a world in each process.
 pub struct Engine<W, G: Guidance<f32>, A> {
     seed: u64,
     format: Format,
@@ -150,8 +146,8 @@ pub struct Engine<W, G: Guidance<f32>, A> {
     pub tick: u32,
     /// All robots of the scenario, sorted by id.
     pub robots: Vec<Robot>,
-    /// Indices in `robots` of the robots in this process, in the order of all per-robot lists
-    /// below. Contains all robots unless other MPI ranks hold some.
+    /// Indices in `robots` of the robots in this process (all, unless other MPI ranks hold some),
+    /// in the order of all per-robot lists below.
     pub here: Vec<u32>,
     faults: Vec<Fault>,
     changes: Vec<LandChange>,
@@ -205,17 +201,16 @@ where
     G: HostLaw,
     A: Safety<f32> + Send,
 {
-    /// Creates the engine before the first tick of `scenario`, with the bodies of `ground`.
-    /// `factory(i)` creates the law and the safety layer of robot `i` in [`Scenario::robots`], at
-    /// its first start and at each restart.
+    /// Creates the engine before the first tick of `scenario`, with the bodies of `ground`. Each
+    /// start of robot `i` in [`Scenario::robots`] calls `factory(i)` for its law and safety layer.
     pub fn new(scenario: &Scenario, ground: W, factory: impl Fn(usize) -> (G, A) + Send + Sync + 'static) -> Self {
         let here = (0..scenario.robots.len() as u32).collect();
         Self::part(scenario, ground, factory, here, true)
     }
 
-    /// Creates the engine for a part of the robots: those with the indices `here` in
-    /// [`Scenario::robots`], whose bodies `ground` has in this order. If `has_others` is set, this
-    /// process also simulates the attackers, the intruders and the key server.
+    /// Creates the engine for the robots with the indices `here` in [`Scenario::robots`], whose
+    /// bodies `ground` has in this order. With `has_others`, this process also simulates the
+    /// attackers, the intruders and the key server.
     pub fn part(
         scenario: &Scenario,
         ground: W,
@@ -284,7 +279,6 @@ where
         self.robots[self.number(index)].id
     }
 
-    /// Index in [`Scenario::robots`] of a robot in this process.
     fn number(&self, index: usize) -> usize {
         self.here[index] as usize
     }

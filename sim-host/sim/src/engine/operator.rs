@@ -31,10 +31,8 @@ pub struct Observation {
     pub neighbors: usize,
 }
 
-/// A running scenario whose robots accept commands between ticks. Robots are numbered as in
-/// [`Scenario::robots`].
-///
-/// Without commands, the run is identical to that of [`simulate`](super::simulate), bit for bit. It
+/// A running scenario whose robots, numbered as in [`Scenario::robots`], accept commands between
+/// ticks. Without commands it is identical to [`simulate`](super::simulate), bit for bit, but
 /// continues after all robots have arrived.
 pub trait Operated: Send {
     /// Runs one tick.
@@ -46,13 +44,11 @@ pub trait Operated: Send {
     /// Events of robot `index` in the last tick.
     fn events(&self, index: usize) -> &[Event];
 
-    /// Commands robot `index` and returns whether it accepted. It refuses while its computer is
-    /// down, and if its law does not support the command.
+    /// Commands robot `index`; false if its computer is down or its law lacks the command.
     fn command(&mut self, index: usize, wish: Wish<f32>) -> bool;
 
-    /// Delivers a message to robot `index` in the next tick, without the radio but in its wire
-    /// format. Frame numbers are assigned here; the one in `header` is ignored. The message is lost
-    /// while the computer is down.
+    /// Delivers a message to robot `index` in the next tick, in its wire format but without the
+    /// radio; lost while the computer is down. Replaces the sequence number of `header`.
     fn tell(&mut self, index: usize, header: Header, message: &Message);
 
     /// Value of a parameter; `None` if the robot does not have it or is down.

@@ -28,9 +28,8 @@ impl<G> OwnLaw for G where
 pub struct NotInPlane;
 
 /// Runs a scenario as [`simulate`](super::simulate()) does, with `law(i)` as the guidance law of
-/// robot `i` in [`Scenario::robots`]. `law` is called at the first start and at each restart. The
-/// scenario determines the bodies, safety layers, radio, faults and goals (given by
-/// [`Guidance::assign_waypoint`]).
+/// robot `i` in [`Scenario::robots`] at each of its starts. The scenario determines the bodies,
+/// safety layers, radio, faults and goals (given by [`Guidance::assign_waypoint`]).
 ///
 /// # Errors
 /// [`NotInPlane`].
@@ -42,8 +41,7 @@ pub fn simulate_own<G: OwnLaw>(
     simulate_own_with(scenario, law, None, &mut watch)
 }
 
-/// Runs [`simulate_own`] with some controllers outside this process. Those may use another law than
-/// `law(i)`, which changes the run.
+/// Runs [`simulate_own`] with some controllers outside this process, which may use another law.
 ///
 /// # Errors
 /// [`NotInPlane`].

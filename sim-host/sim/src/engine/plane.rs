@@ -85,7 +85,6 @@ impl PlaneGround {
         let sights = setup.kinds().map(|group| group.sight_m + group.radius_m);
         let plane = Plane::new(land, setup.solids.clone(), discs.collect()).with_intruders(intruders);
         let plane = plane.with_sight(sights.fold(0.0, f64::max)).in_space(setup.space());
-        // Three-dimensional if robots start at other heights or fly.
         let is_flat = setup.starts.iter().all(|start| start.position_m[2] == 0.0)
             && setup.kinds().all(|group| group.safety.kind() != SafetyKind::Fly);
         let sight = scenario.sensing.map(|sensing| {
@@ -354,7 +353,6 @@ impl Ground for PlaneGround {
         if guidance.is_on_grid() {
             return Task::Cell(self.robots[number].goal);
         }
-        // A restarted robot gets all earlier orders here. It receives orders of this tick by radio.
         let first = (0..).zip(&self.setup.starts[number].places);
         let first = first.map(|(index, target)| (index, 0, target));
         let later = self.ordered(number, tick).map(|order| (order.index, order.tick, &order.target));
@@ -362,7 +360,6 @@ impl Ground for PlaneGround {
         for (index, since, target) in first.chain(later) {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
             if guidance == GuidanceKind::Waypoint && index == 0 {
-                // A new first goal replaces all waypoints before it.
                 waypoints.clear();
             }
             let waypoint = waypoint(target, age_s);
@@ -450,7 +447,6 @@ impl Ground for PlaneGround {
         let target = Target { position_m: place_m, velocity_mps: [0.0; 3] };
         let places = &mut self.setup.starts[number].places;
         match places.first_mut() {
-            // Other laws have a single goal, which replaces the waypoints too.
             Some(first) if guidance == GuidanceKind::GoalFlock => *first = target,
             _ => *places = vec![target],
         }

@@ -32,8 +32,8 @@ pub struct Moment<'a> {
     pub waiting: usize,
     /// Collisions of the run so far, as in [`Outcome::collisions`].
     pub collisions: u64,
-    /// Current smallest distance between the surfaces of two bodies, metres; `None` on the grid,
-    /// before the first tick, and if no body is within three radii of another.
+    /// Current gap of the two closest bodies, metres; `None` on the grid, before the first tick,
+    /// and if no two are within three radii.
     pub gap_m: Option<f64>,
     /// Foreign bodies.
     pub intruders: &'a [Disc],
@@ -73,8 +73,7 @@ pub struct Outcome {
     pub formation: Option<FormationQuality>,
     /// Distance of robots in the plane from their formation places, after the time for forming.
     pub place_error: Option<PlaceError>,
-    /// Quality of each formation, in the order of
-    /// [`Scenario::formations`](crate::scenario::Scenario::formations).
+    /// Quality of each formation, in the order of [`Scenario::formations`].
     pub formations: Vec<FormationKept>,
     /// Smallest distances between bodies and to obstacles; `None` on the grid.
     pub clearance: Option<Clearance>,
@@ -143,9 +142,7 @@ pub type SafetyOf = Witness<AnySafety<f32, HALF_PLANES>>;
 
 /// Engines of both worlds; instantiated only here, to compile the generic code once.
 pub(super) enum AnyEngine {
-    /// In the plane or in space.
     Plane(Box<Engine<PlaneGround, GuidanceOf, SafetyOf>>),
-    /// On the grid.
     Cells(Box<Engine<Grid, GuidanceOf, SafetyOf>>),
 }
 
@@ -164,7 +161,6 @@ impl AnyEngine {
 /// Returns a function that creates the law and the safety layer of a robot.
 pub fn agents(scenario: &Scenario) -> impl Fn(usize) -> (GuidanceOf, SafetyOf) + Send + Sync + 'static + use<> {
     let kind = |index| {
-        // The grid has neither speed nor distance.
         let group = scenario.plane.as_ref().map(|setup| setup.group(index));
         let [speed_mps, tolerance_m] =
             group.map_or([0.0; 2], |group| [group.cruise_mps, group.tolerance_m].map(|x| x as f32));
@@ -233,7 +229,7 @@ where
     Ok(ticks(scenario, engine, watch))
 }
 
-/// Runs until the end; the current state was already passed to the watcher.
+/// The current state was already passed to the watcher.
 fn ticks<W, G, A>(scenario: &Scenario, mut engine: Engine<W, G, A>, watch: &mut Watch<'_>) -> Outcome
 where
     W: Ground,

@@ -1,8 +1,5 @@
-//! Saves and restores the state of single robots and of whole runs.
-//!
-//! Constant data is not saved: the state must be restored into an engine of the same scenario. The
-//! bytes are in postcard format and valid only for this version of the program; floats keep their
-//! bits. The bytes contain keys.
+//! Saves and restores single robots and whole runs, in postcard format. The bytes contain keys.
+//! Constant data is not saved: restore into an engine of the same scenario and program version.
 
 use super::{Engine, Ground, HostLaw, OnboardComputer, Status};
 use crate::engine::attacker::AttackerState;
@@ -183,10 +180,8 @@ where
         write(&self.radio.end(index), bytes);
     }
 
-    /// Restores a robot from the bytes of [`Engine::pack`] in an engine of the same scenario.
-    /// Returns the number of bytes read. O(bytes).
-    ///
-    /// Robots can be restored one by one. Until all are restored, two may be in one cell.
+    /// Restores a robot from the bytes of [`Engine::pack`] in an engine of the same scenario, and
+    /// returns how many it read. Until all robots are restored, two may be in one cell. O(bytes).
     ///
     /// # Errors
     /// The bytes are damaged or belong to another robot. The robot may then be partly restored.
@@ -276,8 +271,7 @@ where
         }
     }
 
-    /// Restores the state of [`Engine::save`] in an engine of the same scenario before its first
-    /// tick.
+    /// Restores [`Engine::save`] in an engine of the same scenario before its first tick.
     ///
     /// # Errors
     /// The bytes are damaged or from another scenario or program. Discard the engine then.
@@ -308,7 +302,6 @@ where
         (self.collisions, self.packets, self.throttled) = (whole.collisions, whole.packets, whole.throttled);
         self.waits.set_ticks(&whole.waited);
         self.radio.set_weather(whole.weather);
-        // Transmitters of other ranks are read and discarded.
         let [attackers, intruders, keepers] = others;
         for at in 0..attackers {
             let state = from.read::<AttackerState>("an attacker")?;
@@ -352,7 +345,7 @@ where
         Ok((at, digest))
     }
 
-    /// Reads and discards a robot of another rank. Returns the number of bytes read.
+    /// Returns the number of bytes read.
     fn skip(&mut self, number: usize, bytes: &[u8]) -> Result<usize, StateError> {
         let mut from = Reader::new(bytes);
         let _: RobotId = from.read("the number of a robot")?;

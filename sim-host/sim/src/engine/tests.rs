@@ -36,7 +36,6 @@ struct Known {
     others: Vec<(u32, Cell)>,
 }
 
-/// Goes east and records its inputs.
 struct Scout(Arc<Mutex<Vec<Known>>>);
 
 impl Teamwork for Scout {}
@@ -243,7 +242,6 @@ fn a_formation_is_measured_and_arrives() {
     assert!(keeping.best_fit_error_per_agent <= keeping.error_per_agent + 1.0);
 }
 
-/// All results of a run that could depend on threads.
 fn trace(scenario: &Scenario, threads: usize) -> (Outcome, Vec<RobotRow>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(|| {
@@ -267,7 +265,6 @@ fn neither_a_run_nor_its_hash_depends_on_the_number_of_threads() {
         let (other, other_rows) = trace(&scenario, threads);
         assert_eq!(other.trace_hash, one.trace_hash, "{threads} threads");
         assert_eq!((other.packets, &other.arrival_times, other.ticks), (one.packets, &one.arrival_times, one.ticks));
-        // NaN is not equal to itself.
         let cells =
             |rows: &[RobotRow]| rows.iter().map(|r| (r.id, r.motion.cell, r.mode, r.target)).collect::<Vec<_>>();
         assert_eq!(cells(&other_rows), cells(&rows));
@@ -287,7 +284,6 @@ fn different_seeds_give_different_runs() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// No radio faults and robot failures cause collisions, panics or wrong sums.
     #[test]
     fn any_radio_and_any_fault_leave_a_sound_run(
         seed: u64,

@@ -54,7 +54,6 @@ where
     }
 }
 
-/// Keys of a wire format that has several of them.
 pub(super) fn ring(wire: &HostWire) -> Option<&Ring> {
     match wire {
         HostWire::Sealed(sealed) => Some(sealed.ring()),

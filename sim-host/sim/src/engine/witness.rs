@@ -8,19 +8,15 @@ use staya_controller::neighbor::{Nearby, StalenessInflation};
 use staya_controller::obstacle::Obstacle;
 use staya_controller::rand::Rng;
 
-/// Inputs of a safety layer in one step.
 #[derive(Clone, Debug)]
 pub struct Asked {
     pub body: Body<f32>,
-    /// Velocity chosen by the guidance law, m/s.
     pub wish_mps: Vec3<f32>,
     pub nearby: Vec<Nearby<f32>>,
-    /// Static obstacles in sight.
     pub obstacles: Vec<Obstacle<f32>>,
 }
 
-/// Wraps layer `A` and records its inputs after [`Witness::listen`] was called. State and results
-/// are those of `A` in either case.
+/// Records the inputs of layer `A` after [`Witness::listen`]; state and results are those of `A`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Witness<A> {

@@ -31,18 +31,15 @@ pub struct FlockMeasure {
     pub components: usize,
     /// Robots in the largest component.
     pub largest_component: usize,
-    /// C, relative connectivity: rank of the graph's Laplacian over n - 1, which is (n -
-    /// components) / (n - 1). 1 for a single robot.
+    /// C, relative connectivity: (n - components) / (n - 1); 1 for a single robot.
     pub connectivity: f64,
     /// R, largest distance from the centroid, metres.
     pub radius_m: f64,
-    /// E / d^2, deviation of the edge lengths from d: E = sum over ordered pairs of (length - d)^2,
-    /// divided by their number plus 1.
+    /// E / d^2: sum of (length - d)^2 over ordered pairs, over their number plus 1, over d^2.
     pub deviation_energy: f64,
     /// K / n, (m/s)^2: half the squared velocities relative to their mean, per robot.
     pub velocity_mismatch: f64,
-    /// Group order: length of the mean direction of the velocities, 0 to 1. Stationary robots do
-    /// not count; 0 if all are stationary.
+    /// Group order, 0 to 1: length of the mean direction of moving robots; 0 if all are stationary.
     pub polarisation: f64,
 }
 
@@ -58,9 +55,8 @@ pub struct FlockMeter<const D: usize> {
 }
 
 impl<const D: usize> FlockMeter<D> {
-    /// Creates a meter for flocks of spacing d whose robots are neighbours up to `range_m` (r, for
-    /// OLF (1 + e0) d). Distances are those of `space`. On a torus, R and the centroid are those of
-    /// the folded positions and have no meaning.
+    /// Creates a meter for spacing d and neighbours up to `range_m` (r, for OLF (1 + e0) d) in
+    /// `space`. On a torus, R and the centroid are those of folded positions and have no meaning.
     #[must_use]
     pub fn new(spacing_m: f64, range_m: f64, space: Space<f64, D>) -> Self {
         Self {
@@ -99,7 +95,6 @@ impl<const D: usize> FlockMeter<D> {
             largest_component,
             connectivity: if robots > 1 { (robots - components) as f64 / (robots - 1) as f64 } else { 1.0 },
             radius_m,
-            // Each pair is two ordered pairs.
             deviation_energy: 2.0 * energy / (2 * edges + 1) as f64 / (self.spacing_m * self.spacing_m),
             velocity_mismatch: kinetic / robots as f64,
             polarisation: polarisation(velocities_mps),
@@ -112,7 +107,7 @@ impl<const D: usize> FlockMeter<D> {
         &self.edges
     }
 
-    /// Finds the edges and joins their components. Returns the sum of (length - d)^2.
+    /// Returns the sum of (length - d)^2.
     fn link(&mut self, places_m: &[[f64; D]]) -> f64 {
         self.cells.rebuild(places_m);
         self.edges.clear();
@@ -143,7 +138,6 @@ impl<const D: usize> FlockMeter<D> {
     }
 }
 
-/// Representative of a component, with path halving.
 fn root(parents: &mut [u32], mut robot: u32) -> u32 {
     while parents[robot as usize] != robot {
         parents[robot as usize] = parents[parents[robot as usize] as usize];
@@ -178,8 +172,7 @@ pub struct AlphaLimits {
 }
 
 impl AlphaLimits {
-    /// e1 = 0.005 and e2 = 0.001 (OLF figure 12), nine tenths in one component, all within
-    /// `cohesion_radius_m`.
+    /// e1 = 0.005, e2 = 0.001 (OLF figure 12), nine tenths connected, all in `cohesion_radius_m`.
     #[must_use]
     pub const fn paper(cohesion_radius_m: f64) -> Self {
         Self { deviation_energy: 0.005, velocity_mismatch: 0.001, quasi_flock_share: 0.9, cohesion_radius_m }

@@ -8,11 +8,9 @@ use staya_controller::grid::Cell;
 /// Quality of a formation at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormationQuality {
-    /// Mean over the robots of |desired - actual|, cells, with the graph placed at the top leader
-    /// (robot 1). The leader counts, with 0.
+    /// Mean of |desired - actual| over the robots, cells, with the graph at the leader (error 0).
     pub error_per_agent: f64,
-    /// The mean error with the graph placed by the translation that fits all robots best (least
-    /// squares). It distinguishes a distorted formation from one that only lags behind its leader.
+    /// The mean error with the graph at its least-squares place: distortion without mere lag.
     pub best_fit_error_per_agent: f64,
     /// Graph distance, see [`FormationMeter`].
     pub graph_distance: f64,
@@ -29,8 +27,7 @@ impl std::ops::AddAssign for FormationQuality {
 /// Time that a formation may take to form before its error counts, seconds.
 pub const FORMED_AFTER_S: f64 = 10.0;
 
-/// Distance of robots in the plane from their places relative to robot 1, after the first
-/// [`FORMED_AFTER_S`].
+/// Distance of robots in the plane from their places relative to robot 1, after [`FORMED_AFTER_S`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaceError {
     /// Mean over robots (robot 1 counts, with 0) and ticks, metres.
@@ -46,17 +43,15 @@ pub struct PlaceError {
 /// Measures a formation tick by tick: the formation error dPhi = (1/T) sum over robots and ticks of
 /// |desired - actual|, here per robot, and the graph distance.
 ///
-/// The graph distance is dist = m0 + m1 + kappa * sum of |desired - actual| over the common
-/// vertices, with kappa = 1 / diagonal of the map and the graph placed at the top leader. A vertex
-/// is common if its robot is within `eps` cells (along either axis, as in algorithm 5) of its
-/// place. m0 counts missed places. m1 counts missed places near which (within `eps`) another robot
-/// is that has itself lost its place. Without this condition, every robot of a formation narrower
-/// than eps would stand in for all others.
+/// The graph distance is m0 + m1 + kappa * sum of |desired - actual| over the common vertices, with
+/// kappa = 1 / diagonal of the map and the graph placed at the top leader. A vertex is common if
+/// its robot is within `eps` cells (along either axis, as in algorithm 5) of its place. m0 counts
+/// missed places. m1 counts those within `eps` of another robot that has itself lost its place;
+/// otherwise every robot of a formation narrower than eps would stand in for all others.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationMeter {
     places: Vec<[f64; 2]>,
     eps: f64,
-    /// 1 / diagonal of the map, 1/cells.
     kappa: f64,
     ticks: u32,
     sum: FormationQuality,
@@ -67,7 +62,6 @@ pub struct FormationMeter {
     steady: Steady,
 }
 
-/// Sums over the ticks after the first [`FORMED_AFTER_S`].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Steady {
     ticks: u32,

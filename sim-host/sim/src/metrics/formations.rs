@@ -19,7 +19,6 @@ pub struct FormationKept {
 /// Measures all formations of a scenario tick by tick.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationMeters {
-    /// Robot indices and meter of each formation; at least one.
     each: Vec<(Range<usize>, FormationMeter)>,
     numbers: Vec<u32>,
 }
@@ -49,9 +48,8 @@ impl FormationMeters {
         self.over(|members, meter| meter.measure(&bodies[members]))
     }
 
-    /// Measures the current quality of all formations: errors are means over robots, graph
-    /// distances are summed. `bodies[i]` is the position of robot i, in cells. See
-    /// [`FormationMeter::look`].
+    /// Measures the quality of all formations as [`FormationMeter::look`] does: errors are means
+    /// over robots, graph distances are summed. `bodies[i]` is the position of robot i, cells.
     ///
     /// # Panics
     /// If there are fewer bodies than members.
@@ -104,8 +102,7 @@ impl FormationMeters {
         each.collect()
     }
 
-    /// Distance of robot `index`, counted from 0, from its place in the last measurement, cells,
-    /// with its formation placed at its own top leader. NaN without a place.
+    /// Last distance of robot `index` from its place at its own top leader, cells; NaN without one.
     #[must_use]
     pub fn error_of(&self, index: usize) -> f64 {
         let own = self.each.iter().find(|(members, _)| members.contains(&index));

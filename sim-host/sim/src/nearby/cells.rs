@@ -15,19 +15,16 @@ use std::ops::Range;
 pub struct Cells<R, const D: usize> {
     space: Space<R, D>,
     side: R,
-    /// Corner of the first cell.
     origin: [R; D],
     counts: [u32; D],
     /// Cells per unit of length along each axis.
     scale: [R; D],
-    /// Side of a cell along each axis.
     width: [R; D],
     /// Start of each cell's points in `order`, and the end of the last.
     starts: Vec<u32>,
     /// Indices of the points by cell, ascending in each.
     order: Vec<u32>,
     points: Vec<[R; D]>,
-    /// Scratch: the cell of each point.
     cell_of: Vec<u32>,
 }
 
@@ -103,7 +100,6 @@ impl<R: Real, const D: usize> Cells<R, D> {
         cell
     }
 
-    /// Cells along an axis that the ball may touch.
     fn span(&self, axis: usize, at: R, radius: R) -> Span {
         let count = self.counts[axis];
         // Both ends use the same monotonic function as the points, so rounding cannot exclude a
@@ -116,7 +112,6 @@ impl<R: Real, const D: usize> Cells<R, D> {
         let Some(period) = around else {
             return straight();
         };
-        // The ball covers the whole axis: every cell once.
         if reach + reach >= period {
             return Span::Around(0, count);
         }
@@ -132,7 +127,6 @@ impl<R: Real, const D: usize> Cells<R, D> {
         if from < to { Span::Around(0, count) } else { Span::Around(from, to) }
     }
 
-    /// Whether all cells at this place along the axis are farther away than the current limit.
     fn is_beyond(&self, axis: usize, place: u32, at: R, nearest: &Nearest<'_, R, D>) -> bool {
         let place = R::from_f64(place.into()).unwrap_or(R::ZERO);
         let low = self.origin[axis] + place * self.width[axis];
@@ -200,7 +194,6 @@ enum Span {
     Around(u32, u32),
 }
 
-/// Parts of a [`Span::Around`] on an axis with `count` cells.
 fn around(from: u32, to: u32, count: u32) -> [Range<u32>; 2] {
     if from < to { [from..to, 0..0] } else { [0..to, from..count] }
 }

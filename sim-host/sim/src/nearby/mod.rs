@@ -31,8 +31,8 @@ pub struct Query<R, const D: usize> {
 
 /// A search for the points within a radius.
 ///
-/// All implementations give identical results, bit for bit: distances are computed by
-/// [`Space::offset`] in the precision of `R` and summed over the axes in order.
+/// All implementations give identical results, bit for bit: [`Space::offset`] computes distances in
+/// the precision of `R`, which are summed over the axes in order.
 pub trait Search<R: Real, const D: usize>: Sync {
     /// Replaces all points; their indices are their positions in the slice. Points with a
     /// coordinate that is not finite are never found.

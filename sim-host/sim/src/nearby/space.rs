@@ -44,7 +44,6 @@ impl_real!(f64);
 /// Open space, or a torus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Space<R, const D: usize> {
-    /// Period of each axis; `None`: open.
     period: Option<[R; D]>,
 }
 

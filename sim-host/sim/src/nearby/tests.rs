@@ -17,7 +17,6 @@ fn answers<R: Real, const D: usize>(
     queries.iter().map(answer).collect()
 }
 
-/// Asserts that all searches give equal results, the grid for any side.
 fn agree<R: Real, const D: usize>(
     space: Space<R, D>,
     sides: &[R],
@@ -28,7 +27,6 @@ fn agree<R: Real, const D: usize>(
     for &side in sides {
         let mut cells = Cells::new(space, side);
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
-        // Buffers of earlier points do not affect results.
         prop_assert!(answers(&mut cells, &points[..points.len() / 2], queries).len() == queries.len());
         prop_assert_eq!(&expected, &answers(&mut cells, points, queries));
     }

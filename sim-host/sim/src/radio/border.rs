@@ -38,8 +38,7 @@ impl Radio {
         })
     }
 
-    /// Second half of [`Radio::carry`]: delivers packets of this rank and of others (`elsewhere`)
-    /// in `tick`. Returns their fate.
+    /// Second half of [`Radio::carry`]: delivers packets of this rank and from `elsewhere`.
     pub fn receive(&mut self, tick: u32, positions_m: &[[f64; 2]], elsewhere: &[Sent], sent: Counts) -> Counts {
         if !self.receivers.is_empty() {
             self.medium.add(tick, elsewhere);

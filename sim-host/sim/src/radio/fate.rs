@@ -13,7 +13,6 @@ pub(super) enum Verdict {
     Arrives { copies: u32 },
 }
 
-/// Gilbert-Elliott channel of a link, without stored state.
 #[derive(Clone, Copy, Debug)]
 struct Channel {
     /// Probability per tick that the state is redrawn, Q0.32.
@@ -41,8 +40,7 @@ pub(super) struct Fates {
 }
 
 impl RadioParams {
-    /// Age of beacons that robots send every `period_s` seconds, for the design of a flock: the
-    /// delay with the longest jitter, seconds, and the number of received packets per second.
+    /// Longest delay of a beacon, seconds, and received ones per second if sent every `period_s`.
     #[must_use]
     pub fn news(&self, period_s: f64) -> (f64, f64) {
         let burst = self.burst.as_ref().map_or(0.0, |burst| burst.share * burst.loss);
@@ -81,7 +79,6 @@ impl Fates {
         self.loss = loss;
     }
 
-    /// Random generator for everything that happens to `packet` at `receiver`.
     pub(super) fn draws(&self, packet: &Packet, receiver: RobotId, tick: u32) -> Rng {
         Rng::keyed(packet.key, packet.number, receiver.0, tick)
     }
@@ -102,8 +99,7 @@ impl Fates {
         Verdict::Arrives { copies }
     }
 
-    /// Arrival time of a packet sent in `tick`, microseconds after the start; `None` if packets
-    /// always arrive before the next step.
+    /// In microseconds after the start; `None` if packets always arrive before the next step.
     pub(super) fn due_us(&self, draws: &mut Rng, tick: u32) -> Option<u64> {
         let always_in_time = self.delay_us == 0 && self.jitter_us == 0 && self.reorder == 0;
         if always_in_time {
@@ -121,8 +117,7 @@ impl Fates {
         (u64::from(tick) + 1) * self.tick_us
     }
 
-    /// Flips bits of a received packet and returns whether any flipped. The zero byte at the end is
-    /// never changed, since the radio itself separates packets.
+    /// Returns whether any bit flipped. The radio separates packets, so it spares the last byte.
     pub(super) fn damage(&self, draws: &mut Rng, packet: &mut [u8]) -> bool {
         if self.ln_intact == 0.0 {
             return false;
@@ -155,9 +150,8 @@ impl Channel {
         Self { renewal: q32(leave / (1.0 - burst.share)), share: q32(burst.share), loss: q32(burst.loss) }
     }
 
-    /// State of the link's Markov chain at `tick`, found by walking back to the last redraw. This
-    /// needs no memory per link and is an exact Gilbert-Elliott channel. Takes about mean * (1 -
-    /// share) ticks of work.
+    /// Walks back to the last redraw of the link's state: an exact Gilbert-Elliott channel without
+    /// memory per link, for about mean * (1 - share) ticks of work.
     fn is_bad(&self, seed: u64, sender: RobotId, receiver: RobotId, tick: u32) -> bool {
         let link = Rng::keyed(seed, LINK, sender.0, receiver.0).next_u64();
         (0..=tick)
@@ -171,7 +165,7 @@ impl Channel {
     }
 }
 
-/// A probability as Q0.32; `u32::MAX` means always.
+/// `u32::MAX` means always.
 fn q32(probability: f64) -> u32 {
     (probability * 4_294_967_296.0) as u32
 }

@@ -16,7 +16,6 @@ const PACKET: u32 = 0x0052_0001;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Packet {
     pub(super) sender: RobotId,
-    /// Index among the sender's packets of this tick.
     pub(super) number: u32,
     pub(super) key: u64,
     pub(super) from_m: [f64; 2],
@@ -31,7 +30,6 @@ const PART: usize = 1024;
 #[derive(Clone, Debug, Default)]
 struct Part {
     bytes: Vec<u8>,
-    /// Packets with their cells, sorted by sender and number.
     queue: Vec<(u32, Packet)>,
     counts: Counts,
 }
@@ -44,7 +42,6 @@ struct Buckets {
     tokens: Vec<u64>,
 }
 
-/// Packets of a tick, sorted into square cells of the radio's range.
 #[derive(Clone, Debug)]
 pub(super) struct Medium {
     wire: AnyWire,
@@ -60,7 +57,6 @@ pub(super) struct Medium {
     lattice: Lattice,
 }
 
-/// Square cells over the bounding box of all robots.
 #[derive(Clone, Copy, Debug, Default)]
 struct Lattice {
     corner_m: [f64; 2],
@@ -100,12 +96,11 @@ impl Medium {
         self.range_m
     }
 
-    /// Remaining tokens of sender `index`; `None`: no limit.
     pub(super) fn tokens(&self, index: usize) -> Option<u64> {
         self.buckets.as_ref().map(|buckets| buckets.tokens[index])
     }
 
-    /// Restores the tokens of sender `index`; returns whether both have a limit or both have none.
+    /// Fails unless both have a limit or both have none.
     pub(super) fn set_tokens(&mut self, index: usize, tokens: Option<u64>) -> bool {
         match (&mut self.buckets, tokens) {
             (Some(buckets), Some(tokens)) => buckets.tokens[index] = tokens.min(buckets.capacity),
@@ -115,7 +110,6 @@ impl Medium {
         true
     }
 
-    /// Replaces the packets with those sent in `tick`; the inputs have one entry per robot.
     pub(super) fn fill(
         &mut self,
         tick: u32,
@@ -183,7 +177,7 @@ impl Medium {
         self.sort();
     }
 
-    /// Changes the number of senders; new ones have full token buckets.
+    /// New senders have full token buckets.
     pub(super) fn resize(&mut self, robots: usize) {
         if let Some(buckets) = &mut self.buckets {
             buckets.tokens.resize(robots, buckets.capacity);
@@ -215,8 +209,7 @@ impl Medium {
         }
     }
 
-    /// Indices of the packets in range of a position, sorted by sender and number, without those of
-    /// `own`.
+    /// Packets in range of a position, sorted by sender and number, without those of `own`.
     pub(super) fn heard_at(&self, at_m: [f64; 2], own: RobotId, heard: &mut Vec<u32>) {
         heard.clear();
         self.add_heard_at(at_m, own, heard);
@@ -277,7 +270,6 @@ fn images([x, y]: [f64; 2], [width, height]: [f64; 2]) -> impl Iterator<Item = [
 }
 
 impl Lattice {
-    /// Cells at least as wide as the range, and not many more cells than robots.
     fn over(positions_m: &[[f64; 2]], range_m: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for position in positions_m {

@@ -1,10 +1,9 @@
 //! The radio: transmits bytes between robots, and loses, delays, duplicates and damages them.
 //!
-//! It does not interpret messages. A packet is a frame of the robots' wire format, with its
-//! delimiter if there is one. Loss, delay, jitter, duplication and order do not depend on a
-//! packet's bytes, and therefore not on the format; bit errors and bandwidth do. All random effects
-//! on a packet are a function of (seed, tick, sender, number within the tick, receiver), so that
-//! neither threads nor the order of robots matter.
+//! A packet is a frame of the robots' wire format, with its delimiter if there is one. Only bit
+//! errors and bandwidth depend on its bytes. All random effects on a packet are a function of
+//! (seed, tick, sender, number within the tick, receiver), so that neither threads nor the order of
+//! robots matter.
 
 mod border;
 mod fate;
@@ -68,7 +67,6 @@ struct Held {
     sent: u32,
     number: u32,
     copy: u32,
-    /// Position of its bytes in [`Late::bytes`].
     start: u32,
     length: u32,
 }
@@ -79,7 +77,6 @@ struct Receiver {
     /// Range of its inbox in its block's [`Inboxes`].
     inbox: Range<u32>,
     late: Option<Box<Late>>,
-    /// Fate of the last tick's packets, if the log is enabled.
     log: Option<Vec<(RobotId, Reception)>>,
 }
 
@@ -93,7 +90,6 @@ struct Late {
 
 const BLOCK: usize = 64;
 
-/// Concatenated inboxes of a block of receivers.
 type Inboxes = Vec<u8>;
 
 /// Fate of one packet at one receiver.
@@ -175,11 +171,10 @@ impl Radio {
     }
 
     /// Transmits the packets of `tick`: replaces all inboxes with the packets that arrive before
-    /// the next tick. Returns the statistics of this tick.
+    /// the next tick, and returns this tick's statistics. `positions_m[i]` and `outbox(i)` belong
+    /// to robot `i`.
     ///
-    /// `positions_m[i]` and `outbox(i)` belong to robot `i`. O(n k) for k robots in range, in
-    /// parallel over senders and receivers; once buffers have grown, it allocates 16 bytes per
-    /// robot.
+    /// O(n k) for k robots in range, in parallel; allocates 16 bytes per robot after warming up.
     ///
     /// # Panics
     /// If there are fewer positions than robots.
@@ -230,7 +225,6 @@ impl Receiver {
             for copy in 0..copies {
                 let due_us = fates.due_us(&mut draws, tick);
                 let buffer = match due_us {
-                    // Without delays, packets go directly to the inbox.
                     None => &mut *inboxes,
                     Some(_) => &mut self.late.get_or_insert_default().bytes,
                 };
@@ -265,7 +259,6 @@ impl Receiver {
 }
 
 impl Late {
-    /// Moves packets that are due by `now_us` to the inbox, in order of arrival.
     fn release(&mut self, now_us: u64, inbox: &mut Inboxes) {
         if self.held.is_empty() {
             return;

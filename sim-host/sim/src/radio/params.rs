@@ -3,10 +3,8 @@
 use serde::Deserialize;
 use staya_controller::wire::Format;
 
-/// Bursts of loss on a link (Gilbert-Elliott two-state channel).
-///
-/// Each ordered pair of robots has its own channel that is either good or bad. Its state changes
-/// only between ticks, as a Markov chain with the given share and mean length.
+/// Bursts of loss: a Gilbert-Elliott channel, good or bad, for each ordered pair of robots. Its
+/// state changes between ticks, as a Markov chain with the given share and mean length.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Burst {
@@ -48,9 +46,8 @@ pub struct RadioParams {
     pub reorder_ms: f64,
     /// Probability that a transmitted bit flips, 0 to 1.
     pub bit_error_rate: f64,
-    /// Bytes per second that a robot may send; packets beyond that are dropped and counted as
-    /// throttled. A silent robot saves the bytes of one second (at least 256) and may send them at
-    /// once. Default: no limit.
+    /// Bytes per second that a robot may send; further packets are dropped and counted as
+    /// throttled. A silent robot saves the bytes of one second (at least 256). Default: no limit.
     pub bandwidth_bytes_per_s: Option<u32>,
     /// Spans `[from, to]` of seconds after the start during which every packet is lost.
     pub blackout_s: Vec<[f64; 2]>,

@@ -8,7 +8,6 @@ pub(crate) struct End {
     inbox: Vec<u8>,
     held: Vec<Held>,
     bytes: Vec<u8>,
-    /// Tokens of the bandwidth limit; `None`: no limit.
     tokens: Option<u64>,
 }
 
@@ -26,10 +25,7 @@ impl Radio {
         (self.inbox(index), held, bytes, self.medium.tokens(index))
     }
 
-    /// Restores the state of robot `index`.
-    ///
-    /// # Errors
-    /// The state belongs to another radio, or is invalid.
+    /// Fails if the state belongs to another radio, or is invalid.
     pub(crate) fn set_end(&mut self, index: usize, end: End) -> Result<(), &'static str> {
         let End { inbox, held, bytes, tokens } = end;
         let is_there = |held: &Held| {

@@ -12,7 +12,6 @@ fn line(robots: u32) -> Vec<[f64; 2]> {
     (0..robots).map(|i| [f64::from(i), 0.0]).collect()
 }
 
-/// Two robots, of which the first sends a frame in each tick.
 fn one_way(params: RadioParams, ticks: u32) -> (Radio, Vec<Vec<u8>>) {
     let mut radio = radio(params, 2);
     let inboxes = (0..ticks)
@@ -252,7 +251,6 @@ proptest! {
         }
     }
 
-    /// Across the borders too, and once each, however small the torus.
     #[test]
     fn on_a_torus_robots_in_range_of_the_nearest_image_are_received_once(
         range_m in 0.0..30.0_f64,

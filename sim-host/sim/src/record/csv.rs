@@ -8,7 +8,6 @@ use std::path::Path;
 
 type Column = (&'static str, &'static str, &'static str, &'static str);
 
-/// `trace.csv`: one row per robot and sampled tick.
 pub const TRACE: [Column; 21] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
@@ -43,7 +42,6 @@ pub const TRACE: [Column; 21] = [
     ("radius_m", "number", "m", "radius of its body; empty: bodies have no size"),
 ];
 
-/// `series.csv`: one row per tick.
 pub const SERIES: [Column; 9] = [
     ("tick", "integer", "1", "number of the tick"),
     ("time_s", "number", "s", "simulated time"),
@@ -61,7 +59,6 @@ pub fn header(columns: &[Column]) -> String {
     names.join(",") + "\n"
 }
 
-/// Writes `NAME.schema.json`.
 pub fn write_schema(dir: &Path, name: &str, columns: &[Column]) -> Result<(), Error> {
     let columns: Vec<_> = columns
         .iter()

@@ -42,7 +42,6 @@ pub fn prepare_dir(dir: &Path) -> Result<(), Error> {
     make_dir(dir)?;
     let probe = dir.join(format!(".{}.tmp", std::process::id()));
     let written = std::fs::write(&probe, "?").map_err(Error::new("write to", dir));
-    // The file may not exist.
     let _ = std::fs::remove_file(&probe);
     written
 }
@@ -73,7 +72,6 @@ pub fn write_summary(dir: &Path, summary: &impl Serialize) -> Result<(), Error> 
     write_atomically(&path, &text)
 }
 
-/// Bytes that are buffered before they are written.
 const BLOCK: usize = 1 << 16;
 
 /// A text file that grows by blocks of whole lines.
@@ -87,7 +85,6 @@ pub struct LineFile {
 }
 
 impl LineFile {
-    /// Creates the file with only `header`.
     pub fn create(path: &Path, header: &str) -> Result<Self, Error> {
         let mut this = Self {
             file: File::create(path).map_err(Error::new("make", path))?,
@@ -99,7 +96,7 @@ impl LineFile {
         Ok(this)
     }
 
-    /// Appends to a file that ends with a complete block.
+    /// The file must end with a complete block.
     pub fn resume(path: &Path) -> Result<Self, Error> {
         let file = File::options().append(true).open(path).map_err(Error::new("open", path))?;
         let written = file.metadata().map_err(Error::new("read", path))?.len();
@@ -112,12 +109,10 @@ impl LineFile {
         Ok((self.path.clone(), self.written))
     }
 
-    /// Buffer for new lines; [`LineFile::end_block`] completes the block.
     pub const fn pending(&mut self) -> &mut Vec<u8> {
         &mut self.pending
     }
 
-    /// Ends a block; writes the buffer if it is full.
     pub fn end_block(&mut self) -> Result<(), Error> {
         if self.pending.len() < BLOCK {
             return Ok(());

@@ -1,15 +1,8 @@
-//! Atomic replacement of a results folder.
-//!
-//! A run writes its files to a folder of its own next to the target, `.NAME.partial-PID`. When they
-//! are complete, the old folder is renamed to `.NAME.old-PID` and the new one to `NAME`; then the
-//! files of the old run are removed. If this is interrupted, either `NAME` or `.NAME.old-PID` is
-//! complete. The next run into the same target restores or removes the remains of a dead run, which
-//! it recognises by a file lock.
-//!
-//! The file [`MARKER`] in a results folder lists the files of the run. Only these are replaced; all
-//! other files are moved to the new folder. A folder that was not created by a run is never
-//! renamed: files are moved into it one by one, the summary last. A run is refused at the start if
-//! such a folder has a file with the name of a result.
+//! Atomic replacement of a results folder. A run writes to `.NAME.partial-PID`; then the old folder
+//! is renamed to `.NAME.old-PID` and the new one to `NAME`. After an interruption one of these is
+//! complete, and the next run restores or removes the remains of a dead run (known by a file lock).
+//! Only files listed in [`MARKER`] are replaced; others move to the new folder. Into a folder that
+//! no run created, files move one by one, the summary last, unless it has a file named as a result.
 
 use super::Error;
 use std::collections::BTreeSet;
@@ -41,7 +34,6 @@ const KNOWN: [&str; 13] = [
 ];
 /// Age after which a folder without a locked list counts as dead: active runs lock at once.
 const YOUNG: Duration = Duration::from_secs(60);
-/// Attempts to move a folder while other processes interfere.
 const TRIES: usize = 32;
 
 static BEGUN: AtomicU32 = AtomicU32::new(0);
@@ -109,8 +101,7 @@ impl Results {
         done.map_err(|source| Error::new("move the new results into", &self.target)(source))
     }
 
-    /// Keeps the partial results for the user and returns their folder. The next run into the same
-    /// target removes them.
+    /// Keeps the partial results until the next run into the same target, and returns their folder.
     #[must_use]
     pub fn keep(mut self) -> PathBuf {
         self.marker = None;
@@ -157,7 +148,6 @@ impl Results {
                 Ok(()) => aside.push(old),
                 // Another run is at the same point.
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
-                // For example a mount point.
                 Err(_) => {
                     outcome = Ok(false);
                     break;
@@ -202,7 +192,6 @@ impl Drop for Results {
     }
 }
 
-/// Resolves a symbolic link to the folder.
 fn resolved(target: &Path) -> Result<PathBuf, Error> {
     let is_plain = target.file_name().is_some() && !target.is_symlink();
     if is_plain {
@@ -292,7 +281,6 @@ fn check(target: &Path) -> Result<bool, Error> {
     }
 }
 
-/// Names in a folder, without the list and the folders of active runs.
 fn entries(dir: &Path) -> io::Result<BTreeSet<String>> {
     let mut names = BTreeSet::new();
     for entry in fs::read_dir(dir)? {
@@ -325,7 +313,6 @@ fn write_list(marker: &mut File, names: &BTreeSet<String>) -> io::Result<()> {
     marker.write_all(text.as_bytes())
 }
 
-/// Whether a rename failed because the target exists.
 fn is_in_the_way(error: &io::Error) -> bool {
     let refused = cfg!(windows) && error.kind() == ErrorKind::PermissionDenied;
     refused || matches!(error.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists)
@@ -340,7 +327,6 @@ fn remove(path: &Path) -> io::Result<()> {
     if is_folder { fs::remove_dir_all(path) } else { fs::remove_file(path) }
 }
 
-/// Renames an existing file to a free name.
 fn step_aside(path: &Path) -> io::Result<()> {
     if fs::symlink_metadata(path).is_ok() { fs::rename(path, free(path)?) } else { Ok(()) }
 }

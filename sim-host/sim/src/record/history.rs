@@ -84,10 +84,8 @@ impl From<&TickRow> for SeriesPoint {
     }
 }
 
-/// Data of a run for plots: every k-th tick of every robot, and the swarm's series.
-///
-/// Memory is bounded for any length of the run: see [`super::Options::history_samples`]; the series
-/// holds at most 16,384 points.
+/// Data of a run for plots, in bounded memory: every k-th tick of every robot (see
+/// [`super::Options::history_samples`]), and the swarm's series of at most 16,384 points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct History {
     frames: Vec<Frame>,
@@ -96,7 +94,6 @@ pub struct History {
     ticks: u32,
     /// Samples of all frames; counting them for each frame would take quadratic time.
     samples: usize,
-    /// Latest frame; stored even if its tick is not due.
     latest: Frame,
     max_samples: usize,
     frame_every: u32,
@@ -152,7 +149,6 @@ impl History {
         self.series.first().map(|point| point.tick)
     }
 
-    /// Adds a tick to the series and returns the cleared latest frame to fill.
     pub(super) fn begin_frame(&mut self, row: &TickRow) -> &mut Frame {
         self.ticks += 1;
         self.totals += row.packets;
@@ -179,7 +175,6 @@ impl History {
         &mut self.latest
     }
 
-    /// Stores the latest frame if its tick is due, and thins out frames if memory is full.
     pub(super) fn end_frame(&mut self) {
         if !self.is_due(self.latest.tick) {
             return;

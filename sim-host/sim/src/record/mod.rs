@@ -1,9 +1,8 @@
 //! Records of a run: two CSV files that grow with it, and a bounded [`History`] for plots.
 //!
-//! The engine calls [`Recorder::tick`] once per tick, after all bodies have moved. `series.csv`
-//! gets one row each time, `trace.csv` one row per robot every [`Options::trace_every`] ticks. Both
-//! files contain only complete ticks: rows are written in blocks that end with a tick, and a block
-//! that cannot be written completely is truncated. A stopped run therefore leaves readable files.
+//! [`Recorder::tick`] adds a row to `series.csv`, and every [`Options::trace_every`] ticks a row
+//! per robot to `trace.csv`. Rows are written in blocks that end with a tick, and a block that
+//! cannot be written completely is truncated. A stopped run therefore leaves readable files.
 
 mod csv;
 mod file;
@@ -175,8 +174,7 @@ impl AddAssign for PacketCounts {
 /// Amount of recorded data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Ticks between two samples in `trace.csv`; 0: the number of robots divided by 1000, rounded
-    /// up, so that a tick adds at most about 1000 rows on average.
+    /// Ticks between samples in `trace.csv`; 0: robots / 1000, rounded up.
     pub trace_every: u32,
     /// Largest number of robot samples in the [`History`], 32 bytes each. When it is reached, every
     /// second frame is dropped and the interval doubles; the first and the last frame always stay.
@@ -187,7 +185,6 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Interval by the number of robots, 32 MB of history.
     fn default() -> Self {
         Self { trace_every: 0, history_samples: 1 << 20, keeps_robots: true }
     }
@@ -206,7 +203,6 @@ pub struct Recorder {
 
 #[derive(Debug)]
 struct Files {
-    /// `None`: robots are not recorded.
     trace: Option<LineFile>,
     series: LineFile,
     trace_every: u32,

@@ -37,7 +37,6 @@ fn run(recorder: &mut Recorder, ticks: u32, robots: u32) {
     }
 }
 
-/// Reads a file: the header, then rows with as many columns; asserts a newline at the end.
 fn read(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let text = fs::read_to_string(path).unwrap();
     assert!(text.ends_with('\n'));
@@ -100,7 +99,6 @@ fn a_dropped_recorder_leaves_complete_ticks() {
     let dir = tempfile::tempdir().unwrap();
     let mut recorder = Recorder::new(dir.path(), Options::default()).unwrap();
     run(&mut recorder, 500, 7);
-    // During the run, the file on disk ends with a complete tick.
     let (_, lines) = read(&dir.path().join("trace.csv"));
     assert!(!lines.is_empty() && lines.len() % 7 == 0);
     drop(recorder);
@@ -116,7 +114,6 @@ fn the_history_is_thinned_but_keeps_the_first_and_last_frame() {
         let ticks: Vec<_> = history.frames().iter().map(|frame| frame.tick).collect();
         assert_eq!((ticks[0], *ticks.last().unwrap()), (0, 999));
         assert!(ticks.len() <= (max / 4).max(1) + 1, "{max}: {ticks:?}");
-        // Thinned no more than needed: at least half of the capacity is used.
         assert!(ticks.len() >= max / 8, "{max}: {ticks:?}");
         let steps: Vec<_> = ticks[..ticks.len() - 1].windows(2).map(|t| t[1] - t[0]).collect();
         assert!(steps.windows(2).all(|pair| pair[0] == pair[1]), "{max}: {ticks:?}");

@@ -67,9 +67,7 @@ pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) ->
 }
 
 pub(super) struct Keys {
-    /// Initial key of the swarm.
     pub key: Key,
-    /// Warning about the key file, if there is one.
     pub remark: Option<String>,
     pub keeping: Option<KeyRotation>,
 }

@@ -27,7 +27,6 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
 }
 
-/// Checks that the radio's format can encode the ids of robots and beaconing intruders.
 pub(super) fn numbers(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -105,7 +104,6 @@ fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), Scena
 
 /// Measured lower bound of the memory per robot in bytes: agent, neighbours and packets.
 const ROBOT_BYTES: u64 = 4 << 10;
-/// Bytes per terrain cell during a run.
 const CELL_BYTES: u64 = 4;
 
 /// Refuses scenarios that do not fit into memory, before the system kills the process.
@@ -200,7 +198,6 @@ fn terrain_error(source: &Source<'_>, field: &str, error: &TerrainError) -> Scen
     source.error(field, error.to_string(), remedy)
 }
 
-/// Refuses tables and options that robots without a formation would ignore.
 pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let in_formation = file.in_formation();
     if !in_formation && source.has("formation") {
@@ -221,7 +218,6 @@ pub(super) fn formation_only(source: &Source<'_>, file: &ScenarioFile) -> Result
     Ok(())
 }
 
-/// Refuses fields that the chosen formation law does not use.
 fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioError> {
     let law = file.formation.law.unwrap_or_default();
     let is_paper = law == FormationLaw::Paper;

@@ -14,17 +14,14 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A value that does not fit its field.
 #[derive(Debug)]
 pub struct Error {
-    /// Cause of the error.
     pub message: String,
     /// Position of the value or its key in the text, bytes.
     pub span: Option<Range<usize>>,
 }
 
 impl Error {
-    /// Adds a place unless a nearer one is known.
     fn at(mut self, span: Range<usize>) -> Self {
         self.span.get_or_insert(span);
         self
@@ -45,10 +42,6 @@ impl serde::de::Error for Error {
     }
 }
 
-/// Deserializes a whole file.
-///
-/// # Errors
-/// A field is unknown, is missing, or has a value of another type.
 pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeTable<'de>>) -> Result<T, Error> {
     T::deserialize(Table(root.get_ref())).map_err(|error| error.at(root.span()))
 }

@@ -4,7 +4,6 @@ use super::{KeyRotation, Scenario, Scouting};
 use staya_controller::auth::Key;
 use std::fmt::{self, Debug, Write as _};
 
-/// 64-bit FNV-1a hash of text.
 struct Fingerprint(u64);
 
 impl Fingerprint {
@@ -33,9 +32,8 @@ impl fmt::Write for Fingerprint {
 }
 
 impl Scenario {
-    /// Hash of all fields that influence a run. Scenarios with equal fingerprints run identically
-    /// for as long as both last. The name, the number of ticks and output for people are excluded.
-    /// O(cells + robots).
+    /// Hash of all fields that influence a run: scenarios with equal fingerprints run identically
+    /// for as long as both last. Excludes name, ticks and output for people. O(cells + robots).
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         let Self {

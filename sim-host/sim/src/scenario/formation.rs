@@ -8,13 +8,11 @@ use serde::{Deserialize, Deserializer};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FormationEntry {
-    /// Rows of a grid formation. Robots are numbered row by row; neighbours in a row or a column
-    /// are joined by an edge.
+    /// Rows of a grid, numbered row by row; neighbours in a row or a column share an edge.
     pub rows: Option<u16>,
     /// Robots in a row.
     pub columns: Option<u16>,
-    /// Cells from one column to the next (x) and from one row to the next (y); both may be
-    /// negative. Default: `[3, -3]`, which puts the first row at the top.
+    /// Cells between columns (x) and rows (y). Default: `[3, -3]`, with the first row on top.
     pub spacing: Option<[i16; 2]>,
     /// Instead of rows and columns: the place of each robot, in cells relative to the first.
     pub places: Option<Vec<[i16; 2]>>,

@@ -10,8 +10,7 @@ use serde::{Deserialize, Serialize};
 use staya_controller::agent::Parameter;
 use staya_controller::robot::RobotId;
 
-/// One change to a running simulation. Robots are named by id, places are world coordinates in
-/// metres.
+/// One change to a running simulation. Robots are named by id; places are world metres.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Intervention {
@@ -104,7 +103,6 @@ impl Intervention {
     /// Checks the intervention against the robots, which are sorted by id. Errors that depend on
     /// the terrain or the obstacles appear when the intervention is applied. O(log robots).
     ///
-    ///
     /// # Errors
     /// Names the field, the error and the remedy.
     pub fn check(&self, robots: &[Robot]) -> Result<(), Refusal> {
@@ -150,7 +148,6 @@ impl Intervention {
     }
 }
 
-/// Checks the tables and sorts them by tick; the sort is stable.
 pub(super) fn interventions(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -176,8 +173,7 @@ pub(super) fn tick(at_s: f64, tick_s: f64) -> u32 {
     libm::ceil(libm::round(at_s * 1e6) / tick_us) as u32
 }
 
-/// Appends the applied interventions to a scenario's text, so that
-/// [`Scenario::parse`](super::Scenario::parse) reproduces the run.
+/// Appends the applied interventions to a scenario's text, so that parsing it reproduces the run.
 #[must_use]
 pub fn with_interventions(text: &str, tick_us: u32, done: &[(u32, Intervention)]) -> String {
     let mut text = text.trim_end().to_owned();

@@ -27,7 +27,6 @@ impl Entry<'_> {
         self.source.error(&self.field(name), what, remedy)
     }
 
-    /// Converts a time to ticks, at least one.
     fn ticks(&self, name: &str, seconds: Option<f64>, tick_s: f64) -> Result<Option<NonZeroU32>, ScenarioError> {
         let Some(seconds) = seconds else {
             return Ok(None);
@@ -36,7 +35,6 @@ impl Entry<'_> {
         Ok(NonZeroU32::new(tick(seconds, tick_s)))
     }
 
-    /// Cells that the change affects; `None`: all.
     fn cells(&self, land: &Terrain) -> Result<Option<Vec<Cell>>, ScenarioError> {
         let all = || (0..land.height()).flat_map(|y| (0..land.width()).map(move |x| Cell::new(x as i16, y as i16)));
         match (&self.table.cells, self.table.rectangle, &self.table.polygon_m) {
@@ -165,7 +163,6 @@ mod tests {
         assert_eq!(cells("class = 0\ncells = [[3, 4], [7, 5]]"), [(3, 4), (7, 5)]);
         let rectangle = "class = 0\nrectangle = { x = 6, y = 1, width = 2, height = 2 }";
         assert_eq!(cells(rectangle), [(6, 1), (7, 1), (6, 2), (7, 2)]);
-        // Cell centres are at odd metres.
         assert_eq!(cells("class = 0\npolygon_m = [[0, 0], [6, 0], [0, 6]]"), [(0, 0), (1, 0), (0, 1)]);
         assert_eq!(cells("class = 0\npolygon_m = [[0, 0], [0, 6.1], [6.1, 0]]").len(), 6);
     }

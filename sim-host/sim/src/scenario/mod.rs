@@ -153,8 +153,7 @@ pub struct Scenario {
     pub terrain: Terrain,
     /// Changes of the terrain during the run.
     pub changes: Vec<LandChange>,
-    /// Terrain that robots know before they see it; `None`: nothing, and they remember only what
-    /// their laws store.
+    /// Terrain that robots know before they see it; `None`: only what their laws remember.
     pub scouting: Option<Scouting>,
     /// Rules of movement on the grid.
     pub rules: MoveRules,
@@ -178,8 +177,7 @@ pub struct Scenario {
     pub formation_params: FormationParams,
     /// Parameters of the published formation law, if it replaces Staya's; grid only.
     pub published: Option<PublishedParams>,
-    /// Whether followers predict the formation's course
-    /// ([`Course`](staya_controller::formation::Course)); grid only.
+    /// Whether followers predict the course of their formation; grid only.
     pub looks_ahead: bool,
     /// Temporary failures of robots.
     pub faults: Vec<Fault>,
@@ -339,7 +337,6 @@ impl Scenario {
     }
 }
 
-/// Fields of a valid scenario, with the effective seed and ticks and without secrets.
 fn parameters(source: &Source<'_>, file: &ScenarioFile) -> serde_json::Value {
     let mut fields: serde_json::Value = source.read(LIST).unwrap_or_default();
     if let Some(fields) = fields.as_object_mut() {

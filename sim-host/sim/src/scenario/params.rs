@@ -1,6 +1,5 @@
-//! `[route]` and `[formation]`: route planning and formation keeping. All fields are optional.
-//! Their defaults are the controller's; scenarios/README.md lists them, and a test compares the
-//! two.
+//! `[route]` and `[formation]`: route planning and formation keeping. The defaults are the
+//! controller's; a test compares them with the list in scenarios/README.md.
 
 use super::ranges::within;
 use super::source::Source;
@@ -24,7 +23,6 @@ pub struct GridTable {
     pub corner_cutting: bool,
 }
 
-/// Largest window radius for which the simulator reserves memory.
 const MAX_RADIUS: u8 = 16;
 
 /// `[route]`: windowed routing (KUZ sections 3 and 5). Coefficients are rounded to sixteenths.
@@ -70,8 +68,7 @@ pub struct FormationTable {
     pub resume_cells: Option<f64>,
     /// Whether the top leader waits for followers; not with `law = "paper"`, nor in the plane.
     pub waits: Option<bool>,
-    /// Number of missing or surplus robots above which others are asked to choose another
-    /// direction; with `law = "paper"`.
+    /// Missing or surplus robots above which others are asked to turn; with `law = "paper"`.
     pub crowd: Option<u8>,
     /// How far ahead of the top leader's cell the followers aim, cells.
     pub lead: Option<u8>,
@@ -79,8 +76,7 @@ pub struct FormationTable {
     pub footprint: Option<f64>,
     /// Whether robots behind a dead robot move up a place each; otherwise its place stays empty.
     pub closes_ranks: Option<bool>,
-    /// Prediction of the other robots: `"constant"` (they continue as announced) or `"reflexive"`
-    /// (they decide as this robot would in their place).
+    /// Prediction of others: `"constant"` (as announced) or `"reflexive"` (as this robot decides).
     pub prediction: Option<Prediction>,
     /// Reaction of the top leader to lag: `"wait"` or `"def"` (go where the others are heading).
     pub recovery: Option<Recovery>,

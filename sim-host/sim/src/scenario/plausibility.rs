@@ -33,7 +33,6 @@ pub struct PlausibilityTable {
     pub last_robot: Option<u32>,
 }
 
-/// Default limits; `radius_m` and `speed_mps` are the largest in the scenario.
 fn usual(radius_m: f64, speed_mps: f64, tick_us: u32, last: u32) -> PlausibilityLimits<f32> {
     PlausibilityLimits {
         max_radius_m: (TIMES * radius_m) as f32,
@@ -72,7 +71,6 @@ impl Scenario {
     }
 }
 
-/// Applies the fields of `[plausibility]` to the default limits.
 pub(super) fn said(
     source: &Source<'_>,
     file: &ScenarioFile,

@@ -20,7 +20,6 @@ use std::ops::Range;
 const PLACES: u32 = 0x0053_0001;
 const GOALS: u32 = 0x0053_0002;
 
-/// Draws of a goal before the scenario is refused as too crowded.
 const TRIES: u32 = 10_000;
 
 /// Largest number of places in a formation: a beacon encodes a place in one byte.
@@ -46,8 +45,7 @@ pub struct Formation {
     pub edges: Vec<(u16, u16)>,
     /// Knowledge of the formation in the robot of each place.
     pub templates: Vec<Template<TEMPLATE>>,
-    /// Index of the robot at the first place, the top leader, counted from 0; the others follow it
-    /// in the order of places.
+    /// Index of the robot at the first place, the top leader; the others follow in order of places.
     pub first: usize,
 }
 
@@ -58,7 +56,6 @@ impl Formation {
         self.first..self.first + self.places.len()
     }
 
-    /// Assigns the formation to the robots from index `first` on, whose ids start at `id`.
     /// Templates contain member ids, which distinguish formations.
     pub(super) fn of(mut self, first: usize, id: u32) -> Self {
         self.first = first;
@@ -116,7 +113,6 @@ pub(super) fn build(
     Ok((robots, formations))
 }
 
-/// Builds a formation of a group in the plane; [`Formation::of`] assigns it to robots.
 pub(super) fn of_group(
     source: &Source<'_>,
     field: &str,
@@ -129,7 +125,6 @@ pub(super) fn of_group(
     Ok((entries.into_iter().map(|entry| entry.robot).collect(), formation))
 }
 
-/// Builds a formation that follows `before` other robots.
 fn formation(
     source: &Source<'_>,
     field: &str,
@@ -379,8 +374,7 @@ fn from_scen(source: &Source<'_>, entry: &ScenEntry, terrain: &Terrain) -> Resul
         .collect()
 }
 
-/// Draws starts and goals. Robots are numbered from south to north and, within a row, from west to
-/// east, so that neighbours on the land are neighbours in memory.
+/// Numbers robots row by row from the south: neighbours on the land are neighbours in memory.
 fn scattered(
     source: &Source<'_>,
     entry: &ScatteredEntry,
@@ -443,7 +437,6 @@ fn scattered(
         .collect()
 }
 
-/// Checks that ids are unique, and that starts and goals are distinct and on passable cells.
 fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<(), ScenarioError> {
     if entries.is_empty() {
         return Err(source.error("robots", "nobody takes part", "give at least one robot"));

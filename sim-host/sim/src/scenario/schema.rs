@@ -25,11 +25,9 @@ pub struct ScenarioFile {
     /// Seed of all random draws. Default: 0. `--seed` replaces it.
     #[serde(default)]
     pub seed: u64,
-    /// Ticks after which the run ends, 1 or more; it ends earlier when all robots have arrived.
-    /// `--ticks` replaces it.
+    /// Limit of ticks, 1 or more; the run ends when all have arrived. `--ticks` replaces it.
     pub ticks: u32,
-    /// Length of a tick in seconds, 0.001 to 60: the time in which a robot crosses a cell of
-    /// impassability 1. Default: 1.
+    /// Tick length, 0.001 to 60 s: the time to cross a cell of impassability 1. Default: 1.
     #[serde(default = "one")]
     pub tick_s: f64,
     /// The terrain; optional with `[plane]`.
@@ -109,8 +107,7 @@ pub struct TerrainTable {
     pub natural: Option<NaturalTable>,
     /// Terrain with a given configuration entropy and total edge (KUZ section 4).
     pub entropy: Option<EntropyTable>,
-    /// Conversion of the file to impassability: `{ swamp, downsample, unknown, classes, slope = {
-    /// classes, max_slope } }`.
+    /// Conversion of the file to impassability; see [`LoadOptions`].
     #[serde(default)]
     pub load: LoadOptions,
     /// Part of the map to use. Default: all of it.
@@ -132,8 +129,7 @@ pub struct ChangeTable {
     pub at_s: f64,
     /// Period of repetition, seconds. Default: once.
     pub every_s: Option<f64>,
-    /// With `class`: time after which the cells revert to the map's values, seconds; less than
-    /// `every_s`. Default: never.
+    /// With `class`: seconds until the cells revert; less than `every_s`. Default: never.
     pub for_s: Option<f64>,
     /// Individual cells.
     pub cells: Option<Vec<[i16; 2]>>,
@@ -364,15 +360,13 @@ pub struct AttackTable {
     pub from_s: f64,
     /// End of the attack, seconds. Default: never.
     pub to_s: Option<f64>,
-    /// Place to which it orders the robots, or about which an insider lies, metres; not for
-    /// `"replay"`.
+    /// Place to which it orders the robots, or about which it lies, metres; not for `"replay"`.
     pub lure_m: Option<[f64; 2]>,
     /// Id of the robot that it impersonates. Default: the last one.
     pub claims: Option<u32>,
     /// Replay delay, seconds. Default: 10; only for `"replay"`.
     pub delay_s: Option<f64>,
-    /// Lies of an `"insider"`: one or more of `"orders"`, `"radius"`, `"speed"`, `"jump"`,
-    /// `"ghosts"`.
+    /// Lies of an `"insider"`: any of `"orders"`, `"radius"`, `"speed"`, `"jump"`, `"ghosts"`.
     #[serde(default)]
     pub lies: Vec<Lie>,
     /// Number of invented robots, 1 to 100. Default: 16; only for `"ghosts"`.

@@ -97,7 +97,6 @@ fn set(source: &Source<'_>, settings: &[Setting]) -> Result<String, ScenarioErro
     Ok(toml::to_string(&table).unwrap_or_default())
 }
 
-/// Whether an error's field is the field that was set, or one inside or around it.
 fn is_about(field: &str, set: &str) -> bool {
     let is_below =
         |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));

@@ -112,8 +112,7 @@ impl<'a> Source<'a> {
     /// Deserializes the whole file; `list` is the page that documents all fields.
     ///
     /// # Errors
-    /// A field is unknown, missing, or has a value of another type; the error names file, line and
-    /// field.
+    /// A field is unknown, missing, or of another type; the error names file, line and field.
     pub fn read<'s, T: Deserialize<'s>>(&'s self, list: &str) -> Result<T, ScenarioError> {
         de::read(&self.root).map_err(|error| self.serde_error(&error.message, error.span, list))
     }
@@ -252,7 +251,6 @@ fn first_line(message: &str) -> String {
     message.lines().next().unwrap_or_default().to_owned()
 }
 
-/// Replaces a Rust type name at the end of a message by plain words.
 fn in_words(message: &str) -> String {
     let Some((start, name)) = message.rsplit_once(", expected ") else {
         return message.to_owned();

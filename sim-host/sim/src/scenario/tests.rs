@@ -56,9 +56,7 @@ fn the_command_line_overrides_the_file() {
 fn every_mistake_is_named_with_line_field_and_remedy() {
     let robots = "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n";
     let cases = [
-        // Invalid TOML.
         ("name = ", "s.toml:1: "),
-        // Unknown fields, wrong types, missing fields.
         (&format!("colour = 1\n{HEAD}{robots}"), "s.toml:1: colour: unknown field `colour`"),
         (&format!("{HEAD}{robots}[radio]\nloss = \"much\"\n"), "s.toml:8: radio.loss: invalid type"),
         (
@@ -68,7 +66,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (&format!("{HEAD}{robots}[radio.burst]\nshare = 0.5\n"), "s.toml:7: radio.burst: missing field `mean_ms`"),
         ("ticks = 3\n", "s.toml:1: missing field `name`"),
         ("name = \"t\"\nticks = -3\n", "s.toml:2: ticks: invalid value"),
-        // Values out of range, NaN, wrong units.
         (
             &format!("{HEAD}{robots}[radio]\nloss = 30\n"),
             "s.toml:8: radio.loss: 30 is no probability; give a number from 0 to 1",
@@ -103,7 +100,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (&format!("tick_s = inf\n{HEAD}{robots}"), "s.toml:1: tick_s: inf is out of range; give 0.001 to 60 seconds"),
         (&format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"), "s.toml:2: ticks: 0 ticks"),
         (&format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""), "s.toml:1: name: \"../x\" cannot name a folder"),
-        // Terrain.
         (&format!("{HEAD}{robots}").replace("m.map", "no.map"), "s.toml:4: terrain.file: "),
         (&format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"), "s.toml:5: terrain.crop: "),
         (&format!("{HEAD}cell_m = nan\n{robots}"), "s.toml:5: terrain.cell_m: NaN is out of range"),
@@ -111,7 +107,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             &format!("name = \"t\"\nticks = 5\n[terrain]\n{robots}"),
             "s.toml:3: terrain: it is not clear what land is meant; give exactly one of",
         ),
-        // Robots.
         (&with_robots(""), "s.toml:5: robots: it is not clear who takes part; give exactly one of"),
         (&with_robots("list = []"), "s.toml:5: robots: nobody takes part"),
         (
@@ -396,7 +391,6 @@ fn a_formation_too_large_for_the_controller_is_refused() {
     };
     let too_many = "formation.rho: a robot would have more than 8 neighbours in the formation; give a smaller rho";
     refused(&star(9), too_many);
-    // With 8, only the map is too small.
     refused(&star(8), "is in a wall");
     refused(&star(255), "256 robots are more than a formation holds; give at most 255");
     let wide = "formation = { rows = 16, columns = 16, start = [0, 0], goal = [0, 0] }";

@@ -15,12 +15,9 @@ pub(super) struct GroupFigures {
     first_robot: u32,
     last_robot: u32,
     robots: usize,
-    /// Law and safety layer; robots of a list may differ in their bodies.
     guidance: &'static str,
     safety: &'static str,
-    /// Number of robots that are at their goal and report it.
     arrived: usize,
-    /// Mean and longest travel time, simulated seconds; null if no robot arrived.
     arrival_mean_seconds: Option<f64>,
     arrival_last_seconds: Option<f64>,
     /// As for all formations together; null without a formation.

@@ -154,9 +154,7 @@ pub fn parse_heights(bytes: &[u8], path: &Path) -> Result<Heights, TerrainError>
 
 impl Heights {
     /// Combines `factor` x `factor` cells into one: the mean of their known heights, or unknown if
-    /// fewer than half are known.
-    ///
-    /// Incomplete cells in the east and north are dropped. O(size).
+    /// fewer than half are known. Drops incomplete cells in the east and north. O(size).
     ///
     /// # Errors
     /// A [`TerrainError::Parameter`] if `factor` is 0 or no cell would remain.

@@ -77,10 +77,9 @@ pub fn total_edge(cells: &[u8], width: u16) -> u64 {
 
 /// Number of obstacles N(S) of `natural` terrain (100 x 100, 9 classes) with entropy `s`.
 ///
-/// KUZ section 5 gives N = 0.00160518 e^(4.22769 S). This contradicts figure 7 of the paper (S =
-/// 1.6 with N = 14, S = 1.8 with N = 33) and allows at most 17 obstacles at the greatest entropy,
-/// ln 9. The printed factor has one zero too many: 0.0160518 gives 13.9 and 32.4, and S = 1.98 at N
-/// = 70 as in the text.
+/// KUZ section 5 gives N = 0.00160518 e^(4.22769 S), which contradicts figure 7 (S = 1.6 with N =
+/// 14, S = 1.8 with N = 33). The printed factor has one zero too many: 0.0160518 gives 13.9 and
+/// 32.4, and S = 1.98 at N = 70 as in the text.
 #[must_use]
 pub fn obstacles_of_entropy(s: f64) -> f64 {
     0.016_051_8 * libm::exp(4.227_69 * s)
@@ -108,7 +107,6 @@ mod tests {
     fn the_entropy_of_equal_shares_is_the_logarithm_of_their_number() {
         let board = metrics(4, &[1, 2, 1, 2, 2, 1, 2, 1]);
         assert!((board.entropy - libm::log(2.0)).abs() < 1e-15);
-        // Two rows of 3 sides and 4 between the rows.
         assert_eq!(board.total_edge, 10);
         assert_eq!(board.total_edge_density, 1.25);
         let nine: Vec<u8> = (1..=9).collect();

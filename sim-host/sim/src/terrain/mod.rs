@@ -49,8 +49,7 @@ impl Default for LoadOptions {
     }
 }
 
-/// A grid of impassability. Row 0 is the southernmost row; north-first rows exist only in file
-/// readers and writers.
+/// A grid of impassability, row by row from the south-west corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
     width: u16,

@@ -10,16 +10,11 @@ use super::text::{finite, integer, lines, quoted, side, text};
 use staya_controller::grid::{BLOCKED, Cell};
 use std::path::Path;
 
-/// Default impassability of swamp (`S`): three times as slow as ground.
-///
-/// In the benchmark, swamp costs as much as ground: use 1 to reproduce its optimal lengths.
+/// Default impassability of swamp (`S`); 1, as in the benchmark, reproduces its optimal lengths.
 pub const SWAMP: u8 = 3;
 
 /// Reads a `.map`: `.` and `G` are ground (impassability 1), `S` is `swamp`, and `@`, `O`, `T`, `W`
-/// are blocked.
-///
-/// The format has no scale and origin, so cells are 1 m wide and the south-west corner is the
-/// origin. O(size).
+/// are blocked. Cells are 1 m wide, and the south-west corner is the origin. O(size).
 ///
 /// # Errors
 /// A [`TerrainError::Format`] with the line, if the file violates the format.
@@ -81,7 +76,6 @@ pub fn parse_map(bytes: &[u8], path: &Path, swamp: u8) -> Result<Terrain, Terrai
     Terrain::from_cells(width, height, cells)
 }
 
-/// Reads the four header lines up to `map`.
 fn header<'a>(rows: &mut impl Iterator<Item = (usize, &'a str)>, path: &Path) -> Result<(u16, u16), TerrainError> {
     let (mut width, mut height, mut last) = (None, None, 1);
     for (line, row) in rows {

@@ -1,9 +1,7 @@
 //! Conversion between the rows of files and images (first row in the north) and the rows of
 //! [`super::Terrain`] (row 0 in the south). No other module converts rows.
 
-/// Terrain row of a file row, and file row of a terrain row, on a map of `height` rows.
-///
-/// The function is its own inverse. `row` must be less than `height`.
+/// Terrain row of a file row (less than `height`) on a map of `height` rows; its own inverse.
 #[must_use]
 pub const fn flip_row(row: u16, height: u16) -> u16 {
     height - 1 - row

@@ -91,7 +91,6 @@ mod tests {
             let unknown = map.cells().iter().filter(|&&class| class == 77).count() as f64 / all;
             let differ = map.cells().iter().zip(land.cells()).filter(|(map, land)| map != land).count() as f64 / all;
             assert!((unknown - 0.3).abs() < 0.1, "{patch}: {unknown}");
-            // A tenth of the wrong cells happens to be right.
             assert!((differ - 0.48).abs() < 0.1, "{patch}: {differ}");
         }
     }

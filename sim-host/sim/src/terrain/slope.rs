@@ -17,9 +17,8 @@ use staya_controller::grid::BLOCKED;
 pub struct SlopeRule {
     /// Number of classes l, 1..=255: the steepest passable land takes l times as long as flat land.
     pub classes: u8,
-    /// Steepest slope m that a robot can climb, rise over run, more than 0. If it is too high,
-    /// robots are sent up cliffs; if it is too low, the terrain is split into separate parts.
-    /// Wheels manage 0.3 to 0.6, tracks up to 1.
+    /// Steepest passable slope m, rise over run, more than 0: up to 0.6 for wheels, 1 for tracks.
+    /// Too high a value sends robots up cliffs; too low a value splits the terrain.
     pub max_slope: f64,
 }
 
@@ -34,7 +33,6 @@ impl SlopeRule {
     /// Impassability of a slope, rise over run; NaN is blocked.
     #[must_use]
     pub fn impassability(&self, slope: f64) -> u8 {
-        // NaN fails the comparison and is blocked.
         if slope <= self.max_slope {
             let class = 1.0 + (f64::from(self.classes) * slope / self.max_slope).floor();
             class.min(f64::from(self.classes)) as u8

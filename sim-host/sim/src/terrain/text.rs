@@ -18,7 +18,6 @@ pub(super) fn text<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str, TerrainE
     })
 }
 
-/// Numbered lines of a text, without line ends of either kind.
 pub(super) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.lines().enumerate().map(|(at, line)| (at + 1, line.trim_end_matches('\r')))
 }
@@ -34,7 +33,6 @@ pub(super) fn integer<T: std::str::FromStr>(
     })
 }
 
-/// A number of cells along one side, 1..=[`MAX_SIDE`].
 pub(super) fn side(path: &Path, line: usize, field: &str, word: &str) -> Result<u16, TerrainError> {
     match word.parse() {
         Ok(side @ 1..=MAX_SIDE) => Ok(side),

@@ -1,12 +1,11 @@
 //! Moves on the grid near the borders between MPI ranks.
 //!
-//! Whether a robot may enter a cell depends on the moves before it in the order of the tick's
-//! priorities. This dependency chain may cross a border several times. A rank therefore gets the
-//! bodies of other ranks within [`DEPTH`] cells with their preferred moves, processes all of them
-//! by priority, and leaves moves undecided that depend on bodies farther away. While any move in
-//! the world is undecided, ranks exchange their decisions and start another round. Each round
-//! decides at least the first undecided move, since all moves before it are decided; usually one
-//! round decides all. The result is that of [`World::advance`] for any partition.
+//! Whether a robot may enter a cell depends on the moves before it by priority, a chain that may
+//! cross borders several times. A rank therefore gets the bodies of other ranks within [`DEPTH`]
+//! cells with their preferred moves, processes all by priority, and leaves moves undecided that
+//! depend on bodies farther away. While any move in the world is undecided, ranks exchange their
+//! decisions and start another round, which decides at least the first undecided move; usually one
+//! round suffices. The result is that of [`World::advance`] for any partition.
 
 use super::{Body, PRIORITY, World};
 use serde::{Deserialize, Serialize};
@@ -16,9 +15,8 @@ use staya_controller::rand::Rng;
 use staya_controller::robot::RobotId;
 use std::collections::HashMap;
 
-/// Distance in cells up to which a rank knows the bodies of others. At least 2, because bodies up
-/// to two cells apart compete for a cell. A larger value takes more bytes and leaves fewer moves
-/// undecided.
+/// Distance in cells up to which a rank knows the bodies of others. At least 2, because bodies two
+/// cells apart compete for a cell; a larger value costs bytes and leaves fewer moves undecided.
 pub const DEPTH: i16 = 8;
 
 /// Occupancy mark: not decided yet.
@@ -26,7 +24,6 @@ const OPEN: u32 = u32::MAX;
 /// Marks a body of another rank.
 const BESIDE: u32 = 1 << 31;
 
-/// A cell outside every map.
 const NOWHERE: Cell = Cell::new(-1, -1);
 
 /// A rectangle of cells, both corners included.
@@ -69,7 +66,6 @@ impl CellBounds {
 pub struct Beside {
     pub(crate) id: RobotId,
     pub(crate) cell: Cell,
-    /// Preferred moves, if it may leave its cell in this tick.
     pub(crate) wish: Option<heapless::Vec<Dir, 8>>,
 }
 
@@ -97,15 +93,13 @@ struct Mover {
 pub struct Contest {
     now: u64,
     movers: Vec<Mover>,
-    /// Index in `movers` of each body of another rank.
     beside: HashMap<RobotId, usize>,
     cells: Vec<Cell>,
     before: Vec<(usize, u32)>,
 }
 
 impl World {
-    /// Bodies within `depth` cells of `bounds`, with their preferred moves from `commands`; without
-    /// `commands`, without moves.
+    /// Bodies within `depth` cells of `bounds`, with their preferred moves if `commands` are given.
     pub fn near(&self, tick: u32, bounds: &CellBounds, depth: i16, commands: Option<&[Command<f32>]>) -> Vec<Beside> {
         let now = u64::from(tick) * u64::from(UNIT);
         let near = self.bodies.iter().enumerate().filter(|(_, body)| bounds.distance(body.cell) <= i32::from(depth));
@@ -275,7 +269,7 @@ impl Contest {
         open
     }
 
-    /// Decisions of this rank since the last [`Contest::tell`] for bodies within [`DEPTH`] cells of
+    /// Own decisions since the last [`Contest::tell`] about bodies within [`DEPTH`] cells of
     /// `bounds`.
     pub fn settled(&self, bounds: &CellBounds) -> Vec<Settled> {
         let own = self.movers.iter().filter(|mover| mover.body & BESIDE == 0 && !mover.is_told);

@@ -1,9 +1,9 @@
 //! Bodies on the grid: occupancy, timing and priority of moves.
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3, eq. 6 (timing) and algorithm 4 (moves).
-//! The paper does not define who moves first. Here each tick has a random order, a function of
-//! (seed, tick, robot), so that no robot has permanent priority and the order of robots in memory
-//! does not matter.
+//! The paper does not define the order of moves. Here it is random in each tick, a function of
+//! (seed, tick, robot), so that no robot has permanent priority and the order in memory does not
+//! matter.
 
 #[doc(hidden)]
 pub mod border;
@@ -30,8 +30,7 @@ const PRIORITY: u32 = 0x0057_0001;
 pub struct MoveRules {
     /// Norm of a diagonal move.
     pub norm: Norm,
-    /// Whether a diagonal move may pass between two cells of which one (or both) is a wall. Robots
-    /// in those cells do not block it.
+    /// Whether a diagonal move may cut the corner of one or two walls; robots there never block it.
     pub corner_cutting: bool,
 }
 
@@ -90,7 +89,6 @@ pub struct World {
     bodies: Vec<Body>,
     /// Per cell of the terrain: index of its body plus 1, or 0.
     occupancy: Vec<u32>,
-    /// Scratch: bodies that want to move in this tick, with their priority.
     movers: Vec<(u64, RobotId, u32)>,
     /// Scratch of the collision check: a bit per cell with a body. Empty between checks.
     seen: Vec<u64>,
@@ -166,7 +164,6 @@ impl World {
         self.bodies.iter().enumerate().all(|(index, body)| self.body_at(body.cell) == Some(index))
     }
 
-    /// Restores a terrain cell, even if a body is inside.
     pub(crate) fn put_cell(&mut self, cell: Cell, class: u8) {
         self.terrain.set(cell, class);
     }
@@ -205,11 +202,11 @@ impl World {
 
     /// Moves the bodies; `commands[i]` belongs to body `i`.
     ///
-    /// A body that may leave takes the first of its preferred moves whose cell is free and
-    /// passable. Bodies move one by one in the order of this tick's priorities, so a cell that was
-    /// left earlier in the tick is free. Entering cell c by move d keeps the body busy for
-    /// length(d) * u(c) ticks (eq. 6). A body that moves again in the first tick after it became
-    /// free keeps the remaining fraction of a tick, so a journey takes exactly the sum of eq. 7.
+    /// A body that may leave takes the first of its preferred moves whose cell is passable and
+    /// free, also if another body left that cell earlier in the tick; the order is that of this
+    /// tick's priorities. Entering cell c by move d keeps the body busy for length(d) * u(c) ticks
+    /// (eq. 6). A body that moves again as soon as it is free keeps the remaining fraction of a
+    /// tick, so a journey takes exactly the sum of eq. 7.
     ///
     /// # Panics
     /// If there are fewer commands than bodies.
@@ -248,7 +245,6 @@ impl World {
         self.bodies[index] = self.entered(&body, dir, now);
     }
 
-    /// State of a free body after it has left its cell by `dir`.
     fn entered(&self, body: &Body, dir: Dir, now: u64) -> Body {
         let idle = now - body.free_at;
         let start = if idle < u64::from(UNIT) { body.free_at } else { now };
@@ -266,10 +262,8 @@ impl World {
             && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)))
     }
 
-    /// Number of bodies in a shared cell, or in a blocked cell that did not close around them.
-    ///
-    /// Uses only the bodies and the terrain, not the occupancy table of [`World::advance`], so that
-    /// it can find errors in that table. O(robots).
+    /// Number of bodies in a shared cell, or in a blocked cell that did not close around them. Does
+    /// not use the occupancy table of [`World::advance`], so that it finds errors in it. O(robots).
     pub fn count_collisions(&mut self) -> u64 {
         let mut collisions = 0;
         for body in &self.bodies {
@@ -288,7 +282,7 @@ impl World {
     }
 }
 
-/// Changes an unoccupied cell. A body inside a cell keeps the crossing time that it entered with.
+/// A body inside a cell keeps the crossing time that it entered with.
 fn set_cell(terrain: &mut Terrain, cell: Cell, class: u8, is_taken: bool) -> Result<(), Refusal> {
     if terrain.index(cell).is_none() {
         let what = format!("({}, {}) is no cell of the map", cell.x, cell.y);

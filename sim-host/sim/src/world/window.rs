@@ -6,9 +6,8 @@ use staya_controller::grid::{BLOCKED, Cell, Window};
 use staya_controller::route::{LandMemory, supposed};
 
 impl World {
-    /// The square of `2 * radius + 1` cells a side around `cell`, written to `buffer`. Cells
-    /// outside the map are walls, so that every window has the same size. `None` if `cell` is not
-    /// on the map. O(radius^2).
+    /// The square of `2 * radius + 1` cells a side around `cell`, written to `buffer`; cells
+    /// outside the map are walls. `None` if `cell` is not on the map. O(radius^2).
     #[must_use]
     pub fn window<'a>(&self, cell: Cell, radius: u8, buffer: &'a mut Vec<u8>) -> Option<Window<'a>> {
         window(&self.terrain, cell, radius, buffer)
@@ -36,9 +35,8 @@ pub fn window_but<'a>(
     Window::new(buffer, origin, side, side)
 }
 
-/// Terrain window of a robot that sees `sight` cells far and plans on `radius` cells. It combines
-/// `land` within sight, the memory beyond it, and the map elsewhere; both terrains have the same
-/// size. `None` off the map. O(radius^2 + N).
+/// Terrain window of a robot that sees `sight` cells far and plans on `radius` cells: `land` within
+/// sight, then the memory, then the map, of the same size. `None` off the map. O(radius^2 + N).
 #[must_use]
 pub fn known_window<'a, const N: usize>(
     land: &Terrain,
@@ -51,7 +49,6 @@ pub fn known_window<'a, const N: usize>(
     let side = 2 * u16::from(radius) + 1;
     let closed = |at: usize| origin + Cell::new((at % usize::from(side)) as i16, (at / usize::from(side)) as i16);
     for (at, class) in buffer.iter_mut().enumerate().filter(|(_, class)| **class == BLOCKED) {
-        // The border of the map is certain.
         if map.index(closed(at)).is_some() {
             *class = supposed(*class);
         }
@@ -63,7 +60,6 @@ pub fn known_window<'a, const N: usize>(
     Window::new(buffer, origin, side, side)
 }
 
-/// Writes the terrain to `buffer`, row by row, and returns the window's south-west cell.
 fn copy(terrain: &Terrain, cell: Cell, radius: u8, buffer: &mut Vec<u8>) -> Option<Cell> {
     terrain.index(cell)?;
     let reach = i16::from(radius);

@@ -11,7 +11,6 @@ use staya_controller::time::Instant;
 use staya_controller::wire::Format;
 use std::path::Path;
 
-/// Stays in place and spreads the highest number that it has received.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Highest(u32);
 

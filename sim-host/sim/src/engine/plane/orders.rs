@@ -9,7 +9,6 @@ use staya_controller::robot::RobotId;
 use staya_controller::time::Instant;
 use staya_controller::wire::{Format, Header, Message, WaypointAssignment, Wire};
 
-/// Encodes the operator's orders; orders of one tick are combined.
 pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&Key>) -> Vec<(u32, Vec<u8>)> {
     let mut frames = Vec::<(u32, Vec<u8>)>::new();
     // Each index has its own version counter, because versions are compared modulo 2^n.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use staya_controller::grid::Cell;
 use std::collections::VecDeque;
 
-/// Mutable state of a body, and the task that its robot gets at a restart.
+/// Includes the task that its robot gets at a restart.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PlaneBody {
     position_m: [f64; 3],
@@ -22,7 +22,6 @@ pub struct PlaneBody {
     seen: Option<Memory>,
 }
 
-/// Mutable state shared by all bodies.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PlaneShared {
     clearance: Clearance,
@@ -32,7 +31,6 @@ pub struct PlaneShared {
     solids: Vec<Solid>,
     orders: Vec<Order>,
     intruders: Vec<[[f64; 3]; 2]>,
-    /// Past positions of all bodies, for sensors with a delay.
     past: VecDeque<Vec<[f64; 3]>>,
 }
 

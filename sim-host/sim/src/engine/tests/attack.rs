@@ -56,7 +56,6 @@ fn an_attacked_swarm_with_a_key_is_unaffected_and_counts_refusals() {
     assert_eq!(hashes[0], hashes[1], "tags and signatures are not news");
 }
 
-/// Each kind of attack alone.
 #[test]
 fn without_a_key_robots_follow_an_attackers_orders() {
     let open = without(HIJACK, "authentication");
@@ -121,7 +120,6 @@ fn a_compromised_robot_cannot_order_and_is_locked_out_by_a_rotation() {
 
     let goal_m = [50.5, 20.5];
     assert_eq!(ends_at_m(REVOKED), goal_m);
-    // With one shared key, the insider diverts the swarm.
     let one_key = without_roll.replace("master = \"", "key = \"");
     let one_key = one_key.replace("place_m = [30, 0]\n", "").replace("overlap_s = 20\n", "");
     assert_ne!(ends_at_m(&one_key), goal_m);

@@ -1,5 +1,3 @@
-//! Controllers outside the engine.
-
 use super::*;
 use crate::engine::{Decision, ExternalController, Status, simulate_with};
 use staya_controller::agent::{

@@ -1,5 +1,3 @@
-//! Runs with interventions, by hand or from the scenario.
-
 use super::*;
 use crate::scenario::{Intervention, with_interventions};
 use crate::world::plane::Shape;
@@ -26,7 +24,6 @@ fn goal(robot: Option<u32>, x: f64, y: f64) -> Intervention {
     Intervention::Goal { robot, place_m: [x, y, 0.0] }
 }
 
-/// A complete run with interventions by hand, and a run of the resulting scenario.
 fn by_hand_and_again(text: &str, done: &[(u32, Intervention)]) -> [Outcome; 2] {
     let scenario = parse(text);
     let mut swarm = operated(&scenario).expect("they can be placed");

@@ -1,5 +1,3 @@
-//! Different kinds of robots, and foreign bodies.
-
 use super::*;
 
 fn in_plane(rest: &str) -> Scenario {
@@ -8,7 +6,6 @@ fn in_plane(rest: &str) -> Scenario {
     scenario.unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// A robot that goes east, and a body of 0.5 m that approaches it.
 fn met_by(speed_mps: f64, rest: &str) -> Scenario {
     in_plane(&format!(
         "[plane.robots]\nlist = [{{ start_m = [-4, 0], goal_m = [4, 0] }}]\n\
@@ -41,7 +38,6 @@ fn a_silent_intruder_is_grazed_when_seen_and_hit_when_unseen() {
     let mut blind = met_by(0.5, silent);
     blind.plane.as_mut().expect("a plane").general.sight_m = 0.0;
     let unseen = outcome(&blind);
-    // A robot without sight is hit. The overlap is counted separately, since no robot is to blame.
     let clearance = unseen.clearance.expect("bodies have sizes");
     assert!(clearance.intruders_m < -1.5 * 0.5 * 0.1 && clearance.intruder_overlaps > 5, "{clearance:?}");
     assert_eq!((seen.collisions, unseen.collisions), (0, 0));
@@ -121,7 +117,6 @@ fn flying_robots_avoid_downwash() {
     let clearance = guarded.clearance.expect("bodies have sizes");
     assert_eq!((guarded.arrived, guarded.collisions), (12, 0), "{clearance:?}");
     assert_eq!((count, clearance.washed), (0, 0));
-    // Robots without downwash avoidance fly through it.
     let (unguarded, count) = washed(1.0, 3.0);
     assert_eq!((unguarded.arrived, unguarded.collisions), (12, 0));
     assert!(count > 5, "{count}");

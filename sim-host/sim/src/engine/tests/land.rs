@@ -1,5 +1,3 @@
-//! Terrain that changes during a run.
-
 use super::*;
 use staya_controller::agent::Wait;
 use staya_controller::grid::{BLOCKED, UNIT};
@@ -9,7 +7,6 @@ fn parse(text: &str) -> Scenario {
     Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario")
 }
 
-/// Flat land of 30 x 7 cells with a wall at x = 15 that has a door of one cell, (15, 3).
 fn door(robots: &str, changes: &str, rest: &str) -> Scenario {
     let wall = "[[terrain.change]]\nclass = 0\ncells = [[15, 0], [15, 1], [15, 2], [15, 4], [15, 5], [15, 6]]\n";
     parse(&format!(
@@ -23,8 +20,7 @@ const EIGHT: &str = "list = [{ start = [1, 1], goal = [27, 1] }, { start = [2, 3
     { start = [3, 5], goal = [27, 5] }, { start = [4, 2], goal = [28, 2] }, { start = [28, 3], goal = [2, 3] }, \
     { start = [27, 4], goal = [3, 4] }, { start = [26, 1], goal = [1, 6] }, { start = [25, 5], goal = [4, 0] }]";
 
-/// Runs the scenario and asserts that no robot on the grid enters a closed cell. Returns the
-/// outcome and the ticks in which robot 1 waited for a route.
+/// Also returns the ticks in which robot 1 waited for a route.
 fn run(scenario: &Scenario) -> (Outcome, Vec<u32>) {
     let (mut before, mut stuck) = (Vec::new(), Vec::new());
     let outcome = simulate(scenario, |moment, rows| {
@@ -61,7 +57,6 @@ fn robots_pass_a_gate_once_it_opens() {
 
 #[test]
 fn a_robot_takes_another_route_when_one_closes_ahead() {
-    // A second door is in the far corner; the near one closes three cells ahead.
     for replan in ["each_cell", "until_changed"] {
         let changes = "[[terrain.change]]\nclass = 1\ncells = [[15, 0]]\n\
             [[terrain.change]]\nat_s = 5\nclass = 0\ncells = [[15, 3]]\n";
@@ -99,7 +94,6 @@ fn a_closed_goal_is_replaced_by_the_nearest_cell_until_it_opens() {
 
 #[test]
 fn an_enclosed_robot_stops_and_reports_it() {
-    // Closed in on all sides, first in an open cell, then in a room of nine cells.
     let ring = "[[terrain.change]]\nat_s = 5\nclass = 0\n\
         cells = [[1, 2], [2, 2], [3, 2], [1, 3], [3, 3], [1, 4], [2, 4], [3, 4]]\nfor_s = 100\n";
     let room = "[[terrain.change]]\nat_s = 0\nclass = 0\ncells = [[4, 1], [4, 2], [4, 3], [4, 4], [4, 5], \
@@ -185,7 +179,6 @@ fn class_under(land: &crate::terrain::Terrain, place_m: [f64; 3]) -> u8 {
 
 #[test]
 fn in_the_plane_a_robot_may_leave_a_closing_cell_and_none_may_enter() {
-    // The first disc is in the gate when it closes; the second waits until it opens.
     let scenario = discs([2.0, 1.0], [0.0, 1.0], "at_s = 4\nfor_s = 30");
     let (mut was_in, mut inside) = (Vec::new(), Vec::new());
     let outcome = simulate(&scenario, |moment, rows| {
@@ -207,7 +200,6 @@ fn in_the_plane_a_robot_may_leave_a_closing_cell_and_none_may_enter() {
     assert!(first < 140 && second > 340, "{first} and {second}");
 }
 
-/// Terrain with a sight of three cells, and an outdated map of it.
 fn with_maps(now: &[&str], old: &[&str], rest: &str) -> Scenario {
     let dir = tempfile::tempdir().expect("a folder");
     for (name, rows) in [("now.map", now), ("old.map", old)] {
@@ -252,7 +244,6 @@ fn a_robot_with_a_map_goes_straight_to_an_unseen_door() {
     let (alone, with_map) = (ticks(""), ticks("[scouting]\nmap = \"old.map\"\n"));
     // The shortest path: seven moves up and seven down among seventeen.
     assert!(with_map < 27 && alone > with_map, "{with_map} with a map, {alone} without");
-    // Memory without a map is slower.
     let memory = ticks("[scouting]\nunknown = 1\n");
     assert!((with_map..=2 * alone).contains(&memory), "{memory}");
 }

@@ -1,5 +1,3 @@
-//! Runs with an operator.
-
 use super::*;
 use staya_controller::agent::{Parameter, Waypoint, Wish};
 use staya_controller::geom::{Position, Vec3};
@@ -55,7 +53,6 @@ fn commanded_robots_go_to_the_new_goal_without_collisions() {
         let [x, y, _] = observation.motion.position_m;
         libm::hypot(x - 2.0, y - 1.0)
     });
-    // One is at the goal, the other next to it.
     let [near_m, far_m] = [off_m[0].min(off_m[1]), off_m[0].max(off_m[1])];
     assert!(near_m < 0.1 && far_m < 0.7, "{off_m:?}");
     let outcome = swarm.outcome();
@@ -106,7 +103,6 @@ fn tell_a_goal(swarm: &mut dyn Operated) {
     assert_eq!((there.motion.cell, there.status.mode), (Cell::new(3, 9), Mode::Arrived));
 }
 
-/// Eight discs in a crowd; each gets another random command every half second.
 #[test]
 fn random_commands_cause_no_collisions() {
     let crowd = "name = \"t\"\nticks = 120\ntick_s = 0.05\n[radio]\nrange_m = 20\n\

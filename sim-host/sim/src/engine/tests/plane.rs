@@ -1,5 +1,3 @@
-//! Runs in the plane.
-
 use super::*;
 use crate::scenario::{Order, Target};
 use staya_controller::wire::{Format, Message, decode, frames};
@@ -130,7 +128,6 @@ fn each_goal_has_its_own_order_version() {
 #[test]
 fn the_configured_latency_matches_the_radio_delay() {
     let robots = "[plane.robots]\nlist = [{ start_m = [0, 0] }]\n";
-    // A frame arrives in the first tick that begins after the delay.
     for (delay_ms, ticks) in [(0.0, 1), (99.9, 1), (100.0, 1), (100.1, 2), (200.0, 2), (250.0, 3)] {
         let scenario = in_plane(robots, &format!("[radio]\ndelay_ms = {delay_ms}"));
         let setup = scenario.plane.as_ref().expect("robots in the plane");

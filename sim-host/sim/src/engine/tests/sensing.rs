@@ -1,10 +1,7 @@
-//! Robots with sensors: without radio, with radio, with delays, and on any number of threads.
-
 use super::super::simulate::AnyEngine;
 use super::*;
 use crate::scenario::Sensing;
 
-/// Robots that swap places on a circle of 2 m, or a larger one for many robots.
 fn circle(count: u32, sensing: &str, radio: &str) -> Scenario {
     seeded(count, sensing, radio, 11)
 }
@@ -27,7 +24,6 @@ fn run(scenario: &Scenario) -> Outcome {
 fn robots_swap_places_by_sensors_alone_without_collisions() {
     let outcome = run(&circle(12, "beacons = false", ""));
     assert_eq!((outcome.arrived, outcome.collisions, outcome.packets.sent), (12, 0, 0));
-    // Nearly blind robots collide, so the sensors make the difference.
     let blind = run(&with_range(circle(12, "beacons = false", ""), 0.01));
     assert!(blind.collisions > 0);
 }
@@ -70,8 +66,7 @@ fn an_order_reaches_robots_without_beacons() {
     assert!(last_m[0].abs() < 0.05 && (last_m[1] - 3.0).abs() < 0.05, "{last_m:?}");
 }
 
-/// Root mean square error of the neighbours' positions in metres, and the mean number of known
-/// neighbours, over runs of some seconds on fresh seeds.
+/// Root mean square error of the neighbours' positions in metres, and their mean number.
 fn errors(sensing: &str, radio: &str, range_m: f64) -> (f64, f64) {
     let (mut squares, mut count, mut moments) = (0.0, 0.0, 0.0);
     for seed in 500..503 {

@@ -1,5 +1,3 @@
-//! Runs continued from a saved state are identical to uninterrupted runs.
-
 use super::super::simulate::AnyEngine;
 use super::super::state::State;
 use super::*;
@@ -26,7 +24,6 @@ fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, 
     hasher.finish()
 }
 
-/// Runs `ticks` ticks, then resumes from the states saved at each tick of `at` and compares.
 fn goes_on<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, ticks: u32, at: &[u32])
 where
     W: Ground,
@@ -60,7 +57,6 @@ where
     }
 }
 
-/// Moves each robot at `tick` to an engine of that tick whose robots are at their starts.
 fn moves<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, tick: u32, ticks: u32)
 where
     W: Ground,
@@ -72,8 +68,7 @@ where
         one.step();
         other.step();
     }
-    // The robots are first set to their starts, then to their current state, one by one: neither
-    // the order nor occupied cells matter.
+    // Neither the order in which robots are restored nor occupied cells matter.
     let fresh = make();
     let mut bytes = Vec::new();
     for index in 0..one.robots.len() {

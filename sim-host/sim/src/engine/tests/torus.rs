@@ -1,5 +1,4 @@
-//! Boids on a torus by radio: the position of the seams does not matter, and far from them the
-//! torus behaves like the plane.
+//! The position of the seams does not matter, and far from them the torus is like the plane.
 
 use super::*;
 use crate::scenario::Overrides;
@@ -10,11 +9,9 @@ const SIDES_M: [f64; 2] = [60.0, 45.0];
 
 type Places = Vec<[f64; 2]>;
 
-/// Starts in a box at the origin, whole millimetres, and velocities.
 fn starts(count: u32, box_m: [u64; 2]) -> Vec<([f64; 2], [f64; 2])> {
     let drawn = |index: u32, what: u32, below: u64| (Rng::keyed(7, what, index, 0).next_u64() % below) as f64;
     let start = |index: u32| {
-        // Each robot has its own row, so that starts do not overlap.
         let y = f64::from(index) * (box_m[1] as f64) / f64::from(count);
         let place = [drawn(index, 0, box_m[0] * 1000) / 1000.0, (y * 1000.0).floor() / 1000.0];
         (place, [drawn(index, 1, 200) / 100.0 - 1.0, drawn(index, 2, 200) / 100.0 - 1.0])
@@ -22,7 +19,6 @@ fn starts(count: u32, box_m: [u64; 2]) -> Vec<([f64; 2], [f64; 2])> {
     (0..count).map(start).collect()
 }
 
-/// Positions after each tick, with all starts shifted by `shift_m`.
 fn run(starts: &[([f64; 2], [f64; 2])], torus: bool, shift_m: [f64; 2], ticks: u32) -> Vec<Places> {
     let list = starts.iter().map(|(place, velocity)| {
         let [x, y] = [0, 1].map(|axis| {

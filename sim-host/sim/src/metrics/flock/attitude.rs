@@ -2,11 +2,9 @@
 
 use super::{length, squared};
 
-/// Columns r1, r2, r3 of the rotation from body axes (forward, left, up) to world axes.
-///
-/// r1 is the direction of the velocity, r2 is level and to its left, r3 = r1 x r2. r2 is the
-/// paper's (0, 0, 1) x r1, normalised; for vertical flight r2 is north. `None` if the robot is
-/// stationary or its velocity is not finite.
+/// Columns r1, r2, r3 of the rotation from body axes (forward, left, up) to world axes. r1 points
+/// along the velocity, r2 is level and to its left ((0, 0, 1) x r1, normalised; north in vertical
+/// flight), and r3 = r1 x r2. `None` if the robot is stationary or its velocity is not finite.
 #[must_use]
 pub fn attitude(velocity_mps: [f64; 3]) -> Option<[[f64; 3]; 3]> {
     // Scaling avoids overflow and underflow of squares.

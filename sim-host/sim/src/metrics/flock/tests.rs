@@ -47,7 +47,6 @@ fn two_clusters_are_less_than_connected() {
 
 #[test]
 fn energy_mismatch_radius_and_order_of_three_robots_by_hand() {
-    // Edges of 6 and 8; a distance of 14 is out of range.
     let places = [[0.0, 0.0], [6.0, 0.0], [14.0, 0.0]];
     let velocities = [[1.0, 0.0], [0.0, 2.0], [-1.0, 1.0]];
     let mut meter = FlockMeter::new(7.0, 8.4, Space::OPEN);
@@ -153,7 +152,6 @@ fn gaps_are_from_surface_to_surface() {
         robots_in_obstacles: 1,
     };
     assert_eq!(all, expected);
-    // Touching is not overlapping; the horizon contains no other pair.
     let touching = gaps(&places[..2], &[1.0, 2.0], &[], 0.0, Space::OPEN);
     assert_eq!((touching.between_robots_m, touching.overlapping_pairs), (Some(0.0), 0));
     let alone = gaps(&places[2..], &radii[2..], &[wall], 1.0, Space::OPEN);
@@ -175,7 +173,6 @@ fn crowd() -> impl Strategy<Value = Vec<([f64; 2], [f64; 2])>> {
 }
 
 proptest! {
-    /// Reference implementation: flood fill over all pairs, without the index.
     #[test]
     fn connectivity_and_energy_are_those_of_all_pairs(crowd in crowd()) {
         let (places, velocities): (Vec<_>, Vec<_>) = crowd.into_iter().unzip();

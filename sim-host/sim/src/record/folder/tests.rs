@@ -61,7 +61,6 @@ fn results_are_complete_wherever_a_run_died() {
     // It died before it moved any file.
     run(&target, &["summary.json"], "one");
     std::mem::forget(begun(&target, &["trace.csv"], "dead").marker.take());
-    // Between the two renames.
     fs::write(target.join("notes.txt"), "mine").unwrap();
     fs::rename(&target, dir.path().join(".run.old-7-0")).unwrap();
     let next = Results::begin(&target).unwrap();
@@ -119,7 +118,6 @@ fn a_foreign_folder_is_extended_or_refused() {
     let text = Results::begin(&strange).unwrap_err().to_string();
     assert!(text.contains("trace.csv") && text.contains("no run") && text.contains("choose another"), "{text}");
     assert_eq!(read(strange.join("trace.csv")), "mine");
-    // An older version's results are recognised by the summary.
     fs::write(strange.join("summary.json"), "{\"trace_hash\": 1}").unwrap();
     run(&strange, &["summary.json"], "new");
     assert_eq!(names(&strange), [MARKER, "summary.json"]);

@@ -32,7 +32,6 @@ pub(super) fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Res
     Err(source.error(field, "this is too fast", remedy))
 }
 
-/// Number of goals that an operator can set, by law.
 pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
     match guidance {
         GuidanceKind::Waypoint | GuidanceKind::Lattice => 1,
@@ -67,7 +66,6 @@ pub(super) fn land<'a>(
     }
 }
 
-/// Checks robots on the grid that are given in metres: start and goal are on the terrain.
 pub(super) fn in_cells(
     source: &Source<'_>,
     spec: &Spec,
@@ -150,7 +148,6 @@ pub(super) fn cloud(source: &Source<'_>, spec: &Spec, cloud: &CloudEntry) -> Res
     velocity(source, &field("goal_velocity_mps"), cloud.goal_velocity_mps)
 }
 
-/// Refuses overlapping starts. O(robots) expected.
 pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
     let centers: Vec<_> = setup.starts.iter().map(|start| start.position_m).collect();
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
@@ -159,8 +156,7 @@ pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Scen
     let mut found = Vec::new();
     for (number, at) in (0..).zip(centers) {
         let own_m = setup.group(number as usize).radius_m;
-        // No limit needed: few robots can overlap this one if the earlier robots do not overlap
-        // each other.
+        // Few robots can overlap this one if the earlier robots do not overlap each other.
         let query = Query { at, radius: own_m + largest_m, most: usize::MAX, except: Some(number) };
         index.within(&query, &mut found);
         for near in &found {
@@ -176,7 +172,6 @@ pub(super) fn starts(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), Scen
     Ok(())
 }
 
-/// Refuses starts inside an obstacle or an intruder. O(robots x intruders).
 pub(super) fn outside(source: &Source<'_>, setup: &PlaneSetup) -> Result<(), ScenarioError> {
     let largest_m = setup.kinds().map(|group| group.radius_m).fold(0.0, f64::max);
     let solids = Solids::new(setup.solids.clone(), largest_m);

@@ -11,8 +11,7 @@ use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, Reference
 /// Ratio of the alpha gain to the goal gain in algorithm 2: see `LatticeParams::gamma`.
 const GAMMA_OF_TWO: f32 = 50.0;
 
-/// Number of places of the largest formation. A beacon stores a formation place and a flock number
-/// in the same field, so flock numbers start here.
+/// Size of the largest formation. Flock numbers start there: beacons store both in one field.
 pub(super) fn places(file: &ScenarioFile) -> u8 {
     let in_cells = file.robots.iter().flat_map(|robots| &robots.formation);
     let formations = in_cells.chain(file.group_formations());
@@ -23,7 +22,6 @@ pub(super) fn places(file: &ScenarioFile) -> u8 {
     places.max().map_or(0, |most| u8::try_from(most).unwrap_or(u8::MAX))
 }
 
-/// Refuses flock numbers that are places of a formation, and flock numbers for robots in formation.
 pub(super) fn number(source: &Source<'_>, spec: &Spec, given: Option<u8>, places: u8) -> Result<(), ScenarioError> {
     let (what, remedy) = match given {
         Some(_) if spec.guidance == GuidanceKind::Formation => {
@@ -38,7 +36,6 @@ pub(super) fn number(source: &Source<'_>, spec: &Spec, given: Option<u8>, places
     Err(source.error(&spec.field(source, "flock"), what, remedy))
 }
 
-/// Refuses a flocking law without its table, and the table without its law.
 fn goes_with<T: Copy>(
     source: &Source<'_>,
     spec: &Spec,
@@ -61,7 +58,7 @@ fn goes_with<T: Copy>(
     }
 }
 
-/// Checks `[plane.lattice]`. Gains default to values that are stable with this radio's delay.
+/// Gains default to values that are stable with this radio's delay.
 pub(super) fn lattice(
     source: &Source<'_>,
     file: &ScenarioFile,
@@ -126,7 +123,6 @@ pub(super) fn lattice(
     Ok(Some(GuidanceSetup::Lattice { params, motion }))
 }
 
-/// Warning about explicit gains that are unstable with this radio; `None` if they are stable.
 pub(in super::super) fn remark(params: &LatticeParams<f32>, radio: &RadioParams, tick_s: f64) -> Option<String> {
     let (delay_s, rate_hz) = radio.news(tick_s);
     let news_s = delay_s + 1.0 / rate_hz;

@@ -81,8 +81,7 @@ impl RobotGroup {
     }
 }
 
-/// Raises the default growth rate of silent robots to the speed of the fastest robot in the
-/// scenario; explicit rates are kept.
+/// Raises the default growth rate to the speed of the fastest robot; explicit rates are kept.
 pub(super) fn grow_as_the_fastest(general: &mut RobotGroup, groups: &mut [RobotGroup]) {
     let speed = |group: &RobotGroup| group.abilities.max_speed_mps;
     let fastest_mps = groups.iter().map(speed).fold(speed(general), f64::max) as f32;
@@ -100,13 +99,11 @@ const fn waypoint(cruise_mps: f64, tolerance_m: f64) -> GuidanceSetup {
     GuidanceSetup::Waypoint { speed_mps: cruise_mps as f32, tolerance_m: tolerance_m as f32 }
 }
 
-/// Default inflation of silent robots: grows at the highest speed, up to the radius.
 const fn inflation(max_speed_mps: f64, radius_m: f64) -> StalenessInflation<f32> {
     StalenessInflation { growth_mps: max_speed_mps as f32, max_m: radius_m as f32 }
 }
 
 impl Spec {
-    /// Checks the fields and builds the group.
     pub fn build(&self, source: &Source<'_>, file: &ScenarioFile) -> Result<RobotGroup, ScenarioError> {
         let far = checks::FAR_M;
         self.within(source, "radius_m", self.radius_m, [0.001, 65.0], "metres")?;
@@ -245,7 +242,6 @@ impl Spec {
         })
     }
 
-    /// Refuses tables that the chosen safety layer would ignore.
     fn unused(&self, source: &Source<'_>) -> Result<(), ScenarioError> {
         let is_used = !matches!(self.safety, SafetyKind::None | SafetyKind::PushOut);
         if is_used || self.orca.is_empty() {

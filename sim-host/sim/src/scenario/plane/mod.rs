@@ -129,8 +129,7 @@ impl PlaneSetup {
         general.into_iter().chain(&self.groups)
     }
 
-    /// All robots: those given in cells, then those given in metres with consecutive ids. The cells
-    /// of the latter are valid only if their law moves from cell to cell.
+    /// The cells of robots given in metres are valid only if their law moves from cell to cell.
     fn robots(&self, in_cells: &[Robot], terrain: Option<&Terrain>) -> Vec<Robot> {
         let cell = |index: usize, place_m: Option<[f64; 3]>| {
             let land = terrain.filter(|_| self.group(index).guidance.kind().is_on_grid());
@@ -200,7 +199,6 @@ pub(super) struct Placed {
     pub parts: Vec<Part>,
 }
 
-/// Checks the table and places the robots; `cells` are the robots of the top-level `[robots]`.
 pub(super) fn build(
     source: &Source<'_>,
     file: &ScenarioFile,

@@ -4,13 +4,11 @@ use super::{PlaneSetup, RobotGroup, Start};
 use crate::world::plane::{Solid, Solids};
 use staya_controller::agent::{GuidanceKind, SafetySetup};
 
-/// Number of affected robots that a warning names; it counts the rest.
 const NAMED: usize = 3;
 
 type Loop = Vec<[f64; 2]>;
 
-/// Warns about ticks that are too long for the bodies, closed walls that cross themselves, and
-/// unreachable goals. O(robots x walls + sides of a closed wall squared).
+/// O(robots x walls + sides of a closed wall squared).
 pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> {
     let loops = loops(&setup.solids);
     let mut remarks: Vec<_> = setup.kinds().filter_map(|group| long_tick(group, tick_s)).collect();

@@ -60,8 +60,7 @@ impl Taken {
     }
 }
 
-/// Draws robots with goals at least two radii from every solid. Starts are also clear of `others`
-/// (positions and radii, metres).
+/// Places are two radii or more from solids; starts are also clear of `others` (place, radius).
 pub(super) fn starts(
     source: &Source<'_>,
     spec: &Spec,

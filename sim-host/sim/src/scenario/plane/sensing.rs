@@ -10,8 +10,7 @@ use staya_controller::time::Duration;
 
 /// Longest delay, and longest interval between detections, ticks.
 const MOST_TICKS: u32 = 1000;
-/// Standard deviation of positions in beacons, metres: they are rounded to millimetres, and
-/// simulated robots know their exact position.
+/// Beacons round to millimetres, and simulated robots know their exact position.
 const HEARD_M: f64 = 0.002;
 const HEARD_MPS: f64 = 0.01;
 

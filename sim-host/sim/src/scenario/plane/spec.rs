@@ -8,7 +8,6 @@ use super::table::{
 use super::within;
 use staya_controller::agent::{GuidanceKind, SafetyKind};
 
-/// Fields of a group, with defaults from `[plane]`.
 #[derive(Clone, Debug)]
 pub(super) struct Spec {
     /// Tables that define the group, highest precedence first: `plane.group[1]`, `plane`.
@@ -51,8 +50,7 @@ impl Spec {
         }
     }
 
-    /// The fields of `plane.group[index]`. It inherits the tables of a law or a safety layer from
-    /// `[plane]` only if it uses the same one.
+    /// Inherits the tables of a law or a safety layer from `[plane]` only if it uses the same one.
     pub fn group(&self, index: usize, group: &GroupTable, places: u8) -> Self {
         let guidance = group.guidance.unwrap_or(self.guidance);
         let safety = group.safety.unwrap_or(self.safety);
@@ -100,7 +98,6 @@ impl Spec {
         tables
     }
 
-    /// The table with the highest precedence, for errors about the set of robots.
     pub fn table(&self) -> &str {
         &self.tables[0]
     }

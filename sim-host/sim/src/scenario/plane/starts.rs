@@ -33,17 +33,13 @@ pub(super) fn on_land(robots: &[Robot], terrain: &Terrain) -> Vec<Start> {
 pub(super) struct Placing<'a> {
     pub source: &'a Source<'a>,
     pub file: &'a ScenarioFile,
-    /// Radius of robots of the general group, metres.
     pub general_m: f64,
     pub solids: &'a [Solid],
-    /// All groups except the general one.
     pub groups: &'a mut Vec<RobotGroup>,
-    /// Starts of all robots placed so far.
     pub starts: &'a mut Vec<Start>,
 }
 
 impl Placing<'_> {
-    /// Adds a group and returns its index.
     pub fn add(&mut self, spec: &Spec) -> Result<usize, ScenarioError> {
         self.groups.push(spec.build(self.source, self.file)?);
         Ok(self.groups.len() - 1)
@@ -90,7 +86,7 @@ impl Placing<'_> {
         Ok(())
     }
 
-    /// Adds the robots of a checked list. A robot whose body differs gets its own group.
+    /// A robot whose body differs gets its own group.
     fn list(&mut self, spec: &Spec, group: Option<usize>, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
         let fixed = |place: Place| Target { position_m: place.0, velocity_mps: [0.0; 3] };
         for (index, entry) in list.iter().enumerate() {
@@ -140,8 +136,7 @@ pub fn circle_starts(count: u32, radius_m: f64, noise_m: f64, seed: u64) -> Vec<
         .collect()
 }
 
-/// Uniform random starts between the corners without overlaps, clear of the few `others` (positions
-/// and radii, metres). `None` if there is no room.
+/// Uniform random starts without overlaps, clear of the few `others` (place, radius), if they fit.
 fn cloud_starts(cloud: &CloudEntry, radius_m: f64, seed: u64, others: &[([f64; 3], f64)]) -> Option<Vec<Start>> {
     let places: Vec<_> = cloud
         .goals_m

@@ -25,8 +25,7 @@ pub struct PlaneTable {
     pub sight_m: f64,
     /// Side lengths of a torus with periodic borders, metres. Default: the open plane.
     pub torus_m: Option<[f64; 2]>,
-    /// Guidance law; `"route"` and `"formation"` need `[terrain]`, the latter also
-    /// `robots.formation`.
+    /// Guidance law. `"route"` needs `[terrain]`; `"formation"` needs `robots.formation` too.
     #[serde(default)]
     pub guidance: GuidanceKind,
     /// Safety layer.
@@ -78,7 +77,7 @@ pub(super) const fn ten() -> f64 {
     10.0
 }
 
-/// `[plane.sensing]`: robots detect each other with sensors, in addition to the radio or without it.
+/// `[plane.sensing]`: robots detect each other with sensors, besides the radio or without it.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensingTable {
@@ -212,8 +211,7 @@ pub struct IntruderEntry {
     pub velocity_mps: Place,
     /// Radius of the body, metres.
     pub radius_m: f64,
-    /// Whether it sends beacons, as a robot that does not give way. Otherwise robots detect it like
-    /// an obstacle: its position, but not its speed. Default: true.
+    /// Whether it sends beacons; if not, robots detect its place but not its speed. Default: true.
     #[serde(default = "yes")]
     pub heard: bool,
 }
@@ -405,8 +403,7 @@ impl OrcaTable {
 pub struct PushOutTable {
     /// Smallest distance of a centre from others and from obstacles (R_MinDist), metres.
     pub min_distance_m: f64,
-    /// `"radial"` (model 1, along the radius; default) or `"tangential"` (model 2, along the
-    /// border).
+    /// `"radial"` (model 1, along the radius; default) or `"tangential"` (2, along the border).
     #[serde(default)]
     pub model: Model,
     /// Whether only the nearest robot in the way is avoided. Default: false, all are.
@@ -430,8 +427,7 @@ pub struct LatticeTable {
     pub c_gamma: Option<f64>,
     /// Whether the goal moves with its velocity (a dynamic gamma-agent) or stays. Default: true.
     pub goal_moves: Option<bool>,
-    /// Distance behind a stationary goal over which its velocity fades, metres: the flock comes to
-    /// rest within it. Default: never.
+    /// Distance behind a stationary goal over which its velocity fades, metres. Default: never.
     pub goal_rest_m: Option<f64>,
     /// Whether robots in algorithm 3 do not push neighbours that are nearer to the goal, so that
     /// they pass gaps one by one. Default: false.

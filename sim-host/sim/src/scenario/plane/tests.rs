@@ -93,7 +93,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         )
     };
     let cases = [
-        // The body.
         (
             with("").replace("radius_m = 0.2", "radius_m = -1"),
             "s.toml:4: plane.radius_m: -1 is out of range; give 0.001 to 65 metres",
@@ -107,12 +106,10 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (with("cruise_mps = 0\n"), "s.toml:6: plane.cruise_mps: 0 is out of range; give 0.001 to 1 m/s"),
         (with("tolerance_m = 0\n"), "s.toml:6: plane.tolerance_m: 0 is out of range"),
         (with("sight_m = inf\n"), "s.toml:6: plane.sight_m: inf is out of range"),
-        // Unknown names.
         (with("guidance = \"sheep\"\n"), "s.toml:6: plane.guidance: unknown variant `sheep`"),
         (with("safety = \"luck\"\n"), "s.toml:6: plane.safety: unknown variant `luck`"),
         (with("colour = 1\n"), "s.toml:6: plane.colour: unknown field `colour`"),
         (robots("list = [{ start_m = [0] }]"), "s.toml:7: plane.robots.list[0].start_m: expected [x, y] or [x, y, z]"),
-        // At random places.
         (
             robots("scattered = { count = 200, from_m = [0, 0], to_m = [3, 3] }"),
             "s.toml:7: plane.robots.scattered: robot",
@@ -137,7 +134,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             after("[[plane.balls]]\ncount = 0\nradius_m = 1\nfrom_m = [9, 9]\nto_m = [12, 12]\n"),
             "s.toml:9: plane.balls[0].count: 0 is out of range; give 1 to 1000000 balls",
         ),
-        // Missing or ambiguous robots.
         (format!("{HEAD}{PLANE}"), "s.toml:3: plane.robots: it is not clear who takes part; give either plane.robots"),
         (robots(""), "s.toml:6: plane.robots: it is not clear who takes part; give exactly one of"),
         (robots("list = []"), "s.toml:7: plane.robots.list: nobody takes part"),
@@ -179,7 +175,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             format!("{HEAD}{PLANE}[robots]\nscattered = {{ count = 2 }}\n"),
             "s.toml:6: robots: there are no cells; give [terrain]",
         ),
-        // Positions and speeds.
         (
             robots("list = [{ start_m = [0, 0] }, { start_m = [2000001, 0] }]"),
             "s.toml:7: plane.robots.list[1].start_m: this is too far away; stay within 2000 km",
@@ -200,7 +195,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             robots("circle = { count = 40, radius_m = 2 }"),
             "s.toml:6: plane.robots: robots 1 and 2 overlap at the start",
         ),
-        // Combinations of tables.
         (
             with("guidance = \"route\"\n"),
             "s.toml:6: plane.guidance: this guidance goes from cell to cell; give [terrain]",
@@ -230,7 +224,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             ),
             "s.toml:11: plane.push_out.model: robots that go straight to a place jam for ever",
         ),
-        // Obstacles.
         (
             after("[[plane.wall]]\npoints_m = [[1, 2]]\n"),
             "s.toml:9: plane.wall[0].points_m: this is no wall; give two or more points",
@@ -259,7 +252,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             after("[[plane.ball]]\ncenter_m = [3.5, 0, 1]\nradius_m = 0.31\n"),
             "s.toml:6: plane.robots: robot 2 starts in an obstacle",
         ),
-        // Parameters.
         (
             after("[plane.orca]\nhorizon_s = 0\n"),
             "s.toml:9: plane.orca.horizon_s: 0 is out of range; give 0.01 to 60 seconds",
@@ -301,7 +293,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             flock("boids", "crowded_m = 1\nclosest_m = 3\nmax_turn = 4", ""),
             "s.toml:12: plane.boids.max_turn: 4 is out of range",
         ),
-        // Orders.
         (
             after("[[plane.order]]\nat_s = nan\nplace_m = [1, 1]\n"),
             "s.toml:9: plane.order[0].at_s: NaN is out of range",
@@ -326,7 +317,6 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
     refused(&cases);
 }
 
-/// Asserts that each text is refused with these words and a remedy.
 fn refused(cases: &[(String, &str)]) {
     let mut wrong = String::new();
     for (text, expected) in cases {
@@ -424,7 +414,6 @@ proptest! {
     }
 }
 
-/// Gains (c_alpha, c_gamma) of a lattice, and the warnings about it.
 fn gains(radio: &str, gains: &str) -> (f32, f32, Vec<String>) {
     let text = format!(
         "{HEAD}tick_s = 0.1\n{PLANE}guidance = \"lattice\"\n[plane.robots]\ncloud = {{ count = 2, from_m = [0, 0], to_m = [9, 9] }}\n\

@@ -16,7 +16,6 @@ pub(super) fn space(torus_m: Option<[f64; 2]>) -> Space<f64, 3> {
     torus_m.and_then(|[width, height]| Space::torus([width, height, HIGH_M])).unwrap_or(Space::OPEN)
 }
 
-/// Checks the side lengths, and refuses features that do not support a torus.
 pub(super) fn check(
     source: &Source<'_>,
     file: &ScenarioFile,

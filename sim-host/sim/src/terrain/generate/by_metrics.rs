@@ -1,14 +1,9 @@
-//! Random terrain with a given configuration entropy S and total edge TE.
-//!
-//! Source: KUZ section 4, which cites A. Kuznetsov, "Generation of a Random Landscape by given
-//! Configuration Entropy and Total Edge", Computational Technologies 22(4), 2017. The method here
-//! is our own: S depends only on the sizes of the classes, and TE only on their places, so the two
-//! are matched one after the other.
-//!
-//! - S: class sizes fall by a constant ratio from class 1 upwards; bisection finds the ratio.
-//! - TE: cells get their classes in the order of a field. White noise has nearly the greatest TE;
-//!   smoothing over a larger radius reduces TE; stripes are last. The search starts from the first
-//!   field with at most the target TE, and exchanges pairs of cells while that brings TE closer.
+//! Random terrain with a given configuration entropy S and total edge TE (KUZ section 4; A.
+//! Kuznetsov, "Generation of a Random Landscape by given Configuration Entropy and Total Edge",
+//! Computational Technologies 22(4), 2017). S depends only on the sizes of the classes, which fall
+//! by a constant ratio found by bisection. TE depends only on their places: cells get classes in
+//! the order of a field, from white noise (nearly the greatest TE) over smoother fields to stripes,
+//! and the first field with at most the target TE is improved by exchanging cells.
 
 use super::super::Terrain;
 use super::super::error::{TerrainError, parameter_error};
@@ -30,14 +25,12 @@ pub struct ByMetrics {
     pub edge_tolerance: u64,
 }
 
-/// Exchanges per cell before the search is aborted.
 const TRIES_PER_CELL: u32 = 200;
 /// Larger radii could overflow the sums of [`smooth`].
 const MAX_RADIUS: u16 = 1024;
 
-/// Generates terrain with the given S and TE, each within its tolerance.
-///
-/// O(size log size) per field and about 20 fields at most; then at most 200 exchanges per cell.
+/// Generates terrain with the given S and TE, each within its tolerance. O(size log size) for each
+/// of at most about 20 fields, then at most 200 exchanges per cell.
 ///
 /// # Errors
 /// A [`TerrainError::Parameter`] if the plan is out of range, or if S or TE cannot be reached; the
@@ -126,7 +119,6 @@ fn class_sizes(plan: &LandPlan, wanted: &ByMetrics) -> Result<Vec<usize>, Terrai
     ))
 }
 
-/// Fields that give the order of the cells, from rough to smooth.
 fn fields<'a>(plan: &'a LandPlan, noise: &'a [u64]) -> impl Iterator<Item = Vec<u64>> + 'a {
     let longest = plan.width.max(plan.height);
     let radii = std::iter::successors(Some(1_u16), |radius| Some(radius + (radius / 2).max(1)));
@@ -175,7 +167,6 @@ fn sums(ring: &[u64], radius: usize) -> Vec<u64> {
         .collect()
 }
 
-/// Assigns class 1 to the cells with the smallest values, then class 2, and so on.
 fn fill(field: &[u64], sizes: &[usize]) -> Vec<u8> {
     let mut order: Vec<u32> = (0..field.len() as u32).collect();
     order.sort_unstable_by_key(|at| (Reverse(field[*at as usize]), *at));
@@ -207,8 +198,7 @@ impl Search {
         }
     }
 
-    /// Exchanges random pairs of cells of different classes unless that moves TE away from
-    /// `wanted`.
+    /// Exchanges random pairs of cells unless that moves TE away from `wanted`.
     fn approach(&mut self, wanted: u64) {
         let total = self.cells.len() as u32;
         for _ in 0..u64::from(total) * u64::from(TRIES_PER_CELL) {
@@ -294,7 +284,6 @@ mod tests {
         // Stripes across 40 rows: eight borders of 40 sides, some with a step.
         let smooth = message(&PLAN, &wanted(2.19, 100));
         assert!(smooth.contains("choose one from about 3"), "{smooth}");
-        // 60 * 39 + 59 * 40 sides in all.
         let rough = message(&PLAN, &wanted(2.19, 4710));
         assert!(rough.contains("total edge 4710 is out of reach"), "{rough}");
         assert!(rough.contains(" to 4700") || rough.contains(" to 469"), "{rough}");

@@ -1,9 +1,6 @@
-//! Interpretations of "natural" terrain.
-//!
-//! KUZ section 5 describes "several cells of the greatest impassability, surrounded by less
-//! impassable ones, which are in turn surrounded by still less impassable ones, and so on", and
-//! gives the number of obstacles there as N(S). The paper's reference 15, which contains the
-//! generator, was not available. Each variant here interprets "and so on" differently;
+//! Interpretations of "natural" terrain. KUZ section 5 describes "several cells of the greatest
+//! impassability, surrounded by less impassable ones, ... and so on"; its reference 15 with the
+//! generator was not available. Each variant here interprets "and so on" differently;
 //! `docs/limits.md` compares their entropy with the paper's.
 
 use super::{LandPlan, check_obstacles, sample};
@@ -17,8 +14,7 @@ const ROUGH: u32 = 0x0054_0002;
 /// Scale of the slopes of rough hills.
 const ONE: u64 = 256;
 
-/// Decrease of impassability with the distance d from the nearest obstacle, to 1 at least; l is the
-/// highest class.
+/// Decrease of impassability from the highest class l to 1 with distance d from an obstacle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Hills {
     /// By one per cell: l - floor d.
@@ -71,7 +67,6 @@ pub fn natural_by(plan: &LandPlan, obstacles: u32, norm: Norm, hills: Hills) -> 
             }
         };
         let nearest = || drawn.iter().map(square).min();
-        // One draw per cell, for any distance.
         let slope = u64::from(rough.below(2 * ONE as u32));
         let fall = match hills {
             Hills::Even => nearest().map(u64::isqrt),

@@ -110,8 +110,6 @@ fn check_obstacles(plan: &LandPlan, obstacles: u32) -> Result<(), TerrainError> 
 }
 
 /// `count` different numbers below `total` in random order; all sets are equally likely.
-///
-/// Small samples are drawn by rejection, large ones by a partial shuffle.
 fn sample(total: u32, count: u32, rng: &mut Rng) -> Vec<u32> {
     if u64::from(count) * 4 < u64::from(total) {
         let mut taken = std::collections::HashSet::new();
@@ -154,13 +152,11 @@ impl Hill {
         Self { reach: reach as usize, square: square.collect() }
     }
 
-    /// Raises the terrain around column `x`, row `y` to the hill.
     fn stamp(&self, cells: &mut [u8], width: usize, x: usize, y: usize) {
         let side = 2 * self.reach + 1;
         let height = cells.len() / width;
         let columns = x.saturating_sub(self.reach)..(x + self.reach + 1).min(width);
         for row in y.saturating_sub(self.reach)..(y + self.reach + 1).min(height) {
-            // Column c of the terrain is column c + reach - x of the square.
             let start = (row + self.reach - y) * side + columns.start + self.reach - x;
             let hill = &self.square[start..start + columns.len()];
             let land = &mut cells[row * width..][columns.clone()];
@@ -180,7 +176,6 @@ mod tests {
 
     const PLAN: LandPlan = LandPlan { width: 100, height: 100, classes: 9, seed: 1 };
 
-    /// Reference implementation of u: the nearest of all obstacles.
     fn by_definition(land: &Terrain, classes: u8, obstacles: &[Cell], norm: Norm) -> Vec<u8> {
         let cell = |at: usize| {
             let width = usize::from(land.width());

@@ -29,7 +29,6 @@ pub use yaml::{Meta, Mode, parse_meta};
 const FREE_THRESH: f64 = 0.0;
 const OCCUPIED_THRESH: f64 = 0.997;
 
-/// Impassability of occupancy probability `p`.
 fn impassability(p: f64, meta: &Meta, options: &LoadOptions) -> u8 {
     if p > meta.occupied_thresh {
         return BLOCKED;
@@ -91,8 +90,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Terrain, TerrainError>
     interpret(&parse_pgm(&read(&image)?, &image)?, &meta, options)
 }
 
-/// Writes `path` (.yaml) and an image with the same name and the extension .pgm; [`Terrain::load`]
-/// of `path` gives an equal terrain.
+/// Writes `path` (.yaml) and its image (.pgm); [`Terrain::load`] of `path` gives an equal terrain.
 ///
 /// # Errors
 /// A [`TerrainError::Write`]; a [`TerrainError::Format`] if YAML cannot hold the file name.
@@ -122,8 +120,6 @@ pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
     write(path, meta.as_bytes())
 }
 
-/// Brightness of a class: white for 1, nearly black for the slowest, black for a wall.
-///
 /// Inverse of [`impassability`]: rounding to a grey level shifts the class by less than one half.
 fn brightness(impassability: u8, classes: u8) -> u8 {
     if impassability == BLOCKED {
@@ -149,7 +145,6 @@ mod tests {
         interpret(&picture, &meta, options).unwrap()
     }
 
-    /// Free, unknown, occupied in the north; occupied, free, free in the south.
     const PICTURE: &str = "P2\n3 2\n255\n254 205 0\n0 255 254\n";
 
     #[test]
@@ -171,7 +166,6 @@ mod tests {
     #[test]
     fn scale_maps_are_linear_between_the_thresholds() {
         let meta = format!("{META}mode: scale\n").replace("0.65", "0.8").replace("0.196", "0.2");
-        // p = 0, 0.2, 0.5, 0.8, 1
         let terrain = read(&meta, "P2 5 1 10 10 8 5 2 0", &LoadOptions::default());
         assert_eq!(terrain.cells(), [1, 1, 5, 9, BLOCKED]);
     }

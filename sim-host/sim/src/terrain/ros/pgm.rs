@@ -62,7 +62,6 @@ pub fn parse_pgm(bytes: &[u8], path: &Path) -> Result<Picture, TerrainError> {
     } else {
         while pixels.len() < wanted {
             match words.number() {
-                // Values above white are refused below.
                 Ok(number) => pixels.push(u16::try_from(number).unwrap_or(u16::MAX)),
                 Err(Trouble::End) => {
                     let what = format!("the file ends after {} of {wanted} pixels", pixels.len());
@@ -90,7 +89,6 @@ enum Trouble {
     NoNumber,
 }
 
-/// Parses decimal numbers separated by whitespace and comments.
 struct Words<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -4,7 +4,6 @@ use crate::world::MoveRules;
 use proptest::prelude::*;
 use staya_controller::rand::Rng;
 
-/// A crowd in one process, and the same crowd in several ranks partitioned by `owner`.
 struct Crowd {
     whole: World,
     parts: Vec<World>,
@@ -44,7 +43,6 @@ impl Crowd {
         Self { parts: here.iter().map(part).collect(), here, whole }
     }
 
-    /// Runs one tick. Returns the number of rounds.
     fn advance(&mut self, tick: u32, commands: &[Command<f32>]) -> usize {
         self.whole.advance(tick, commands);
         let told: Vec<Vec<_>> =
@@ -112,7 +110,6 @@ proptest! {
     ) {
         let bodies = usize::from(side) * usize::from(side) * fill / 100;
         let walls: Vec<_> = walls.into_iter().filter(|&(x, y)| x < side as i16 && y < side as i16).collect();
-        // In strips, or each cell separately.
         let owner = |cell: Cell| match mixed {
             true => Rng::keyed(seed, 1, cell.x as u32, cell.y as u32).below(ranks as u32) as usize,
             false => usize::from(cell.x.cast_unsigned()) * ranks / usize::from(side),

@@ -1,9 +1,8 @@
 //! Bodies in the plane or in space: discs (balls) that follow velocity commands within the limits
 //! of their inertia and the terrain.
 //!
-//! This is not a physics engine: only its own robot stops a body. Bodies pass through each other
-//! and through obstacles, and each overlap is counted, so that a controller cannot rely on the
-//! world for safety.
+//! This is not a physics engine: bodies pass through each other and through obstacles, and each
+//! overlap is counted, so that a controller cannot rely on the world for safety.
 
 mod border;
 mod sensing;
@@ -65,8 +64,7 @@ pub struct Plane {
     terrain: Option<Terrain>,
     solids: Solids,
     discs: Vec<Disc>,
-    /// By body: cells that closed while it was inside, with their previous class. It may leave
-    /// them; no body may enter.
+    /// By body: cells that closed around it, with their previous class; none may enter.
     shut: Vec<Vec<(Cell, u8)>>,
     intruders: Vec<Disc>,
     centers: Vec<[f64; 3]>,
@@ -190,8 +188,7 @@ impl Plane {
         self.solids.all()
     }
 
-    /// The obstacles within `within_m` of a position, metres, in their order. O(obstacles within
-    /// sight and a few around it).
+    /// Obstacles within `within_m` metres of a position, in order. O(obstacles around it).
     pub fn solids_near(&self, place_m: [f64; 3], within_m: f64) -> impl Iterator<Item = &Solid> {
         self.solids.near(place_m, within_m).filter(move |solid| solid.distance_m(place_m) <= within_m)
     }
@@ -208,7 +205,6 @@ impl Plane {
         self.solids.change(|all| *all = solids);
     }
 
-    /// Restores a terrain cell, even if a body is inside.
     pub(crate) fn put_cell(&mut self, cell: Cell, class: u8) {
         if let Some(terrain) = &mut self.terrain {
             terrain.set(cell, class);
@@ -362,7 +358,6 @@ impl Plane {
         clearance
     }
 
-    /// Distance between a body's surface and the nearest obstacle within `within_m`, metres.
     fn solid_gap_m(&self, disc: &Disc, within_m: f64) -> f64 {
         let gaps = self.solids.near(disc.position_m, within_m).map(|solid| solid.distance_m(disc.position_m));
         gaps.fold(f64::INFINITY, f64::min) - disc.radius_m
@@ -414,7 +409,6 @@ impl Disc {
     }
 }
 
-/// See [`Plane::max_speed_mps`].
 fn max_speed_mps(land: Option<&Terrain>, shut: &[(Cell, u8)], abilities: &Abilities, [x, y, _]: [f64; 3]) -> f64 {
     let class = |land: &Terrain| {
         let cell = land.cell_at([x, y])?;
@@ -429,14 +423,12 @@ fn max_speed_mps(land: Option<&Terrain>, shut: &[(Cell, u8)], abilities: &Abilit
     abilities.max_speed_mps / f64::from(ticks)
 }
 
-/// Terrain cells under a body. O(cells).
 fn cells_under(land: &Terrain, disc: &Disc) -> impl Iterator<Item = Cell> {
     let ([x, y, _], r) = (disc.position_m, disc.radius_m);
     let (low, high) = (land.nearest_cell([x - r, y - r]), land.nearest_cell([x + r, y + r]));
     let (cell_m, origin_m) = (land.cell_m, land.origin_m);
     let all = (low.y..=high.y).flat_map(move |row| (low.x..=high.x).map(move |column| Cell::new(column, row)));
     all.filter(move |cell| {
-        // Distance from the centre to the nearest point of the cell.
         let off = |at: f64, cells: i16, axis: usize| {
             let west = origin_m[axis] + f64::from(cells) * cell_m;
             (west - at).max(at - west - cell_m).max(0.0)

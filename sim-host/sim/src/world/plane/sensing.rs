@@ -79,8 +79,8 @@ impl Sight {
         }
     }
 
-    /// Writes the detections of body `index` at `tick` to `sightings`, nearest first. Silent
-    /// intruders are excluded, because robots detect them as obstacles.
+    /// Writes the detections of body `index` at `tick` to `sightings`, nearest first, without
+    /// silent intruders, which robots detect as obstacles.
     pub fn sightings(&self, plane: &Plane, index: usize, tick: u32, sightings: &mut Vec<Sighting<f32>>) {
         sightings.clear();
         let (sensing, delay) = (&self.sensing, self.sensing.delay_ticks);

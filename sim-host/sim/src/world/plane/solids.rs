@@ -26,7 +26,6 @@ struct Grid {
     counts: [usize; 2],
     /// Start of each square's list in `listed`, and the end of the last.
     starts: Vec<usize>,
-    /// Indices of obstacles, sorted within each square.
     listed: Vec<u32>,
     /// Half-spaces; they are in every list.
     endless: Vec<u32>,
@@ -149,7 +148,6 @@ fn flat(solid: &Solid) -> Solid {
     }
 }
 
-/// Bounding box from above; `None` if it is unbounded.
 fn bounds(solid: &Solid) -> Option<[[f64; 2]; 2]> {
     match *solid {
         Solid::Wall([a, b]) => Some([[a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), a[1].max(b[1])]]),

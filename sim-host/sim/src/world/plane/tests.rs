@@ -117,8 +117,6 @@ fn downwash_is_below_a_body_and_not_beside_it() {
     assert_eq!(washed(1.0, 0.0, -1.1), (0, 0));
 }
 
-/// Many obstacles near and far, so that they have a grid: the smallest gap and the overlaps equal
-/// those of a full search.
 #[test]
 fn the_nearest_of_many_obstacles_is_found_anywhere() {
     let ball = |x: f64, y: f64| Solid::Ball { center_m: [x, y, 0.0], radius_m: 1.0 };

@@ -16,7 +16,6 @@ fn meter(params: &LatticeParams<f64>) -> EnergyMeter<2> {
     EnergyMeter::new(params).expect("sound")
 }
 
-/// One step of the law by the engine's rule: velocity first, then position.
 fn step(params: &LatticeParams<f64>, dt: f64, places: &mut [[f64; 2]], velocities: &mut [[f64; 2]]) {
     let vec = |[x, y]: [f64; 2]| Vec3::new(x, y, 0.0);
     let changes: Vec<Vec3<f64>> = (0..places.len())
@@ -49,7 +48,6 @@ fn step(params: &LatticeParams<f64>, dt: f64, places: &mut [[f64; 2]], velocitie
     }
 }
 
-/// Thirty robots at irregular positions, about as dense as a lattice, with different velocities.
 fn crowd() -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
     let share = |i: u32, by: f64| (f64::from(i) * by).fract();
     let place = |i| [50.0 * share(i, 0.618_033_988_7), 50.0 * share(i, 0.414_213_562_4)];
@@ -98,7 +96,6 @@ fn lattice_of(places: &[[f64; 2]], scale: f64) -> Vec<[f64; 2]> {
     places.iter().map(|place| place.map(|c| c * scale)).collect()
 }
 
-/// Largest rise of H in a step over the total decrease, in 20 s of steps of `dt`.
 fn largest_rise(algorithm: Algorithm, dt: f64) -> f64 {
     let params = params(algorithm);
     let mut meter = meter(&params);
@@ -129,7 +126,6 @@ fn steps_that_are_too_long_gain_energy() {
     assert!(rise > 1e-2, "{rise}");
 }
 
-/// Largest rise of H in a step, relative to its initial value.
 fn largest_rise_or_blast(dt: f64) -> f64 {
     let params = params(Algorithm::Two);
     let mut meter = meter(&params);

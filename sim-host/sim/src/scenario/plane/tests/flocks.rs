@@ -53,7 +53,6 @@ fn a_torus_is_only_for_boids_and_in_whole_millimetres() {
         (text("torus_m = [8.5, 8]", two, ""), "plane.robots: robot 2 starts beside the torus"),
         (text("torus_m = [9, 8]", "{ start_m = [0, 0, 1] }", ""), "at height 0"),
         (text("torus_m = [9, 8]", two, "[[plane.ball]]\ncenter_m = [4, 4]\nradius_m = 1\n"), "know of no torus"),
-        // Across the border.
         (text("torus_m = [9, 8]", "{ start_m = [0, 0] }, { start_m = [8.8, 0] }", ""), "robots 1 and 2 overlap"),
         (lattice, "plane.torus_m: robots with guidance \"waypoint\" know of no torus"),
     ] {

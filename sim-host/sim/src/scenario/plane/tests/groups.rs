@@ -1,5 +1,3 @@
-//! Groups of different robots, waypoints, and intruders.
-
 use super::*;
 
 fn by_route(list: &str) -> String {
@@ -17,7 +15,6 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
     let robots = |robots: &str| format!("{HEAD}{PLANE}[plane.robots]\n{robots}\n");
     let group = |fields: &str| after(&format!("[[plane.group]]\n{fields}\nrobots.list = [{{ start_m = [9, 9] }}]\n"));
     let cases = [
-        // Groups that move from cell to cell.
         (
             format!(
                 "{HEAD}{PLANE}[[plane.group]]\nguidance = \"route\"\nrobots.list = [{{ start_m = [1, 1], goal_m = [9, 1] }}]\n"
@@ -69,7 +66,6 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
             ),
             "s.toml:9: plane.robots.formation: a formation stands in cells; give it as the top-level robots.formation, or",
         ),
-        // Groups.
         (group("radius_m = -1"), "s.toml:9: plane.group[0].radius_m: -1 is out of range; give 0.001 to 65 metres"),
         (group("max_speed_mps = 0.5\ncruise_mps = 0.6"), "s.toml:10: plane.group[0].cruise_mps: 0.6 is out of range"),
         (group("colour = 1"), "s.toml:9: plane.group[0].colour: unknown field `colour`"),
@@ -107,7 +103,6 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
             robots("list = [{ start_m = [0, 0], max_speed_mps = 0 }]"),
             "s.toml:7: plane.robots.list[0].max_speed_mps: 0 is out of range",
         ),
-        // Waypoints.
         (
             robots("list = [{ start_m = [0, 0], via_m = [[1, 0]] }]"),
             "s.toml:7: plane.robots.list[0].via_m: a way needs an end; give goal_m too",
@@ -127,7 +122,6 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
             ),
             "s.toml:9: plane.robots.list[0].via_m: robots with guidance \"lattice\" go by no places",
         ),
-        // Intruders.
         (
             after("[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [33, 0]\nradius_m = 1\n"),
             "s.toml:10: plane.intruder[0].velocity_mps: this is too fast",
@@ -183,7 +177,6 @@ fn groups_and_robots_override_fields_and_inherit_the_rest() {
     assert_eq!((large.cruise_mps, large.tolerance_m, large.sight_m), (2.0, 0.05, 5.0));
     let ways: Vec<_> = plane.starts[1].places.iter().map(|target| target.position_m).collect();
     assert_eq!(ways, [[3.0, 3.0, 0.0], [2.0, 2.0, 0.0], [0.0; 3]]);
-    // Robots of the last group are placed at random between those before them, without overlaps.
     assert_eq!((plane.starts.len(), plane.group(12).guidance.kind()), (13, GuidanceKind::Boids));
     assert_eq!(plane.group(12).safety, SafetySetup::None);
 }

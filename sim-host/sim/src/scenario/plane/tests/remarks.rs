@@ -1,9 +1,6 @@
-//! Warnings about valid but probably unintended settings.
-
 use super::super::remarks;
 use super::*;
 
-/// Warnings about robots with these starts and goals and the rest of a scenario.
 fn said(robots: &str, rest: &str) -> Vec<String> {
     let scenario = parse(&format!("tick_s = 0.1\n{HEAD}{PLANE}{rest}\n[plane.robots]\nlist = [{robots}]\n"));
     scenario.unwrap_or_else(|error| panic!("{error}")).remarks()

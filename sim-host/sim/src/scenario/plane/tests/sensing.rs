@@ -1,5 +1,3 @@
-//! `[plane.sensing]`.
-
 use super::*;
 use crate::world::plane::Sensing;
 
