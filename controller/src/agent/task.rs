@@ -20,8 +20,8 @@ impl core::fmt::Display for WrongTask {
 impl core::error::Error for WrongTask {}
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// Sets a goal cell for this robot. It does not change with the robot's place in a formation,
-    /// unlike a goal received as a [`GoalAssignment`](crate::wire::GoalAssignment).
+    /// Sets a goal cell for this robot, regardless of its place in a formation (unlike a received
+    /// [`GoalAssignment`](crate::wire::GoalAssignment)).
     pub const fn assign_goal(&mut self, goal: Cell)
     where
         G: Guidance<S, Destination = ToCells>,

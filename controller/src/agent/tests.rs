@@ -31,7 +31,7 @@ fn route_agent(id: u32) -> RouteAgent {
     RouteAgent::new(&config(id), law, Unguarded, Postcard)
 }
 
-/// A member of a column of robots three cells apart, robot 1 in front.
+/// Robots three cells apart, robot 1 in front.
 fn formation_agent(id: u32) -> FormationAgent {
     let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 2).unwrap();
@@ -39,7 +39,6 @@ fn formation_agent(id: u32) -> FormationAgent {
     FormationAgent::new(&config(id), guidance, Unguarded, Postcard)
 }
 
-/// Inputs with flat terrain around `at`.
 fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32, OnGrid<'a>> {
     let origin = at - Cell::new(5, 5);
     Inputs {
@@ -289,12 +288,11 @@ fn a_robot_that_falls_behind_requests_a_stop_and_later_a_resume() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let mut asked = Vec::new();
-    // The leader moves away to the east, then waits while the follower catches up.
     for (n, (leader_x, own_x)) in [(8, 5), (20, 5), (20, 16)].into_iter().enumerate() {
         let mut beacon = beacon_at(leader_x, 5);
         beacon.heading = Dir::East;
         let inbox = bytes(1, 0, n as u16, &[Message::Beacon(beacon)]);
-        // The steps are far enough apart for the first request to be acknowledged or given up.
+        // Far enough apart for the first request to be acknowledged or given up.
         let out = agent.step(&inputs(&FLAT, Cell::new(own_x, 5), &inbox), tick(20 * n as u32), &mut ws);
         asked.extend(sent(&out).into_iter().filter_map(|f| match f.message {
             Message::Request(request) => Some(request.kind),

@@ -13,10 +13,9 @@ use crate::route::RouteParams;
 use crate::scalar::Scalar;
 
 pub(super) trait Tunable<S>: Copy {
-    /// Returns the value of a parameter, or `None` if the set does not have it.
     fn get(&self, parameter: Parameter) -> Option<S>;
 
-    /// Changes a parameter. Returns whether the set has it. `value` is within [`Parameter::range`].
+    /// `value` is within [`Parameter::range`].
     fn set(&mut self, parameter: Parameter, value: S) -> bool;
 
     fn is_sound(&self) -> bool {
@@ -34,7 +33,6 @@ pub(super) trait Tunable<S>: Copy {
     }
 }
 
-/// Implements [`Tunable`] for parameters that are plain fields.
 macro_rules! fields {
     ($params:ident { $($parameter:ident => $($field:ident).+),* $(,)? } $($is_sound:ident)?) => {
         impl<S: Scalar> Tunable<S> for $params<S> {
@@ -122,7 +120,7 @@ impl<S: Scalar> Tunable<S> for BoidsParams<S> {
     }
 }
 
-/// Converts a number to a whole number of `1 / parts`. `None` if that is 2^16 or more, or negative.
+/// `value * parts` rounded, if it fits.
 fn whole<S: Scalar>(value: S, parts: i32) -> Option<u16> {
     let parts = (value * S::from_i32(parts) + S::HALF).floor_to_i32()?;
     u16::try_from(parts).ok()
