@@ -9,12 +9,11 @@
 //! V                       = HMAC(own, "staya wrap" g seed)       (16 bytes of each)
 //! ```
 //!
-//! Integers are little-endian. A sent seed is encrypted and authenticated by V, a synthetic
-//! initialisation vector (RFC 5297, section 2.6, with HMAC instead of CMAC and AES, so that
-//! firmware links one primitive). Without the robot's own key an attacker can neither read nor
-//! forge it; the same seed sent twice gives the same bytes. An attacker that captures a robot gets
-//! its own key and the swarm's key of that time, but not the master, the own keys of other robots,
-//! or a generation that was not sent to that robot.
+//! Integers are little-endian. V is a synthetic initialisation vector (RFC 5297, section 2.6, with
+//! HMAC instead of CMAC and AES, so that firmware links one primitive): without the own key an
+//! attacker can neither read nor forge a sent seed; equal seeds give equal bytes. A captured robot
+//! reveals its own key and the swarm's current key, but not the master, other own keys, or
+//! generations not sent to it.
 
 use super::{KEY_LEN, Key, Mac, is_same};
 use crate::robot::RobotId;
@@ -60,7 +59,7 @@ impl Seed {
         Self(bytes)
     }
 
-    /// The secret bytes, for storing them.
+    /// The secret bytes, to be stored.
     #[must_use]
     pub const fn as_bytes(&self) -> &[u8; SEED_LEN] {
         &self.0
