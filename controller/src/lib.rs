@@ -68,8 +68,8 @@ pub mod supervisor;
 pub mod template;
 pub mod time;
 #[cfg(feature = "wire")]
-// Decoded values come from the radio: each addition is meant to wrap, or a comment says why it
-// cannot overflow.
+// Decoded values come from the radio: each addition is meant to wrap, or says why it cannot
+// overflow.
 #[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
 
@@ -91,7 +91,6 @@ const _: () = {
     }
 };
 
-/// Checks the build profile of the tests.
 #[cfg(all(test, debug_assertions))]
 mod tests {
     #[test]

@@ -26,7 +26,7 @@ fn params(model: Model, evasion: Evasion) -> PushOutParams<f64> {
     PushOutParams { model, evasion, min_distance_m: 2.0 }
 }
 
-/// A point that moves up to 100 m in a step of 1 s, so that velocities are steps.
+/// A step of 1 s, so that velocities are steps.
 fn body<S: Scalar>() -> Body<S> {
     Body {
         id: RobotId(1),
@@ -54,7 +54,6 @@ fn ball(center_m: V, radius_m: f64) -> Obstacle<f64> {
     Obstacle::Ball { center_m, radius_m }
 }
 
-/// The step of a robot among these.
 fn stepped(model: Model, wish: V, nearby: &[Nearby<f64>], obstacles: &[Obstacle<f64>]) -> V {
     push_out(&params(model, Evasion::Multiple), &body(), wish, nearby, obstacles)
 }
@@ -72,7 +71,6 @@ fn a_step_clear_of_everything_is_the_wish() {
             assert_eq!(stepped(model, wish, &robots, &around), wish);
         }
         assert_eq!(stepped(model, v(3.0, 4.0), &[], &[]), v(3.0, 4.0));
-        // Faster than the body.
         assert_close(stepped(model, v(0.0, -300.0), &robots, &around), v(0.0, -100.0));
     }
 }
@@ -124,12 +122,10 @@ fn robots_slide_along_planes_and_walls() {
         let got = stepped(Model::Tangential, v(3.0, 4.0), &[], &[obstacle]);
         assert_close(got, v(24f64.sqrt(), 1.0));
     }
-    // Beside the wall's end there is a post.
     let got = stepped(Model::Radial, v(12.0, 0.5), &[], &[wall]);
     assert_eq!(got, v(12.0, 0.5), "farther than 2 m");
     let got = stepped(Model::Radial, v(10.0, 3.0), &[], &[wall]);
     assert!((got - v(9.0, 3.0)).norm() > 1.999 && got.y < 3.0, "{got:?}");
-    // At any speed a wall cannot be jumped, and heights along it are unrestricted.
     for model in MODELS {
         for x in [-6.0, -1.0, 0.0, 2.0] {
             let got = stepped(model, V::new(x, 90.0, 7.0), &[], &[wall]);
@@ -188,7 +184,7 @@ fn robots_in_one_place_separate_in_opposite_directions() {
 
 #[test]
 fn single_evasion_evades_the_nearest_and_multiple_all() {
-    // Two side by side: a robot that evades the first to the left runs into the second.
+    // A robot that evades the first to the left runs into the second.
     let robots = [robot(2, v(4.0, -0.2)), robot(3, v(4.0, 2.5))];
     let wish = v(3.5, 0.0);
     for model in MODELS {
@@ -209,7 +205,7 @@ fn single_evasion_evades_the_nearest_and_multiple_all() {
 
 #[test]
 fn an_enclosed_robot_stops() {
-    // Twelve robots around, 3 m away: no step of 2 m is clear.
+    // No step of 2 m is clear.
     let ring: Vec<_> = (0..12)
         .map(|k| {
             let (sin, cos) = Scalar::sin_cos(f64::from(k) * core::f64::consts::PI / 6.0);
@@ -257,7 +253,7 @@ fn invalid_input_counts_as_absent() {
     }
 }
 
-/// Robots move to their goals with `model`; returns the least distance of two, and how many arrive.
+/// Returns the least distance of two robots, and how many arrive.
 fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32) -> (f64, usize) {
     let (speed, step_s) = (1.0, 0.1);
     let own = |i: usize| Body { id: RobotId(i as u32 + 1), max_speed_mps: speed, step_s, ..body() };
@@ -319,7 +315,7 @@ fn places(height: f64) -> impl Strategy<Value = Vec<V>> {
     proptest::collection::vec(place, 0..8)
 }
 
-/// Depth of a step in zones of 2 m around positions, taken at 200 points of it.
+/// At 200 points of the step, in zones of 2 m.
 fn trespass(step: V, places: &[V]) -> f64 {
     let points = (0..=200).map(|k| step * (f64::from(k) / 200.0));
     let depths = points.flat_map(|at| places.iter().map(move |place| 2.0 - (*place - at).norm()));
@@ -337,7 +333,6 @@ fn answer<S: Scalar>(model: Model, wish: V, places: &[V]) -> V {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
-    /// In every number type, in the plane and in space.
     #[test]
     fn a_robot_that_is_clear_stays_clear(
         flat in places(0.0), deep in places(0.6),
