@@ -41,13 +41,11 @@ fn main() {
     while robots.iter().any(|robot| robot.agent.mode() != Mode::Arrived) {
         let mut said = Vec::new();
         for robot in &mut robots {
-            // Sensor readings and received bytes go in; a command and packets to send come out.
             let surroundings = InPlane { max_speed_mps: SPEED_MPS, obstacles: &[] };
             let inputs = Inputs { state: robot.state, surroundings, inbox: &robot.inbox };
             let out = robot.agent.step(&inputs, now, &mut ());
             refused += out.rejected;
             said.push(out.outbox.to_vec());
-            // A body without inertia follows the command at once.
             if let Command::Velocity(velocity_mps) = out.command {
                 robot.state.velocity_mps = velocity_mps;
                 robot.state.position = robot.state.position.moved(velocity_mps * TICK_S).expect("near by");

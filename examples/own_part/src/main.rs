@@ -1,5 +1,5 @@
-//! Twenty robots on patrol, some of them on emulated parts or boards. Takes the options of
-//! `staya hil`.
+//! Twenty robots on patrol, some of them on emulated parts or boards; takes the options of `staya
+//! hil`.
 
 use patrol::Patrol;
 

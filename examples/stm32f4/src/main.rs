@@ -20,7 +20,7 @@ use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
 
 const TICK: Duration = Duration::from_millis(50);
-/// Measured on the robot: wheel distance, wheel radius, body radius, and encoder edges per turn.
+/// Measured on the robot.
 const TRACK_M: f32 = 0.12;
 const WHEEL_M: f32 = 0.03;
 const BODY_M: f32 = 0.09;
@@ -31,7 +31,7 @@ bind_interrupts!(struct Irqs {
     RNG => rng::InterruptHandler<peripherals::RNG>;
 });
 
-/// Runs the robot; returns only if a measured value is invalid.
+/// Returns only if a measured value is invalid.
 async fn robot(p: Peripherals) -> Option<()> {
     let (mut tx, mut rx, mut modem) = ([0; 256], [0; 512], UartConfig::default());
     modem.baudrate = 57_600;

@@ -36,7 +36,7 @@ fn neighbor_table(c: &mut Criterion) {
         assert_eq!(put, Put::Inserted);
     }
     let known = neighbor(8 * 7, 10_000, &mut rng);
-    // Two unknown robots at one place, nearer than all others, evict each other in turn.
+    // Nearer than all others.
     let strangers = [neighbor(60, 1, &mut rng), neighbor(61, 1, &mut rng)];
 
     let mut group = c.benchmark_group("neighbors_16");
