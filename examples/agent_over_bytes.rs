@@ -24,7 +24,6 @@ struct Robot {
 fn robot(id: u32, from: Position, to: Position) -> Robot {
     let config = AgentConfig::new(RobotId(id), RADIUS_M, TICK);
     let law = WaypointGuidance::new(SPEED_MPS, 0.02);
-    // A silent robot may have moved on, so its disc grows.
     let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
     let safety = OrcaSafety::new(AvoidParams::default(), inflation);
     let mut agent = OrcaAgent::new(&config, law, safety, Postcard);

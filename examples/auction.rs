@@ -47,7 +47,6 @@ struct Bid {
     distance_mm: u32,
 }
 
-/// Moves to the place that it bids for.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Auction {
     bid: Option<Bid>,

@@ -16,8 +16,7 @@ use std::{error::Error, ops::ControlFlow, path::Path};
 
 const ROBOTS: u32 = 20;
 const SPACING_M: f64 = 0.6;
-/// Time of departure, s. The estimates agree after a time that grows with the square of the number
-/// of robots.
+/// Time of departure, s; convergence takes longer with the square of the number of robots.
 const TALK_S: f64 = 100.0;
 /// Lower with many neighbours, for stability.
 const STEP: f32 = 0.2;
@@ -72,7 +71,6 @@ impl Guidance<f32> for Meeting {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Each robot hears one neighbour on either side, and 10 % of the packets are lost.
     let starts: Vec<_> =
         (0..ROBOTS).map(|i| format!("{{ start_m = [{}, {}] }}", SPACING_M * f64::from(i), i % 2)).collect();
     let text = format!(

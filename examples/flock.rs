@@ -30,7 +30,6 @@ fn main() {
     let mut draw = || f64::from(rng.below(4000)) / 1000.0 - 2.0;
     let strewn = |_| Robot { place: Vec3::new(draw(), draw(), 0.0), velocity: Vec3::ZERO };
     let mut robots: Vec<Robot> = (0..ROBOTS).map(strewn).collect();
-    // The flock's reference.
     let mut lead = Robot { place: Vec3::ZERO, velocity: Vec3::new(0.2, 0.0, 0.0) };
     for step in 0..=STEPS {
         if step % PICTURES_EVERY == 0 {

@@ -83,8 +83,7 @@ impl Weights {
         }
     }
 
-    /// Returns the cheapest move, the first of equals in the order of [`Dir::MOVES`], if any is
-    /// open.
+    /// Returns the cheapest open move, the first of equals in the order of [`Dir::MOVES`].
     #[must_use]
     pub fn best(&self) -> Option<Dir> {
         self.iter().filter(|&(_, cost)| cost != EXCLUDED).min_by_key(|&(_, cost)| cost).map(|(dir, _)| dir)

@@ -26,8 +26,7 @@ pub const fn chained(before: u64, next: u64) -> u64 {
     state.0
 }
 
-/// State that digests omit, for `#[serde(with = "uncounted")]`: keys, and values derived from other
-/// state. It is still serialised.
+/// State that digests omit (keys, values derived from other state); it is still serialised.
 pub mod uncounted {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -1,7 +1,6 @@
-//! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixint")]`. Varints can
-//! be half longer for large numbers such as positions and times, and would raise the greatest
-//! length of a frame. The bytes equal those of `postcard::fixint::le`, which supports plain
-//! integers only.
+//! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixint")]`. Varints of
+//! positions and times would raise the greatest length of a frame. Same bytes as
+//! `postcard::fixint::le`.
 
 use crate::grid::Cell;
 use crate::time::Instant;
@@ -9,9 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 pub(crate) trait Fixed: Copy {
     type Bytes: Serialize + for<'de> Deserialize<'de>;
-    /// Least significant first.
     fn to_bytes(self) -> Self::Bytes;
-    /// Every combination is valid.
     fn from_bytes(bytes: Self::Bytes) -> Self;
 }
 

@@ -1,5 +1,4 @@
-//! Vectors in the plane and in space. Degenerate geometry gives `None` or a defined value, never
-//! NaN.
+//! Vectors in the plane and in space. Degenerate geometry gives `None` or a defined value.
 
 use crate::scalar::{Scalar, cast};
 use core::fmt::Debug;
@@ -299,7 +298,7 @@ impl Position {
     }
 
     /// The position at these coordinates in metres, rounded to millimetres, saturating; `None` for
-    /// NaN. For hosts and start-up (see [`Scalar::from_f64`]).
+    /// NaN. For hosts and start-up.
     #[must_use]
     pub fn from_metres([x, y, z]: [f64; 3]) -> Option<Self> {
         Self::ORIGIN.moved(Vec3::new(x, y, z))
@@ -417,7 +416,6 @@ mod tests {
         assert_eq!(c, b);
     }
 
-    /// All within `tolerance` of the length.
     fn agrees<S: Scalar>(v: [f64; 2], w: [f64; 2], tolerance: f64) -> Result<(), TestCaseError> {
         let [Some(p), Some(q)] = [v, w].map(|[x, y]| vec2::<S>(x, y)) else {
             return Err(TestCaseError::reject("not a number"));

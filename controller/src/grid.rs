@@ -1,6 +1,5 @@
-//! The grid: cells, the eight unit moves, norms, the borrowed window of terrain, and the conversion
-//! between cells and metres. Cells are (x, y), x east and y north (A. V. Kuznetsov 2017, KUZ,
-//! sections 2 and 3).
+//! The grid: cells (x east, y north), the eight unit moves, norms, the window of terrain, and the
+//! conversion to metres (A. V. Kuznetsov 2017, KUZ, sections 2 and 3).
 
 use crate::geom::Vec2;
 use crate::names::named;
@@ -8,9 +7,8 @@ use crate::scalar::Scalar;
 use core::ops::{Add, Sub};
 use serde::{Deserialize, Serialize};
 
-/// Cost units per cell of an axis move; sqrt 2 is 99/70, with a relative error of 5.1e-5. All route
-/// costs, formation distances and tick counts of the grid use this integer unit, so results on host
-/// and device are identical.
+/// Cost units per cell of an axis move; sqrt 2 is 99/70, with a relative error of 5.1e-5. Integer
+/// costs make results on host and device identical.
 pub const UNIT: u32 = 70;
 /// Cost units of a diagonal move under the Euclidean norm.
 pub const DIAGONAL: u32 = 99;
@@ -248,8 +246,7 @@ impl<'a> Window<'a> {
         self.cells.get(self.index(cell)?).copied()
     }
 
-    /// Iterates over all cells and their impassability, row by row from the south-west corner,
-    /// clamped to the coordinate range.
+    /// Iterates over all cells and their impassability, row by row from the south-west corner.
     pub fn iter(&self) -> impl Iterator<Item = (Cell, u8)> + '_ {
         let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
         let cell = |(x, y): (u16, u16)| self.origin + Cell::new(x.cast_signed(), y.cast_signed());

@@ -73,7 +73,6 @@ pub mod time;
 #[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
 
-/// Every public error is a [`core::error::Error`].
 const _: () = {
     const fn is_error<E: core::error::Error>() {}
     is_error::<template::TemplateError>();

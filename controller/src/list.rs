@@ -3,9 +3,8 @@
 
 use heapless::{LenType, Vec};
 
-/// A list of at most `N` items that is short in nearly all robots, such as pending requests.
-/// Firmware reserves its memory; hosts with many robots allocate it for existing items. Both
-/// serialise equally.
+/// A list that is short in nearly all robots, such as pending requests. Firmware reserves its
+/// memory; hosts with many robots allocate it on demand.
 #[cfg(all(not(feature = "host"), any(feature = "route", feature = "wire")))]
 pub(crate) type SparseVec<T, const N: usize> = heapless::Vec<T, N>;
 #[cfg(feature = "host")]
@@ -14,7 +13,7 @@ pub(crate) use sparse_vec::SparseVec;
 #[cfg(feature = "host")]
 mod sparse_vec;
 
-/// Adds items until the list is full, and drops the rest.
+/// Drops items beyond the capacity.
 pub(crate) fn extend<T, L: LenType, const N: usize>(list: &mut Vec<T, N, L>, items: impl IntoIterator<Item = T>) {
     for item in items {
         if list.push(item).is_err() {
@@ -23,7 +22,6 @@ pub(crate) fn extend<T, L: LenType, const N: usize>(list: &mut Vec<T, N, L>, ite
     }
 }
 
-/// Collects the first `N` items.
 pub(crate) fn collect<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
     extend(&mut list, items);

@@ -34,9 +34,8 @@ impl Rng {
         Self { state: seed }
     }
 
-    /// Creates the generator of a key. `purpose` is a constant of the caller that separates its
-    /// uses. If three of the inputs are fixed, different values of the fourth give different
-    /// generators.
+    /// Creates the generator of a key. `purpose` separates the caller's uses. If three of the
+    /// inputs are fixed, different values of the fourth give different generators.
     #[must_use]
     pub const fn keyed(seed: u64, purpose: u32, robot: u32, tick: u32) -> Self {
         let who = ((purpose as u64) << 32) | robot as u64;
@@ -77,8 +76,7 @@ impl Rng {
     }
 
     /// A sample of the exponential distribution with mean 1 in Q16.16, from 2^-16 (so that it can
-    /// be divided by a weight) to 44.37, off by less than 3e-5 from the exact logarithm of the
-    /// draw.
+    /// be divided by a weight) to 44.37, off by less than 3e-5.
     pub fn exponential_q16(&mut self) -> u32 {
         let draw = NonZeroU64::new(self.next_u64()).unwrap_or(NonZeroU64::MIN);
         negative_ln_q16(draw).max(1)
@@ -167,7 +165,7 @@ mod tests {
             }
             let chi_square: f64 =
                 counts.iter().map(|&c| (f64::from(c) - per_bin) * (f64::from(c) - per_bin) / per_bin).sum();
-            // Mean n - 1, deviation sqrt(2 (n - 1)): five deviations.
+            // Five deviations.
             let freedom = f64::from(n - 1);
             assert!(chi_square <= freedom + 5.0 * (2.0 * freedom).sqrt(), "n {n}: {chi_square}");
         }
@@ -222,7 +220,6 @@ mod tests {
         assert!(samples.iter().all(|&x| x > 0.0));
         assert!((mean - 1.0).abs() < 0.01, "mean {mean}");
         assert!((variance - 1.0).abs() < 0.03, "variance {variance}");
-        // The median is ln 2.
         let below = samples.iter().filter(|&&x| x < core::f64::consts::LN_2).count();
         assert!((99_000..101_000).contains(&below), "{below}");
     }

@@ -23,8 +23,7 @@ impl RobotId {
         self.0 != 0
     }
 
-    /// The id that a robot assigns to its anonymous [detection](crate::neighbor::Tracker) `n`,
-    /// valid on that robot only.
+    /// The id that a robot assigns to its anonymous [detection](crate::neighbor::Tracker) `n`.
     #[must_use]
     pub const fn local(n: u16) -> Self {
         Self(FIRST_LOCAL | n as u32)
@@ -92,8 +91,8 @@ impl Mode {
         matches!(self, Self::Idle | Self::Arrived)
     }
 
-    /// Whether its agent steers it, even if only to stand, so that other robots can rely on it
-    /// giving way.
+    /// Whether its agent steers it, even if only to stand, so that others can rely on it giving
+    /// way.
     #[must_use]
     pub const fn gives_way(self) -> bool {
         !matches!(self, Self::Fault | Self::Passive)

@@ -36,8 +36,7 @@ pub enum Sharpness {
     HalvedPer(Gain),
 }
 
-/// Returns the moves that are not excluded, in the order in which to try them. O(1); eight draws,
-/// or none with `Greedy`.
+/// Returns the open moves in the order in which to try them. O(1); eight draws, none with `Greedy`.
 #[must_use]
 pub fn weighted_shuffle(weights: &Weights, sharpness: Sharpness, rng: &mut Rng) -> Vec<Dir, 8> {
     let least = weights.iter().map(|(_, cost)| cost).min().unwrap_or(0);

@@ -7,8 +7,8 @@ use crate::robot::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// The place of one robot in the formation, and the relative places of at most `F` neighbours there
-/// (A. V. Kuznetsov 2017, KUZ, section 3).
+/// The place of one robot in the formation, and the relative places of at most `F` neighbours (KUZ
+/// section 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Template<const F: usize> {
@@ -122,8 +122,7 @@ fn number(place: usize) -> RobotId {
     RobotId(u32::try_from(place).unwrap_or(u32::MAX).saturating_add(1))
 }
 
-/// Turns `offset` from east to `heading`, counter-clockwise, rounded to whole cells; `Stay` turns
-/// nothing.
+/// Turns `offset` from east to `heading`, counter-clockwise, rounded to whole cells.
 #[must_use]
 pub fn rotated(offset: Cell, heading: Dir) -> Cell {
     let (x, y) = (i32::from(offset.x), i32::from(offset.y));

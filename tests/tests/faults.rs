@@ -8,7 +8,6 @@ use staya_tests::{run, scenario};
 
 type Rows = [(TickRow, Vec<RobotRow>)];
 
-/// Cells per robot.
 fn best_error(rows: &Rows, ticks: std::ops::Range<u32>) -> f64 {
     let within = rows.iter().filter(|(row, _)| ticks.contains(&row.tick));
     within.map(|(row, _)| row.formation_error_per_agent).fold(f64::INFINITY, f64::min)

@@ -1,6 +1,5 @@
 //! Formations in the plane: distances of robots from their places, and travel times. The law was
-//! tuned on [`TUNED`] only. `cargo test -p staya-tests formation_plane -- --nocapture` prints the
-//! results.
+//! tuned on [`TUNED`] only. Run with `-- --nocapture` to print the results.
 
 use staya_controller::grid::UNIT;
 use staya_sim::engine::Outcome;
@@ -107,7 +106,6 @@ fn other_formations_keep_their_bounds() {
     SCENES.iter().for_each(keeps_to);
 }
 
-/// Rovers in a line, 8 and 12 m apart.
 #[test]
 fn robots_that_start_elsewhere_form_on_the_way() {
     let line = "starts = [[20, 20], [23, 20], [25, 20], [28, 20], [30, 20], [33, 20]]";

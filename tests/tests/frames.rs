@@ -14,7 +14,6 @@ use std::fmt::Write as _;
 
 const TO: RobotId = RobotId(254);
 
-/// The fields are those of the dialect.
 fn messages() -> [(&'static str, Message, &'static str); 9] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {

@@ -9,7 +9,6 @@ use staya_sim::scenario::Scenario;
 use staya_tests::{golden, run, scenario};
 use std::fmt::Write as _;
 
-/// Robots whose cells fit into a line.
 const SHOWN: usize = 6;
 
 fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>)]) -> Result<String, std::fmt::Error> {

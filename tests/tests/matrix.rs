@@ -43,7 +43,6 @@ fn swarm(guidance: GuidanceKind) -> (&'static str, &'static str, [f64; 2]) {
         GuidanceKind::Boids => (
             "robots.cloud = { count = 6, from_m = [0, 0], to_m = [4, 4] }\nboids = { crowded_m = 0.8, closest_m = 4 }",
             "",
-            // Unlimited in practice.
             [-100.0, 100.0],
         ),
         GuidanceKind::Route => (
@@ -117,7 +116,6 @@ fn verdict(guidance: GuidanceKind, safety: Layer, radio: &str) -> Verdict {
     }
 }
 
-/// Empty if no requirement failed.
 fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
     let hears = radio != "dead";
     let has_goal = !matches!(guidance, GuidanceKind::Boids | GuidanceKind::Lattice);

@@ -1,5 +1,4 @@
-//! The Moving AI benchmark: optimal path lengths with the whole map in the window, pinned numbers
-//! of arrivals with the paper's window.
+//! The Moving AI benchmark: optimal lengths with the whole map, pinned arrivals with a window.
 
 use staya_controller::cost::Gain;
 use staya_lab::experiment::Experiment as _;
@@ -64,7 +63,7 @@ const LEARNERS: [(Learning, u16, Option<f64>); 4] = [
     (Learning::None, 3, None),
 ];
 
-/// Returns the mean loss, percent.
+/// Percent.
 fn mean_loss_of_five_cells(name: &str, queries: usize, learning: Learning, a3: u16) -> f64 {
     let mut robots = Robots::new(Sight::Radius(5));
     (robots.learning, robots.params.a3) = (learning, Gain::from_int(a3));

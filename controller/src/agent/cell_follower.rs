@@ -11,18 +11,15 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// A robot farther than this from the centre of its cell, along an axis, counts as in the next
-/// cell; thousandths of a cell.
+/// Distance from the centre, along an axis, that counts as the next cell; thousandths of a cell.
 const LEAVES_AT: i32 = 750;
 
 /// Moves towards the centre of the cell that a guidance law `G` of the grid would move to.
 ///
-/// The law decides again when the robot is well inside another cell, since on the border it could
-/// alternate for ever, and at least once per time to cross a cell of its terrain at cruising speed.
-///
-/// The law sees other robots by their cells. Robots may share a cell here, because the safety layer
-/// keeps them apart. The safety layer receives no way point: the law settles precedence by prices
-/// and requests.
+/// The law decides again when the robot is well inside another cell (on the border it could
+/// alternate for ever), and at least once per time to cross a cell at cruising speed. It sees other
+/// robots by their cells. Robots may share a cell, because the safety layer keeps them apart; that
+/// layer receives no way point, since the law settles precedence by prices and requests.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CellFollower<S, G> {
     law: G,

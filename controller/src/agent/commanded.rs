@@ -21,9 +21,8 @@ pub enum Wish<S> {
     /// Follow the own guidance law.
     #[default]
     Own,
-    /// Release control: the motors are off, or another controller steers. The robot sends its
-    /// position in [`Mode::Passive`](crate::robot::Mode::Passive), so others do not rely on it
-    /// giving way.
+    /// Release control: the motors are off, or another controller steers. In
+    /// [`Mode::Passive`](crate::robot::Mode::Passive) others do not rely on it giving way.
     Off,
     /// Stay at the current position, and give way to other robots.
     Hold,
@@ -45,10 +44,8 @@ pub enum Wish<S> {
     Cell(Cell),
 }
 
-/// Guidance law `G`, which an operator can override.
-///
-/// A command is only a desired motion: the safety layer still avoids other robots. Followers see in
-/// the beacon that this robot left the formation.
+/// Guidance law `G`, which an operator can override. The safety layer still avoids other robots,
+/// and followers see in the beacon that this robot left the formation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Commanded<S, G> {
     inside: G,
@@ -70,8 +67,8 @@ impl<S: Scalar, G> Commanded<S, G> {
     ///
     /// # Errors
     /// [`WrongTask`], with the previous command still active, for a velocity or a waypoint if the
-    /// law moves cell by cell, for a cell if it does not go to cells, and for a velocity that is
-    /// not finite.
+    /// law moves cell by cell, a cell if it does not go to cells, and a velocity that is not
+    /// finite.
     pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
     where
         G: Guidance<S>,
@@ -164,7 +161,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
             Wish::Velocity { velocity_mps, .. } => {
                 input.can_go()?;
                 let wish_mps = velocity_mps.clamp_norm(input.body.max_speed_mps);
-                // A point ahead lets two robots that are sent against each other pass.
+                // Lets two robots that are sent against each other pass.
                 let far_m = input.body.radius_m * S::from_i32(LEADS_TO_RADII);
                 let way_m = wish_mps.normalized().map(|ahead| ahead * far_m);
                 let action = Action::Velocity { wish_mps, way_m };

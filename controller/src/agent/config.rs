@@ -16,13 +16,11 @@ pub struct AgentConfig<S> {
     pub id: RobotId,
     /// Seed of the random numbers, combined with the id.
     pub seed: u64,
-    /// Boot number, which must change at each start (a non-volatile counter, or random). After a
-    /// restart with an unchanged number, other robots ignore this robot until they have forgotten
-    /// it; see [`crate::wire::SequenceWindow`].
+    /// Boot number, which must change at each start (a non-volatile counter, or random). Otherwise
+    /// other robots ignore this robot for a time; see [`crate::wire::SequenceWindow`].
     pub boot: u8,
     /// Time base; above 0. On the grid, the time to cross a cell of impassability 1. In the plane,
-    /// the time between two steps: the caller must keep it, since a command is planned for exactly
-    /// that time.
+    /// the time between two steps, for which each command is planned: the caller must keep it.
     pub tick: Duration,
     /// Time between two beacons. A longer period saves airtime but gives neighbours older states.
     pub beacon_period: Duration,
@@ -42,10 +40,9 @@ pub struct AgentConfig<S> {
     pub contact_loss: ContactLossPolicy<S>,
     /// Limits on the values that other robots may report.
     pub plausibility: PlausibilityLimits<S>,
-    /// The own flock; 0 is the flock of all robots that belong to none. A robot that
-    /// [flocks](crate::flock) treats members of other flocks as obstacles. A robot in formation has
-    /// flock 0, because its beacon carries its place in the field of the flock
-    /// ([`Beacon::slot`](crate::wire::Beacon::slot)).
+    /// The own flock; 0 for no flock and for robots in formation, whose beacons carry
+    /// [`Beacon::slot`](crate::wire::Beacon::slot) in this field. A robot that
+    /// [flocks](crate::flock) treats members of other flocks as obstacles.
     pub flock: u8,
 }
 
@@ -71,13 +68,11 @@ impl<S: Scalar> AgentConfig<S> {
         }
     }
 
-    /// Creates a configuration from the values that every robot needs; `radius_m` is unused on the
-    /// grid.
+    /// Creates a configuration from the values that every robot needs (on the grid any `radius_m`).
     ///
     /// Defaults: seed 0, boot 0, flock 0, a beacon per tick, states stale after 4 ticks and expired
-    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no latency,
-    /// and no plausibility limits. With a real radio in the plane, also set
-    /// [`latency`](Self::latency).
+    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no latency
+    /// (set [`latency`](Self::latency) for a real radio in the plane), and no plausibility limits.
     #[must_use]
     pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
         Self {

@@ -35,9 +35,8 @@ pub struct ContactLossPolicy<S> {
     /// its place for longer. Shorter: a dead robot is hit sooner. Below
     /// [`Ages::expire_after`](crate::neighbor::Ages::expire_after), no robot is remembered.
     pub remember: Duration,
-    /// Speed when all robots are lost, m/s; 0 to stand until a robot is in contact, [`Scalar::MAX`]
-    /// for full speed. Above 0 only for robots that may be alone: moving silent robots are not
-    /// detected.
+    /// Speed when all robots are lost, m/s; 0 to stand until a robot is in contact. Above 0 only
+    /// for robots that may be alone, since moving silent robots are not detected.
     pub alone_mps: S,
 }
 

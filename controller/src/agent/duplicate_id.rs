@@ -23,7 +23,6 @@ use serde::{Deserialize, Serialize};
 const SAID: usize = 16;
 const _: () = assert!(SAID.is_power_of_two());
 
-/// Fingerprints of the last own beacons, by sequence number.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct EchoFilter([u16; SAID]);
 
@@ -61,7 +60,6 @@ fn print(message: &Message) -> Option<u16> {
         return None;
     };
     let more = [beacon.time.as_micros(), beacon.cell.x as u32, beacon.cell.y as u32];
-    // FNV-1a over words.
     let words = beacon.position_mm.iter().map(|mm| mm.cast_unsigned()).chain(more);
     let print = words.fold(0x811C_9DC5_u32, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193));
     Some((print >> 16) as u16)
@@ -74,9 +72,8 @@ pub(super) fn place(message: &Message) -> Option<Position> {
     }
 }
 
-/// Returns whether `known` can be at `place` after `time`, at `fastest_mps` or its own speed if
-/// higher, with a slack of its body's width. Bounds the speed by components, without a square root,
-/// because it runs for each beacon.
+/// Whether `known` can be at `place` after `time`, at `fastest_mps` or its own speed if higher,
+/// with a slack of its body's width. Bounds the speed by components, since it runs for each beacon.
 pub(super) fn is_within<S: Scalar, P>(place: Position, known: &Neighbor<S, P>, time: Duration, fastest_mps: S) -> bool {
     let Vec3 { x, y, z } = known.velocity_mps;
     let went_mps = x.abs().max(y.abs()).max(z.abs()) * S::TWO;

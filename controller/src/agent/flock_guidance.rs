@@ -15,8 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Goals that a robot of a goal flock can store.
 pub const GOALS: usize = WAYPOINTS;
 
-/// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances, with waypoint 0, if set,
-/// as their reference.
+/// The alpha flock (R. Olfati-Saber 2006, OLF): equal distances, with waypoint 0 as the reference.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
@@ -26,8 +25,7 @@ pub struct LatticeGuidance<S> {
 
 impl<S: Scalar> LatticeGuidance<S> {
     /// Creates the law. `moves`: the reference moves with its velocity (a dynamic gamma-agent) or
-    /// stays in place and only has a velocity (a static one, as in the obstacle courses of the
-    /// paper).
+    /// only has one (a static one, as in the obstacle courses of the paper).
     #[must_use]
     pub const fn new(params: LatticeParams<S>, moves: bool) -> Self {
         Self::following(params, if moves { ReferenceMotion::Dynamic } else { ReferenceMotion::Static })
@@ -128,8 +126,8 @@ impl<S: Scalar> GoalFlockGuidance<S> {
         self.goals.stage()
     }
 
-    /// Whether the robot may stop: near its own goal, and kept from it by other robots. Stopping as
-    /// soon as it is near would block the goal for later robots.
+    /// Whether it is near its goal and blocked by robots. Stopping earlier would block later
+    /// robots.
     fn is_there(&self, own: Position, way_m: Option<Vec3<S>>, wish_mps: Vec3<S>) -> bool {
         let is_drawn = matches!(self.goals.stage(), Stage::Goal(_));
         let is_near = is_drawn && self.goals.has_arrived(own, self.arrival_m);
@@ -232,7 +230,6 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
             let (sin, cos) = (turn * S::PI).sin_cos();
             Vec2::new(cos, sin)
         };
-        // Follow the body if a safety layer has turned it.
         let moving = input.body.velocity_mps.xy().normalized();
         let heading = moving.or(self.heading).unwrap_or_else(&mut draw);
         let heading = self.params.steer(input.id, heading, input.nearby);

@@ -1,6 +1,5 @@
-//! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the route,
-//! and the others keep their places beside it. See [`crate::formation`] for differences from the
-//! paper.
+//! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2). See [`crate::formation`] for
+//! differences from the paper.
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{MoveHistory, PATIENCE, on_grid, reachable_goal};
@@ -125,7 +124,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         graph_distance(cell, &found)
     }
 
-    /// The template with the gaps of lost robots closed.
     fn view<S>(&self, own: RobotId, neighbors: &[Neighbor<S>]) -> Template<F> {
         if self.formation.closes_ranks {
             self.ranks.view(own, &self.template, holders(neighbors))
@@ -155,14 +153,12 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         placed.last()
     }
 
-    /// A leader stays while it is known, however far away it is (the paper chooses it only at t =
-    /// 0).
+    /// Keeps a leader while it is known, however far away (the paper chooses it only at t = 0).
     fn choose_leader<S>(&mut self, input: &GuidanceInput<'_, S>, found: &Found<F>) {
         let leader = find_leader(input.id, &found.members);
         if leader.is_some() || input.neighbor(self.leader).is_none() {
             self.leader = leader;
         }
-        // A place for any robot does not determine whose place it is.
         let member = found.members.iter().find(|m| m.seen.id == self.leader);
         if let Some(member) = member {
             self.leader_offset = Cell::default() - member.offset;
@@ -248,8 +244,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.behind > self.formation.patience
     }
 
-    /// Asks a foreign robot in a neighbour's place to choose another direction (KUZ section 7, item
-    /// 6).
+    /// Asks a foreign robot in a neighbour's place to choose another direction (KUZ section 7).
     fn ask_surplus(&mut self, found: &Found<F>) -> Option<Ask> {
         if found.more == 0 {
             self.crowded = 0;
@@ -414,7 +409,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice, 0);
         if status.waits_for.is_none() && !status.is_at_goal {
-            // At most three requests: for the pace, and these two.
             list::extend(&mut asks, blocked);
             list::extend(&mut asks, self.ask_surplus(&found));
         }

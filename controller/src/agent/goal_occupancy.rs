@@ -6,8 +6,7 @@ use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Idle distance, in own radii, after which the robot checks its goal: the distance that it could
-/// have covered since it last came nearer.
+/// Idle distance (that the robot could have covered since it last came nearer), in own radii.
 const PATIENCE: i32 = 4;
 /// Idle distance after which stationary robots ahead also count as arrived.
 const LONG_PATIENCE: i32 = 40;
@@ -19,8 +18,7 @@ const BY_NUMBER: i32 = 24;
 const ABOUT: i32 = 8;
 /// Approach that counts as progress, thousandths of the own radius.
 const NEARER: i32 = 250;
-/// A robot that is this much farther away was sent elsewhere or pushed away, and starts again;
-/// thousandths of the own radius.
+/// A robot this much farther away was sent elsewhere or pushed away; thousandths of the own radius.
 const FARTHER: i32 = 8_000;
 /// Differences of distances below this are rounding; thousandths of the own radius.
 const TIE: i32 = 100;
@@ -29,13 +27,12 @@ const SLOW: i32 = 100;
 
 /// Decides whether the place that a robot heads for is free.
 ///
-/// - After [`PATIENCE`] without progress, the robot looks for robots that overlap its body at the
-///   goal.
+/// - After [`PATIENCE`] without progress, it looks for robots that overlap its body at the goal.
 /// - If one is parked or in fault there, this robot has arrived beside it until the place is free.
 ///   After [`LONG_PATIENCE`] so have robots that stand around them.
-/// - If a moving robot is there, one of them has precedence: the nearest until [`BY_DISTANCE`], the
-///   smallest id until [`BY_NUMBER`] (each can be nearest to its own place). The others leave it
-///   space, then all try again.
+/// - If one moves there, the nearest has precedence until [`BY_DISTANCE`], the smallest id until
+///   [`BY_NUMBER`] (each can be nearest to its own place). The others leave it space, then all try
+///   again.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct GoalOccupancy<S> {
     nearest_m: S,
@@ -54,7 +51,7 @@ pub(super) enum Claim<S> {
 impl<S: Scalar> GoalOccupancy<S> {
     pub(super) const NEW: Self = Self { nearest_m: S::ZERO, idle_m: S::ZERO, is_beside: false };
 
-    /// Decides about a stationary goal. Call it in each step. O(nearby).
+    /// O(nearby). Call it in each step.
     pub(super) fn claim<P>(&mut self, input: &GuidanceInput<'_, S, P>, way_m: Vec3<S>, tolerance_m: S) -> Claim<S> {
         let GuidanceInput { body, nearby, .. } = input;
         let distance = way_m.norm();

@@ -125,8 +125,8 @@ pub trait Guidance<S: Scalar>: Teamwork {
         false
     }
 
-    /// Returns the payload when a beacon is due. Receivers may get it late, repeatedly or never, so
-    /// it should describe a state rather than a change.
+    /// Returns the payload when a beacon is due: a state rather than a change, since receivers may
+    /// get it late, repeatedly or never.
     fn payload(&mut self, _now: Instant) -> Self::Payload {
         Self::Payload::default()
     }
@@ -142,20 +142,18 @@ pub trait Guidance<S: Scalar>: Teamwork {
     }
 }
 
-/// Messages between robots that travel together, in addition to beacons. Implement it empty to use
-/// none: `impl Teamwork for MyLaw {}`.
+/// Messages between robots that travel together, in addition to beacons; all are optional.
 pub trait Teamwork {
     /// Handles a request to choose another direction: excludes the last choice from the next
     /// decision (A. V. Kuznetsov 2017, KUZ, section 7).
     fn redirect(&mut self) {}
 
     /// Reports before a decision whether a stop request is active. The agent stops a robot without
-    /// a leader itself (unless [`Status::recovers`]); a law in which others stop too stores the
-    /// flag.
+    /// a leader itself, unless [`Status::recovers`]; laws that stop other robots store the flag.
     fn note_stop(&mut self, _is_asked: bool) {}
 
-    /// Handles a part of a formation template. Returns whether it was accepted; the last argument
-    /// tells that the sender changed or restarted.
+    /// Handles a part of a formation template; returns whether it was accepted. The last argument:
+    /// the sender changed or restarted.
     fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
         false
     }
@@ -179,8 +177,8 @@ pub trait Teamwork {
     }
 }
 
-/// Forwards functions of [`Teamwork`] to the wrapped law `$inside`: `orders` for formations, `land`
-/// for maps. A missing function would silently use its default (`tests/wrapped.rs` checks this).
+/// Forwards [`Teamwork`] to the law `$inside`: `orders` for formations, `land` for maps. A missing
+/// function would silently use its default (`tests/wrapped.rs` checks this).
 macro_rules! pass_on {
     (orders: $self:ident => $inside:expr) => {
         fn redirect(&mut $self) {
@@ -333,8 +331,7 @@ pub enum Action<S> {
     Velocity {
         /// The desired velocity without regard to collisions, m/s.
         wish_mps: Vec3<S>,
-        /// Offset of the point that it heads straight for, metres; `None` not to swerve for
-        /// approaching robots.
+        /// Offset of the point that it heads straight for, metres; `None` not to swerve for others.
         way_m: Option<Vec3<S>>,
     },
     /// Release control: the motors are off, or another controller steers

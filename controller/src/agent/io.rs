@@ -58,8 +58,8 @@ pub enum Command<S> {
     /// Stand still.
     #[default]
     Hold,
-    /// Take the first of these moves whose cell is free and passable; stand still if none is (A. V.
-    /// Kuznetsov 2017, KUZ, algorithm 4).
+    /// Take the first of these moves whose cell is free and passable, if any (A. V. Kuznetsov 2017,
+    /// KUZ, algorithm 4).
     Move(Vec<Dir, 8>),
     /// Move with this world velocity, m/s, within the speed limit of the body.
     Velocity(Vec3<S>),
@@ -100,30 +100,28 @@ pub enum Event {
     NeighborEvicted(RobotId),
     /// The clock or the sequence number of a neighbour restarted.
     NeighborRebooted(RobotId),
-    /// All neighbours are lost; [`ContactLossPolicy`](super::ContactLossPolicy) determines the
-    /// reaction.
+    /// All neighbours are lost; see [`ContactLossPolicy`](super::ContactLossPolicy).
     ContactLost,
-    /// Two robots use this id, own or a neighbour's; give one of them another id. Reported once,
-    /// and again after the robot was lost and found. The second robot is avoided, and reported as
-    /// lost, under the id [`RobotId::duplicate`].
+    /// Two robots use this id; give one of them another id. Reported once, and again after the
+    /// robot was lost and found. The second robot is known as [`RobotId::duplicate`].
     DuplicateId(RobotId),
     /// A robot began to report a value beyond
-    /// [`AgentConfig::plausibility`](super::AgentConfig::plausibility). For ids that no robot has,
-    /// reported once per step.
+    /// [`AgentConfig::plausibility`](super::AgentConfig::plausibility); once per step for ids of no
+    /// robot.
     Implausible {
         /// The sender.
         id: RobotId,
         /// The implausible value.
         claim: Claim,
     },
-    /// The robot cannot send until a new key is set: its wire format has no counter or timestamp
-    /// left ([`EncodeError::Exhausted`](crate::wire::EncodeError)). Reported for each beacon that
-    /// is due.
+    /// The wire format has no counter or timestamp left
+    /// ([`EncodeError::Exhausted`](crate::wire::EncodeError)): the robot needs a new key to send.
+    /// Reported for each beacon that is due.
     Muted,
 }
 
-/// Counts of frames that failed authentication, filled by [`Sealed`](crate::wire::Sealed) and
-/// signed MAVLink.
+/// Counts of frames that failed authentication, by [`Sealed`](crate::wire::Sealed) or MAVLink
+/// signing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Refused {

@@ -21,10 +21,8 @@ use serde::{Deserialize, Serialize};
 mod identity;
 mod sight;
 
-/// Requests that wait for an acknowledgement.
 const PENDING: usize = 4;
 const WAYPOINTS: usize = 4;
-/// Requests received from other robots.
 const ORDERS: usize = 8;
 
 pub(super) enum Received<S> {
@@ -111,7 +109,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         None
     }
 
-    /// The image of a position that is nearest to another one on the torus, if any.
     fn image(&self, place: Position, other: Position) -> Position {
         self.torus().map_or(place, |torus| torus.image(place, other))
     }
@@ -125,8 +122,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 
     /// Moves neighbours to the list of lost robots once their silence is longer than packet loss
-    /// explains: beacon `period`, radio `latency` and the measured loss. With `remember` > 0 a
-    /// neighbour counts as lost only after [`Ages::expire_after`]. Call this first in each step.
+    /// explains; with `remember` > 0 only after [`Ages::expire_after`]. Call this first in each
+    /// step.
     pub(super) fn expire(
         &mut self,
         own: Position,
@@ -158,7 +155,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.wire.next_frame(inbox)
     }
 
-    /// Processes one frame; returns a message that the agent must handle.
+    /// Returns a message that the agent must handle.
     pub(super) fn hear(
         &mut self,
         bytes: &[u8],
@@ -302,8 +299,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         }
     }
 
-    /// Marks a waypoint as accepted. One that was not is reported again when it is repeated,
-    /// because it may be usable by then.
+    /// One that was not accepted is reported again when it is repeated: it may be usable by then.
     pub(super) fn placed(&mut self, index: u8, version: u8) {
         if let Some(newest) = self.waypoints.get_mut(usize::from(index)) {
             let _ = newest.admit(version);
@@ -370,13 +366,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         };
     }
 
-    /// Appends a frame to the outbox if a beacon still fits behind it.
     fn say_early(&mut self, message: &Message, out: &mut Outputs<S>) {
         // A dropped frame is requested again by its receiver.
         let _ = self.say(message, self.wire.beacon_len(), out);
     }
 
-    /// Appends a frame to the outbox if `reserved` bytes remain free behind it.
+    /// Leaves `reserved` bytes free.
     fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs<S>) -> Result<(), EncodeError> {
         let before = out.outbox.len();
         self.wire.encode(self.header, message, &mut out.outbox)?;
@@ -389,7 +384,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 }
 
-/// Stores the sender and boot number. Returns whether they changed.
+/// Returns whether they changed.
 fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
     let now = Some((header.sender, header.boot));
     core::mem::replace(last, now) != now
@@ -399,7 +394,7 @@ pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
 }
 
-/// Builds the own beacon. Lengths saturate, and NaN counts as 0.
+/// Lengths saturate, and NaN counts as 0.
 pub(super) fn beacon<S: Scalar>(
     config: &AgentConfig<S>,
     last: &Last,

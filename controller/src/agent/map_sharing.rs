@@ -13,13 +13,12 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// Guidance law `G` with a [`LandMap`] of `T` tiles beyond the window, shared by one patch after
-/// each beacon. Laws on the grid price window exits by it while they lead
-/// ([`GuidanceInput::land`]).
+/// Guidance law `G` with a [`LandMap`] of `T` tiles beyond the window, shared by one patch per
+/// beacon. Laws on the grid price window exits by it while they lead ([`GuidanceInput::land`]).
 ///
-/// False reports cost only time. The robot uses its map while it reaches a new least distance to
-/// its goal at least once in 32 moves, otherwise it moves without it until it does, and the next
-/// limit is a quarter. The loss is at most 42 moves per goal, plus the ways back.
+/// False reports cost only time, at most 42 moves per goal plus the ways back: the robot stops
+/// using the map after 32 moves without a new least distance to its goal, then after a quarter of
+/// that.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MapSharing<G, const T: usize> {
     inside: G,
@@ -47,7 +46,6 @@ struct Progress {
 }
 
 impl Progress {
-    /// Whether the robot still uses its map.
     fn goes_on(&mut self, cell: Cell, goal: Cell) -> bool {
         let before = self.way.replace((cell, goal));
         if before.is_none_or(|(_, old)| old != goal) {
@@ -95,7 +93,6 @@ impl<G, const T: usize> MapSharing<G, T> {
     pub fn new(inside: G, params: Option<MapParams>) -> Self {
         let mut map = SparseVec::new();
         if let Some(params) = params {
-            // Cannot fail: the capacity is 1.
             let _ = map.push(Map { land: LandMap::new(), params, progress: Progress::default() });
         }
         Self { inside, map }

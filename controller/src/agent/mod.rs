@@ -2,8 +2,7 @@
 //!
 //! A step receives frames (`link`), decides (a [`Guidance`] law, then the [`crate::supervisor`]),
 //! avoids collisions (a [`Safety`] layer) and sends frames. The type of a law determines the inputs
-//! of a step ([`Guidance::Input`]) and the kinds of goal ([`Guidance::Destination`]), so that a
-//! wrong combination does not compile:
+//! of a step ([`Guidance::Input`]) and the kinds of goal ([`Guidance::Destination`]):
 //!
 //! | guidance law | surroundings | goal | command |
 //! | --- | --- | --- | --- |
@@ -20,11 +19,9 @@
 //! [move]: Command::Move
 //! [velocity]: Command::Velocity
 //!
-//! An input that the sensors did not deliver for some time is passed as missing
-//! ([`OnGrid::window`], [`InPlane::max_speed_mps`]). The robot then stops in [`Mode::Fault`].
-//!
-//! The crate `staya-robot` turns velocities into PWM, UART bytes into an inbox, and range readings
-//! into a window.
+//! Pass an input that the sensors have not delivered for some time as missing ([`OnGrid::window`],
+//! [`InPlane::max_speed_mps`]): the robot then stops in [`Mode::Fault`]. The crate `staya-robot`
+//! turns velocities into PWM, UART bytes into an inbox, and range readings into a window.
 //!
 //! A robot that moves cell by cell to a goal on the grid:
 //!
@@ -173,8 +170,7 @@ use crate::wire::{MAX_PAYLOAD, Postcard, Wire};
 use link::Link;
 use serde::{Deserialize, Serialize};
 
-/// Cells of a search in a window of radius 5 (A. V. Kuznetsov 2017, KUZ) with a border: (2 * 5 +
-/// 3)^2.
+/// Cells of a search in a window of radius 5 (A. V. Kuznetsov 2017, KUZ), with its border.
 pub const CELLS: usize = 169;
 /// Capacity of the neighbour table of an agent with default capacities.
 pub const NEIGHBORS: usize = 16;
@@ -236,7 +232,7 @@ pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = P
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 enum Goal {
     Own(Cell),
-    /// A goal for the top leader; this robot heads for its own place beside it.
+    /// For the top leader; this robot heads for its own place beside it.
     Formation(Cell),
 }
 

@@ -1,5 +1,4 @@
-//! Shared by the guidance laws on the grid: the last choice, requests to robots in the way, and
-//! impassable goals.
+//! Shared by the laws on the grid: the last choice, requests to robots in the way, reachable goals.
 
 use super::OnGrid;
 use super::guidance::{Ask, BadInput, GuidanceInput};
@@ -56,8 +55,8 @@ impl MoveHistory {
         moves
     }
 
-    /// Stores the choice in `cell`. Returns a request to a robot that has been in the way for too
-    /// long. `idle`: moves since the robot was nearest to its target.
+    /// Stores the choice. Returns a request to a robot that has been in the way for too long.
+    /// `idle`: moves since the robot was nearest to its target.
     pub(super) fn note<S>(&mut self, input: &GuidanceInput<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<Ask> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
@@ -65,7 +64,6 @@ impl MoveHistory {
         self.choice = choice;
         let patience = |other: &Neighbor<S>| {
             if other.cell != cell {
-                // An arrived robot does not leave by itself.
                 return if other.mode == Mode::Arrived && idle > PATIENCE { 0 } else { PATIENCE };
             }
             // In the plane two robots can share a cell and usually pass each other. Otherwise the
@@ -86,10 +84,7 @@ fn occupant<'a, S>(input: &GuidanceInput<'a, S>, cell: Cell) -> Option<&'a Neigh
     input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
 }
 
-/// The own cell and the visible terrain.
-///
-/// # Errors
-/// [`BadInput`] if the window is missing or does not contain the cell.
+/// Fails if the window is missing or does not contain the cell.
 pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadInput> {
     let cell = here.cell.cell;
     let window = here.window.ok_or(BadInput)?;

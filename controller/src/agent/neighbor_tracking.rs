@@ -54,7 +54,6 @@ impl<S: Scalar, G> NeighborTracking<S, G> {
     pub fn new(inside: G, params: Option<TrackParams<S>>) -> Self {
         let mut tracker = SparseVec::new();
         if let Some(params) = params {
-            // Cannot fail: the capacity is 1.
             let _ = tracker.push(Tracker::new(params));
         }
         Self { inside, tracker }
@@ -68,10 +67,9 @@ impl<S: Scalar, G> NeighborTracking<S, G> {
 }
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// Processes the detections of all sensors at `now`, relative to the `state` of the next step.
-    /// Call it before each [`step`](Agent::step) with detections. Without a [`NeighborTracking`]
-    /// all are dropped and counted in [`Sighted::no_room`]. Work: [`Tracker::see`], and O(N TRACKS)
-    /// per step.
+    /// Processes the detections of all sensors at `now`, relative to the `state` of the next
+    /// [`step`](Agent::step), before that step. Without a [`NeighborTracking`] all are dropped and
+    /// counted in [`Sighted::no_room`]. Work: [`Tracker::see`], and O(N TRACKS) per step.
     pub fn see(&mut self, sightings: &[Sighting<S>], state: &KinematicState<S>, now: Instant) -> Sighted {
         let own = self.config.id;
         match self.guidance.tracker() {

@@ -12,8 +12,7 @@ use crate::wire::Wire;
 named! {
     /// A number that may change while the robot runs; the linked field describes its effect.
     pub enum Parameter {
-        /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m); unsafe below the radius of the
-        /// body.
+        /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m); at least that of the body.
         Radius = "radius_m",
         /// [`AgentConfig::beacon_period`](super::AgentConfig::beacon_period).
         BeaconPeriod = "beacon_period_s",

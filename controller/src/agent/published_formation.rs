@@ -1,6 +1,5 @@
 //! Moving in formation as published (A. V. Kuznetsov 2017, KUZ, algorithm 2): each robot weighs its
-//! own shortest route against all neighbours that it finds. For comparison only: it jams (`staya
-//! experiment formation`).
+//! own shortest route against all neighbours that it finds. For comparison only: it jams.
 //!
 //! [`PublishedFormation::decide`] follows algorithm 2 line by line; its criteria are in
 //! [`crate::formation::published`]. Where the paper is ambiguous or contradicts itself:
@@ -11,10 +10,9 @@
 //!   heads for `def`. It continues when its own sum is about r0 again (line 15). On the wire each
 //!   stop belongs to its sender, so line 16 cancels only own requests.
 //! - A robot that has reached its target stands there (eq. 2) and sends no requests.
-//! - `predict` takes the target of another robot from its beacon and the own template for its
-//!   neighbours.
-//! - Line 24 shuffles again, which is another draw. The missing and the surplus robots are asked to
-//!   choose another direction (item 6).
+//! - `predict` uses the target in another robot's beacon and the own template for its neighbours.
+//! - Line 24 shuffles again, which is another draw. Missing and surplus robots are redirected (item
+//!   6).
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{on_grid, reachable_goal};
@@ -49,7 +47,7 @@ pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize
     visits: VisitMemory<M>,
     here: Option<Cell>,
     leader: RobotId,
-    /// All robots of the template were found once, so the leader is fixed (line 4).
+    /// The leader is fixed (line 4).
     has_chosen: bool,
     /// The temporary target (lines 11 and 19).
     detour: Option<Cell>,
@@ -142,8 +140,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         ways.plus(&price).best().map(|dir| seen.cell + dir.offset())
     }
 
-    /// Lines 10 to 23, for the true target. Returns the request to the own leader, and whether to
-    /// continue despite a stop.
+    /// Lines 10 to 23. Returns the request to the own leader, and whether to continue despite a
+    /// stop.
     fn keep(
         &mut self,
         (cell, target): (Cell, Cell),
@@ -171,7 +169,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         (ask, kept == Kept::Well || (is_leader && self.detour.is_some()))
     }
 
-    /// Line 24 and item 6: asks the first surplus and the first missing robot.
+    /// Line 24 and item 6.
     fn ask_others<S>(&self, input: &GuidanceInput<'_, S>, found: &Found<F>) -> [Option<Ask>; 2] {
         if !self.formation.is_crowded(found) {
             return [None; 2];
@@ -257,7 +255,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         let heads_for = reachable_goal(&window, self.detour.unwrap_or(target));
         let price = sums(self.formation.gain, cell, &found.members);
         let ways = if heads_for == cell {
-            // It is there: no direction has a weight (algorithm 3, line 6).
+            // Algorithm 3, line 6.
             Some(Weights::CLOSED)
         } else {
             let others = input.neighbors.iter().map(|neighbor| neighbor.cell);

@@ -64,8 +64,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         }
     }
 
-    /// Sets when to repeat the search; [`Replan::UntilChanged`] offers one unshuffled move at a
-    /// time.
+    /// Sets when to repeat the search; [`Replan::UntilChanged`] offers one move, unshuffled.
     #[must_use]
     pub const fn replan(mut self, replan: Replan) -> Self {
         self.replan = replan;
@@ -79,7 +78,6 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         self
     }
 
-    /// `None` if no route exists.
     fn moves<S>(
         &mut self,
         input: &GuidanceInput<'_, S>,

@@ -16,8 +16,7 @@ pub struct SafetyInput<'a, S> {
     pub body: Body<S>,
     /// The velocity desired by the guidance law, m/s: finite; zero if the robot should stand.
     pub wish_mps: Vec3<S>,
-    /// Offset of the point that the robot heads straight for, metres; `None` if it roams, flocks or
-    /// stands.
+    /// Offset of the point that the robot heads straight for, metres; `None` if there is none.
     pub way_m: Option<Vec3<S>>,
     /// Nearby robots, nearest first.
     pub nearby: &'a [Nearby<S>],
@@ -30,9 +29,8 @@ pub trait Safety<S: Scalar> {
     /// Returns a safe velocity near the desired one, m/s; the agent limits it by [`Body::reach`].
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
-    /// Returns how the balls of silent neighbours grow. With `None` the layer ignores them, and the
-    /// agent neither applies the [`GapLimit`](crate::neighbor::GapLimit) nor stops when contact is
-    /// lost.
+    /// Returns how the balls of silent neighbours grow; with `None` the layer ignores them, and the
+    /// agent needs neither the [`GapLimit`](crate::neighbor::GapLimit) nor contact.
     fn inflation(&self) -> Option<StalenessInflation<S>> {
         None
     }

@@ -1,5 +1,4 @@
-//! The configuration of a robot as data, for scenarios and host links. Numbers are `f32` regardless
-//! of the robot's scalar type.
+//! The configuration of a robot as data, for scenarios and host links; `f32` for any scalar type.
 
 use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety, large};
 use super::cell_follower::CellFollower;
@@ -130,8 +129,8 @@ pub enum GuidanceSetup {
         template: Template<TEMPLATE>,
         speed_mps: Option<f32>,
     },
-    /// The formation of the paper, cell by cell. Feature-gated variants are last, so that builds
-    /// without them can decode the others.
+    /// The formation of the paper, cell by cell. Gated variants are last: builds without them can
+    /// decode the others.
     #[cfg(feature = "published")]
     Published {
         route: RouteSetup,
@@ -268,8 +267,7 @@ impl Setup {
         Agent::new(&self.agent.cast(), self.guidance.guidance(), self.safety.safety(), wire)
     }
 
-    /// Returns the required `CELLS` of a [`CostField`](crate::route::CostField); 0 if the robot
-    /// does not search.
+    /// Returns the `CELLS` of a [`CostField`](crate::route::CostField) that it needs; 0 for none.
     #[must_use]
     pub fn cells(&self) -> usize {
         match &self.guidance {

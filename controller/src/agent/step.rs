@@ -19,7 +19,6 @@ use crate::time::{Duration, Instant};
 use crate::wire::Wire;
 use heapless::Vec;
 
-/// Separates the random numbers of the agent from other uses.
 const PURPOSE: u32 = u32::from_be_bytes(*b"step");
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
@@ -44,8 +43,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         out
     }
 
-    /// Runs [`Agent::step`] with outputs that the caller provides, which saves about 500 bytes of
-    /// stack. Discards previous contents of `out`.
+    /// Runs [`Agent::step`] into `out` and discards its contents, which saves 500 bytes of stack.
     pub fn step_into(
         &mut self,
         inputs: &Inputs<'_, S, G::Input<'_>>,
@@ -133,8 +131,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                         link.placed(index, version);
                     }
                 }
-                // A request beyond the capacity is lost: stops are requested again, and old ones
-                // expire.
+                // Lost beyond the capacity: stops are requested again, and old ones expire.
                 Some(Received::PassOn(request)) => drop(pass_on.push(request)),
             }
         }
@@ -264,8 +261,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// Replaces the command by a collision-free velocity. A stationary robot gives way too, except
-    /// in modes without [`Mode::gives_way`].
+    /// A stationary robot gives way too, except in modes without [`Mode::gives_way`].
     #[inline(never)]
     fn keep_clear(
         &mut self,

@@ -14,8 +14,7 @@ use serde::{Deserialize, Serialize};
 pub struct CellState {
     /// The cell that it occupies.
     pub cell: Cell,
-    /// Time until it may leave the cell; 0 or less if it is free (A. V. Kuznetsov 2017, KUZ, eq.
-    /// 6).
+    /// Time until it may leave the cell; not above 0 if free (A. V. Kuznetsov 2017, KUZ, eq. 6).
     pub busy: Duration,
 }
 
@@ -24,9 +23,8 @@ pub struct CellState {
 pub struct OnGrid<'a> {
     /// Own state on the grid.
     pub cell: CellState,
-    /// The visible terrain, including the own cell; without it the robot is in
-    /// [`Mode::Fault`](crate::robot::Mode::Fault). Any size; routes are searched within the radius
-    /// of [`RouteParams`](crate::route::RouteParams).
+    /// The visible terrain of any size, including the own cell. Without it the robot is in
+    /// [`Mode::Fault`](crate::robot::Mode::Fault).
     pub window: Option<Window<'a>>,
 }
 
@@ -36,8 +34,7 @@ pub struct InPlane<'a, S> {
     /// Speed limit at the current place, m/s; rough terrain reduces it. At 0 or less the robot is
     /// in [`Mode::Fault`](crate::robot::Mode::Fault).
     pub max_speed_mps: S,
-    /// Visible static obstacles; [`grid_walls`](crate::obstacle::grid_walls) derives them from
-    /// terrain.
+    /// Visible static obstacles; see [`grid_walls`](crate::obstacle::grid_walls).
     pub obstacles: &'a [Obstacle<S>],
 }
 

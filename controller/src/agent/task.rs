@@ -5,8 +5,7 @@ use crate::grid::Cell;
 use crate::scalar::Scalar;
 use crate::wire::Wire;
 
-/// The guidance law cannot perform the task: it has another kind of goal, or moves by other means.
-/// The previous task continues.
+/// The guidance law has another kind of goal, or moves by other means. The previous task continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WrongTask;

@@ -31,7 +31,6 @@ fn route_agent(id: u32) -> RouteAgent {
     RouteAgent::new(&config(id), law, Unguarded, Postcard)
 }
 
-/// Robots three cells apart, robot 1 in front.
 fn formation_agent(id: u32) -> FormationAgent {
     let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 2).unwrap();
@@ -210,7 +209,6 @@ fn goals_are_assigned_by_packet_and_older_ones_ignored() {
     let orders = [goal(0, 5, 40), goal(2, 4, 50), goal(3, 6, 60), goal(2, 7, 70), goal(2, 7, 80)];
     let inbox = bytes(99, 0, 0, &orders);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
-    // Robot 2's place is three cells behind the top leader's.
     assert_eq!(agent.target(), Some(Cell::new(67, 0)));
 }
 
@@ -327,7 +325,6 @@ fn a_redirected_robot_chooses_another_direction_even_when_arrived() {
 fn a_blocked_robot_sends_a_request_to_the_robot_in_its_way() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
-    // A corridor one cell wide, and a robot in it.
     let mut cells = [BLOCKED; 121];
     cells[55..66].fill(1);
     let mut asked = None;

@@ -22,7 +22,6 @@ pub(super) trait Tunable<S>: Copy {
         true
     }
 
-    /// Changes a parameter unless the values would become inconsistent.
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         let mut tuned = *self;
         let takes = tuned.set(parameter, value) && tuned.is_sound();
@@ -120,7 +119,6 @@ impl<S: Scalar> Tunable<S> for BoidsParams<S> {
     }
 }
 
-/// `value * parts` rounded, if it fits.
 fn whole<S: Scalar>(value: S, parts: i32) -> Option<u16> {
     let parts = (value * S::from_i32(parts) + S::HALF).floor_to_i32()?;
     u16::try_from(parts).ok()

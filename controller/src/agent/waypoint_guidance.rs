@@ -15,8 +15,8 @@ const PASSED_RADII: i32 = 3;
 /// Moves straight to a waypoint, stays there, and follows a waypoint that moves. If another robot
 /// occupies the last one, it arrives beside that robot.
 ///
-/// The course is passed in the order of indices and ends at the last waypoint. Index 0 starts a new
-/// course, the next free index extends it, and an existing index moves that waypoint.
+/// Index 0 starts a new course, the next free index extends it, and an existing index moves that
+/// waypoint. The course is passed in the order of indices.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
@@ -34,7 +34,7 @@ impl<S: Scalar> WaypointGuidance<S> {
         Self { course: Vec::new(), leg: 0, beside: GoalOccupancy::NEW, tolerance_m, speed_mps }
     }
 
-    /// Returns the current waypoint's offset, metres, and velocity. Advances when one is passed.
+    /// Offset, metres, and velocity of the current waypoint. Advances when one is passed.
     fn next<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
         let passed_m = self.tolerance_m.max(input.body.radius_m * S::from_i32(PASSED_RADII));
         let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));

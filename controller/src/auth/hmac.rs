@@ -18,8 +18,8 @@ impl Mac {
         Self { inner: keyed(key, 0x36), outer: keyed(key, 0x5C) }
     }
 
-    /// The code of a message, given in parts. Two blocks of SHA-256 up to 55 bytes, then one per
-    /// 64.
+    /// The code of a message, given in parts. Two blocks of SHA-256 up to 55 bytes, then one per 64
+    /// bytes.
     #[must_use]
     pub fn of(&self, message: &[&[u8]]) -> [u8; 32] {
         let mut inner = Sha256::from_state(self.inner, 1);
@@ -38,7 +38,6 @@ impl fmt::Debug for Mac {
     }
 }
 
-/// The hash state after the key's block.
 fn keyed(key: &Key, pad: u8) -> [u32; 8] {
     let mut block = [pad; BLOCK];
     for (byte, secret) in block.iter_mut().zip(key.as_bytes()) {

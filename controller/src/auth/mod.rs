@@ -1,5 +1,4 @@
-//! Authentication: a key that the whole swarm shares, codes made with it, and protection against
-//! replays.
+//! Authentication: a key that the whole swarm shares, codes made with it, and replay protection.
 //!
 //! Padding and HMAC are implemented here around RustCrypto's SHA-256 compression function, in a few
 //! lines that visibly never panic: the linker's proof then does not depend on the optimiser.
@@ -32,8 +31,7 @@ impl Key {
         Self(bytes)
     }
 
-    /// The key of a passphrase: its SHA-256, as in MAVProxy's `signing setup` and Mission Planner.
-    /// O(length).
+    /// The key of a passphrase: its SHA-256, as in MAVProxy and Mission Planner. O(length).
     #[must_use]
     pub fn of_passphrase(passphrase: &[u8]) -> Self {
         let mut hash = Sha256::new();

@@ -85,7 +85,6 @@ fn late_frames_are_fresh_once_and_within_the_window() {
     assert_eq!(guard.admit(1, 100), Freshness::New);
     assert_eq!(guard.admit(1, 100), Freshness::Replayed);
     assert_eq!(guard.admit(1, 131), Freshness::New);
-    // 131 - 31 was received, 131 - 32 is forgotten.
     assert_eq!(guard.admit(1, 100), Freshness::Replayed);
     assert_eq!(guard.admit(1, 99), Freshness::Replayed);
     assert_eq!(guard.admit(1, 101), Freshness::Late);

@@ -20,9 +20,8 @@ impl<S: Scalar> Torus<S> {
         Vec2::new(wrap(place_m.x, width), wrap(place_m.y, height))
     }
 
-    /// The shortest vector that differs from `offset_m` by whole turns: each component is in
-    /// [-size/2, size/2]. An exact half keeps its sign, so that two robots see each other in
-    /// opposite directions.
+    /// The shortest vector that differs from `offset_m` by whole turns. An exact half keeps its
+    /// sign, so that two robots see each other in opposite directions.
     #[must_use]
     pub fn shortest(&self, offset_m: Vec2<S>) -> Vec2<S> {
         let [width, height] = self.size_m;

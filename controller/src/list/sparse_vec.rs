@@ -20,7 +20,6 @@ impl<T, const N: usize> SparseVec<T, N> {
         self.0.len() >= N
     }
 
-    /// Returns the item if the list is full.
     pub(crate) fn push(&mut self, item: T) -> Result<(), T> {
         if self.is_full() {
             return Err(item);

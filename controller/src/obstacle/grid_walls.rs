@@ -7,7 +7,6 @@ use crate::list;
 use crate::scalar::Scalar;
 use heapless::Vec;
 
-/// A side between a blocked and a passable cell, or several in one line.
 #[derive(Clone, Copy)]
 struct Wall<S> {
     /// By the distance to the robot ([`Vec2::length_key`]).
@@ -121,8 +120,8 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
     }
 }
 
-/// Whether each side towards the cell `back` places before separates a blocked from a passable
-/// cell, for the cell at `begin` and each `step` after it.
+/// Whether each side separates a blocked from a passable cell: `back` places before the cell at
+/// `begin` and each `step` after it.
 fn sides(cells: &[u8], begin: usize, step: usize, back: usize) -> impl Iterator<Item = bool> {
     let is_blocked = |at: usize| cells.get(at).map(|&cell| cell == BLOCKED);
     let mut at = begin;
@@ -154,7 +153,6 @@ mod tests {
         Window::new(cells, Cell::new(10, 20), width, height).unwrap()
     }
 
-    /// Walls in cells from the window's south-west corner.
     fn seen<const K: usize>(rows: &[&str], at: (f64, f64), reach: f64) -> List<[f64; 4]> {
         let bytes = cells(rows);
         let corner = FRAME.origin_m + Vec2::new(10.0, 20.0) * FRAME.cell_m;
@@ -178,7 +176,6 @@ mod tests {
         let (east, north) = ([3.0, 1.0, 3.0, 3.0], [1.0, 3.0, 3.0, 3.0]);
         assert_eq!(seen::<8>(&rows, (0.75, 1.5), 1.0), [west, south]);
         assert_eq!(seen::<8>(&rows, (1.5, 0.5), 1.0), [south, west]);
-        // Both are equally far.
         assert_eq!(seen::<8>(&rows, (0.5, 0.5), 1.0), [west, south]);
         assert_eq!(seen::<8>(&rows, (0.75, 1.5), 9.0), [west, south, north, east]);
     }

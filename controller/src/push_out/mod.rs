@@ -8,17 +8,14 @@
 //!
 //! **Differences to the paper:**
 //!
-//! - Robots and obstacles have bodies: the least distance is at least the sum of two radii, from an
-//!   obstacle the own radius.
+//! - Robots and obstacles have bodies, whose radii raise the least distance.
 //! - The whole step counts instead of its end, so that a fast robot cannot jump through a small
-//!   obstacle. Model 1 pushes out the deepest point of the step, within the visible border of the
-//!   zone.
+//!   obstacle. Model 1 pushes its deepest point to the visible border of the zone.
 //! - The paper steps sideways if position, new position and centre are on one line. Here they may
 //!   also nearly be, since a push back along the line leaves nothing of the step there either.
 //! - Robots that are already too near are pushed out no faster than they can move. Those in one
 //!   place separate by [`tie`](crate::neighbor::tie).
-//! - The paper's rule for several robots at once is lost with its figure 8; see
-//!   [`Evasion::Multiple`].
+//! - The paper's rule for several robots is lost with its figure 8; see [`Evasion::Multiple`].
 //! - Walls and half-spaces are supported. All computations are in space; in the plane z remains 0.
 
 pub mod zone;
@@ -70,8 +67,7 @@ pub struct PushOutParams<S> {
     /// How many robots are evaded at once.
     pub evasion: Evasion,
     /// Least distance (R_MinDist) of two robots' centres, and of a centre from an obstacle's
-    /// border, metres; above 0. Bodies raise it. One step's length more keeps robots apart if both
-    /// move.
+    /// border, metres; above 0. Bodies raise it. One step's length more keeps moving robots apart.
     pub min_distance_m: S,
 }
 
@@ -205,7 +201,6 @@ impl<'a, S: Scalar> Scene<'a, S> {
                 if let Some((_, other)) = deepest
                     && let Some(again) = other.evade(evading, model, Side::Rule)
                 {
-                    // Pushed out of one zone and into another: push out of that too.
                     let again = again.clamp_norm(longest);
                     best.consider(again, step, |limit| self.depth(again, limit));
                 }

@@ -94,7 +94,6 @@ fn model_1_steps_sideways_when_it_leads_straight_at_the_centre() {
     assert_close(stepped(Model::Radial, v(6.0, 0.05), &[], &around), v(-0.05, 6.0));
     let plane = Obstacle::Plane { normal: v(0.0, -1.0), distance_m: 3.0 };
     assert_close(stepped(Model::Radial, v(0.0, 4.0), &[], &[plane]), v(-4.0, 0.0));
-    // Straight up at a ball: to the east.
     let above = [ball(V::new(0.0, 0.0, 10.0), 3.0)];
     assert_close(stepped(Model::Radial, V::new(0.0, 0.0, 6.0), &[], &above), v(6.0, 0.0));
 }
@@ -107,7 +106,6 @@ fn model_2_turns_the_step_to_the_border_by_the_smaller_angle() {
     assert_close(stepped(Model::Tangential, v(6.0, 1.0), &[], &around), v(5.6, height));
     assert_close(stepped(Model::Tangential, v(6.0, -1.0), &[], &around), v(5.6, -height));
     assert_close(stepped(Model::Tangential, v(37f64.sqrt(), 0.0), &[], &around), v(5.6, height));
-    // Longer than the distance to the tangent point: along the tangent, with sine 1/2.
     let got = stepped(Model::Tangential, v(20.0, 0.1), &[], &around);
     let length = v(20.0, 0.1).norm();
     assert_close(got, v(length * 0.75f64.sqrt(), length * 0.5));
@@ -205,7 +203,6 @@ fn single_evasion_evades_the_nearest_and_multiple_all() {
 
 #[test]
 fn an_enclosed_robot_stops() {
-    // No step of 2 m is clear.
     let ring: Vec<_> = (0..12)
         .map(|k| {
             let (sin, cos) = Scalar::sin_cos(f64::from(k) * core::f64::consts::PI / 6.0);
@@ -303,7 +300,6 @@ fn pairs_pass_each_other_and_keep_the_distance_to_a_step() {
             let mut robots = [(v(0.0, 0.0), v(20.0, 0.0)), (v(20.0, y), v(0.0, y))];
             let (least, arrived) = walk(model, &mut robots, &[], 600);
             assert_eq!(arrived, 2, "{model:?} {y} {robots:?}");
-            // Each moves up to 0.1 m in a step.
             assert!(least > 1.89, "{model:?} {y} {least}");
         }
     }
@@ -372,7 +368,6 @@ proptest! {
         for model in MODELS {
             let plain = answer::<f64>(model, wish, &places);
             let got = answer::<f64>(model, turn(wish), &turned);
-            // Of two steps equally far from the wish, rounding chooses.
             let way = |got: V, wish: V| (got - wish).norm();
             let is_as_good = (way(got, turn(wish)) - way(plain, wish)).abs() < 1e-6;
             let is_same = (got - turn(plain)).norm() < 1e-6;

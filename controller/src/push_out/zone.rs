@@ -65,7 +65,6 @@ pub struct Zone<S> {
     pub(super) is_upright: bool,
 }
 
-/// Computed once for all zones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path<S> {
     step: Vec3<S>,
@@ -80,8 +79,7 @@ impl<S: Scalar> Path<S> {
 }
 
 impl<S: Scalar> Zone<S> {
-    /// Around another robot: `min_distance_m`, at least both radii. `None` for the robot itself and
-    /// for an unknown position.
+    /// Around another robot: `min_distance_m`, at least both radii. `None` for the robot itself.
     #[must_use]
     pub fn of_robot(other: &Nearby<S>, body: &Body<S>, min_distance_m: S) -> Option<Self> {
         let radii = body.radius_m + other.radius_m;
@@ -96,8 +94,8 @@ impl<S: Scalar> Zone<S> {
         })
     }
 
-    /// Around the part of an obstacle that is nearest to `step`: `min_distance_m` from its border,
-    /// at least the own radius. `None` if it is not finite.
+    /// Around the part of an obstacle that is nearest to `step`: `min_distance_m`, at least the own
+    /// radius, from its border. `None` if it is not finite.
     #[must_use]
     pub fn of_obstacle(obstacle: &Obstacle<S>, body: &Body<S>, min_distance_m: S, step: Vec3<S>) -> Option<Self> {
         let margin = at_least(min_distance_m, body.radius_m);
@@ -121,8 +119,7 @@ impl<S: Scalar> Zone<S> {
     }
 
     /// How deep `step` leads into the zone, metres; not above 0 if it does not. If the robot is
-    /// already too near, the end of a step counts if it leads out, and its deepest point if it
-    /// leads in.
+    /// already too near, the deepest point counts, or the end of a step that leads out.
     #[must_use]
     pub fn depth(&self, step: Vec3<S>) -> S {
         let step = self.part(step);
@@ -132,7 +129,6 @@ impl<S: Scalar> Zone<S> {
         }
     }
 
-    /// At least `floor`.
     pub(super) fn depth_from(&self, path: &Path<S>, floor: S) -> S {
         let depth = match self.shape {
             Shape::Ball { center, radius, .. } if !self.is_upright => {
@@ -277,8 +273,7 @@ fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<V
     Some(axis * along + across * width)
 }
 
-/// Cosine of the angle between the centre of a ball at `distance` and a step of `length` that ends
-/// on its border, or touches it before.
+/// Of the angle between the centre at `distance` and a step that ends on the border or touches it.
 fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
     let gap = distance - radius;
     let sum = distance + radius;

@@ -253,8 +253,7 @@ impl Scalar for Q16 {
     }
 
     fn unit(components: [Self; 3]) -> Option<[Self; 3]> {
-        // The longest component has 31 bits: squares still fit, and short vectors keep their
-        // precision.
+        // The longest component has 31 bits: squares fit, and short vectors keep their precision.
         let all = components.map(|c| c.bits().unsigned_abs()).iter().fold(0, |a, b| a | b);
         let shift = all.leading_zeros();
         if all == 0 {

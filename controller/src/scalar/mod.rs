@@ -65,8 +65,7 @@ pub trait Scalar:
     const EPSILON: Self;
     /// The largest finite number; its negative is in range too.
     const MAX: Self;
-    /// Whether precision is relative: squares of short and long vectors are as precise as their
-    /// lengths.
+    /// Whether precision is relative, so that squares are as precise as lengths.
     const IS_FLOATING: bool;
 
     /// An integer, rounded to nearest; saturates.
@@ -90,8 +89,7 @@ pub trait Scalar:
     #[must_use]
     fn to_milli(self) -> Option<i32>;
 
-    /// The nearest number, saturating; NaN gives `None`. For hosts and start-up: slow without a
-    /// double-precision FPU.
+    /// The nearest number, saturating; NaN gives `None`. Slow without a double-precision FPU.
     #[must_use]
     fn from_f64(value: f64) -> Option<Self>;
 
@@ -99,8 +97,7 @@ pub trait Scalar:
     #[must_use]
     fn to_f64(self) -> f64;
 
-    /// The nearest number, saturating; NaN gives `None`. For values from a host, a file or another
-    /// robot; uses integers and single precision only.
+    /// The nearest number, saturating; NaN gives `None`. Uses integers and single precision only.
     #[must_use]
     fn from_f32(value: f32) -> Option<Self>;
 
@@ -149,8 +146,7 @@ pub trait Scalar:
     #[must_use]
     fn norm(components: [Self; 3]) -> Self;
 
-    /// An integer that grows with the length, to compare lengths without a root and without
-    /// overflow; `u64::MAX` when a component is NaN.
+    /// An integer that grows with the length, without a root or overflow; `u64::MAX` for NaN.
     #[must_use]
     fn length_key(components: [Self; 3]) -> u64;
 

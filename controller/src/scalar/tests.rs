@@ -1,14 +1,11 @@
 use super::*;
 use proptest::prelude::*;
 
-/// A share of the exact value, or an absolute error.
 struct Tolerance {
-    /// Of sums, products, quotients and conversions.
     step: f64,
     relative: f64,
     root: f64,
     trig: f64,
-    /// Of sine and cosine per radian of the angle.
     reduction: f64,
     atan: f64,
     exp: f64,
@@ -53,7 +50,6 @@ fn near(got: f64, exact: f64, absolute: f64, relative: f64) -> Result<(), TestCa
     Ok(())
 }
 
-/// If the exact result is in the range of `S`.
 fn agrees_with_f64<S: Scalar>(a: f64, b: f64, t: &Tolerance) -> Result<(), TestCaseError> {
     let (p, q) = (S::from_f64(a).unwrap(), S::from_f64(b).unwrap());
     let (a, b) = (p.to_f64(), q.to_f64());

@@ -8,7 +8,6 @@ use crate::template::{Template, TemplateEntry};
 use heapless::Vec;
 use serde::{Deserialize, Serialize, Serializer};
 
-/// One bit each.
 const MAX_PARTS: usize = u64::BITS as usize;
 
 /// Entries in the largest template that [`TemplateAssignment::split`] accepts.
@@ -28,8 +27,7 @@ pub enum PartError {
     TooLarge,
     /// An entry is 0 hops away: the robot would be its own neighbour.
     NoHops,
-    /// The part contradicts an earlier part of the same version: slot, offset, number of parts, or
-    /// content.
+    /// The part contradicts an earlier part of the same version.
     Contradiction,
 }
 
@@ -115,12 +113,11 @@ impl TemplateAssignment {
     }
 }
 
-/// Collects the parts of the newest template of one sender for one robot, in any order and with
-/// repeats; about 12 `F` + 24 bytes.
+/// Collects the parts of the newest template of one sender for one robot; 12 `F` + 24 bytes.
 ///
-/// Pass only parts addressed to the robot by a sender that it obeys. A newer version (see
-/// [`Newest`]) discards all collected parts; older versions are ignored. Lost versions do no harm:
-/// the sender resends them, or sends newer ones.
+/// Pass only parts addressed to the robot by a sender that it obeys, in any order and with repeats.
+/// A newer version (see [`Newest`]) discards all collected parts; older versions are ignored. Lost
+/// versions do no harm: the sender resends them, or sends newer ones.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TemplateAssembler<const F: usize> {
     #[serde(serialize_with = "as_slice")]
@@ -205,8 +202,7 @@ impl<const F: usize> TemplateAssembler<F> {
         Ok(self.complete())
     }
 
-    /// Discards everything, so that any next version is accepted. Call it after the sender has
-    /// restarted, see [`Newest`].
+    /// Discards everything, so that any next version is accepted, after a restart of the sender.
     pub fn forget(&mut self) {
         *self = Self::new();
     }

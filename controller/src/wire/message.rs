@@ -85,8 +85,7 @@ pub struct Request {
 pub struct Ack {
     /// The robot that sent the request.
     pub to: RobotId,
-    /// The boot number of that robot when it sent the request; request numbers restart at each
-    /// boot.
+    /// The boot number of that robot when it sent the request.
     pub boot: u8,
     /// The number of the request.
     pub number: u8,
@@ -128,16 +127,14 @@ pub struct TemplateAssignment {
 pub struct GoalAssignment {
     /// The addressee; [`RobotId::NONE`] = all robots.
     pub to: RobotId,
-    /// Counts the goals of this sender, wraps; an older goal is ignored
-    /// ([`Newest`](super::Newest)).
+    /// Counts the goals of this sender, wraps; see [`Newest`](super::Newest).
     pub version: u8,
     /// The goal of the formation's top leader (each robot adds its own offset).
     #[serde(with = "fixint")]
     pub target: Cell,
 }
 
-/// A waypoint, possibly moving, in the plane or in space for one robot or for all. It is not
-/// acknowledged, see [`GoalAssignment`].
+/// A waypoint, possibly moving, for one robot or for all; not acknowledged, see [`GoalAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WaypointAssignment {

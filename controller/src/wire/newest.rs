@@ -19,8 +19,7 @@ impl Newest {
         Self { version: None }
     }
 
-    /// Records `version` and returns true if it is the first or newer than all before. Constant
-    /// work.
+    /// Records `version` and returns true if it is the first or newer than all before.
     #[must_use = "an assignment that is not newer must not be followed"]
     pub fn admit(&mut self, version: u8) -> bool {
         let is_newer = self.is_news(version);
@@ -30,8 +29,7 @@ impl Newest {
         is_newer
     }
 
-    /// Whether [`Newest::admit`] would accept `version`, for assignments that may still prove
-    /// unusable.
+    /// Whether [`Newest::admit`] would accept `version`, for assignments that may prove unusable.
     #[must_use]
     pub fn is_news(self, version: u8) -> bool {
         self.version.is_none_or(|newest| version.wrapping_sub(newest).cast_signed() > 0)

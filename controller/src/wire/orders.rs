@@ -1,5 +1,5 @@
-//! Received requests: each is executed once and acknowledged each time it arrives. The sending side
-//! is [`Requests`](super::Requests).
+//! Received requests, each executed once and acknowledged each time. [`Requests`](super::Requests)
+//! sends.
 
 use super::{Ack, Header, Request, RequestKind};
 use crate::list::SparseVec;
@@ -7,8 +7,7 @@ use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// A request up to this far behind a newer one on the same matter is old; one that seems farther
-/// behind is new, with a number that wrapped.
+/// A request this far behind a newer one is old; one farther behind is new, with a wrapped number.
 const LATE: u8 = 32;
 
 /// How to respond to a request.
@@ -18,8 +17,7 @@ const LATE: u8 = 32;
 pub struct Answer {
     /// The acknowledgement to send back.
     pub ack: Ack,
-    /// Whether the request arrived for the first time and is followed: pass it on up the leader
-    /// chain, or choose another direction.
+    /// Whether to execute the request: pass it on up the leader chain, or choose another direction.
     pub is_new: bool,
 }
 
@@ -52,11 +50,9 @@ impl Order {
 
 /// The requests that a robot received, on at most `S` matters at a time; 20 bytes each.
 ///
-/// Each matter (sender, origin, and either stop/resume or direction) has its own entry, so origins
-/// stop and resume independently. Within an entry the request that was sent last decides, whatever
-/// the order of arrival.
-///
-/// A full table evicts the entry without a stop that was received longest ago. If all entries hold
+/// A matter is a sender, an origin, and either stop/resume or direction, so origins stop and resume
+/// independently. On one matter the request that was sent last decides, in any order of arrival. A
+/// full table evicts the entry without a stop that was received longest ago. If all entries hold
 /// stops, further stops and redirections are refused. A stop is never evicted before its time.
 ///
 /// Times are compared by wrapped difference: call [`Orders::is_stopped`] at least every half hour.

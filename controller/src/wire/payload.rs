@@ -8,8 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Maximum length of a payload in bytes.
 pub const MAX_PAYLOAD: usize = 16;
 
-/// The data that a law sends after each beacon: any small value that serde supports; `()` costs
-/// nothing.
+/// The data that a law sends after each beacon: any small value that serde supports, or `()`.
 ///
 /// A neighbour has the default value until its first payload arrives. Postcard encodes an integer
 /// of more than 8 bits in up to 3, 5 or 10 bytes depending on its type, a float in 4 or 8. A value

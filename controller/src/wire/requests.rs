@@ -73,7 +73,6 @@ struct Pending {
     request: Request,
     sent: u8,
     due: Instant,
-    /// When to give up regardless of the number of sends.
     expiry: Instant,
 }
 
@@ -123,8 +122,7 @@ impl<const P: usize> Requests<P> {
     /// after the last send, but never before its first send.
     ///
     /// # Errors
-    /// [`AskError::Full`] if `P` other requests are pending, [`AskError::Nobody`] if `to` is
-    /// [`RobotId::NONE`].
+    /// [`AskError::Full`] if `P` requests are pending, [`AskError::Nobody`] for [`RobotId::NONE`].
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn ask(
         &mut self,
@@ -176,8 +174,7 @@ impl<const P: usize> Requests<P> {
         Some(Due::Send(request))
     }
 
-    /// When [`Requests::poll`] will have an action, seen from `now`; `None` if no request is
-    /// pending.
+    /// When [`Requests::poll`] will have an action, seen from `now`; `None` without requests.
     #[must_use]
     pub fn poll_at(&self, now: Instant) -> Option<Instant> {
         self.pending

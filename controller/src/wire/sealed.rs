@@ -77,8 +77,8 @@ pub struct Sealed<const N: usize = PEERS> {
 }
 
 impl<const N: usize> Sealed<N> {
-    /// Creates the format for a robot with one key at its start number `starts`, counted from 0 in
-    /// persistent memory; `None` from 2^20 on.
+    /// Creates the format for a robot with one key at its start number `starts`, from 0 to 2^20 -
+    /// 1.
     #[must_use]
     pub fn at_start(key: &Key, starts: u32) -> Option<Self> {
         Self::with_ring(Ring::new(key), RobotId::NONE, starts)
@@ -134,18 +134,15 @@ impl<const N: usize> Sealed<N> {
         match signer {
             Some(Signer::Swarm(_)) if own.is_some() && frame.message.is_order() => Err(DecodeError::Forged),
             Some(signer) => Ok(signer),
-            // Made with the own key of another robot.
             None if own.is_some() && is_elses => Err(DecodeError::Foreign),
             None => Err(DecodeError::Forged),
         }
     }
 }
 
-/// None occurs twice.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Epochs {
     epoch: u32,
-    /// Of the last frame.
     last: u16,
 }
 
@@ -208,8 +205,7 @@ impl<const N: usize> Wire for Sealed<N> {
         Beacon::MAX_FRAME_LEN
     }
 
-    /// Also returns [`EncodeError::Exhausted`] if the sequence has wrapped 4095 times since the
-    /// start.
+    /// Also fails if the sequence has wrapped 4095 times since the start.
     fn encode<const M: usize>(
         &mut self,
         header: Header,

@@ -88,8 +88,7 @@ async fn robot(p: Peripherals) -> Option<()> {
 #[embassy_executor::main]
 async fn main(_spawner: Spawner) {
     let mut config = Config::default();
-    // 16 MHz / 8 * 168, divided by 2 for the core and by 7 (48 MHz) for the random number
-    // generator.
+    // 16 MHz / 8 * 168, divided by 2 for the core and by 7 (48 MHz) for random numbers.
     let (prediv, mul, divp, divq) = (PllPreDiv::DIV8, PllMul::MUL168, PllPDiv::DIV2, PllQDiv::DIV7);
     config.rcc.pll = Some(Pll { prediv, mul, divp: Some(divp), divq: Some(divq), divr: None });
     (config.rcc.pll_src, config.rcc.sys) = (PllSource::HSI, Sysclk::PLL1_P);

@@ -27,7 +27,6 @@ mod tests {
         for round in 0..rounds {
             let mut rng = Rng::keyed(0, u32::from_be_bytes(*b"fuzz"), round, 0);
             let len = rng.below(longest + 1);
-            // Small values make choices repeat.
             let limit = if round % 2 == 0 { 256 } else { 8 };
             let bytes: Vec<u8> = (0..len).map(|_| rng.below(limit) as u8).collect();
             model(&bytes);

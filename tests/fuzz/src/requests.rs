@@ -51,13 +51,11 @@ struct Robot {
     requests: Requests<LINES>,
     orders: Orders<LINES>,
     window: SequenceWindow,
-    /// Model: all requests of this robot, across restarts.
+    /// All requests of this robot, across restarts.
     asked: Vec<Asked>,
-    /// Model: by number.
     pending: BTreeMap<u8, usize>,
     /// Model: by origin and whether they are standing.
     lines: BTreeMap<(RobotId, bool), Line>,
-    /// Model: time of the last accepted frame.
     heard_ms: i32,
 }
 
@@ -77,7 +75,6 @@ impl Robot {
         }
     }
 
-    /// All state is lost except its id and its boot counter.
     fn reboot(&mut self, sequence: u16) {
         for place in std::mem::take(&mut self.pending).into_values() {
             self.asked[place].ends += 1;
@@ -230,8 +227,7 @@ impl World {
         self.start + Duration::from_millis(self.now_ms)
     }
 
-    /// Simulates only the steps in which something can happen and those right before, in which
-    /// nothing may happen.
+    /// Simulates only the steps in which something can happen and those right before.
     fn pass(&mut self, span_ms: i32) {
         let end_ms = self.now_ms + span_ms / GRAIN_MS * GRAIN_MS;
         while self.now_ms < end_ms {
@@ -315,7 +311,6 @@ impl World {
         Ok(())
     }
 
-    /// Without losses, each robot can stop each other robot and release it.
     fn end(&mut self) {
         self.pass(10_000);
         for robot in &mut self.robots {
@@ -382,7 +377,6 @@ mod tests {
             world.robots[0].reboot(0);
             world.pass(DELAY_MS / 2 + 10);
             ask(&mut world, RequestKind::Stop);
-            // The acknowledgement from before the reboot first, then the others in their order.
             while !world.air.is_empty() {
                 let oldest = (0..world.air.len()).min_by_key(|at| world.air[*at].sent_ms);
                 world.deliver(oldest.unwrap_or(0), false);

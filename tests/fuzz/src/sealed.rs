@@ -8,8 +8,7 @@ use staya_controller::wire::{Frame, GoalAssignment, Header, MAX_FRAME_LEN, Messa
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::Signing;
 
-/// An attacker builds frames from two recorded ones: changed, truncated or new. No forged frame is
-/// accepted, and no recorded frame is accepted twice.
+/// No frame that an attacker builds from two recorded ones is accepted, and no frame twice.
 pub fn sealed(bytes: &[u8]) {
     let key = Key::of_passphrase(b"not the fuzzer's");
     let sealed = || Sealed::<2>::at_start(&key, 1).expect("a low number");

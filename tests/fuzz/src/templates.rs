@@ -15,8 +15,7 @@ const HEADER: Header = Header { boot: 0, sender: RobotId(1), sequence: 0 };
 /// In versions; the assembler distinguishes 127.
 const LATE: usize = 60;
 
-/// A commander sends templates, whose parts arrive in any order, repeatedly or never; or arbitrary
-/// parts arrive.
+/// Parts of a commander's templates arrive in any order, repeatedly or never; or arbitrary parts.
 pub fn templates(bytes: &[u8]) {
     let mut choice = Unstructured::new(bytes);
     let _ = match choice.arbitrary() {
@@ -25,7 +24,6 @@ pub fn templates(bytes: &[u8]) {
     };
 }
 
-/// Each template that comes out was sent, is complete, comes out once, and never after a newer one.
 fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut version: u8 = choice.arbitrary()?;
     let mut sent: Vec<(Template<F>, Vec<TemplateAssignment>)> = Vec::new();

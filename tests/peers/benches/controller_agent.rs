@@ -44,7 +44,7 @@ const TICK: Duration = Duration::from_millis(100);
 const LANDSCAPES: usize = 32;
 const TOP: Cell = Cell::new(50, 50);
 
-/// Received bytes of each step, one per sequence number, to be repeated cyclically.
+/// One per sequence number, to be repeated cyclically.
 fn inboxes() -> Vec<Vec<u8>> {
     let beacon = |robot: usize| Beacon {
         // Off its place, so that prediction must search its route.
@@ -115,10 +115,9 @@ fn agent_step(c: &mut Criterion) {
     group.finish();
 }
 
-/// Steps until the eight discs on their circles are back at their start.
 const ROUND: usize = 256;
 
-/// Received bytes of each step: eight discs on small circles 1 to 3 m away, at 0.5 m/s.
+/// Eight discs on small circles 1 to 3 m away, at 0.5 m/s.
 fn in_plane_inboxes() -> Vec<Vec<u8>> {
     let turn = |step: usize, robot: usize| (step % ROUND) as f64 / ROUND as f64 * core::f64::consts::TAU + robot as f64;
     let milli = |metres: f64| libm::round(metres * 1e3) as i32;

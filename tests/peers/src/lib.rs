@@ -1,5 +1,4 @@
-//! Tasks that Staya and comparable crates both solve, so that results agree before speed is
-//! compared.
+//! Tasks that Staya and comparable crates both solve, with equal results.
 
 pub mod crowd;
 pub mod flockers;
@@ -65,7 +64,6 @@ impl Task {
         let none: Option<&VisitMemory<0>> = None;
         let (from, target) = (self.from, self.target);
         if let Some(window) = window {
-            // A robot enclosed by walls has a cost field too.
             let _ = field.weights(&self.params(), &window, from, target, [], none);
             field.complete(&self.params());
         }
@@ -89,7 +87,6 @@ impl Task {
         }
     }
 
-    /// With the cost of each move.
     fn moves_into(&self, cell: Cell) -> impl Iterator<Item = (Cell, Cost)> {
         let params = self.params();
         let u = u32::from(self.get(cell));

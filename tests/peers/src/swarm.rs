@@ -1,5 +1,4 @@
-//! A whole step of collision avoidance for many robots: neighbours from Staya's cell index,
-//! velocities from Staya's ORCA or from `dodgy_2d`.
+//! A step of collision avoidance for many robots, by Staya's ORCA or by `dodgy_2d`.
 
 use crate::crowd::{HORIZON_S, NEIGHBORS, RADIUS_M, SPEED_MPS, STEP_S};
 use dodgy_2d::{Agent, AvoidanceOptions};

@@ -26,7 +26,6 @@ fn run(arguments: &[&str]) -> String {
     stderr
 }
 
-/// The summary without duration and paths.
 fn results(out: &str) -> BTreeMap<String, Vec<u8>> {
     let files = fs::read_dir(out).expect("a folder").map(|entry| {
         let path = entry.expect("it can be read").path();

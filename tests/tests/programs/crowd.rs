@@ -75,12 +75,10 @@ fn misbehave(address: SocketAddr, token: &str, number: usize) -> Option<TcpStrea
     );
     let garbage: Vec<u8> = (0..900_usize).map(|at| (at * (number + 7) % 251) as u8).collect();
     let words = match number % 7 {
-        // Silent.
         0 => Vec::new(),
         // Half a handshake.
         1 => head[..head.len() / 2].to_owned().into_bytes(),
         2 => garbage,
-        // A page that never reads.
         3 => format!("{head}\r\n").into_bytes(),
         // A page that sends invalid messages.
         4 => [format!("{head}\r\n").as_bytes(), &garbage].concat(),

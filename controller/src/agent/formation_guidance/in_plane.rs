@@ -1,5 +1,4 @@
-//! Moving in formation in the plane: places are points that move with the top leader, and routes
-//! around obstacles are those of the grid.
+//! Moving in formation in the plane.
 
 use super::{FormationGuidance, comes_after};
 use crate::agent::cell_follower::CellFollower;
@@ -22,10 +21,10 @@ use serde::{Deserialize, Serialize};
 /// [`FormationGuidance`] on a body that moves in the plane; [`crate::formation::Drive`] is the
 /// control law.
 ///
-/// Leaders and requests are handled as on the grid, as often as [`CellFollower`] decides. In each
-/// step a follower heads for its place as a point, with the velocity of its leader. The top leader
-/// heads straight for its goal on even terrain, at the pace of the slowest robot in contact. Where
-/// the straight line is blocked or costly, both follow the cells.
+/// Leaders and requests are those of the grid, as often as [`CellFollower`] decides. In each step a
+/// follower heads for its place as a point, with the velocity of its leader, and the top leader
+/// straight for its goal on even terrain, at the pace of the slowest robot in contact. Where the
+/// straight line is blocked or costly, both follow the cells.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
@@ -52,8 +51,7 @@ impl<S: Scalar> Step<'_, S> {
         self.metres(cell - self.cell) - self.offset_m
     }
 
-    /// The offset of the place `offset` cells from another robot, extrapolated by its velocity,
-    /// metres.
+    /// Offset of a place `offset` cells from another robot, extrapolated by its velocity, metres.
     #[inline(never)]
     fn beside(&self, input: &GuidanceInput<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
         other.offset_at(input.state.position, input.now, input.ages.expire_after).xy() + self.metres(offset)
@@ -63,8 +61,7 @@ impl<S: Scalar> Step<'_, S> {
         is_straight(&self.window, (self.cell, self.offset_m, self.cell_m), way_m, is_good)
     }
 
-    /// Whether a follower can go straight: no cell is impassable or costs more than twice the own
-    /// one.
+    /// No cell of the way is impassable or costs more than twice the own one.
     fn is_open(&self, way_m: Vec2<S>) -> bool {
         let own = self.window.get(self.cell).unwrap_or(BLOCKED);
         self.is_straight(way_m, &|cell| {
@@ -72,7 +69,6 @@ impl<S: Scalar> Step<'_, S> {
         })
     }
 
-    /// Top speed of the slowest robot at its place, as far as the places are visible.
     fn slowest_mps(&self, own_mps: S, entries: &[TemplateEntry]) -> S {
         let price = |cell: Cell| self.window.get(cell).filter(|&u| u != BLOCKED);
         let own = price(self.cell).unwrap_or(1);
@@ -80,8 +76,7 @@ impl<S: Scalar> Step<'_, S> {
         own_mps * S::from_ratio(own.into(), dearest.into())
     }
 
-    /// Whether a leader can go straight: no visible cell is easier than those below its line and
-    /// below the places of the others along it.
+    /// No visible cell is easier than those below the line and below the places of the others.
     fn is_even(&self, way_m: Vec2<S>, entries: &[TemplateEntry]) -> bool {
         let least = self.window.cells().iter().copied().filter(|&u| u != BLOCKED).min();
         let is_dear = |cell: Cell| self.window.get(cell).is_some_and(|u| u != BLOCKED && Some(u) > least);
@@ -115,8 +110,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.cells.inside()
     }
 
-    /// Returns the leader and the own place relative to it, unless this robot leads or travels
-    /// alone.
+    /// Returns the leader and the own place relative to it, unless this robot leads or is alone.
     fn leader<'a>(&self, input: &GuidanceInput<'a, S>, view: &Template<F>) -> Option<(&'a Neighbor<S>, Cell)> {
         let law = self.inside();
         let (id, offset) = law.top(input, view)?;
@@ -210,8 +204,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.is_there
     }
 
-    /// How far the followers are behind, metres; 0 if patience is exhausted or the robot travels
-    /// alone.
+    /// Metres; 0 if patience is exhausted or the robot travels alone.
     fn lag_to_wait_for(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -235,7 +228,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 }
 
-/// O(F log N).
 fn lag_m<S: Scalar, const F: usize>(
     input: &GuidanceInput<'_, S>,
     view: &Template<F>,

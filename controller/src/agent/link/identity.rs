@@ -11,8 +11,8 @@ use crate::time::Duration;
 use crate::wire::{Frame, Header, Payload, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
-    /// Returns the id under which the sender is known: its own, or [`RobotId::duplicate`] for a
-    /// second robot. `None` for an own echo and for a beacon with an implausible id or position.
+    /// Returns the sender's id, or [`RobotId::duplicate`] for a second robot. `None` for an own
+    /// echo and for a beacon with an implausible id or position.
     pub(super) fn known_as(
         &mut self,
         frame: &Frame,
@@ -56,7 +56,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         counted.max(known.age(listener.heard_at).unwrap_or(Duration::ZERO))
     }
 
-    /// Whether a beacon comes from the second of two other robots with one id.
     fn is_double(&self, header: Header, place: Position, listener: &ReceiveContext<'_, S>, fastest_mps: S) -> bool {
         let at = listener.heard_at;
         // Duplicate ids are the largest.
@@ -94,8 +93,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         if plausibility.believes_all_places() {
             return true;
         }
-        // The first position of a second robot is accepted, since both robots are avoided; further
-        // positions of both are checked.
+        // A second robot's first position is accepted, since both are avoided; then both are
+        // checked.
         let Some(known) = self.known(id) else {
             return true;
         };

@@ -11,8 +11,7 @@ use crate::time::Instant;
 use crate::wire::{Payload, SequenceWindow, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
-    /// Merges detected robots into the neighbour table, after the frames of a step. A full table
-    /// keeps the robots in `needed`. A detection counts as contact only for a robot that was in
+    /// Runs after the frames of a step. A detection counts as contact only for a robot that was in
     /// contact by radio; one that never was moves freely when no robot is in sight.
     pub(in super::super) fn see(
         &mut self,
@@ -40,7 +39,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 report(out, Event::NeighborEvicted(evicted));
             }
             if matches!(put, Put::Inserted | Put::Evicted(_)) {
-                // There are as many windows as entries.
                 let _ = self.windows.push((id, SequenceWindow::new()));
                 report(out, Event::NeighborFound(id));
             }

@@ -61,7 +61,6 @@ impl Guidance<f32> for Counting {
 
 type Told = (GuidanceInput<'static, f32>, InCells<'static, f32>);
 
-/// In a cell of 2 m.
 fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
     let input = GuidanceInput {
         land: None,
@@ -101,7 +100,7 @@ where
     law.decide(input, here, &mut Rng::new(1), &mut ())
 }
 
-/// Returns the decision, and the number of decisions of the law inside.
+/// Also returns the number of decisions of the law inside.
 fn ask(law: &mut CellFollower<f32, Counting>, told: &Told) -> (Decision<f32>, u32) {
     let decision = decide(law, told).expect("a decision");
     (decision, law.inside().decisions)
@@ -180,7 +179,6 @@ fn the_robot_heads_for_the_centre_of_the_next_cell() {
     let (v, way_m) = motion(&decision);
     assert!((v.x - ahead[0] / length).abs() < 1e-6 && (v.y - ahead[1] / length).abs() < 1e-6);
     assert_eq!(way_m, None);
-    // The same position relative to the next cell, which the robot has not reached yet.
     let (beside, _) = ask(&mut guidance, &told(Cell::new(6, 5), [-0.75, -0.25], 9.0, 0));
     let (v, _) = motion(&beside);
     assert!((v.x / v.y - 0.75 / 2.25).abs() < 1e-6, "{v:?}");
@@ -268,7 +266,6 @@ fn a_robot_in_the_plane_moves_to_its_goal_cell() {
     }
     cells.dedup();
     assert_eq!(agent.mode(), Mode::Arrived);
-    // Seven cells, three of them diagonal; it may cut a corner.
     assert_eq!(cells.last(), Some(&Cell::new(12, 8)));
     assert!((8..=11).contains(&cells.len()), "{cells:?}");
     assert!(cells.windows(2).all(|pair| pair[0].chebyshev(pair[1]) == 1));

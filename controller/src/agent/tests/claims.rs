@@ -103,7 +103,6 @@ fn duplicate_ids_evict_no_neighbour() {
     assert_eq!(known, [11, 12, 13, 14, 15, 16, 17, 18]);
 }
 
-/// The first jump may be a second robot, so both positions are avoided.
 #[test]
 fn a_robot_that_jumps_again_is_refused_until_it_has_settled() {
     let mut robot = listener(CLAIMS);

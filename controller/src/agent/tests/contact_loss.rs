@@ -14,7 +14,6 @@ pub(super) fn safety<S: Scalar>() -> OrcaSafety<S, 16> {
     OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(200) })
 }
 
-/// Robots on a circle of 2 m at slightly uneven angles, with goals on the opposite side.
 fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
     let mover = |i: u32| {
         let mut rng = Rng::keyed(9, 9, seed, i);
@@ -123,8 +122,7 @@ fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
     check::<Q16>();
 }
 
-/// Contact, or none, then six seconds of silence. Returns speed, mode, and whether a loss was
-/// reported.
+/// Six seconds of silence. Returns speed, mode, and whether a loss was reported.
 fn left_alone(hears: bool, silence: ContactLossPolicy<f32>) -> (f64, Mode, bool) {
     let config = AgentConfig { contact_loss: silence, ..in_plane(1) };
     let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);

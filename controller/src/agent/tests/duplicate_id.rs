@@ -133,7 +133,6 @@ fn the_own_duplicate_stays_in_a_full_table_and_its_orders_are_ignored() {
     }
 }
 
-/// Two robots with id 5, 4 m away, with equal or slightly different counters.
 #[test]
 fn two_other_robots_with_one_id_are_both_known_and_not_confused() {
     for (apart, boot) in [(0, 0), (1, 0), (5, 0), (40, 0), (0, 1)] {
@@ -159,7 +158,6 @@ fn two_other_robots_with_one_id_are_both_known_and_not_confused() {
 }
 
 proptest! {
-    /// One robot moves freely at up to 1 m/s; its frames are lost, repeated, delayed and reordered.
     #[test]
     fn one_robot_is_never_mistaken_for_two(
         turns in proptest::collection::vec((any::<[i8; 2]>(), 0..40_usize, any::<bool>(), 0..3_usize), 1..150),

@@ -129,7 +129,6 @@ fn one_goal_for_all_robots_turns_the_whole_formation() {
     assert!(agents.iter().all(|agent| agent.mode() == Mode::Arrived));
 }
 
-/// All frames of robot 2 between ticks 20 and 60 are lost.
 #[test]
 fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
@@ -177,7 +176,6 @@ fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin(
     let mut held = vec![];
     for n in 0..130_u32 {
         let heard = core::mem::take(&mut air);
-        // Robot 3 is stuck while the others continue.
         let ahead = if n < 6 { 0 } else { 6 };
         let cells = [16 + ahead, 13 + ahead, 10].map(|x| Cell::new(x, 5));
         for (i, agent) in agents.iter_mut().enumerate() {
@@ -304,7 +302,6 @@ fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
     agent.assign_goal(Cell::new(60, 5));
     let mut asked = vec![];
     for n in 0..5 {
-        // Robot 9 is in the place of robot 2.
         let inbox = bytes(9, 0, n, &[Message::Beacon(beacon_at(2, 5))]);
         let at = Cell::new(5, 5);
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
@@ -335,7 +332,6 @@ fn a_robot_leads_although_its_own_leader_is_out_of_range() {
     assert_eq!(at.y, 5, "beside its leader, not to its own goal in the north");
 }
 
-/// The window is larger than the search.
 #[test]
 fn terrain_costs_of_the_whole_formation_count_in_any_window() {
     let first = |radius: i16| {

@@ -132,7 +132,7 @@ fn boids_keep_their_speed_and_align_their_headings() {
         let speed = distance(robot.velocity_mps, [0.0; 2]);
         assert!((speed - 0.5).abs() < 1e-3, "{speed}");
         let off = distance(robot.velocity_mps, robots[0].velocity_mps);
-        // Up to 127 degrees apart at first; they keep swaying about their common heading.
+        // Up to 127 degrees apart at first.
         assert!(off < 0.2, "{:?}", robot.velocity_mps);
     }
 }

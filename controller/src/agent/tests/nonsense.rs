@@ -13,7 +13,6 @@ use proptest::prelude::*;
 
 const OWN: RobotId = RobotId(3);
 
-/// Near the origin, at the ends of the coordinates, and anywhere.
 fn cell() -> impl Strategy<Value = Cell> {
     let coordinate = || {
         prop_oneof![

@@ -1,5 +1,4 @@
-//! Tests of robots in the plane with arbitrary input: commands stay finite and within the body's
-//! limits.
+//! Tests of robots in the plane with arbitrary input: commands stay finite and within limits.
 
 use super::nonsense::{frame, noise_and_frames};
 use super::*;

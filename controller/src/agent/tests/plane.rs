@@ -21,7 +21,6 @@ pub(super) fn in_plane<S: Scalar>(id: u32) -> AgentConfig<S> {
     AgentConfig { seed: 1, ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP) }
 }
 
-/// A robot whose received states are one step old.
 pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
     AgentConfig { latency: STEP, ..in_plane(id) }
 }
@@ -201,7 +200,6 @@ fn an_invalid_radius_is_sent_as_zero() {
     }
 }
 
-/// Whether a stationary robot in `mode` evades an approaching one.
 fn evades(mode: Mode) -> bool {
     let guidance = Onlooker { is_broken: mode == Mode::Fault, ..Onlooker::default() };
     let coming = body_at([1000, 50], [-1000, 0], Mode::Cruise);
@@ -405,7 +403,6 @@ fn a_robot_without_a_speed_is_in_fault_and_stands() {
     check(BoidsGuidance::new(BoidsParams::new(0.3, 1.5, 0.05, 0.02), 0.5));
 }
 
-/// A law chosen at run time can receive the input of another one.
 #[test]
 fn the_input_of_another_law_is_a_fault() {
     type Any = AnyGuidance<f32, CELLS, VISITS, TEMPLATE>;

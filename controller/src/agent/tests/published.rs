@@ -30,7 +30,6 @@ struct Told {
     mode: Mode,
 }
 
-/// `off` cells east of its place.
 fn step(agent: &mut Published, n: u16, id: u32, off: i16, heard: &[(u32, Message)]) -> Told {
     let numbered = (10 * n..).zip(heard);
     let inbox: Vec<u8> =
@@ -91,7 +90,6 @@ fn a_robot_too_far_behind_requests_a_stop_and_heads_for_its_place() {
 fn a_leader_with_a_distant_follower_heads_for_def_and_requests_a_stop() {
     let mut two = agent(2);
     let _ = step(&mut two, 0, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, 0, 2))]));
-    // The sum of deviations points west.
     let told = step(&mut two, 1, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, -8, 2))]));
     assert_eq!((told.asks, told.mode), (vec![(1, RequestKind::Stop)], Mode::Forming));
     let told = step(&mut two, 2, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, -8, 2))]));

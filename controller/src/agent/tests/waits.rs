@@ -51,7 +51,6 @@ fn a_robot_without_contact_waits_for_the_radio() {
 
 #[test]
 fn a_wall_is_reported_as_the_way_and_a_door_as_a_turn() {
-    // A robot at a door, 1 m wide; another one comes out.
     let door = |half: f32| {
         let wall = |from: f32, to: f32| Obstacle::Wall([Vec2::new(1.5, from), Vec2::new(1.5, to)]);
         [wall(-20.0, -half), wall(half, 20.0)]

@@ -21,7 +21,6 @@ fn parts(version: u8, template: &Template<F>) -> StdVec<TemplateAssignment> {
     TemplateAssignment::split(TO, version, *slot, *offset, entries).unwrap().collect()
 }
 
-/// Returns the completed templates.
 fn put_all<'a>(
     assembler: &mut Assembler,
     parts: impl IntoIterator<Item = &'a TemplateAssignment>,
@@ -212,7 +211,6 @@ proptest! {
         }
     }
 
-    /// Up to 100 versions with late, repeated and lost parts.
     #[test]
     fn any_mix_of_versions_returns_only_templates_that_were_sent(
         start: u8,

@@ -280,7 +280,6 @@ fn a_cut_frame_is_refused_at_every_length_but_a_lost_delimiter_is_accepted() {
     }
 }
 
-/// Returns the messages and the number of rejected frames.
 fn received(stream: &[u8]) -> (StdVec<Frame>, usize) {
     let mut refused = 0;
     let read = frames(stream).filter_map(|frame| decode(frame).map_err(|_| refused += 1).ok());

@@ -80,7 +80,6 @@ fn the_robot_is_stopped_until_the_last_active_stop_ends() {
     assert!(orders.receive(frame(A, 0), &long, START).is_new);
     assert_eq!(receive(&mut orders, B, 1, Stop, START), NEW);
     assert_eq!(orders.stopped_until(START), Some(after(65_535)));
-    // Longer than requests are remembered.
     assert!(orders.is_stopped(after(65_534)));
     assert!(!orders.is_stopped(after(65_535)));
     let none = request(B, 2, Stop, 0);
@@ -202,14 +201,12 @@ struct Asked {
     expired: bool,
 }
 
-/// Random requests for 20 s, compared with a model that identifies each request by the order of
-/// asking. Returns how many expired.
+/// Random requests for 20 s, compared with a model. Returns how many expired.
 fn converse(mut radio: Radio, start: Instant) -> u32 {
     let retry = Retry::default();
     let mut requests = Requests::<4>::new(A, 3, retry);
     let mut orders = Orders::<4>::new(MEMORY);
     let mut asked: StdVec<Asked> = StdVec::new();
-    // Position of each pending request, by number.
     let mut places = [usize::MAX; 256];
     let (mut to_b, mut to_a) = (StdVec::new(), StdVec::new());
     let mut decisive: Option<usize> = None;

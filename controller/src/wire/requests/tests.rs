@@ -73,7 +73,6 @@ fn a_request_expires_with_its_validity_but_not_before_its_first_send() {
     let mut requests = requests::<1>();
     for valid_ms in [0, 300] {
         requests.ask(A, OWN, Stop, valid_ms, START).unwrap();
-        // Polled late: it is still sent once.
         let late = poll(&mut requests, after(400));
         assert_eq!(late.len(), 2);
         assert!(matches!(late.as_slice(), [Due::Send(_), Due::Expired(_)]));

@@ -101,7 +101,6 @@ fn a_robot_without_the_new_key_is_excluded_after_the_change() {
     }
 }
 
-/// The strongest attack by an insider: orders in the name of the operator.
 #[test]
 fn only_the_operator_can_give_orders() {
     let mut operator = operator();
@@ -167,8 +166,7 @@ fn the_operator_accepts_a_report_only_under_the_robots_own_key() {
 }
 
 proptest! {
-    /// Key frames are lost, repeated, delayed, reordered, damaged and misdirected; robots restart
-    /// in between with their stored keys or with none.
+    /// Robots also restart with their stored keys or with none.
     #[test]
     fn a_key_change_completes_despite_faults(steps in vec((0_u32..3, 1_u16..4, 0_u8..3, any::<u8>(), 0_usize..400), 0..60)) {
         let mut operator = operator();
@@ -200,7 +198,6 @@ proptest! {
                         prop_assert_eq!(wire.held().unwrap().0, before);
                     }
                 }
-                // Any frame that was ever sent, at any time and to any robot.
                 _ => {
                     if let Some(frame) = recorded.get(recorded.len().saturating_sub(1 + at % 8)) {
                         let _ = read(wire, frame);

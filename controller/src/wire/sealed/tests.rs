@@ -146,7 +146,6 @@ fn a_restarted_sender_is_accepted_and_its_old_frames_are_not() {
     for frame in &recorded {
         assert_eq!(receiver.decode(frame), Err(DecodeError::Replayed));
     }
-    // Its memory was lost.
     let forgotten = said(&mut sealed(0), header(1, 0));
     assert_eq!(receiver.decode(&forgotten), Err(DecodeError::Replayed));
 }

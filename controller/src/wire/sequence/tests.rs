@@ -83,7 +83,6 @@ fn accepted_and_latest_arrivals() {
     }
 }
 
-/// Unlimited memory that does not wrap.
 #[derive(Default)]
 struct Model {
     seen: BTreeSet<i64>,

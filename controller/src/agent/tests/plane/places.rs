@@ -106,7 +106,6 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
             arrived.push(n);
         }
     }
-    // It passes the first two within three own radii, and reaches the last one exactly.
     assert!(nearest_m[0] < 0.6 && nearest_m[1] < 0.6 && nearest_m[2] < 0.01, "{nearest_m:?}");
     // 15 m minus two corners, at 1 m/s without stops.
     assert!((130..150).contains(&arrived[0]) && arrived.len() > 40, "{:?}", arrived.first());
