@@ -51,8 +51,7 @@ fn main() {
                 max_acceleration_mps2: f64::MAX, // no inertia
                 step_s: STEP_S,
             };
-            // The preferred velocity reaches the goal in one step; ORCA returns the nearest safe
-            // one.
+            // The preferred velocity reaches the goal in one step.
             let goal = (-start(i as u32) - *own).xy();
             let wish = (goal * (1.0 / STEP_S)).clamp_norm(SPEED_MPS);
             let best = avoiders[i].velocity(&body, wish, Some(goal), &nearby, &[], &mut rng);

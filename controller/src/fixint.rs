@@ -1,6 +1,5 @@
 //! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixint")]`. Varints of
-//! positions and times would raise the greatest length of a frame. Same bytes as
-//! `postcard::fixint::le`.
+//! positions and times would raise the greatest length of a frame.
 
 use crate::grid::Cell;
 use crate::time::Instant;

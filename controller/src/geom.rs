@@ -85,8 +85,7 @@ macro_rules! impl_vector {
                 sum
             }
 
-            /// Squared length; fixed point saturates from 181 on: compare with
-            /// [`Self::length_key`].
+            /// Squared length; fixed point saturates from 181 on (see [`Self::length_key`]).
             #[must_use]
             pub fn norm_squared(self) -> S {
                 self.dot(self)
@@ -104,17 +103,15 @@ macro_rules! impl_vector {
                 S::length_key(self.padded())
             }
 
-            /// The vector of length 1 with the same direction ([`Scalar::unit`]); `None` for the
-            /// zero vector and unless all components are finite.
+            /// The vector of length 1 with the same direction, if one exists ([`Scalar::unit`]).
             #[must_use]
             pub fn normalized(self) -> Option<Self> {
                 let [x, y, z] = S::unit(self.padded())?;
                 Some(Vec3::new(x, y, z).into())
             }
 
-            /// The vector itself if it is at most `max` long, otherwise shortened to `max`. Zero if
-            /// a component is not finite or `max` is not positive, so that an invalid command
-            /// causes no motion.
+            /// The vector, shortened to `max` if it is longer. Zero if a component is not finite or
+            /// `max` is not positive, so that an invalid command causes no motion.
             #[must_use]
             pub fn clamp_norm(self, max: S) -> Self {
                 let sensible = self.is_finite() && max > S::ZERO;
@@ -297,8 +294,7 @@ impl Position {
         Self { mm }
     }
 
-    /// The position at these coordinates in metres, rounded to millimetres, saturating; `None` for
-    /// NaN. For hosts and start-up.
+    /// The position in metres, rounded to millimetres, saturating; `None` for NaN. For hosts.
     #[must_use]
     pub fn from_metres([x, y, z]: [f64; 3]) -> Option<Self> {
         Self::ORIGIN.moved(Vec3::new(x, y, z))

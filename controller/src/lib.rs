@@ -68,8 +68,7 @@ pub mod supervisor;
 pub mod template;
 pub mod time;
 #[cfg(feature = "wire")]
-// Decoded values come from the radio: each addition is meant to wrap, or says why it cannot
-// overflow.
+// Decoded values come from the radio: each addition is meant to wrap or cannot overflow.
 #[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
 

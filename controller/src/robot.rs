@@ -91,8 +91,7 @@ impl Mode {
         matches!(self, Self::Idle | Self::Arrived)
     }
 
-    /// Whether its agent steers it, even if only to stand, so that others can rely on it giving
-    /// way.
+    /// Whether its agent steers it, even if only to stand, so that others can rely on it.
     #[must_use]
     pub const fn gives_way(self) -> bool {
         !matches!(self, Self::Fault | Self::Passive)

@@ -27,8 +27,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Sharpness {
-    /// Cheapest first, equals in the order of [`Dir::MOVES`], without randomness. Two robots can
-    /// block each other for ever.
+    /// Cheapest first, equals in the order of [`Dir::MOVES`]. Two robots can block each other for
+    /// ever.
     #[default]
     Greedy,
     /// A move that costs this many ticks more is half as likely to come first. 0 equals `Greedy`;

@@ -7,8 +7,7 @@ use crate::robot::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// The place of one robot in the formation, and the relative places of at most `F` neighbours (KUZ
-/// section 3).
+/// The place of one robot in the formation, and those of at most `F` neighbours (KUZ section 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Template<const F: usize> {
@@ -41,8 +40,7 @@ pub enum TemplateError {
     NoSuchPlace,
     /// An edge names a place that does not exist, or joins a place to itself.
     BadEdge,
-    /// More than `F` neighbours are within the geodesic radius; use a smaller radius or a larger
-    /// `F`.
+    /// More than `F` neighbours are within the geodesic radius; use a smaller radius or a larger F.
     TooMany,
 }
 

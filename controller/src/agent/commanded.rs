@@ -56,8 +56,7 @@ pub struct Commanded<S, G> {
 }
 
 impl<S: Scalar, G> Commanded<S, G> {
-    /// Wraps `inside`. `speed_mps` and the arrival distance `tolerance_m` apply to
-    /// [`Wish::Waypoint`].
+    /// Wraps `inside`; speed and arrival distance `tolerance_m` apply to [`Wish::Waypoint`].
     #[must_use]
     pub const fn new(inside: G, speed_mps: S, tolerance_m: S) -> Self {
         Self { inside, wish: Wish::Own, since: None, straight: WaypointGuidance::new(speed_mps, tolerance_m) }

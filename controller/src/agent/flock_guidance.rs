@@ -126,7 +126,7 @@ impl<S: Scalar> GoalFlockGuidance<S> {
         self.goals.stage()
     }
 
-    /// Whether it is near its goal and blocked by robots. Stopping earlier would block later
+    /// Whether it is near its goal and blocked by robots. Stopping earlier would block other
     /// robots.
     fn is_there(&self, own: Position, way_m: Option<Vec3<S>>, wish_mps: Vec3<S>) -> bool {
         let is_drawn = matches!(self.goals.stage(), Stage::Goal(_));

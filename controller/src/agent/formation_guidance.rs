@@ -1,5 +1,4 @@
-//! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2). See [`crate::formation`] for
-//! differences from the paper.
+//! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2); see [`crate::formation`].
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{MoveHistory, PATIENCE, on_grid, reachable_goal};

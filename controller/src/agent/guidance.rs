@@ -73,7 +73,7 @@ use serde::{Deserialize, Serialize};
 /// fn law(law: CellFollower<f32, WaypointGuidance<f32>>) -> impl Guidance<f32> { law }
 /// ```
 pub trait Guidance<S: Scalar>: Teamwork {
-    /// The surroundings that it needs: [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane) or
+    /// Its surroundings: [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane),
     /// [`InCells`](super::InCells).
     type Input<'a>: Surroundings<S>;
 
@@ -144,16 +144,16 @@ pub trait Guidance<S: Scalar>: Teamwork {
 
 /// Messages between robots that travel together, in addition to beacons; all are optional.
 pub trait Teamwork {
-    /// Handles a request to choose another direction: excludes the last choice from the next
-    /// decision (A. V. Kuznetsov 2017, KUZ, section 7).
+    /// Handles a request to choose another direction (A. V. Kuznetsov 2017, KUZ, section 7):
+    /// excludes the last choice from the next decision.
     fn redirect(&mut self) {}
 
     /// Reports before a decision whether a stop request is active. The agent stops a robot without
     /// a leader itself, unless [`Status::recovers`]; laws that stop other robots store the flag.
     fn note_stop(&mut self, _is_asked: bool) {}
 
-    /// Handles a part of a formation template; returns whether it was accepted. The last argument:
-    /// the sender changed or restarted.
+    /// Handles a part of a formation template; returns whether it was accepted. The flag reports
+    /// that the sender changed or restarted.
     fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
         false
     }

@@ -105,9 +105,8 @@ pub enum Event {
     /// Two robots use this id; give one of them another id. Reported once, and again after the
     /// robot was lost and found. The second robot is known as [`RobotId::duplicate`].
     DuplicateId(RobotId),
-    /// A robot began to report a value beyond
-    /// [`AgentConfig::plausibility`](super::AgentConfig::plausibility); once per step for ids of no
-    /// robot.
+    /// A robot began to report a value beyond its [limit](super::AgentConfig::plausibility); once
+    /// per step for ids of no robot.
     Implausible {
         /// The sender.
         id: RobotId,
@@ -115,13 +114,11 @@ pub enum Event {
         claim: Claim,
     },
     /// The wire format has no counter or timestamp left
-    /// ([`EncodeError::Exhausted`](crate::wire::EncodeError)): the robot needs a new key to send.
-    /// Reported for each beacon that is due.
+    /// ([`EncodeError::Exhausted`](crate::wire::EncodeError)): the robot needs a new key.
     Muted,
 }
 
-/// Counts of frames that failed authentication, by [`Sealed`](crate::wire::Sealed) or MAVLink
-/// signing.
+/// Counts of frames that failed authentication, by [`Sealed`](crate::wire::Sealed) or by MAVLink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Refused {

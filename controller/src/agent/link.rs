@@ -122,8 +122,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 
     /// Moves neighbours to the list of lost robots once their silence is longer than packet loss
-    /// explains; with `remember` > 0 only after [`Ages::expire_after`]. Call this first in each
-    /// step.
+    /// explains; with `remember` > 0 only after [`Ages::expire_after`]. Comes first in each step.
     pub(super) fn expire(
         &mut self,
         own: Position,

@@ -92,8 +92,7 @@ pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadIn
     is_in_sight.then_some((cell, window)).ok_or(BadInput)
 }
 
-/// Returns `goal`, or the nearest passable visible cell (the smallest of equals) if `goal` is
-/// visibly impassable. O(cells) for an impassable goal, otherwise O(1).
+/// `goal`, or the nearest passable visible cell (the smallest of equals) if it is impassable.
 pub(super) fn reachable_goal(window: &Window<'_>, goal: Cell) -> Cell {
     if window.get(goal) != Some(BLOCKED) {
         return goal;

@@ -16,8 +16,7 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Guidance law `G` of a robot that detects other robots ([`Agent::see`]), in the plane and in
-/// space. Detected robots appear in the neighbour table, merged with their beacons: see
-/// [`Tracker`].
+/// space. The neighbour table holds detected robots merged with beacons: see [`Tracker`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTracking<S: Scalar, G> {
     inside: G,

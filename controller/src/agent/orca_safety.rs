@@ -10,8 +10,8 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// An [`Avoider`] as a safety layer, in the plane (heights unchanged) or in space by its source
-/// `P`.
+/// An [`Avoider`] as a safety layer; its source `P` acts in the plane (heights unchanged) or in
+/// space.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound(deserialize = "P: serde::Deserialize<'de>, Avoider<S, K, P>: serde::Deserialize<'de>"))]
 pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {

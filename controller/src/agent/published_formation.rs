@@ -140,8 +140,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         ways.plus(&price).best().map(|dir| seen.cell + dir.offset())
     }
 
-    /// Lines 10 to 23. Returns the request to the own leader, and whether to continue despite a
-    /// stop.
+    /// Lines 10 to 23. Returns a request to the own leader, and whether to continue despite a stop.
     fn keep(
         &mut self,
         (cell, target): (Cell, Cell),

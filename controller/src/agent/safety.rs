@@ -29,8 +29,8 @@ pub trait Safety<S: Scalar> {
     /// Returns a safe velocity near the desired one, m/s; the agent limits it by [`Body::reach`].
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
-    /// Returns how the balls of silent neighbours grow; with `None` the layer ignores them, and the
-    /// agent needs neither the [`GapLimit`](crate::neighbor::GapLimit) nor contact.
+    /// Returns how the balls of silent neighbours grow. With `None` they are ignored: there is no
+    /// [`GapLimit`](crate::neighbor::GapLimit), and no stop on contact loss.
     fn inflation(&self) -> Option<StalenessInflation<S>> {
         None
     }

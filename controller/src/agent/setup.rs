@@ -129,8 +129,7 @@ pub enum GuidanceSetup {
         template: Template<TEMPLATE>,
         speed_mps: Option<f32>,
     },
-    /// The formation of the paper, cell by cell. Gated variants are last: builds without them can
-    /// decode the others.
+    /// The formation of the paper. Last, so that builds without it can decode the other variants.
     #[cfg(feature = "published")]
     Published {
         route: RouteSetup,

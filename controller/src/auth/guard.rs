@@ -91,8 +91,8 @@ impl<const N: usize> ReplayGuard<N> {
         self.peers.iter().map(|peer| (peer.sender, peer.newest))
     }
 
-    /// Restores an entry of [`Self::export`]: frames up to `counter` are not fresh. False if it is
-    /// full.
+    /// Restores an entry of [`Self::export`]: frames up to `counter` are not fresh. False without
+    /// room.
     pub fn import(&mut self, sender: u32, counter: u64) -> bool {
         match self.find(sender) {
             Err(_) => self.insert(sender, counter, u32::MAX).is_fresh(),

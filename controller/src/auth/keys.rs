@@ -86,8 +86,7 @@ impl Seed {
         wrapped
     }
 
-    /// Decrypts a seed that was encrypted with this own key for this generation. Four blocks of
-    /// SHA-256.
+    /// Decrypts a seed that was encrypted with this own key, if it was. Four blocks of SHA-256.
     #[must_use]
     pub fn unwrap(own: &Mac, generation: u16, wrapped: &[u8; WRAPPED_LEN]) -> Option<Self> {
         let (check_sent, hidden) = wrapped.split_first_chunk::<SEED_LEN>()?;

@@ -12,8 +12,7 @@ use serde::{Deserialize, Serialize};
 /// A wire format: frames of one message each, which can be separated in a byte stream. Its
 /// functions accept any bytes, do not allocate or panic, and do bounded work.
 pub trait Wire: Clone + core::fmt::Debug + Serialize {
-    /// Maximum length in bytes of a frame with a [`Beacon`], kept free in the outbox by other
-    /// messages.
+    /// Maximum length in bytes of a frame with a [`Beacon`]; other messages leave this much free.
     fn beacon_len(&self) -> usize;
 
     /// Appends one frame to `out` and returns its length.
@@ -41,8 +40,7 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
     }
 
     /// Removes the next frame from `rest`, or bytes between frames, which [`Wire::decode`] will
-    /// reject and so count as damage. `None` when nothing is left; otherwise `rest` is shorter than
-    /// before.
+    /// reject and so count as damage. Returns `None` once `rest` is empty.
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]>;
 }
 
@@ -64,8 +62,7 @@ pub trait FromFormat: Wire {
     fn from_format(format: Format) -> Option<Self>;
 }
 
-/// The stateless frames of this crate: untagged postcard within COBS, see [`encode`] and
-/// [`decode`].
+/// The frames of this crate: untagged postcard within COBS, see [`encode`] and [`decode`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Postcard;
 

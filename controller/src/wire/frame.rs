@@ -220,8 +220,7 @@ pub enum DecodeError {
     Replayed,
     /// The frame is authentic, but its counter or timestamp is implausibly far ahead.
     Ahead,
-    /// The frame is authentic, but the table of senders ([`ReplayGuard`](crate::auth::ReplayGuard))
-    /// is full.
+    /// The frame is authentic, but the [`ReplayGuard`](crate::auth::ReplayGuard) is full.
     NoRoom,
     /// The frame is intact, but header or message are unknown to this code.
     Body,

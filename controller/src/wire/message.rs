@@ -49,8 +49,7 @@ pub struct Beacon {
     pub target: Cell,
 }
 
-/// The kind of a request. Requests travel up the leader chain, hop by hop (A. V. Kuznetsov 2017,
-/// KUZ, section 7).
+/// The kind of a request, which travels up the leader chain hop by hop (KUZ section 7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RequestKind {
@@ -120,8 +119,8 @@ pub struct TemplateAssignment {
     pub entries: heapless::Vec<TemplateEntry, TEMPLATE_PART>,
 }
 
-/// A new goal for one robot or for all. It is not acknowledged: the sender repeats it, with the
-/// same version, as long as a robot may have missed it.
+/// A new goal for one robot or for all. Not acknowledged: the sender repeats it, with one version,
+/// as long as a robot may have missed it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalAssignment {
@@ -164,8 +163,7 @@ pub enum KeyPhase {
     Forget,
 }
 
-/// A new key of the swarm, sealed with the own key of one robot. The operator repeats it until
-/// [`KeyHeld`] arrives.
+/// A new key of the swarm, sealed with one robot's own key and repeated until [`KeyHeld`] arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct KeyAssignment {

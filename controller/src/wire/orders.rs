@@ -1,5 +1,4 @@
-//! Received requests, each executed once and acknowledged each time. [`Requests`](super::Requests)
-//! sends.
+//! Received requests: executed once, acknowledged each time. Sender: [`Requests`](super::Requests).
 
 use super::{Ack, Header, Request, RequestKind};
 use crate::list::SparseVec;

@@ -106,8 +106,7 @@ impl<const P: usize> Requests<P> {
         self.boot = boot;
     }
 
-    /// Creates a table without requests, for frames with the robot number `own` and boot number
-    /// `boot`.
+    /// Creates a table without requests, for frames with this robot number and boot number.
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
         let () = Self::FITS;

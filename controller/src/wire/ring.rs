@@ -90,9 +90,8 @@ impl Ring {
         }
     }
 
-    /// The seeds to keep in persistent memory after each change: first the one to pass to
-    /// [`Self::of_generation`] at the next start, then the one to pass to [`Self::hear`]. `None`
-    /// for a key that was not derived from a seed.
+    /// The seeds to store after each change, if keys have them: first the one for
+    /// [`Self::of_generation`] at the next start, then the one for [`Self::hear`].
     #[must_use]
     pub fn seeds(&self) -> [Option<(u16, &Seed)>; 2] {
         [Some(&self.speaks), self.also.as_ref()].map(|group| {

@@ -77,8 +77,7 @@ pub struct Sealed<const N: usize = PEERS> {
 }
 
 impl<const N: usize> Sealed<N> {
-    /// Creates the format for a robot with one key at its start number `starts`, from 0 to 2^20 -
-    /// 1.
+    /// Creates the format for a robot with one key at its start number `starts`, below 2^20.
     #[must_use]
     pub fn at_start(key: &Key, starts: u32) -> Option<Self> {
         Self::with_ring(Ring::new(key), RobotId::NONE, starts)

@@ -1,8 +1,8 @@
 //! Invariants that must hold for arbitrary bytes.
 //!
-//! Each function interprets its bytes as data or as a sequence of actions and panics if an
-//! invariant is violated. A fuzzer searches for such bytes (`cargo xtask fuzz`); the tests here try
-//! random ones and earlier findings.
+//! Each function interprets its bytes as data or actions and panics if an invariant is violated. A
+//! fuzzer searches for such bytes (`cargo xtask fuzz`); the tests here try random ones and earlier
+//! findings.
 
 mod keys;
 mod mavlink;

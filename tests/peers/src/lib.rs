@@ -20,8 +20,7 @@ pub struct Task {
 
 impl Task {
     /// Creates natural terrain as in KUZ section 5: `peaks` cells of impassability 9, falling by
-    /// one per cell of distance down to 1. Robot and target are in opposite quadrants, and `walls`
-    /// cells are blocked.
+    /// one per cell of distance down to 1, with robot and target in opposite quadrants.
     #[must_use]
     pub fn natural(side: u16, peaks: usize, walls: usize, seed: u64) -> Self {
         let mut state = seed;

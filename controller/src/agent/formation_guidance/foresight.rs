@@ -18,8 +18,7 @@ const MAX_FORESIGHT: i16 = 3;
 impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
     FormationGuidance<CELLS, M, F, L, K>
 {
-    /// Of more than 32 robots, those of the template and the leader come first, then the smallest
-    /// ids.
+    /// At most 32 robots: those of the template and the leader first, then the smallest ids.
     #[inline(never)]
     pub(super) fn seen<S>(
         &self,

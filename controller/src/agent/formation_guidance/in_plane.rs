@@ -90,8 +90,7 @@ impl<S: Scalar> Step<'_, S> {
 impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize>
     FormationInPlane<S, CELLS, M, F, L>
 {
-    /// Runs `law` at a cruising speed of `speed_mps`, within the speed limit of the body (minus a
-    /// tenth for the top leader).
+    /// Runs `law` at a cruising speed of `speed_mps`, minus a tenth for the top leader.
     #[must_use]
     pub fn new(mut law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
         law.is_rigid = true;
@@ -180,8 +179,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         Ok(())
     }
 
-    /// Returns whether the robot is at its goal at offset `way_m`, or beside it if occupied.
-    /// Adjusts the wish of a robot that must let another one pass first.
+    /// Whether the robot is at its goal, or beside it if occupied. Adjusts the wish of a robot that
+    /// must let another one pass first.
     fn comes_to_rest(
         &mut self,
         input: &GuidanceInput<'_, S>,

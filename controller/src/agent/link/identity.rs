@@ -93,8 +93,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         if plausibility.believes_all_places() {
             return true;
         }
-        // A second robot's first position is accepted, since both are avoided; then both are
-        // checked.
+        // A second robot's first position is accepted, since both are avoided.
         let Some(known) = self.known(id) else {
             return true;
         };
