@@ -80,7 +80,7 @@ pub trait Guidance<S: Scalar>: Teamwork {
     /// The kind of goal.
     type Destination: Destination;
 
-    /// Scratch memory without state between calls, so many robots can share one.
+    /// Scratch memory without state between calls; one can serve all robots.
     type Workspace;
 
     /// Data for robots with the same law, sent after each beacon and received as

@@ -18,8 +18,7 @@ impl Mac {
         Self { inner: keyed(key, 0x36), outer: keyed(key, 0x5C) }
     }
 
-    /// The code of a message, given in parts: two blocks of SHA-256 up to 55 bytes, then one per
-    /// 64.
+    /// The code of a message in parts: two blocks of SHA-256 up to 55 bytes, then one per 64.
     #[must_use]
     pub fn of(&self, message: &[&[u8]]) -> [u8; 32] {
         let mut inner = Sha256::from_state(self.inner, 1);

@@ -6,14 +6,11 @@
 //! ```
 //!
 //! - Integers are little-endian. The top bit of `version` says that a tag is present. All versions
-//!   of the format keep COBS, this byte and the CRC, so a receiver can tell a foreign version from
-//!   damage.
-//! - The tag authenticates everything before it; [`Sealed`](super::Sealed) defines it. A tagged
-//!   frame also fits into 60 bytes, because its robot numbers are below 2^21 and take at most 3
-//!   bytes.
-//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) costs one byte,
-//!   since the content never exceeds 253 bytes. It is implemented here in lines that visibly never
-//!   panic.
+//!   of the format keep COBS, this byte and the CRC, so that a receiver recognises them.
+//! - The tag authenticates everything before it; [`Sealed`](super::Sealed) defines it. Robot
+//!   numbers in a tagged frame are below 2^21, so that it fits into 60 bytes.
+//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) costs one byte for
+//!   up to 253 bytes. The crate `cobs` is not used, because these few lines visibly never panic.
 //! - CRC-16/IBM-SDLC covers everything before it. It detects 1 to 3 flipped bits, any odd number of
 //!   them, and any burst of up to 16 bits in the content; 1 in 65,536 other errors passes, among
 //!   them flips of COBS' own bytes. It suffices because an undetected error must also parse as a
@@ -21,8 +18,7 @@
 //!   with one wrong bit in 10^4 and 80 beacons per second passes about one wrong beacon in 5 hours;
 //!   use the tag if that is too often.
 //!
-//! Flash: 512 bytes for the CRC table, 7 KiB for [`encode`] and [`decode`] on a Cortex-M0
-//! (`opt-level = "s"`).
+//! Flash on a Cortex-M0 (`opt-level = "s"`): CRC table 512 bytes, [`encode`] and [`decode`] 7 KiB.
 
 use super::message::{
     Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART, TemplateAssignment,

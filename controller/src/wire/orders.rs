@@ -6,7 +6,7 @@ use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// A request this far behind a newer one is old; one farther behind is new, with a wrapped number.
+/// A request up to this far behind a newer one is late; farther behind, its number has wrapped.
 const LATE: u8 = 32;
 
 /// How to respond to a request.
