@@ -129,7 +129,7 @@ pub enum GuidanceSetup {
         template: Template<TEMPLATE>,
         speed_mps: Option<f32>,
     },
-    /// The formation of the paper. Last, so that builds without it can decode the other variants.
+    /// The formation of the paper. Gated variants are last: builds without them decode the others.
     #[cfg(feature = "published")]
     Published {
         route: RouteSetup,
