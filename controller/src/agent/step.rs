@@ -1,4 +1,4 @@
-//! One step of an agent: [`Agent::step_into`]. Phases are not inlined, so that each frees its stack.
+//! One step of an agent: [`Agent::step_into`]. Phases are not inlined, so each frees its stack.
 
 use super::contact_loss::ContactState;
 use super::link::{ReceiveContext, Received, beacon, report};
@@ -43,7 +43,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         out
     }
 
-    /// Runs [`Agent::step`] into `out`, whose contents are discarded; saves about 500 bytes of stack.
+    /// Runs [`Agent::step`] into `out`, discarding its contents; saves about 500 bytes of stack.
     pub fn step_into(
         &mut self,
         inputs: &Inputs<'_, S, G::Input<'_>>,
