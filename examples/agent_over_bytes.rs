@@ -24,7 +24,6 @@ struct Robot {
 fn robot(id: u32, from: Position, to: Position) -> Robot {
     let config = AgentConfig::new(RobotId(id), RADIUS_M, TICK);
     let law = WaypointGuidance::new(SPEED_MPS, 0.02);
-    // A silent robot may have moved on, so its disc grows.
     let inflation = StalenessInflation { growth_mps: 0.1, max_m: 0.2 };
     let safety = OrcaSafety::new(AvoidParams::default(), inflation);
     let mut agent = OrcaAgent::new(&config, law, safety, Postcard);
@@ -41,13 +40,11 @@ fn main() {
     while robots.iter().any(|robot| robot.agent.mode() != Mode::Arrived) {
         let mut said = Vec::new();
         for robot in &mut robots {
-            // Sensor readings and received bytes go in; a command and packets to send come out.
             let surroundings = InPlane { max_speed_mps: SPEED_MPS, obstacles: &[] };
             let inputs = Inputs { state: robot.state, surroundings, inbox: &robot.inbox };
             let out = robot.agent.step(&inputs, now, &mut ());
             refused += out.rejected;
             said.push(out.outbox.to_vec());
-            // A body without inertia follows the command at once.
             if let Command::Velocity(velocity_mps) = out.command {
                 robot.state.velocity_mps = velocity_mps;
                 robot.state.position = robot.state.position.moved(velocity_mps * TICK_S).expect("near by");

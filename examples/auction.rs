@@ -1,10 +1,9 @@
 //! An auction without an auctioneer: 16 robots share out 16 places.
 //!
-//! With its beacons, each robot broadcasts the place that it bids for and its distance to it. If
-//! two robots bid for one place, the farther one withdraws and bids for the nearest place without a
-//! nearer bidder. This is a greedy form of H.-L. Choi, L. Brunet, J. P. How 2009, "Consensus-based
-//! decentralized auctions for robust task allocation", section III. Run it with
-//! `cargo run --example auction`.
+//! With its beacons, each robot broadcasts the place that it bids for and its distance to it. The
+//! farther of two bidders for one place withdraws and bids for the nearest place without a nearer
+//! bidder: a greedy form of H.-L. Choi, L. Brunet, J. P. How 2009, "Consensus-based decentralized
+//! auctions for robust task allocation", section III. Run it with `cargo run --example auction`.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
@@ -41,14 +40,13 @@ fn place(task: u8) -> Position {
     Position::from_mm([along(task % 4), along(task / 4), 0])
 }
 
-/// A place and the bidder's distance from it. At most five bytes in a packet.
+/// At most five bytes in a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Bid {
     task: u8,
     distance_mm: u32,
 }
 
-/// Guidance law that moves to the place it bids for.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Auction {
     bid: Option<Bid>,
@@ -116,7 +114,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The places that a robot occupies.
 fn taken(places_m: &[[f64; 3]]) -> BTreeSet<u8> {
     let off = |task: u8, [x, y, _]: [f64; 3]| {
         let [at_x, at_y, _] = place(task).mm.map(|mm| f64::from(mm) / 1000.0);

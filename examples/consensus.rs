@@ -1,9 +1,9 @@
 //! A payload in beacons: 20 robots on a line agree on the mean of their positions and meet there.
 //!
-//! Each robot hears only its nearest neighbours. With its beacons it broadcasts its estimate of the
-//! meeting point, and it moves this estimate towards those that it receives (R. Olfati-Saber, J. A.
-//! Fax, R. M. Murray 2007, "Consensus and cooperation in networked multi-agent systems", section
-//! II). Run it with `cargo run --example consensus`.
+//! Each robot hears only its nearest neighbours. It moves its estimate of the meeting point towards
+//! the estimates that it receives (R. Olfati-Saber, J. A. Fax, R. M. Murray 2007, "Consensus and
+//! cooperation in networked multi-agent systems", section II). Run it with `cargo run --example
+//! consensus`.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::*;
@@ -16,10 +16,9 @@ use std::{error::Error, ops::ControlFlow, path::Path};
 
 const ROBOTS: u32 = 20;
 const SPACING_M: f64 = 0.6;
-/// Time of departure, s, after which the estimates agree. Convergence takes time in proportion to
-/// the square of the number of robots.
+/// Time of departure, s; convergence takes longer with the square of the number of robots.
 const TALK_S: f64 = 100.0;
-/// Gain towards each received estimate. It is lower with many neighbours, for stability.
+/// Lower with many neighbours, for stability.
 const STEP: f32 = 0.2;
 
 /// Estimate of the meeting point, metres; `None` before the first decision.
@@ -72,7 +71,6 @@ impl Guidance<f32> for Meeting {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Each robot hears one neighbour on either side, and 10 % of the packets are lost.
     let starts: Vec<_> =
         (0..ROBOTS).map(|i| format!("{{ start_m = [{}, {}] }}", SPACING_M * f64::from(i), i % 2)).collect();
     let text = format!(

@@ -30,7 +30,6 @@ fn main() {
     let mut draw = || f64::from(rng.below(4000)) / 1000.0 - 2.0;
     let strewn = |_| Robot { place: Vec3::new(draw(), draw(), 0.0), velocity: Vec3::ZERO };
     let mut robots: Vec<Robot> = (0..ROBOTS).map(strewn).collect();
-    // The flock's reference: a point with constant velocity.
     let mut lead = Robot { place: Vec3::ZERO, velocity: Vec3::new(0.2, 0.0, 0.0) };
     for step in 0..=STEPS {
         if step % PICTURES_EVERY == 0 {
@@ -89,7 +88,7 @@ fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robo
     acceleration(params, &body, &nearby, &discs, Some(&reference))
 }
 
-/// Draws the scene from above: robots are `o`, discs `#`; a character is 0.2 m wide and 0.4 m high.
+/// Robots are `o`, discs `#`; a character is 0.2 m wide and 0.4 m high.
 fn picture(robots: &[Robot]) -> String {
     let mut text = String::new();
     for row in (-7..=7).rev() {

@@ -21,7 +21,6 @@ fn main() {
         let (sin, cos) = Scalar::sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(ROBOTS));
         Vec3::new(cos, sin, 0.0) * 5.0
     };
-    // The goal of each robot is the opposite point: minus its start.
     let has_arrived = |place: &Vec3<f64>, i: u32| (*place + start(i)).norm() < 0.05;
 
     let mut places: Vec<Vec3<f64>> = (0..ROBOTS).map(start).collect();
@@ -52,14 +51,12 @@ fn main() {
                 max_acceleration_mps2: f64::MAX, // no inertia
                 step_s: STEP_S,
             };
-            // The preferred velocity reaches the goal in one step; ORCA returns the nearest
-            // permitted velocity.
+            // The preferred velocity reaches the goal in one step.
             let goal = (-start(i as u32) - *own).xy();
             let wish = (goal * (1.0 / STEP_S)).clamp_norm(SPEED_MPS);
             let best = avoiders[i].velocity(&body, wish, Some(goal), &nearby, &[], &mut rng);
             chosen.push(best.velocity_mps.extend(0.0));
         }
-        // All robots have decided; now all move.
         velocities = chosen;
         for (place, velocity) in places.iter_mut().zip(&velocities) {
             *place += *velocity * STEP_S;

@@ -1,9 +1,8 @@
-//! Runs 20 robots in the simulator with a user-defined guidance law: the ring patrol of
-//! `own_part/src/lib.rs`.
+//! Runs 20 robots in the simulator with a user-defined guidance law, the ring patrol of
+//! `own_part/src/lib.rs`: `cargo run --release --example own_guidance -- out/patrol`.
 //!
-//! Run it with `cargo run --release --example own_guidance -- out/patrol`; without a folder it
-//! writes neither pictures nor a recording. `staya hil` runs the same law on emulated parts: see
-//! docs/project.md.
+//! Without a folder it writes neither pictures nor a recording. `staya hil` runs the same law on
+//! emulated parts: see docs/project.md.
 
 use patrol::Patrol;
 use staya_plot::motion_pictures;

@@ -1,6 +1,5 @@
-//! A robot that sees only a window of 11 x 11 cells leaves a dead end larger than this window,
-//! because it remembers the cells that it has visited. Run it with
-//! `cargo run --example window_routing`.
+//! A robot that sees only a window of 11 x 11 cells leaves a larger dead end, because it remembers
+//! visited cells. Run it with `cargo run --example window_routing`.
 
 use staya_controller::cost::Gain;
 use staya_controller::grid::{BLOCKED, Cell, Window};
@@ -28,7 +27,6 @@ const LAND: [&str; 17] = [
 ];
 const START: Cell = Cell::new(3, 8);
 const GOAL: Cell = Cell::new(45, 8);
-/// Ticks to cross a cell; cells outside the map are blocked.
 fn impassability(cell: Cell) -> u8 {
     let row = usize::try_from(LAND.len() as i16 - 1 - cell.y).ok();
     let row = row.and_then(|row| LAND.get(row));
@@ -44,8 +42,7 @@ fn main() {
     // Parameters for mazes: a high cost for visited cells.
     let params = RouteParams { a2: Gain::from_int(30), ..RouteParams::default() };
     let side = 2 * u16::from(params.radius) + 1;
-    // The robot stores the last 256 cells that it was in. A search needs (side + 2)^2 cells of
-    // scratch memory.
+    // A search needs (side + 2)^2 cells of scratch memory.
     let mut router = Router::<256>::new();
     let mut field = CostField::<169>::new();
     let (mut cell, mut way, mut ticks) = (START, vec![START], 0);
@@ -56,8 +53,7 @@ fn main() {
             .collect();
         let window = Window::new(&seen, corner, side, side).expect("side times side cells");
         router.observe(&params, cell, GOAL);
-        // Lowest cost of each of the eight moves. The last argument would list cells of other
-        // robots.
+        // The last argument would list cells of other robots.
         let weights =
             router.weights(&params, &mut field, &window, cell, GOAL, []).expect("there is a way out");
         cell = cell + weights.best().expect("a move is open").offset();

@@ -1,4 +1,4 @@
-//! The state and limits of the robot's own body that guidance and collision avoidance use.
+//! The robot's own body, as guidance and collision avoidance use it.
 
 use crate::geom::Vec3;
 use crate::robot::RobotId;
@@ -24,10 +24,8 @@ pub struct Body<S> {
 
 impl<S: Scalar> Body<S> {
     /// Returns the velocity nearest to `wish_mps` that the body can have after one step, within its
-    /// acceleration and speed limits, m/s. A component of the wish that is not a number counts as
-    /// zero.
-    ///
-    /// A body above its speed limit (it has just entered rough terrain) slows down first.
+    /// acceleration and speed limits, m/s. A NaN component of the wish counts as zero; a body above
+    /// its speed limit (on entering rough terrain) slows down first.
     #[must_use]
     pub fn reach(&self, wish_mps: Vec3<S>) -> Vec3<S> {
         let wish = wish_mps.clamp_norm(self.max_speed_mps);
@@ -85,7 +83,6 @@ mod tests {
         let body = body([1.0, 0.0], 2.0, 1.0);
         assert_eq!(body.reach(Vec3::new(-2.0, 0.0, 0.0)).x, 0.5);
         assert_eq!(body.reach(Vec3::new(1.25, 0.0, 0.0)).x, 1.25);
-        // Faster than the speed limit of its current place.
         assert_eq!(Body { max_speed_mps: 0.25, ..body }.reach(Vec3::ZERO).x, 0.5);
     }
 

@@ -1,8 +1,8 @@
 //! Costs of moves as integers, identical on host and device.
 //!
-//! A cost is a time in units of 1/[`TICK`] of a tick; a tick is the time in which a robot crosses a
-//! cell of impassability 1. Behaviours give each of the eight moves a weight and add their weights
-//! (A. V. Kuznetsov 2017, KUZ, section 7: "it is simplest to add them").
+//! A cost is a time in units of 1/[`TICK`] of a tick, the time to cross a cell of impassability 1.
+//! Behaviours give each of the eight moves a weight and add their weights (A. V. Kuznetsov 2017,
+//! KUZ, section 7: "it is simplest to add them").
 
 use crate::grid::{Dir, UNIT};
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ pub struct Gain(u16);
 impl Gain {
     /// Number of fractional bits.
     pub const FRACTION_BITS: u32 = 4;
-    /// 0: the term has no effect.
+    /// 0, so that the term has no effect.
     pub const ZERO: Self = Self(0);
     /// 1.
     pub const ONE: Self = Self::from_int(1);
@@ -54,8 +54,8 @@ impl Gain {
     }
 }
 
-/// The best cost of each of the eight moves. For a route, it is the least T over the routes that
-/// begin with the move and do not return to the robot's cell (KUZ eq. 8).
+/// The best cost of each of the eight moves; for a route, the least T over the routes that begin
+/// with the move and do not return to the robot's cell (KUZ eq. 8).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Weights([Cost; 8]);
@@ -83,14 +83,13 @@ impl Weights {
         }
     }
 
-    /// Returns the cheapest move, the first of equals in the order of [`Dir::MOVES`]; `None` if all
-    /// are closed.
+    /// Returns the cheapest open move, the first of equals in the order of [`Dir::MOVES`].
     #[must_use]
     pub fn best(&self) -> Option<Dir> {
         self.iter().filter(|&(_, cost)| cost != EXCLUDED).min_by_key(|&(_, cost)| cost).map(|(dir, _)| dir)
     }
 
-    /// Adds the weights of each move. A move that is closed in one of them stays closed.
+    /// Adds the weights of each move; a move that is closed in one of them stays closed.
     #[must_use]
     pub fn plus(mut self, other: &Self) -> Self {
         for (dir, cost) in other.iter() {

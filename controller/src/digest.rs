@@ -1,17 +1,14 @@
 //! A hash of any state: equal states have equal digests on every target.
 //!
-//! [`digest`] walks a value with serde and mixes its numbers in order. It does not depend on the
-//! width of `usize`, the order of fields in memory, padding, or the sign and payload of NaN, which
-//! differ between processors. It detects accidental differences; it does not resist deliberate
-//! collisions.
+//! [`digest`] mixes the numbers that serde visits, in order, regardless of the width of `usize`,
+//! the layout in memory, and the sign and payload of NaN. It detects accidental differences; it
+//! does not resist deliberate collisions.
 
 use core::fmt::{self, Display};
 use serde::ser::{self, Impossible, Serialize};
 
-/// Returns the hash of a state. O(numbers in the state), with a 64-bit multiplication each.
-///
-/// It covers numbers, booleans, options, enums, tuples, structs and sequences. Text, maps and byte
-/// strings are ignored.
+/// Returns the hash of the numbers, booleans, options, enums, tuples, structs and sequences in a
+/// state; text, maps and byte strings are ignored. O(numbers), with a 64-bit multiplication each.
 #[must_use]
 pub fn digest<T: Serialize + ?Sized>(value: &T) -> u64 {
     let mut state = Digest(0xCBF2_9CE4_8422_2325);
@@ -29,8 +26,7 @@ pub const fn chained(before: u64, next: u64) -> u64 {
     state.0
 }
 
-/// State that digests omit, for `#[serde(with = "uncounted")]`: keys, and values derived from other
-/// state. It is still serialised.
+/// State that digests omit (keys, values derived from other state); it is still serialised.
 pub mod uncounted {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -87,7 +83,6 @@ impl ser::Error for NotWalked {
     }
 }
 
-/// Implements numbers of up to 32 bits.
 macro_rules! words {
     ($($name:ident: $number:ty),*) => {
         $(fn $name(self, value: $number) -> Result<(), NotWalked> {
@@ -183,7 +178,7 @@ impl ser::Serializer for &mut Digest {
     }
 
     fn serialize_seq(self, len: Option<usize>) -> Result<Self, NotWalked> {
-        // The length distinguishes a sequence and its successor from another split.
+        // Distinguishes a sequence and its successor from another split.
         self.mix(len.map_or(u32::MAX, |len| len as u32));
         Ok(self)
     }
@@ -235,7 +230,6 @@ impl ser::Serializer for &mut Digest {
     }
 }
 
-/// Implements values with parts, in order.
 macro_rules! parts {
     ($($name:ident::$part:ident),*) => {
         $(impl ser::$name for &mut Digest {
@@ -260,7 +254,6 @@ parts!(
     SerializeTupleVariant::serialize_field
 );
 
-/// Implements values with named parts; names are ignored.
 macro_rules! named_parts {
     ($($name:ident),*) => {
         $(impl ser::$name for &mut Digest {

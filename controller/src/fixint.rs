@@ -1,21 +1,13 @@
-//! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixint")]`.
-//!
-//! Postcard writes integers in 7-bit groups (varint), which is short for small numbers and up to
-//! half longer for large ones. Positions and times are large, and a fixed width keeps the greatest
-//! length of a frame near the usual one. The bytes equal those of `postcard::fixint::le`, which
-//! supports plain integers only.
+//! Integers of fixed width on the wire, little-endian, for `#[serde(with = "fixint")]`. Varints of
+//! positions and times would raise the greatest length of a frame.
 
 use crate::grid::Cell;
 use crate::time::Instant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A value with a fixed number of bytes.
 pub(crate) trait Fixed: Copy {
-    /// An array of bytes, or an array of arrays.
     type Bytes: Serialize + for<'de> Deserialize<'de>;
-    /// Converts to bytes, least significant first.
     fn to_bytes(self) -> Self::Bytes;
-    /// Converts from bytes; every combination is valid.
     fn from_bytes(bytes: Self::Bytes) -> Self;
 }
 

@@ -1,5 +1,4 @@
-//! Vectors in the plane and in space. Degenerate geometry returns `None` or a defined value, never
-//! a hidden NaN.
+//! Vectors in the plane and in space. Degenerate geometry gives `None` or a defined value.
 
 use crate::scalar::{Scalar, cast};
 use core::fmt::Debug;
@@ -48,8 +47,7 @@ impl<S> Vec3<S> {
     }
 }
 
-/// The operations that algorithms of any dimension need of [`Vec2`] and [`Vec3`]; both types also
-/// have them as methods.
+/// The operations that algorithms of any dimension need of [`Vec2`] and [`Vec3`].
 #[expect(missing_docs, reason = "the vectors' own methods document them")]
 pub trait Vector:
     Copy
@@ -69,7 +67,6 @@ pub trait Vector:
     fn is_finite(self) -> bool;
 }
 
-/// The operations of both vector types, written once over their components.
 macro_rules! impl_vector {
     ($vector:ident { $($c:ident),+ }, $padded:expr) => {
         impl<S: Scalar> $vector<S> {
@@ -88,8 +85,7 @@ macro_rules! impl_vector {
                 sum
             }
 
-            /// Squared length; fixed point saturates from a length of 181 on: compare with
-            /// [`Self::length_key`].
+            /// Squared length; fixed point saturates from 181 on (see [`Self::length_key`]).
             #[must_use]
             pub fn norm_squared(self) -> S {
                 self.dot(self)
@@ -107,18 +103,15 @@ macro_rules! impl_vector {
                 S::length_key(self.padded())
             }
 
-            /// The vector of length 1 with the same direction; `None` for the zero vector and when
-            /// a component is not finite ([`Scalar::unit`]).
+            /// The vector of length 1 with the same direction, if one exists ([`Scalar::unit`]).
             #[must_use]
             pub fn normalized(self) -> Option<Self> {
                 let [x, y, z] = S::unit(self.padded())?;
                 Some(Vec3::new(x, y, z).into())
             }
 
-            /// The vector itself if it is at most `max` long, otherwise shortened to `max`.
-            ///
-            /// Zero if a component is not finite or `max` is not positive, so that an invalid
-            /// command causes no motion.
+            /// The vector, shortened to `max` if it is longer. Zero if a component is not finite or
+            /// `max` is not positive, so that an invalid command causes no motion.
             #[must_use]
             pub fn clamp_norm(self, max: S) -> Self {
                 let sensible = self.is_finite() && max > S::ZERO;
@@ -212,7 +205,6 @@ macro_rules! impl_vector {
 impl_vector!(Vec2 { x, y }, |v: Vec2<S>| [v.x, v.y, S::ZERO]);
 impl_vector!(Vec3 { x, y, z }, |v: Vec3<S>| [v.x, v.y, v.z]);
 
-/// Drops the height.
 impl<S: Scalar> From<Vec3<S>> for Vec2<S> {
     fn from(v: Vec3<S>) -> Self {
         v.xy()
@@ -283,10 +275,8 @@ impl<S: Scalar> Vec3<S> {
 }
 
 /// A position in the world in whole millimetres, within 2147 km of the shared origin along each
-/// axis.
-///
-/// It uses integers, because 32-bit floats have a resolution of only 6 cm 1000 km from the origin,
-/// and fixed point ends at 32 km. Everything else is computed from differences, which are small.
+/// axis. Integers, because 1000 km from the origin 32-bit floats resolve only 6 cm, and fixed point
+/// ends at 32 km; all else is computed from differences, which are small.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Position {
@@ -304,14 +294,13 @@ impl Position {
         Self { mm }
     }
 
-    /// The position at these coordinates in metres, rounded to millimetres, saturating; `None` if
-    /// one of them is not a number. For hosts and start-up (see [`Scalar::from_f64`]).
+    /// The position in metres, rounded to millimetres, saturating; `None` for NaN. For hosts.
     #[must_use]
     pub fn from_metres([x, y, z]: [f64; 3]) -> Option<Self> {
         Self::ORIGIN.moved(Vec3::new(x, y, z))
     }
 
-    /// The vector from `other` to here, metres. Exact up to the scalar's own precision; saturates.
+    /// The vector from `other` to here, metres; exact up to the scalar's own precision, saturates.
     #[must_use]
     pub fn since<S: Scalar>(self, other: Self) -> Vec3<S> {
         let [a, b, c] = self.mm;
@@ -423,7 +412,6 @@ mod tests {
         assert_eq!(c, b);
     }
 
-    /// Compares vector functions of `S` with those of f64, all within `tolerance` of the length.
     fn agrees<S: Scalar>(v: [f64; 2], w: [f64; 2], tolerance: f64) -> Result<(), TestCaseError> {
         let [Some(p), Some(q)] = [v, w].map(|[x, y]| vec2::<S>(x, y)) else {
             return Err(TestCaseError::reject("not a number"));
@@ -447,7 +435,6 @@ mod tests {
         let clamped = p.clamp_norm(limit);
         near(clamped.norm(), long.min(2.0), 2.0)?;
         near(clamped.det(p), 0.0, long)?;
-        // A rotation by the angle of q keeps lengths and angles.
         let (sin, cos) = q.x.sin_cos();
         let turned = p.rotate(cos, sin);
         near(turned.norm(), long, long)?;

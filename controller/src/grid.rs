@@ -1,7 +1,5 @@
-//! The grid: cells, the eight unit moves, norms, the borrowed window of terrain, and the conversion
-//! between cells and metres.
-//!
-//! Source: A. V. Kuznetsov 2017 (KUZ), sections 2 and 3. Cells are (x, y), x east and y north.
+//! The grid: cells (x east, y north), the eight unit moves, norms, the window of terrain, and the
+//! conversion to metres (A. V. Kuznetsov 2017, KUZ, sections 2 and 3).
 
 use crate::geom::Vec2;
 use crate::names::named;
@@ -9,11 +7,8 @@ use crate::scalar::Scalar;
 use core::ops::{Add, Sub};
 use serde::{Deserialize, Serialize};
 
-/// Fixed-point cost units per cell of an axis move: sqrt 2 is 99/70, with a relative error of
-/// 5.1e-5.
-///
-/// All route costs, formation distances and tick counts of the grid use this unit, so results on
-/// host and device are identical.
+/// Cost units per cell of an axis move; sqrt 2 is 99/70, with a relative error of 5.1e-5. Integer
+/// costs make results on host and device identical.
 pub const UNIT: u32 = 70;
 /// Cost units of a diagonal move under the Euclidean norm.
 pub const DIAGONAL: u32 = 99;
@@ -189,8 +184,7 @@ pub struct Window<'a> {
 }
 
 impl<'a> Window<'a> {
-    /// Creates a window whose south-west cell is `origin`; `None` unless `cells` has `width *
-    /// height` entries.
+    /// Creates a window whose south-west cell is `origin`, if `cells` has `width * height` entries.
     #[must_use]
     pub fn new(cells: &'a [u8], origin: Cell, width: u16, height: u16) -> Option<Self> {
         let fits = cells.len() == usize::from(width) * usize::from(height);
@@ -231,7 +225,7 @@ impl<'a> Window<'a> {
     }
 
     /// Returns the part of the window within `radius` cells (Chebyshev) of `center`: its south-west
-    /// cell, width and height. Width or height is 0 if they do not intersect.
+    /// cell, width and height, one of which is 0 if they do not intersect.
     #[must_use]
     pub fn cut(&self, center: Cell, radius: u8) -> (Cell, u16, u16) {
         let radius = i32::from(radius);
@@ -253,7 +247,6 @@ impl<'a> Window<'a> {
     }
 
     /// Iterates over all cells and their impassability, row by row from the south-west corner.
-    /// Cells beyond the coordinate range are clamped to it.
     pub fn iter(&self) -> impl Iterator<Item = (Cell, u8)> + '_ {
         let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
         let cell = |(x, y): (u16, u16)| self.origin + Cell::new(x.cast_signed(), y.cast_signed());

@@ -68,12 +68,10 @@ pub mod supervisor;
 pub mod template;
 pub mod time;
 #[cfg(feature = "wire")]
-// Decoded values come from the radio: each addition is meant to wrap, or a comment says why it
-// cannot overflow.
+// Decoded values come from the radio: each addition is meant to wrap or cannot overflow.
 #[cfg_attr(not(test), warn(clippy::arithmetic_side_effects))]
 pub mod wire;
 
-/// Every public error is a [`core::error::Error`].
 const _: () = {
     const fn is_error<E: core::error::Error>() {}
     is_error::<template::TemplateError>();
@@ -91,7 +89,6 @@ const _: () = {
     }
 };
 
-/// Checks the build profile of the tests.
 #[cfg(all(test, debug_assertions))]
 mod tests {
     #[test]

@@ -1,11 +1,10 @@
-//! What fixed lists need beside [`heapless::Vec`]: its own ways to extend, collect, remove and
-//! sort, and its iterator by value, leave a panic in the firmware, even where none can happen.
+//! Functions on fixed lists that provably cannot panic: those of [`heapless::Vec`] (extend,
+//! collect, remove, sort, iteration by value) leave a panic in the firmware.
 
 use heapless::{LenType, Vec};
 
-/// A list of at most `N` items that is empty or short in nearly all robots: what a dead end taught,
-/// requests on their way, whom one hears. On a part its room is there from the start; on a host
-/// with many robots only what is in it takes memory. It is written as [`heapless::Vec`] is.
+/// A list that is short in nearly all robots, such as pending requests. Firmware reserves its
+/// memory; hosts with many robots allocate it on demand.
 #[cfg(all(not(feature = "host"), any(feature = "route", feature = "wire")))]
 pub(crate) type SparseVec<T, const N: usize> = heapless::Vec<T, N>;
 #[cfg(feature = "host")]
@@ -14,7 +13,7 @@ pub(crate) use sparse_vec::SparseVec;
 #[cfg(feature = "host")]
 mod sparse_vec;
 
-/// Adds items as long as there is room; what has none is dropped.
+/// Drops items beyond the capacity.
 pub(crate) fn extend<T, L: LenType, const N: usize>(list: &mut Vec<T, N, L>, items: impl IntoIterator<Item = T>) {
     for item in items {
         if list.push(item).is_err() {
@@ -23,14 +22,13 @@ pub(crate) fn extend<T, L: LenType, const N: usize>(list: &mut Vec<T, N, L>, ite
     }
 }
 
-/// The first `N` items.
 pub(crate) fn collect<T, const N: usize>(items: impl IntoIterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
     extend(&mut list, items);
     list
 }
 
-/// Moves the last item towards the front past all that must come after it.
+/// Moves the last item towards the front past all items that must come after it.
 pub(crate) fn sink_last<T>(items: &mut [T], must_swap: impl Fn(&T, &T) -> bool) {
     for i in (1..items.len()).rev() {
         match items.get_mut(i - 1..=i) {

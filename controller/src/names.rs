@@ -1,8 +1,5 @@
-//! Enums with one name per value, identical in files, on command lines and in reports.
-//!
-//! `named!` defines the enum together with its names for serde, [`Display`] and
-//! [`FromStr`](core::str::FromStr), and a list of all values. Firmware that does not use them does
-//! not contain them.
+//! Enums with one name per value, identical in files, on command lines and in reports. `named!`
+//! also implements serde, [`Display`] and [`FromStr`](core::str::FromStr), and lists all values.
 
 use core::fmt::{self, Debug, Display, Formatter};
 use core::marker::PhantomData;
@@ -26,7 +23,6 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Whether a given letter matches a letter of a name.
 const fn is_like(own: u8, given: u8) -> bool {
     own == given || (own == b'_' && given == b'-')
 }
@@ -49,7 +45,6 @@ impl<T> PartialEq for UnknownName<T> {
 impl<T> Eq for UnknownName<T> {}
 
 impl<T: Named> Display for UnknownName<T> {
-    /// Lists all valid names.
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         formatter.write_str("give one of ")?;
         for (index, (name, _)) in T::NAMES.iter().enumerate() {

@@ -1,12 +1,10 @@
-//! A small seeded random generator that uses integers only, so its sequence is identical on every
-//! target.
+//! A small seeded random generator on integers, with one sequence on every target. Not for secrets.
 //!
-//! Random numbers are a function of a key, never of a shared stream: [`Rng::keyed`] gives each
-//! (seed, purpose, robot, tick) its own generator. Therefore neither the order of robots nor the
-//! number of threads can change a result.
+//! [`Rng::keyed`] gives each (seed, purpose, robot, tick) its own generator instead of a shared
+//! stream, so neither the order of robots nor the number of threads changes a result.
 //!
 //! Source: SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators",
-//! with Stafford's variant 13 of the mixing function). Not for secrets.
+//! with Stafford's variant 13 of the mixing function).
 
 use crate::scalar::integer::log2_q32;
 use core::num::NonZeroU64;
@@ -21,9 +19,8 @@ const fn mix(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// A generator of random numbers; 8 bytes of state, period 2^64.
-///
-/// Not `Copy`, because two copies would silently repeat each other.
+/// A generator of random numbers; 8 bytes of state, period 2^64. Not `Copy`, because two copies
+/// would silently repeat each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rng {
@@ -37,10 +34,8 @@ impl Rng {
         Self { state: seed }
     }
 
-    /// Creates the generator of a key.
-    ///
-    /// `purpose` is a constant of the caller that separates its uses of random numbers. If three of
-    /// the inputs are fixed, different values of the fourth give different generators.
+    /// Creates the generator of a key. `purpose` separates the caller's uses. If three of the
+    /// inputs are fixed, different values of the fourth give different generators.
     #[must_use]
     pub const fn keyed(seed: u64, purpose: u32, robot: u32, tick: u32) -> Self {
         let who = ((purpose as u64) << 32) | robot as u64;
@@ -60,10 +55,8 @@ impl Rng {
         (self.next_u64() >> 32) as u32
     }
 
-    /// Uniform in `0..n`; 0 if `n` is 0. Always one draw.
-    ///
-    /// It multiplies in 64 bits instead of rejecting draws, which bounds the work. The relative
-    /// error of each probability is below 2^-32.
+    /// Uniform in `0..n`; 0 if `n` is 0. Always one draw: it multiplies in 64 bits instead of
+    /// rejecting draws. The relative error of each probability is below 2^-32.
     pub const fn below(&mut self, n: u32) -> u32 {
         let bits = self.next_u64();
         let low = (bits & 0xFFFF_FFFF) * n as u64;
@@ -82,17 +75,15 @@ impl Rng {
         p == u32::MAX || drawn < p
     }
 
-    /// A sample of the exponential distribution with mean 1 in Q16.16: at least 2^-16 (so that it
-    /// can be divided by a weight), at most 44.37. The error is below 3e-5 compared with the exact
-    /// logarithm of the draw.
+    /// A sample of the exponential distribution with mean 1 in Q16.16, from 2^-16 (so that it can
+    /// be divided by a weight) to 44.37, off by less than 3e-5.
     pub fn exponential_q16(&mut self) -> u32 {
-        // A draw of 0 counts as 1, so the logarithm is always finite.
         let draw = NonZeroU64::new(self.next_u64()).unwrap_or(NonZeroU64::MIN);
         negative_ln_q16(draw).max(1)
     }
 }
 
-/// -ln(k / 2^64) in Q16.16, rounded to nearest.
+/// Rounded to nearest.
 fn negative_ln_q16(k: NonZeroU64) -> u32 {
     const LN_2_Q24: u64 = 11_629_080;
     // log2 stays below 64 (tested at the ends), and 64 * 2^32 * LN_2_Q24 < 2^62.
@@ -107,7 +98,6 @@ mod tests {
 
     #[test]
     fn sequence_is_the_published_one() {
-        // Reference outputs of SplitMix64.
         let mut rng = Rng::new(1_234_567);
         let drawn: Vec<u64> = (0..3).map(|_| rng.next_u64()).collect();
         let expected = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
@@ -175,7 +165,7 @@ mod tests {
             }
             let chi_square: f64 =
                 counts.iter().map(|&c| (f64::from(c) - per_bin) * (f64::from(c) - per_bin) / per_bin).sum();
-            // Mean n - 1, deviation sqrt(2 (n - 1)): five deviations.
+            // Five deviations.
             let freedom = f64::from(n - 1);
             assert!(chi_square <= freedom + 5.0 * (2.0 * freedom).sqrt(), "n {n}: {chi_square}");
         }
@@ -230,7 +220,6 @@ mod tests {
         assert!(samples.iter().all(|&x| x > 0.0));
         assert!((mean - 1.0).abs() < 0.01, "mean {mean}");
         assert!((variance - 1.0).abs() < 0.03, "variance {variance}");
-        // The median is ln 2.
         let below = samples.iter().filter(|&&x| x < core::f64::consts::LN_2).count();
         assert!((99_000..101_000).contains(&below), "{below}");
     }

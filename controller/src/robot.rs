@@ -5,12 +5,9 @@ use serde::{Deserialize, Serialize};
 
 /// The id of a robot, 1 to 2^31 - 2^16 - 1; 0 stands for no robot (the paper's "anyone").
 ///
-/// Ids must be unique. If two robots use one id by mistake, robots in range of both know one of
-/// them under its [duplicate id](Self::double), from 2^31 on. The 2^16 ids below are
-/// [local](Self::local): a robot assigns them to detected robots without an id.
-///
-/// It has 32 bits because a simulated swarm has up to a million robots. Small ids are short on the
-/// wire (varint).
+/// Ids must be unique. If two robots use one id, robots in range of both know one of them under its
+/// [duplicate id](Self::duplicate), from 2^31 on. The 2^16 ids below are [local](Self::local). 32
+/// bits serve simulated swarms of a million robots; small ids are short on the wire (varint).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
@@ -26,9 +23,7 @@ impl RobotId {
         self.0 != 0
     }
 
-    /// The id of anonymous robot `n` among the robots that a robot
-    /// [detects](crate::neighbor::Tracker). It is valid on that robot only, and must not be
-    /// assigned to a robot.
+    /// The id that a robot assigns to its anonymous [detection](crate::neighbor::Tracker) `n`.
     #[must_use]
     pub const fn local(n: u16) -> Self {
         Self(FIRST_LOCAL | n as u32)
@@ -63,10 +58,8 @@ impl fmt::Display for RobotId {
     }
 }
 
-/// This bit is set in duplicate ids.
 const DOUBLE: u32 = 1 << 31;
 
-/// The first local id.
 const FIRST_LOCAL: u32 = DOUBLE - (1 << 16);
 
 /// The current activity of a robot; see [`crate::supervisor`].
@@ -98,8 +91,7 @@ impl Mode {
         matches!(self, Self::Idle | Self::Arrived)
     }
 
-    /// Whether its agent steers it, even if only to stand, so that other robots can rely on it
-    /// giving way.
+    /// Whether its agent steers it, even if only to stand, so that others can rely on it.
     #[must_use]
     pub const fn gives_way(self) -> bool {
         !matches!(self, Self::Fault | Self::Passive)

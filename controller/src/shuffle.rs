@@ -1,16 +1,15 @@
-//! The weighted shuffle: moves in random order, with cheap moves more likely to come first.
+//! The weighted shuffle: moves in random order, with cheap moves more likely to come first (A. V.
+//! Kuznetsov 2017, KUZ, section 7, item 3).
 //!
-//! Source: A. V. Kuznetsov 2017 (KUZ), section 7, item 3; Efraimidis and Spirakis 2006, "Weighted
-//! random sampling with a reservoir", algorithm A: sort by key = Exp(1) / w'. The paper does not
-//! define how a cost w becomes a priority w'. Here w' = 2^(-(w - least) / h): the priority halves
-//! with every h of extra cost. Thus only differences between moves matter, and h is the scale of a
-//! relevant difference. Keys are compared by their logarithm, log2 Exp(1) + (w - least) / h, in
-//! integers.
+//! Moves are sorted by key = Exp(1) / w' (Efraimidis and Spirakis 2006, "Weighted random sampling
+//! with a reservoir", algorithm A). The paper does not define how a cost w becomes a priority w'.
+//! Here w' = 2^(-(w - least) / h): the priority halves with every h of extra cost, so only
+//! differences between moves matter. With 1 / w a robot on a long route, where all w are nearly
+//! equal, would move at random.
 //!
-//! The requirements of the paper hold. Equal moves come first equally often. "The probability of a
-//! direction that breaks the formation is close to zero" (item 4), because a move that is k
-//! halvings worse comes before the best one in 1 of 2^k + 1 draws. A priority like 1 / w would not
-//! work: on a long route all w are large and nearly equal, and the robot would move at random.
+//! Equal moves come first equally often, and a move that is k halvings worse comes before the best
+//! one in 1 of 2^k + 1 draws, so "the probability of a direction that breaks the formation is close
+//! to zero" (item 4).
 //!
 //! A small h gives the greedy order with random ties. The larger h is, the more often robots leave
 //! the best route, and the sooner two robots that block each other separate.
@@ -28,17 +27,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Sharpness {
-    /// Cheapest first, equals in the order of [`Dir::MOVES`], without randomness. Two robots in
-    /// each other's way can stay there for ever.
+    /// Cheapest first, equals in the order of [`Dir::MOVES`]. Two robots can block each other for
+    /// ever.
     #[default]
     Greedy,
-    /// A move that costs this many ticks more than another one is half as likely to come first. 0
-    /// equals `Greedy`; large values give a random walk.
+    /// A move that costs this many ticks more is half as likely to come first. 0 equals `Greedy`;
+    /// large values give a random walk.
     HalvedPer(Gain),
 }
 
-/// Returns the moves that are not excluded, in the order in which to try them. O(1); eight draws,
-/// or none with `Greedy`.
+/// Returns the open moves in the order in which to try them. O(1); eight draws, none with `Greedy`.
 #[must_use]
 pub fn weighted_shuffle(weights: &Weights, sharpness: Sharpness, rng: &mut Rng) -> Vec<Dir, 8> {
     let least = weights.iter().map(|(_, cost)| cost).min().unwrap_or(0);
@@ -50,9 +48,7 @@ pub fn weighted_shuffle(weights: &Weights, sharpness: Sharpness, rng: &mut Rng) 
     for (dir, cost) in weights.iter() {
         let key = key(cost - least, half, rng);
         if cost != EXCLUDED {
-            // Cannot fail: eight moves, capacity 8.
             let _ = keyed.push((key, dir));
-            // Equal keys keep the order of the moves.
             sink_last(&mut keyed, |before, after| before.0 > after.0);
         }
     }

@@ -1,6 +1,4 @@
-//! The mode of a robot as one pure function of its previous mode and its situation.
-//!
-//! Start with [`next_mode`].
+//! The mode of a robot as a pure function of its previous mode and its situation: [`next_mode`].
 
 use crate::robot::Mode;
 use serde::{Deserialize, Serialize};
@@ -25,13 +23,11 @@ pub struct Situation {
     pub is_off_place: bool,
 }
 
-/// Returns the mode that follows `mode` in the given situation: the first of these rules that
-/// applies.
+/// Returns the mode that follows `mode`, by the first rule that applies:
 ///
 /// 1. A robot that its agent may not steer is [`Mode::Passive`].
 /// 2. A fault stops the robot: [`Mode::Fault`].
-/// 3. A robot leaves [`Mode::Passive`] and [`Mode::Fault`] through [`Mode::Idle`]: it stands still
-///    for one step.
+/// 3. From [`Mode::Passive`] and [`Mode::Fault`] it passes through [`Mode::Idle`] for one step.
 /// 4. Without a goal it is [`Mode::Idle`].
 /// 5. At its goal it is [`Mode::Arrived`], even if it was asked to stop.
 /// 6. A stop, or the lack of an open route, gives [`Mode::Hold`].
@@ -112,7 +108,6 @@ mod tests {
     fn every_steered_mode_leads_to_all_modes() {
         for from in MODES {
             let reached: std::collections::HashSet<Mode> = situations().map(|s| next_mode(from, s)).collect();
-            // The two passive modes always lead through one idle step.
             let modes = if from.gives_way() { 7 } else { 3 };
             assert_eq!(reached.len(), modes, "{from:?}");
         }

@@ -1,5 +1,4 @@
-//! The place of a robot in a formation, and the relative places of its neighbours there, derived
-//! from the graph of the formation.
+//! The place of a robot in a formation, and the relative places of its neighbours there.
 
 use crate::fixint;
 use crate::grid::{Cell, DIAGONAL, Dir, UNIT};
@@ -8,8 +7,7 @@ use crate::robot::RobotId;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// The place of one robot in the formation, and the relative places of at most `F` neighbours there
-/// (A. V. Kuznetsov 2017, KUZ, section 3).
+/// The place of one robot in the formation, and those of at most `F` neighbours (KUZ section 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Template<const F: usize> {
@@ -21,8 +19,7 @@ pub struct Template<const F: usize> {
     pub entries: Vec<TemplateEntry, F>,
 }
 
-/// The place of one neighbour in the formation, relative to the own place (KUZ section 3:
-/// template).
+/// The place of one neighbour, relative to the own place (KUZ section 3: template).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TemplateEntry {
@@ -43,8 +40,7 @@ pub enum TemplateError {
     NoSuchPlace,
     /// An edge names a place that does not exist, or joins a place to itself.
     BadEdge,
-    /// More neighbours are within the geodesic radius than the template holds. Use a smaller radius
-    /// or a larger `F`.
+    /// More than `F` neighbours are within the geodesic radius; use a smaller radius or a larger F.
     TooMany,
 }
 
@@ -61,8 +57,8 @@ impl core::fmt::Display for TemplateError {
 impl core::error::Error for TemplateError {}
 
 impl<const F: usize> Template<F> {
-    /// Builds the template of the robot at place `own` of a formation graph (KUZ section 2: Phi).
-    /// It holds all robots within the geodesic radius `rho`, sorted by distance, then by place.
+    /// Builds the template of the robot at place `own` of a formation graph (KUZ section 2: Phi):
+    /// all robots within the geodesic radius `rho`, sorted by distance, then by place.
     ///
     /// `places` are cells in any common frame, the top leader's first. `edges` are pairs of indices
     /// into `places`. The robot at index i has the id i + 1. O(rho * edges * F).
@@ -108,11 +104,8 @@ impl<const F: usize> Template<F> {
         self.entries.iter().find(|entry| entry.id == id).map(|entry| entry.hops)
     }
 
-    /// Returns the formation turned: cells ahead of a robot that heads east come to lie in
-    /// direction `heading`. (By default the frame of the template is fixed, KUZ section 3.)
-    ///
-    /// Turns by odd multiples of 45 degrees round to whole cells, so places less than two cells
-    /// apart may coincide.
+    /// Returns the formation turned from east to `heading`; see [`rotated`]. (KUZ section 3 fixes
+    /// the frame.) Turns by odd multiples of 45 degrees can merge places less than two cells apart.
     #[must_use]
     pub fn turned(mut self, heading: Dir) -> Self {
         self.offset = rotated(self.offset, heading);
@@ -127,11 +120,7 @@ fn number(place: usize) -> RobotId {
     RobotId(u32::try_from(place).unwrap_or(u32::MAX).saturating_add(1))
 }
 
-/// Turns `offset`, given for a robot that heads east, for a robot that heads in direction
-/// `heading`.
-///
-/// The turn is counter-clockwise by a multiple of 45 degrees, rounded to whole cells. `Stay` turns
-/// nothing.
+/// Turns `offset` from east to `heading`, counter-clockwise, rounded to whole cells.
 #[must_use]
 pub fn rotated(offset: Cell, heading: Dir) -> Cell {
     let (x, y) = (i32::from(offset.x), i32::from(offset.y));

@@ -3,10 +3,9 @@
 use core::ops::{Add, Sub};
 use serde::{Deserialize, Serialize};
 
-/// A time on the robot's clock in microseconds; wraps after 71.6 minutes.
-///
-/// Two instants compare by their wrapped difference, so they are ordered only if they are less than
-/// 35.8 minutes apart. Therefore `Ord` is not implemented: use [`Instant::is_before`].
+/// A time on the robot's clock in microseconds; wraps after 71.6 minutes. Instants compare by their
+/// wrapped difference, so they are ordered only if less than 35.8 minutes apart: use
+/// [`Instant::is_before`] instead of `Ord`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
@@ -46,8 +45,7 @@ impl Instant {
     /// Whether the deadline `due`, which was at most `longest` ahead when it was set, has passed.
     ///
     /// Unlike `!self.is_before(due)`, this also holds after a pause of more than half of the
-    /// clock's range, when a past instant seems to lie ahead. So a deadline is not delayed by
-    /// another half hour.
+    /// clock's range, when a past instant seems to lie ahead.
     #[must_use]
     pub const fn has_reached(self, due: Self, longest: Duration) -> bool {
         let left = due.since(self).0;

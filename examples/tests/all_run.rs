@@ -1,4 +1,4 @@
-//! Runs each example of this folder to its end. The examples assert their own claims.
+//! Runs each example of this folder; the examples assert their own claims.
 
 use std::path::Path;
 use std::process::Command;

@@ -167,7 +167,8 @@ def kill_one(folder):
                 words = (process / "cmdline").read_text().split("\0")
             except OSError:
                 continue
-            if words[0] == STAYA and f"{task}/{TASKS}" in words:
+            # `staya sweep` replaces itself with the program of sweeps.
+            if Path(words[0]).name.startswith("staya") and f"{task}/{TASKS}" in words:
                 os.kill(int(process.name), signal.SIGKILL)
                 return task if rows(folder, task) < RUNS_A_TASK else None
     return None

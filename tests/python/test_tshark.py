@@ -21,7 +21,8 @@ def record(port, seconds, capture):
     sink = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sink.bind(("127.0.0.1", port))
     sink.settimeout(0.2)
-    deadline, count = time.monotonic() + seconds, 0
+    # The time counts from the first datagram: a busy machine starts programs late.
+    deadline, count = time.monotonic() + 60.0, 0
     client = None
     with open(capture, "wb") as file:
         # Link type 228: raw IPv4.
@@ -33,6 +34,7 @@ def record(port, seconds, capture):
                 continue
             if client is None:
                 client = (host, sender)
+                deadline = time.monotonic() + seconds
                 yield sink, client
             udp = struct.pack(">HHHH", sender, port, 8 + len(data), 0) + data
             local = socket.inet_aton("127.0.0.1")

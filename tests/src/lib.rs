@@ -7,7 +7,6 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// The variable that makes golden tests write instead of compare.
 const BLESS: &str = "STAYA_BLESS";
 
 /// The repository's root.
@@ -19,7 +18,7 @@ pub fn root() -> PathBuf {
 /// The program `staya` in the profile of this test.
 ///
 /// # Panics
-/// When it has not been built: cargo builds no program of another package for a test.
+/// If it has not been built: cargo builds no program of another package for a test.
 #[must_use]
 pub fn program() -> PathBuf {
     let own = std::env::current_exe().expect("a test knows its file");
@@ -32,7 +31,7 @@ pub fn program() -> PathBuf {
 /// A scenario of `scenarios/` by its name, with at most `ticks` ticks.
 ///
 /// # Panics
-/// When it cannot be read.
+/// If it cannot be read.
 #[must_use]
 pub fn scenario(name: &str, ticks: Option<u32>) -> Scenario {
     let path = root().join("scenarios").join(format!("{name}.toml"));
@@ -40,10 +39,10 @@ pub fn scenario(name: &str, ticks: Option<u32>) -> Scenario {
     Scenario::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A run from start to end: after each tick (and before the first) the swarm and its robots.
+/// The outcome of a run, and the swarm and its robots at the start and after each tick.
 ///
 /// # Panics
-/// When the scenario's robots cannot be placed.
+/// If the scenario's robots cannot be placed.
 #[must_use]
 pub fn run(scenario: &Scenario) -> (Outcome, Vec<(TickRow, Vec<RobotRow>)>) {
     let mut rows = Vec::new();
@@ -58,7 +57,7 @@ pub fn run(scenario: &Scenario) -> (Outcome, Vec<(TickRow, Vec<RobotRow>)>) {
 /// Compares `actual` with the file `tests/golden/<name>.txt`, or writes it for `cargo xtask bless`.
 ///
 /// # Panics
-/// When they differ, or the file cannot be read or written.
+/// If they differ, or the file cannot be read or written.
 pub fn golden(name: &str, actual: &str) {
     let path = root().join("tests/golden").join(format!("{name}.txt"));
     if std::env::var_os(BLESS).is_some() {

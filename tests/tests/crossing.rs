@@ -32,7 +32,7 @@ fn golden_doorway() {
     golden("doorway-experiment", &plan.measure().expect("a sound plan").to_string());
 }
 
-/// Number of robots of each case, small enough for a debug build.
+/// Small enough for a debug build.
 const fn few(case: Case) -> u32 {
     match case {
         Case::DeadEnd => 2,

@@ -4,7 +4,6 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_sim::scenario::{Fault, Scenario};
 use staya_tests::{run, scenario};
 
-/// The scenario with robots that stop and are silent from a tick on.
 fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
     let mut scenario = scenario(name, Some(ticks));
     scenario.seed = seed;
@@ -13,7 +12,6 @@ fn without(name: &str, seed: u64, dead: &[(u32, u32)], ticks: u32) -> Scenario {
     scenario
 }
 
-/// The working robots that are not at their goals at the end.
 fn missing(scenario: &Scenario, dead: &[(u32, u32)]) -> Vec<usize> {
     let (_, rows) = run(scenario);
     let (_, robots) = rows.last().expect("at least the start");
@@ -56,7 +54,6 @@ fn ranks_close_the_gap_of_a_dead_robot() {
             let (_, rows) = run(&scenario);
             let (_, robots) = rows.last().expect("at least the start").clone();
             let living = (0..robots.len()).filter(|index| index + 1 != robot);
-            // Indices of the places at whose goals the robots are.
             let place = |cell| goals.iter().position(|&goal| goal == cell);
             living.filter_map(|index| place(robots[index].motion.cell)).collect::<Vec<_>>()
         });

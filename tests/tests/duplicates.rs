@@ -13,8 +13,7 @@ fn outcome(text: &str, seed: u64) -> Outcome {
     run(&scenario.unwrap_or_else(|error| panic!("{error}"))).0
 }
 
-/// Robots at `starts_m`, each with its goal opposite of the origin, some with another robot's
-/// number.
+/// Each goal is opposite of the origin; some robots have another robot's number.
 fn plane(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], rest: &str) -> String {
     let mut text = format!("name = \"duplicates\"\nticks = 1200\ntick_s = 0.05\n[radio]\nrange_m = 30\n{radio}\n");
     text.push_str("[plane]\nradius_m = 0.15\nmax_speed_mps = 1\n[plane.robots]\nlist = [\n");
@@ -30,7 +29,7 @@ fn plane(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], rest: &st
 
 const KEY: &str = "[authentication]\nkey = \"passphrase: a number of one's own\"\n";
 
-/// Asserts that the run equals one with unique numbers, bit for bit.
+/// Compares bit for bit with unique numbers.
 fn assert_unchanged(radio: &str, starts_m: &[[f64; 2]], misnumbered: &[[u32; 2]], rest: &str) {
     for seed in 1..5 {
         let [theirs, own] = [misnumbered, &[]].map(|numbers| outcome(&plane(radio, starts_m, numbers, rest), seed));
@@ -58,8 +57,6 @@ fn two_robots_with_one_number_pass_head_on_like_any_two() {
     }
 }
 
-/// A robot that was on its way for longer, or restarted more often, has larger sequence and boot
-/// numbers than the other.
 #[test]
 fn start_times_and_restarts_do_not_matter() {
     for key in ["", KEY] {
@@ -78,7 +75,7 @@ fn circle(robots: u32) -> Vec<[f64; 2]> {
 #[test]
 fn other_robots_avoid_both() {
     for loss in ["", "loss = 0.1", "loss = 0.3"] {
-        // With a key, others receive only one of the two at a time, but the two receive all.
+        // With a key, others receive only one of the two at a time.
         for key in ["", KEY] {
             assert_clear(&plane(loss, &[[-4.0, 0.0], [4.0, 0.3], [0.2, -4.0]], &[[2, 1]], key), 3);
             assert_clear(&plane(loss, &circle(12), &[[7, 1], [4, 2], [9, 5]], key), 12);
@@ -102,8 +99,7 @@ fn duplicates_on_the_grid_and_in_formation_arrive() {
     }
 }
 
-/// A fast robot approaches a slow one from behind, while the other robot with its number is far
-/// away. A robot that takes the two for one would not see it.
+/// A robot that takes the two for one would not see the fast one.
 #[test]
 fn a_fast_robot_does_not_run_into_the_duplicate() {
     for radio in ["", "loss = 0.2", "format = \"mavlink\""] {

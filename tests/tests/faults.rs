@@ -8,7 +8,6 @@ use staya_tests::{run, scenario};
 
 type Rows = [(TickRow, Vec<RobotRow>)];
 
-/// Smallest formation error within some ticks, cells per robot.
 fn best_error(rows: &Rows, ticks: std::ops::Range<u32>) -> f64 {
     let within = rows.iter().filter(|(row, _)| ticks.contains(&row.tick));
     within.map(|(row, _)| row.formation_error_per_agent).fold(f64::INFINITY, f64::min)
@@ -39,7 +38,6 @@ fn a_swarm_recovers_from_a_blackout() {
     assert!(after < 1.5, "the formation was never restored: {after}");
 }
 
-/// In the plane with ORCA: during a swap and head-on, for seconds and for minutes.
 #[test]
 fn without_radio_robots_do_not_collide_and_arrive_later() {
     for name in ["radio-dies", "head-on"] {
@@ -88,7 +86,7 @@ fn any_robot_may_restart_during_the_run() {
 
 #[test]
 fn a_robot_that_stays_down_delays_its_followers_only() {
-    // Robot 6 has no followers; it stays down.
+    // Robot 6 has no followers.
     let mut scenario = scenario("figure-6", Some(900));
     scenario.faults = vec![Fault { robot: RobotId(6), from_tick: 100, to_tick: u32::MAX }];
     let (outcome, _) = run(&scenario);
@@ -113,8 +111,7 @@ fn bit_errors_cost_packets_only() {
     assert_all_arrive(&scenario, &outcome);
     let packets = outcome.packets;
     assert!(packets.corrupted > packets.delivered / 2, "{packets:?}");
-    // Every damaged packet is rejected (CRC-16 misses one in 65536). A packet in which a byte
-    // became zero splits into two frames, both of them rejected.
+    // A packet in which a byte became zero splits into two frames, both of them rejected.
     assert!(packets.rejected + 2 >= packets.corrupted, "{packets:?}");
     assert!(packets.rejected < packets.corrupted * 5 / 4, "{packets:?}");
 }

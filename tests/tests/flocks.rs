@@ -1,5 +1,4 @@
-//! Golden tables of small flock experiments, which any change of behaviour breaks. `cargo xtask
-//! bless golden` rewrites them.
+//! Golden tables of small flock experiments; `cargo xtask bless golden` rewrites them.
 
 use staya_controller::agent::SafetyKind;
 use staya_controller::names::Named as _;
@@ -121,7 +120,6 @@ fn golden_experiment_goals() {
     golden("experiment-goals", &text);
 }
 
-/// One flock with one velocity and even spacing in the last quarter of the run, never too dense.
 #[test]
 fn a_settled_flock_stays_connected() {
     for seed in 1..4 {
@@ -166,7 +164,7 @@ fn a_squeezed_flock_passes_between_the_balls_and_reunites() {
     }
 }
 
-/// Length of the mean heading within each component of the proximity graph, weighted by its robots.
+/// Within each component of the proximity graph, weighted by its robots.
 fn order_within_parts(places: &[[f64; 3]], velocities: &[[f64; 3]], range_m: f64) -> f64 {
     let mut meter = FlockMeter::new(range_m, range_m, Space::OPEN);
     meter.look(places, velocities).expect("robots are somewhere");
@@ -196,8 +194,7 @@ fn boids_of_a_component_align() {
     }
 }
 
-/// Number of overlaps of two flocks of twelve, and the tick from which each flock is one component
-/// around its own goal.
+/// Number of overlaps, and the tick from which each flock is one component around its own goal.
 fn two_flocks(scenario: &Scenario) -> (u64, Option<u32>) {
     let (outcome, rows) = run(scenario);
     let mut meter = FlockMeter::new(0.7, 0.84, Space::OPEN);
@@ -223,7 +220,6 @@ fn two_flocks_pass_without_losing_robots() {
     }
 }
 
-/// With equal numbers they form one flock with conflicting goals.
 #[test]
 fn two_groups_of_one_flock_merge_and_stop() {
     let mut scenario = seeded("two-flocks", 1);

@@ -1,7 +1,5 @@
-//! Formations in the plane: distances of robots from their places, and travel times.
-//!
-//! `cargo test -p staya-tests formation_plane -- --nocapture` prints the results of all scenes. The
-//! law was tuned on [`TUNED`] only; the bounds of the other scenes were set from their results.
+//! Formations in the plane: distances of robots from their places, and travel times. The law was
+//! tuned on [`TUNED`] only. Run with `-- --nocapture` to print the results.
 
 use staya_controller::grid::UNIT;
 use staya_sim::engine::Outcome;
@@ -10,15 +8,12 @@ use staya_sim::scenario::{Overrides, Scenario};
 use staya_tests::{run, scenario};
 use std::path::Path;
 
-/// Differences to `companions/formation.toml`: each line replaces lines with the same start, or is
-/// inserted after them.
+/// Each line replaces lines of `companions/formation.toml` with the same start, or is inserted.
 type Changes<'a> = &'a [(&'a str, &'a str)];
 
-/// Name, scene, and bounds: error in metres after the first 10 s, and travel time relative to free
-/// motion.
+/// Name, scene, and bounds: error after 10 s, metres, and travel time relative to free motion.
 type Scene<'a> = (&'a str, Changes<'a>, f64, f64);
 
-/// `companions/formation.toml`, with the required bounds.
 const TUNED: Scene<'_> = ("six rovers", &[], 1.0, 1.2);
 
 const SMALL: Changes<'_> = &[
@@ -111,8 +106,6 @@ fn other_formations_keep_their_bounds() {
     SCENES.iter().for_each(keeps_to);
 }
 
-/// Rovers in a line, 8 and 12 m apart: each is in its place within 1.5 times the time in which the
-/// last one drives there.
 #[test]
 fn robots_that_start_elsewhere_form_on_the_way() {
     let line = "starts = [[20, 20], [23, 20], [25, 20], [28, 20], [30, 20], [33, 20]]";
@@ -134,7 +127,6 @@ fn robots_that_start_elsewhere_form_on_the_way() {
     }
 }
 
-/// On rough terrain and among obstacles only the mean is bounded.
 #[test]
 fn on_rough_terrain_the_mean_error_is_bounded() {
     let six = scenario("six-discs", None);
@@ -147,8 +139,6 @@ fn on_rough_terrain_the_mean_error_is_bounded() {
     }
 }
 
-/// A dead robot never stops the others, and 10 s without radio delay the formation by not much
-/// more.
 #[test]
 fn no_robot_waits_for_ever() {
     for robot in 1..=6 {

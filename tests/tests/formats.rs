@@ -1,5 +1,4 @@
-//! A scenario runs identically with both wire formats. Bit errors and bandwidth depend on bytes and
-//! are excluded.
+//! A scenario runs identically with both wire formats, except for bit errors and bandwidth.
 
 use staya_controller::wire::Format;
 use staya_sim::scenario::Scenario;
@@ -51,8 +50,7 @@ fn transmitted_bytes_are_those_of_the_format() {
         scenario.radio.format = format;
         scenario.radio.bit_error_rate = 1e-3;
         let packets = run(&scenario).0.packets;
-        // The counts may differ: a damaged frame may look like two, or like a message of another
-        // robot.
+        // A damaged frame may look like two, or like a message of another robot.
         assert!(packets.rejected > packets.corrupted / 2 && packets.corrupted > 0);
         packets.corrupted
     };

@@ -1,5 +1,4 @@
-//! A MAVLink frame of each of the swarm's messages, for other implementations:
-//! `tests/python/test_dialect.py` reads the golden file.
+//! A MAVLink frame of each of the swarm's messages, for `tests/python/test_dialect.py`.
 
 use staya_controller::grid::{Cell, Dir};
 use staya_controller::land::LandPatch;
@@ -15,7 +14,6 @@ use std::fmt::Write as _;
 
 const TO: RobotId = RobotId(254);
 
-/// Name, message, and its fields as the dialect has them.
 fn messages() -> [(&'static str, Message, &'static str); 9] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {

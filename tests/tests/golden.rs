@@ -1,5 +1,4 @@
-//! Golden tables of scenarios, which are readable and which any change of behaviour breaks. `cargo
-//! xtask bless golden` rewrites them.
+//! Golden tables of scenarios; `cargo xtask bless golden` rewrites them.
 
 use staya_controller::robot::Mode;
 use staya_fvm::orca::Sample;
@@ -10,7 +9,6 @@ use staya_sim::scenario::Scenario;
 use staya_tests::{golden, run, scenario};
 use std::fmt::Write as _;
 
-/// Number of robots whose cells fit into a line.
 const SHOWN: usize = 6;
 
 fn table(scenario: &Scenario, outcome: &Outcome, rows: &[(TickRow, Vec<RobotRow>)]) -> Result<String, std::fmt::Error> {
@@ -134,7 +132,6 @@ fn golden_scale_in_its_first_ticks() {
     check("scale", Some(3));
 }
 
-/// Output of `staya orca table` for fewer pairs: errors of half-planes from the templates.
 #[test]
 fn golden_orca_table() {
     let sample = Sample { pairs: 20_000, seed: 1 };

@@ -18,7 +18,6 @@ const SPACING_M: f64 = 1.0;
 
 const RADIOS: [(&str, &str); 3] = [("perfect", ""), ("lossy", "loss = 0.3"), ("dead", "loss = 1")];
 
-/// A safety layer, with its push-out model.
 type Layer = (SafetyKind, Model);
 
 fn layers() -> Vec<Layer> {
@@ -26,7 +25,7 @@ fn layers() -> Vec<Layer> {
     kinds.chain([(SafetyKind::PushOut, Model::Tangential)]).collect()
 }
 
-/// Robots and settings of a law, and the smallest and largest x and y of its area.
+/// Robots, settings, and the smallest and largest x and y.
 fn swarm(guidance: GuidanceKind) -> (&'static str, &'static str, [f64; 2]) {
     match guidance {
         GuidanceKind::Waypoint => ("robots.circle = { count = 6, radius_m = 3, noise_m = 0.05 }", "", [-5.0, 5.0]),
@@ -44,7 +43,6 @@ fn swarm(guidance: GuidanceKind) -> (&'static str, &'static str, [f64; 2]) {
         GuidanceKind::Boids => (
             "robots.cloud = { count = 6, from_m = [0, 0], to_m = [4, 4] }\nboids = { crowded_m = 0.8, closest_m = 4 }",
             "",
-            // Unlimited in practice.
             [-100.0, 100.0],
         ),
         GuidanceKind::Route => (
@@ -78,8 +76,7 @@ fn scenario(guidance: GuidanceKind, (safety, model): Layer, radio: &str) -> Resu
     Scenario::parse(&text, Path::new("matrix.toml"), &Overrides::default())
 }
 
-/// Whether a combination is refused: a robot with a straight path cannot pass another one if both
-/// turn aside.
+/// A robot with a straight path cannot pass another one if both turn aside.
 fn is_refused(guidance: GuidanceKind, layer: Layer) -> bool {
     (guidance, layer) == (GuidanceKind::Waypoint, (SafetyKind::PushOut, Model::Tangential))
 }
@@ -87,11 +84,11 @@ fn is_refused(guidance: GuidanceKind, layer: Layer) -> bool {
 #[derive(Debug)]
 struct Verdict {
     arrived: usize,
-    /// Connected components at the end, for a range of two spacings.
+    /// For a range of two spacings.
     parts: usize,
     overlaps: u64,
     deepest_m: f64,
-    /// Whether all robots stayed within the speed limit and the area.
+    /// Within the speed limit and the area.
     stays: bool,
 }
 
@@ -119,7 +116,6 @@ fn verdict(guidance: GuidanceKind, safety: Layer, radio: &str) -> Verdict {
     }
 }
 
-/// The failed requirement of a combination; empty if none failed.
 fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &Verdict) -> &'static str {
     let hears = radio != "dead";
     let has_goal = !matches!(guidance, GuidanceKind::Boids | GuidanceKind::Lattice);
@@ -133,10 +129,9 @@ fn complaint(guidance: GuidanceKind, (safety, _): Layer, radio: &str, verdict: &
         return "the flock broke up";
     }
     let guards = safety != SafetyKind::None;
-    // Without reception robots cannot avoid each other.
     match radio {
         "perfect" if guards && verdict.overlaps > 0 => "robots overlapped",
-        // A tenth of a radius, see docs/limits.md.
+        // See docs/limits.md.
         "lossy" if guards && verdict.deepest_m > RADIUS_M / 10.0 => "robots overlapped deeply",
         _ => "",
     }

@@ -1,12 +1,11 @@
-//! With the whole map in its window, the router must find the optimal path lengths of the Moving AI
-//! benchmark. With the paper's window the numbers of arrivals are pinned.
+//! The Moving AI benchmark: optimal lengths with the whole map, pinned arrivals with a window.
 
 use staya_controller::cost::Gain;
 use staya_lab::experiment::Experiment as _;
 use staya_lab::movingai::{Answer, Benchmark, Learning, Plan, Report, Robots, Sight};
 use std::path::{Path, PathBuf};
 
-/// Largest deviation from an optimal length, percent. sqrt 2 as 99/70 deviates by 0.005 %.
+/// Percent; sqrt 2 as 99/70 deviates by 0.005 %.
 const TOLERANCE_PERCENT: f64 = 0.1;
 
 fn benchmark(name: &str) -> PathBuf {
@@ -19,7 +18,6 @@ fn answers(scen: &Path, robots: &Robots) -> (Report, Vec<Answer>) {
     (plan.report(&answers), answers.concat())
 }
 
-/// Asserts that every query is priced and travelled at the optimal length.
 fn assert_optimal(scen: &Path, queries: usize) {
     let (_, answers) = answers(scen, &Robots::new(Sight::Map));
     assert_eq!(answers.len(), queries);
@@ -33,7 +31,7 @@ fn assert_optimal(scen: &Path, queries: usize) {
 
 #[test]
 fn pocket_is_left_by_shortest_paths() {
-    // Lengths counted by hand: along walls, over swamp, around corners, out of a dead end.
+    // Along walls, over swamp, around corners, out of a dead end.
     let scen = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/pocket.map.scen");
     assert_optimal(&scen, 6);
 }
@@ -57,8 +55,7 @@ fn den312d_is_crossed_at_the_optimal_lengths() {
     assert_optimal(&benchmark("den312d.map.scen"), 320);
 }
 
-/// Learning method of robots that see five cells, the weight a3 in ticks, and the largest mean loss
-/// on game maps, percent.
+/// Learning method, weight a3 in ticks, and largest mean loss on game maps, percent.
 const LEARNERS: [(Learning, u16, Option<f64>); 4] = [
     (Learning::Cells256, 1, Some(80.0)),
     (Learning::Cells256, 3, Some(80.0)),
@@ -66,7 +63,7 @@ const LEARNERS: [(Learning, u16, Option<f64>); 4] = [
     (Learning::None, 3, None),
 ];
 
-/// Asserts that every query arrives. Returns the mean loss, percent.
+/// Percent.
 fn mean_loss_of_five_cells(name: &str, queries: usize, learning: Learning, a3: u16) -> f64 {
     let mut robots = Robots::new(Sight::Radius(5));
     (robots.learning, robots.params.a3) = (learning, Gain::from_int(a3));
@@ -76,8 +73,6 @@ fn mean_loss_of_five_cells(name: &str, queries: usize, learning: Learning, a3: u
     report.loss_percent.expect("all arrived").mean
 }
 
-/// Robots leave dead ends larger than their window by learning or along the wall, with longer
-/// paths.
 #[test]
 fn robots_that_see_five_cells_all_arrive() {
     for (learning, a3, loss) in LEARNERS {

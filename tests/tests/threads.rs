@@ -1,4 +1,4 @@
-//! No result depends on the number of threads (the engine has its own tests of that).
+//! Results do not depend on the number of threads.
 
 use staya_sim::engine::Outcome;
 use staya_tests::{run, scenario};

@@ -1,5 +1,4 @@
-//! Guidance law and safety layer chosen at run time, for the simulator and for firmware that its
-//! host configures. Firmware with a fixed law names the types and does not pay for others.
+//! Guidance law and safety layer chosen at run time, for simulators and configurable firmware.
 
 use super::cell_follower::CellFollower;
 use super::flock_guidance::{BoidsGuidance, GoalFlockGuidance, LatticeGuidance};
@@ -25,8 +24,7 @@ use crate::scalar::Scalar;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// A law with a large state. Firmware stores it in place; a host with many robots allocates it, so
-/// robots with small laws do not pay for it.
+/// A large law: in place in firmware, allocated on a host, so small laws do not pay for its size.
 #[cfg(not(feature = "host"))]
 type Large<G> = G;
 #[cfg(feature = "host")]

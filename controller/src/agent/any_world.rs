@@ -11,9 +11,8 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// A law of the plane or of space with [`AnySurroundings`] as its input, as a simulator or a host
-/// link delivers them. With surroundings of the grid alone the robot is in
-/// [`Mode::Fault`](crate::robot::Mode::Fault).
+/// A law of the plane or of space with [`AnySurroundings`] as its input. Surroundings of the grid
+/// alone put the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AnyWorld<G>(pub G);
 

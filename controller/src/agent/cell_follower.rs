@@ -11,19 +11,15 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// Distance from the centre of its cell, along an axis, beyond which a robot counts as in the next
-/// cell, thousandths of a cell.
+/// Distance from the centre, along an axis, that counts as the next cell; thousandths of a cell.
 const LEAVES_AT: i32 = 750;
 
 /// Moves towards the centre of the cell that a guidance law `G` of the grid would move to.
 ///
-/// The law decides again when the robot is well inside another cell, halfway from the border to the
-/// centre; on the border it could alternate for ever. If the robot does not advance, the law
-/// decides as often as on the grid: once per time to cross a cell of its terrain at cruising speed.
-///
-/// The law sees other robots by their cells, as on the grid. Robots may share a cell here; the
-/// safety layer keeps them apart. The robot heads straight for at most a cell, so it does not pass
-/// a way point to the safety layer: the law handles precedence by its prices and requests.
+/// The law decides again when the robot is well inside another cell (on the border it could
+/// alternate for ever), and at least once per time to cross a cell at cruising speed. It sees other
+/// robots by their cells. Robots may share a cell, because the safety layer keeps them apart; that
+/// layer receives no way point, since the law settles precedence by prices and requests.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CellFollower<S, G> {
     law: G,
@@ -39,8 +35,7 @@ struct Last<S> {
 }
 
 impl<S: Scalar, G> CellFollower<S, G> {
-    /// Runs `law` in the plane at a cruising speed of `speed_mps`; the speed limit of the body
-    /// holds too.
+    /// Runs `law` at a cruising speed of `speed_mps`, within the speed limit of the body.
     #[must_use]
     pub const fn new(law: G, speed_mps: S) -> Self {
         Self { law, speed_mps, last: None }
@@ -54,7 +49,7 @@ impl<S: Scalar, G> CellFollower<S, G> {
         self.last = None;
     }
 
-    /// The wrapped law of the grid, for inspection.
+    /// The wrapped law.
     #[must_use]
     pub const fn inside(&self) -> &G {
         &self.law
@@ -118,8 +113,7 @@ where
     }
 }
 
-/// One step of a law of the grid that decides by `decide`. Not generic over the law, so it is
-/// compiled once.
+/// One step of a law that decides by `decide`. Not generic over the law, so it is compiled once.
 #[inline(never)]
 fn follow<S: Scalar, P>(
     speed_mps: S,
@@ -163,7 +157,6 @@ fn follow<S: Scalar, P>(
         }
     };
     let way = way(&decision);
-    // The last step goes no farther than the centre.
     let needed = way.norm().checked_div(input.body.step_s).unwrap_or(speed);
     let ahead = way.normalized().unwrap_or_default();
     decision.action = Action::Velocity { wish_mps: (ahead * needed.min(speed)).extend(S::ZERO), way_m: None };

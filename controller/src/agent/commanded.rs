@@ -22,21 +22,18 @@ pub enum Wish<S> {
     #[default]
     Own,
     /// Release control: the motors are off, or another controller steers. In
-    /// [`Mode::Passive`](crate::robot::Mode::Passive) the robot sends its position, and other
-    /// robots do not rely on it giving way.
+    /// [`Mode::Passive`](crate::robot::Mode::Passive) others do not rely on it giving way.
     Off,
     /// Stay at the current position, and give way to other robots.
     Hold,
-    /// Move with a velocity for a limited time, then hold. The velocity is limited to the abilities
-    /// of the body.
+    /// Move with a velocity within the abilities of the body for a limited time, then hold.
     Velocity {
         /// The velocity, m/s.
         velocity_mps: Vec3<S>,
         /// Lifetime unless renewed; at most 35 minutes.
         valid: Duration,
     },
-    /// Go to a waypoint and stay there, as [`WaypointGuidance`] does. A waypoint that moves is
-    /// followed from the time of the command, then the robot holds.
+    /// Go to a waypoint and stay there, as [`WaypointGuidance`] does; follow it if it moves.
     Waypoint {
         /// The waypoint at the time of the command, and its velocity.
         waypoint: Waypoint<S>,
@@ -47,22 +44,19 @@ pub enum Wish<S> {
     Cell(Cell),
 }
 
-/// Guidance law `G`, which an operator can override.
-///
-/// The command is only a desired motion, so the safety layer still avoids other robots. Followers
-/// of this robot see in its beacon that it left the formation.
+/// Guidance law `G`, which an operator can override. The safety layer still avoids other robots,
+/// and followers see in the beacon that this robot left the formation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Commanded<S, G> {
     inside: G,
     wish: Wish<S>,
-    /// When the command took effect; `None` before the first step.
+    /// When the command took effect.
     since: Option<Instant>,
     straight: WaypointGuidance<S>,
 }
 
 impl<S: Scalar, G> Commanded<S, G> {
-    /// Wraps `inside`. For [`Wish::Waypoint`]: cruising speed in m/s, and the distance in metres at
-    /// which the robot counts as arrived.
+    /// Wraps `inside`; speed and arrival distance `tolerance_m` apply to [`Wish::Waypoint`].
     #[must_use]
     pub const fn new(inside: G, speed_mps: S, tolerance_m: S) -> Self {
         Self { inside, wish: Wish::Own, since: None, straight: WaypointGuidance::new(speed_mps, tolerance_m) }
@@ -71,9 +65,9 @@ impl<S: Scalar, G> Commanded<S, G> {
     /// Sets the command from the next step on.
     ///
     /// # Errors
-    /// [`WrongTask`] for a velocity or a waypoint if the law inside moves cell by cell, for a cell
-    /// if it does not go to cells, and for a velocity that is NaN or infinite. The previous command
-    /// then stays active.
+    /// [`WrongTask`], with the previous command still active, for a velocity or a waypoint if the
+    /// law moves cell by cell, a cell if it does not go to cells, and a velocity that is not
+    /// finite.
     pub fn command(&mut self, wish: Wish<S>) -> Result<(), WrongTask>
     where
         G: Guidance<S>,
@@ -125,7 +119,6 @@ impl<S: Scalar, G> Commanded<S, G> {
     }
 }
 
-/// The decision for `action`, which ignores stop and resume requests.
 fn on_order<S>(action: Action<S>, goal: Cell) -> Decision<S> {
     let stays = matches!(action, Action::Stay);
     Decision {
@@ -143,8 +136,7 @@ impl<S, G: Teamwork> Teamwork for Commanded<S, G> {
     pass_on!(land: self => self.inside);
 }
 
-/// The way point of a commanded velocity lies this many own radii ahead, farther than any distance
-/// at which robots swerve.
+/// Distance of the way point of a commanded velocity, own radii: farther than robots swerve.
 const LEADS_TO_RADII: i32 = 100;
 
 impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
@@ -168,7 +160,7 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
             Wish::Velocity { velocity_mps, .. } => {
                 input.can_go()?;
                 let wish_mps = velocity_mps.clamp_norm(input.body.max_speed_mps);
-                // A point ahead lets two robots that are sent against each other pass.
+                // Lets two robots that are sent against each other pass.
                 let far_m = input.body.radius_m * S::from_i32(LEADS_TO_RADII);
                 let way_m = wish_mps.normalized().map(|ahead| ahead * far_m);
                 let action = Action::Velocity { wish_mps, way_m };
@@ -215,7 +207,6 @@ impl<S: Scalar, G: Guidance<S>> Guidance<S> for Commanded<S, G> {
         self.inside.parameter(parameter).or_else(|| self.straight.parameter(parameter))
     }
 
-    /// Speed and tolerance also apply to [`Wish::Waypoint`].
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         self.inside.tune(parameter, value) | self.straight.tune(parameter, value)
     }

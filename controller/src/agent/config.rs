@@ -1,4 +1,4 @@
-//! The configuration with which the agent of one robot starts.
+//! The configuration of the agent of one robot.
 
 use super::ContactLossPolicy;
 use crate::neighbor::{Ages, PlausibilityLimits};
@@ -14,23 +14,19 @@ use serde::{Deserialize, Serialize};
 pub struct AgentConfig<S> {
     /// Own id, 1 or more.
     pub id: RobotId,
-    /// Seed of the robot's random numbers, combined with its id.
+    /// Seed of the random numbers, combined with the id.
     pub seed: u64,
-    /// Boot number, which must change at each start (a counter in non-volatile memory, or a random
-    /// number). After a restart with an unchanged number, other robots ignore this robot until they
-    /// have forgotten it; see [`crate::wire::SequenceWindow`].
+    /// Boot number, which must change at each start (a non-volatile counter, or random). Otherwise
+    /// other robots ignore this robot for a time; see [`crate::wire::SequenceWindow`].
     pub boot: u8,
-    /// Time base; above 0. On the grid, the time to cross a cell of impassability 1. For robots
-    /// that move by velocities, the time between two steps, which the caller must keep, since a
-    /// command is planned for exactly that time.
+    /// Time base; above 0. On the grid, the time to cross a cell of impassability 1. In the plane,
+    /// the time between two steps, for which each command is planned: the caller must keep it.
     pub tick: Duration,
-    /// Time between two beacons. A longer period saves airtime, and neighbours work with older
-    /// states.
+    /// Time between two beacons. A longer period saves airtime but gives neighbours older states.
     pub beacon_period: Duration,
     /// Radius of the ball around the body, metres.
     pub radius_m: S,
-    /// Largest acceleration of the body, m/s^2; [`Scalar::MAX`] for no limit. Used by robots that
-    /// move by velocities.
+    /// Largest acceleration in the plane, m/s^2; [`Scalar::MAX`] for no limit.
     pub max_acceleration_mps2: S,
     /// Age of a beacon when it arrives; at least 0. Neighbours are extrapolated over this time.
     pub latency: Duration,
@@ -38,18 +34,15 @@ pub struct AgentConfig<S> {
     pub ages: Ages,
     /// How requests are resent.
     pub retry: Retry,
-    /// Lifetime of a stop request that is not renewed. It bounds the delay that a lost resume
-    /// request costs.
+    /// Lifetime of a stop request that is not renewed; it bounds the cost of a lost resume request.
     pub stop_valid: Duration,
     /// The reaction to lost contact.
     pub contact_loss: ContactLossPolicy<S>,
     /// Limits on the values that other robots may report.
     pub plausibility: PlausibilityLimits<S>,
-    /// The own flock. A robot that [flocks](crate::flock) treats members of other flocks as
-    /// obstacles only. Flock 0 is the flock of all robots that belong to none.
-    ///
-    /// A robot in formation has flock 0, because its beacon carries its place there in the field of
-    /// the flock ([`Beacon::slot`](crate::wire::Beacon::slot)).
+    /// The own flock; 0 for no flock and for robots in formation, whose beacons carry
+    /// [`Beacon::slot`](crate::wire::Beacon::slot) in this field. A robot that
+    /// [flocks](crate::flock) treats members of other flocks as obstacles.
     pub flock: u8,
 }
 
@@ -75,13 +68,11 @@ impl<S: Scalar> AgentConfig<S> {
         }
     }
 
-    /// Creates a configuration from the values that every robot needs. On the grid a body is a
-    /// cell, so the radius is unused and may be 0.
+    /// Creates a configuration from the values that every robot needs (on the grid any `radius_m`).
     ///
     /// Defaults: seed 0, boot 0, flock 0, a beacon per tick, states stale after 4 ticks and expired
-    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no latency,
-    /// and no plausibility limits. A robot that moves by velocities with a real radio also needs
-    /// its [`latency`](Self::latency).
+    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no latency
+    /// (set [`latency`](Self::latency) for a real radio in the plane), and no plausibility limits.
     #[must_use]
     pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The reaction of a robot that moves by velocities to lost contact.
+//! The reaction of a robot in the plane to lost contact.
 
 use super::AgentConfig;
 use crate::scalar::{Scalar, cast};
@@ -21,9 +21,8 @@ use serde::{Deserialize, Serialize};
 /// | never any since power-on | moves freely: it is the first or only robot of its swarm |
 ///
 /// A lost robot is avoided until it is in contact again or [`remember`](Self::remember) has passed.
-/// A robot last known about as far away as the farthest fresh one has left radio range and is
-/// forgotten. If the last robots move beyond the greatest distance of any earlier contact, all have
-/// left.
+/// It left radio range, and is forgotten, if it was last known about as far away as the farthest
+/// fresh robot. All have left if the last ones exceed the greatest distance of any earlier contact.
 ///
 /// [`GapLimit`]: crate::neighbor::GapLimit
 /// [lost]: crate::neighbor::Ages::expire_after
@@ -32,14 +31,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ContactLossPolicy<S> {
-    /// How long a silent robot is remembered; at most half an hour. Longer: a robot that was
-    /// carried away blocks its place for longer, and this robot continues for longer after it left
-    /// the radio range of the others. Shorter: a dead robot is hit sooner. Below
+    /// How long a silent robot is remembered; at most half an hour. Longer: a removed robot blocks
+    /// its place for longer. Shorter: a dead robot is hit sooner. Below
     /// [`Ages::expire_after`](crate::neighbor::Ages::expire_after), no robot is remembered.
     pub remember: Duration,
-    /// Speed when all robots are lost, m/s. With 0 the robot stands until another one is in
-    /// contact; with [`Scalar::MAX`] it continues at full speed. Set it above 0 only for robots
-    /// that may be alone, because robots that still move nearby cannot be detected.
+    /// Speed when all robots are lost, m/s; 0 to stand until a robot is in contact. Above 0 only
+    /// for robots that may be alone, since moving silent robots are not detected.
     pub alone_mps: S,
 }
 
@@ -53,7 +50,7 @@ impl<S: Scalar> ContactLossPolicy<S> {
         ContactLossPolicy { remember: self.remember, alone_mps: cast(self.alone_mps) }
     }
 
-    /// Whether the robot may be alone.
+    /// Returns whether the robot moves although all others are lost.
     #[must_use]
     pub fn may_be_alone(&self) -> bool {
         self.alone_mps > S::ZERO
@@ -64,19 +61,16 @@ impl<S: Scalar> ContactLossPolicy<S> {
 pub(super) enum ContactState {
     /// Never in contact, or all other robots have left radio range.
     Never,
-    /// In contact; the time of the last reception.
+    /// The time of the last reception.
     InContact(Instant),
     /// All robots are lost; the time of the last reception.
     Lost(Instant),
-    /// All robots are lost and forgotten.
     Forgotten,
 }
 
 impl ContactState {
-    /// Updates the state. Returns whether contact was lost just now. Call it in each step, so that
-    /// the 32-bit clock cannot wrap unnoticed.
-    ///
-    /// `have_left`: no lost robot is remembered, because all left radio range.
+    /// Updates the state. Returns whether contact was lost just now; `have_left`: all lost robots
+    /// left radio range. Call it in each step, so that the 32-bit clock cannot wrap unnoticed.
     pub(super) fn passes<S: Scalar>(&mut self, now: Instant, have_left: bool, config: &AgentConfig<S>) -> bool {
         let is_over = |at, longest| !(Duration::ZERO..=longest).contains(&now.since(at));
         let before = *self;

@@ -1,4 +1,4 @@
-//! The three flocks as guidance laws.
+//! The flocks as guidance laws.
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Roams, Status, Teamwork, ToWaypoints};
 use super::tunable::Tunable as _;
@@ -15,8 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Goals that a robot of a goal flock can store.
 pub const GOALS: usize = WAYPOINTS;
 
-/// The alpha flock (R. Olfati-Saber 2006, OLF): robots at equal distances, which follow a reference
-/// if it is given as waypoint 0.
+/// The alpha flock (R. Olfati-Saber 2006, OLF): equal distances, with waypoint 0 as the reference.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct LatticeGuidance<S> {
     params: LatticeParams<S>,
@@ -25,9 +24,8 @@ pub struct LatticeGuidance<S> {
 }
 
 impl<S: Scalar> LatticeGuidance<S> {
-    /// Creates the law. `moves`: whether the reference moves with its velocity (a dynamic
-    /// gamma-agent), or stays in place and only has a velocity (a static one, as in the obstacle
-    /// courses of the paper).
+    /// Creates the law. `moves`: the reference moves with its velocity (a dynamic gamma-agent) or
+    /// only has one (a static one, as in the obstacle courses of the paper).
     #[must_use]
     pub const fn new(params: LatticeParams<S>, moves: bool) -> Self {
         Self::following(params, if moves { ReferenceMotion::Dynamic } else { ReferenceMotion::Static })
@@ -94,9 +92,8 @@ impl<S: Scalar> Guidance<S> for LatticeGuidance<S> {
     }
 }
 
-/// The goal flock (V. E. and V. V. Pavlovsky, PAV): moves to the centre of the goals together;
-/// there each robot draws one goal. Goals may move with their own velocities. The centre moves with
-/// them, and a robot follows the goal that it drew.
+/// The goal flock (V. E. and V. V. Pavlovsky, PAV): moves to the centre of the goals together, then
+/// each robot draws one goal. Goals may move; the centre and the robots follow them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GoalFlockGuidance<S> {
     params: GoalParams<S>,
@@ -107,14 +104,13 @@ pub struct GoalFlockGuidance<S> {
 }
 
 impl<S: Scalar> GoalFlockGuidance<S> {
-    /// Creates the law. `arrival_m`: distance at which the robot counts as arrived; a crowd needs
-    /// space, so about the neighbourhood radius. `seed`: seed of the draws.
+    /// Creates the law. `arrival_m`: distance at which the robot counts as arrived, about the
+    /// neighbourhood radius for a crowd. `seed`: seed of the draws.
     #[must_use]
     pub const fn new(params: GoalParams<S>, arrival_m: S, seed: u64) -> Self {
         Self { params, arrival_m, seed, goals: Goals::new(), moving: [None; GOALS] }
     }
 
-    /// Moves goals to their positions at `now`. Goals without a velocity stay exactly in place.
     fn follow_goals(&mut self, own: Position, now: Instant) {
         for (index, waypoint) in self.moving.iter_mut().enumerate() {
             let place = waypoint.as_mut().and_then(|waypoint| own.moved(waypoint.way(own, now)));
@@ -130,8 +126,8 @@ impl<S: Scalar> GoalFlockGuidance<S> {
         self.goals.stage()
     }
 
-    /// Whether the robot may stop: near its own goal, and kept from it by other robots. Stopping as
-    /// soon as it is near would block the goal for later robots.
+    /// Whether it is near its goal and blocked by robots. Stopping earlier would block other
+    /// robots.
     fn is_there(&self, own: Position, way_m: Option<Vec3<S>>, wish_mps: Vec3<S>) -> bool {
         let is_drawn = matches!(self.goals.stage(), Stage::Goal(_));
         let is_near = is_drawn && self.goals.has_arrived(own, self.arrival_m);
@@ -197,8 +193,7 @@ impl<S: Scalar> Guidance<S> for GoalFlockGuidance<S> {
     }
 }
 
-/// Boids (V. A. Starovoitova 2018, STA): constant speed, headings that follow those of the
-/// neighbours.
+/// Boids (V. A. Starovoitova 2018, STA): constant speed, headings that follow the neighbours.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct BoidsGuidance<S> {
     params: BoidsParams<S>,
@@ -235,7 +230,6 @@ impl<S: Scalar> Guidance<S> for BoidsGuidance<S> {
             let (sin, cos) = (turn * S::PI).sin_cos();
             Vec2::new(cos, sin)
         };
-        // Follow the body if a safety layer has turned it.
         let moving = input.body.velocity_mps.xy().normalized();
         let heading = moving.or(self.heading).unwrap_or_else(&mut draw);
         let heading = self.params.steer(input.id, heading, input.nearby);

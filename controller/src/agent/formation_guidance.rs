@@ -1,6 +1,4 @@
-//! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2): the top leader chooses the route
-//! for all robots, and the others keep their places beside it. [`crate::formation`] explains the
-//! differences from the paper.
+//! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2); see [`crate::formation`].
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{MoveHistory, PATIENCE, on_grid, reachable_goal};
@@ -31,20 +29,17 @@ mod in_plane;
 
 pub use in_plane::FormationInPlane;
 
-/// Number of moves to try: the best and the next best. A robot that finds both occupied waits; with
-/// all eight it would leave its place.
+/// Moves to try. A robot that finds both occupied waits; with all eight it would leave its place.
 const ALTERNATIVES: usize = 2;
 
-/// Moving in formation. Remembers the visits of `M` cells and a template of `F` neighbours.
-///
-/// Without a template the robot moves alone. `K` predicts the motion of the leader: by its next
-/// move, or by its [`Course`](crate::formation::Course).
+/// Moving in formation, with the visits of `M` cells and a template of `F` neighbours; alone
+/// without a template. `K` predicts the leader by its next move or its
+/// [`Course`](crate::formation::Course).
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize, const L: usize = 0, K = NextMove> {
     route: RouteParams,
     formation: FormationParams,
     sharpness: Sharpness,
-    /// The assigned template; [`Self::view`] is the one in use.
     template: Template<F>,
     ranks: GapClosing,
     assembler: TemplateAssembler<F>,
@@ -53,15 +48,12 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
     pace: PaceControl,
     leader: RobotId,
     leader_offset: Cell,
-    /// Consecutive decisions with another robot in the place of a neighbour.
     crowded: u8,
     has_asked: bool,
-    /// Consecutive decisions in which the robot waited for others.
     waited: u16,
-    /// Consecutive decisions in which it was behind, or not in place while the top leader had
-    /// arrived.
+    /// Consecutive decisions in which it was behind, or off its place with an arrived top leader.
     behind: u16,
-    /// As in the plane, no robot may fall behind: the slowest sets the pace.
+    /// As in the plane: the slowest robot sets the pace.
     #[serde(with = "crate::digest::uncounted")]
     is_rigid: bool,
     steering: K,
@@ -69,13 +61,13 @@ pub struct FormationGuidance<const CELLS: usize, const M: usize, const F: usize,
 
 struct Guide {
     anchor: Anchor,
-    /// Own deviation behind its place, [`UNIT`](crate::grid::UNIT)s.
+    /// [`UNIT`](crate::grid::UNIT)s behind its place.
     lag: u32,
     has_arrived: bool,
 }
 
 impl<const CELLS: usize, const M: usize, const F: usize, const L: usize> FormationGuidance<CELLS, M, F, L> {
-    /// Creates the law with these parameters and this place in the formation.
+    /// Creates the law for one place in the formation.
     #[must_use]
     pub const fn new(route: RouteParams, formation: FormationParams, template: Template<F>) -> Self {
         Self::steered(route, formation, template, NextMove)
@@ -122,9 +114,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         &self.template
     }
 
-    /// Returns how far the neighbours are from their places in the template, for robot `id` in
-    /// `cell` with the neighbours `neighbors`: see [`Agent::neighbors`](super::Agent::neighbors).
-    /// O(F N).
+    /// Returns how far `neighbors`, from [`Agent::neighbors`](super::Agent::neighbors), are from
+    /// their places in the template of robot `id` in `cell`. O(F N).
     #[must_use]
     pub fn graph_distance<S>(&self, id: RobotId, cell: Cell, neighbors: &[Neighbor<S>]) -> GraphDistance {
         let robots = neighbors.iter().map(|other| seen_at(other, other.cell));
@@ -132,7 +123,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         graph_distance(cell, &found)
     }
 
-    /// The template after the formation has closed gaps of lost robots.
     fn view<S>(&self, own: RobotId, neighbors: &[Neighbor<S>]) -> Template<F> {
         if self.formation.closes_ranks {
             self.ranks.view(own, &self.template, holders(neighbors))
@@ -143,8 +133,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
 
     // Functions with large stack frames are not inlined, so only one frame is live at a time.
 
-    /// Returns the highest robot of the leader chain with a known place, and the own place relative
-    /// to it: the top leader if it is known, otherwise a leader in the template.
+    /// Returns the highest leader with a known place, and the own place relative to it.
     fn top<S>(&self, input: &GuidanceInput<'_, S>, view: &Template<F>) -> Option<(RobotId, Cell)> {
         let heard = |id: RobotId| input.neighbor(id);
         let first = heard(self.leader)?;
@@ -163,21 +152,18 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         placed.last()
     }
 
-    /// Chooses the leader. A leader stays while it is known, however far away it is (the paper
-    /// chooses it only at t = 0).
+    /// Keeps a leader while it is known, however far away (the paper chooses it only at t = 0).
     fn choose_leader<S>(&mut self, input: &GuidanceInput<'_, S>, found: &Found<F>) {
         let leader = find_leader(input.id, &found.members);
         if leader.is_some() || input.neighbor(self.leader).is_none() {
             self.leader = leader;
         }
-        // A place for any robot does not determine whose place it is.
         let member = found.members.iter().find(|m| m.seen.id == self.leader);
         if let Some(member) = member {
             self.leader_offset = Cell::default() - member.offset;
         }
     }
 
-    /// Route of a robot that leads or is alone: its own search, on terrain priced for all.
     #[inline(never)]
     fn lead<S>(
         &mut self,
@@ -222,8 +208,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         if place == cell {
             return Some(price);
         }
-        // Beyond the window it could circle in front of an obstacle, so it remembers visits. Near
-        // its place it may revisit cells.
+        // Beyond the window the robot could circle in front of an obstacle, so it remembers visits.
         let is_in_sight = window.get(place).is_some();
         let visits = (!is_in_sight).then_some(self.router.visits());
         let others = input.neighbors.iter().map(|neighbor| neighbor.cell);
@@ -250,8 +235,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         })
     }
 
-    /// Whether the robot has been behind, or not in place while the top leader had arrived, for so
-    /// long that it goes to its goal alone until it is back in its place.
+    /// Whether it has been behind for so long that it travels alone until it is back in its place.
     fn has_lost_touch(&mut self, guide: &Guide) -> bool {
         let limit = if self.behind == 0 { self.formation.halt_lag } else { self.formation.resume_lag };
         let is_behind = guide.has_arrived || guide.lag > u32::from(limit.min(self.formation.halt_lag));
@@ -259,8 +243,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         self.behind > self.formation.patience
     }
 
-    /// Asks a foreign robot that has been in a neighbour's place for too long to choose another
-    /// direction (KUZ section 7, item 6).
+    /// Asks a foreign robot in a neighbour's place to choose another direction (KUZ section 7).
     fn ask_surplus(&mut self, found: &Found<F>) -> Option<Ask> {
         if found.more == 0 {
             self.crowded = 0;
@@ -274,7 +257,6 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         Some(Ask { to: found.surplus, kind: RequestKind::Redirect })
     }
 
-    /// Asks the leader to stop if too far behind, and to resume when near again.
     fn ask_pace(&mut self, leader: RobotId, lag: u32) -> Option<Ask> {
         let has_fallen_behind = self.pace.update(&self.formation, lag);
         let kind = match (has_fallen_behind, self.has_asked) {
@@ -287,8 +269,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
     }
 }
 
-/// Whether a robot follows this one, as far as its leaders are known. Ids decrease along the chain,
-/// so it ends.
+/// Whether robot `other` follows this one. Ids decrease along the chain, so it ends.
 fn comes_after<S>(input: &GuidanceInput<'_, S>, other: RobotId, leader: RobotId) -> bool {
     let heard = |id: RobotId| input.neighbor(id);
     let chain = successors(Some((other, leader)), |&(id, leader)| {
@@ -378,7 +359,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             self.router.begin_anew();
             list::extend(&mut asks, self.ask_pace(leader, guide.lag));
             status.is_off_place = self.pace.waits();
-            // The goal counts only once the formation has arrived.
             status.is_at_goal &= guide.has_arrived;
             let weights = self.follow(input, &window, (cell, target), guide, &found, workspace);
             if let (Some(first), false) = (weights.and_then(|w| w.best()), guide.has_arrived) {
@@ -388,10 +368,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
             }
             weights
         } else {
-            // Do not wait for a robot that cannot continue or has arrived: a part of the formation
-            // that lost the rest would wait for ever for robots that reached the goal first. Do not
-            // wait for a robot that follows another one. A robot that travels alone waits for no
-            // robot.
+            // Wait only for robots that follow this one and still move: a separated part of the
+            // formation would wait for ever for robots that reached the goal first.
             let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
             let able = found.members.iter();
             let able = able.filter(|Member { seen, .. }| {
@@ -430,7 +408,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice, 0);
         if status.waits_for.is_none() && !status.is_at_goal {
-            // There are at most three requests: for the pace, and these two.
             list::extend(&mut asks, blocked);
             list::extend(&mut asks, self.ask_surplus(&found));
         }

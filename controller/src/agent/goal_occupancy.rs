@@ -6,44 +6,36 @@ use crate::neighbor::Nearby;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// The robot checks its goal after this idle distance: the distance, in own radii, that it could
-/// have covered since it last came nearer.
+/// Idle distance (that the robot could have covered since it last came nearer), in own radii.
 const PATIENCE: i32 = 4;
-/// From this idle distance on, stationary robots ahead also count as arrived.
+/// Idle distance after which stationary robots ahead also count as arrived.
 const LONG_PATIENCE: i32 = 40;
-/// Up to this idle distance the nearest robot goes first.
+/// Idle distance up to which the nearest robot has precedence.
 const BY_DISTANCE: i32 = 12;
-/// Up to this idle distance the robot with the smallest id goes first.
+/// Idle distance up to which the smallest id has precedence.
 const BY_NUMBER: i32 = 24;
-/// Beyond this distance to the goal, in own radii, precedence is not decided yet.
+/// Precedence is not decided beyond this distance to the goal, own radii.
 const ABOUT: i32 = 8;
 /// Approach that counts as progress, thousandths of the own radius.
 const NEARER: i32 = 250;
-/// A robot that is this much farther away starts again, because it was sent elsewhere or pushed
-/// away; thousandths of the own radius.
+/// A robot this much farther away was sent elsewhere or pushed away; thousandths of the own radius.
 const FARTHER: i32 = 8_000;
-/// Distances to the goal that differ by less than this are equal, because both robots know rounded
-/// values; thousandths of the own radius.
+/// Differences of distances below this are rounding; thousandths of the own radius.
 const TIE: i32 = 100;
 /// Speed below which a robot stands, thousandths of the top speed.
 const SLOW: i32 = 100;
 
-/// Decides whether the place that a robot goes to is free. Lengths are in own radii.
+/// Decides whether the place that a robot heads for is free.
 ///
-/// - A robot that has not come nearer for [`PATIENCE`] checks for robots that overlap its own body
-///   at the goal.
-/// - If a robot stands there permanently (parked, or in fault), this robot has arrived beside it
-///   until the place is free. After [`LONG_PATIENCE`] so have robots that stand around them; before
-///   that, a robot may be in the way for another reason.
-/// - If a moving robot is there, perhaps on its way to the same place or a close one, one of them
-///   goes first: the nearest until [`BY_DISTANCE`], the smallest id until [`BY_NUMBER`] (each can
-///   be nearest to its own place). The other robots leave it the space that it needs. Then all try
+/// - After [`PATIENCE`] without progress, it looks for robots that overlap its body at the goal.
+/// - If one is parked or in fault there, this robot has arrived beside it until the place is free.
+///   After [`LONG_PATIENCE`] so have robots that stand around them.
+/// - If one moves there, the nearest has precedence until [`BY_DISTANCE`], the smallest id until
+///   [`BY_NUMBER`] (each can be nearest to its own place). The others leave it space, then all try
 ///   again.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct GoalOccupancy<S> {
-    /// Least distance to the goal so far, metres; 0 before the first check.
     nearest_m: S,
-    /// Distance that it could have covered since it last came nearer, metres.
     idle_m: S,
     is_beside: bool,
 }
@@ -51,7 +43,7 @@ pub(super) struct GoalOccupancy<S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Claim<S> {
     Goes,
-    /// Another robot goes first; keep this distance, metres.
+    /// Another robot has precedence; keep this distance, metres.
     Yields(S),
     IsBeside,
 }
@@ -59,7 +51,7 @@ pub(super) enum Claim<S> {
 impl<S: Scalar> GoalOccupancy<S> {
     pub(super) const NEW: Self = Self { nearest_m: S::ZERO, idle_m: S::ZERO, is_beside: false };
 
-    /// Decides about a stationary goal at offset `way_m`. Call it in each step. O(nearby).
+    /// O(nearby). Call it in each step.
     pub(super) fn claim<P>(&mut self, input: &GuidanceInput<'_, S, P>, way_m: Vec3<S>, tolerance_m: S) -> Claim<S> {
         let GuidanceInput { body, nearby, .. } = input;
         let distance = way_m.norm();
@@ -73,7 +65,6 @@ impl<S: Scalar> GoalOccupancy<S> {
         if !has_waited(PATIENCE) {
             return Claim::Goes;
         }
-        // Whether another robot leaves no space for the own body at the goal.
         let covers =
             |other: &&Nearby<S>| (way_m - other.offset_m).norm() + tolerance_m < body.radius_m + other.radius_m;
         let touches = |other: &Nearby<S>| other.offset_m.norm() < body.radius_m + body.radius_m + other.radius_m;

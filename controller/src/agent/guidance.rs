@@ -73,17 +73,17 @@ use serde::{Deserialize, Serialize};
 /// fn law(law: CellFollower<f32, WaypointGuidance<f32>>) -> impl Guidance<f32> { law }
 /// ```
 pub trait Guidance<S: Scalar>: Teamwork {
-    /// The input in addition to own state and radio: [`OnGrid`](super::OnGrid),
-    /// [`InPlane`](super::InPlane) or [`InCells`](super::InCells).
+    /// Its surroundings: [`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane),
+    /// [`InCells`](super::InCells).
     type Input<'a>: Surroundings<S>;
 
     /// The kind of goal.
     type Destination: Destination;
 
-    /// Scratch memory. It holds no state between calls, so many robots can share one.
+    /// Scratch memory without state between calls; one can serve all robots.
     type Workspace;
 
-    /// Data for robots with the same law. It is sent after each beacon and received as
+    /// Data for robots with the same law, sent after each beacon and received as
     /// [`Neighbor::payload`]; `()` for none, at no cost.
     type Payload: Payload;
 
@@ -99,7 +99,7 @@ pub trait Guidance<S: Scalar>: Teamwork {
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput>;
 
-    /// Returns whether its goal is a cell of the grid. Override this if
+    /// Returns whether its goal is a cell. Override this if
     /// [`Self::Destination`](Guidance::Destination) does not determine it.
     fn goes_to_cells(&self) -> bool {
         Self::Destination::IS_CELL
@@ -115,8 +115,7 @@ pub trait Guidance<S: Scalar>: Teamwork {
         false
     }
 
-    /// Returns the tracker of detected robots, or `None` if neighbours are known by radio only. See
-    /// [`NeighborTracking`](super::NeighborTracking).
+    /// Returns the [tracker](super::NeighborTracking) of detected robots, if any.
     fn tracker(&mut self) -> Option<&mut Tracker<S>> {
         None
     }
@@ -126,8 +125,8 @@ pub trait Guidance<S: Scalar>: Teamwork {
         false
     }
 
-    /// Returns the payload, called when a beacon is due. Receivers may get it late, repeatedly or
-    /// never, so it should describe a state rather than a change.
+    /// Returns the payload when a beacon is due: a state rather than a change, since receivers may
+    /// get it late, repeatedly or never.
     fn payload(&mut self, _now: Instant) -> Self::Payload {
         Self::Payload::default()
     }
@@ -137,27 +136,24 @@ pub trait Guidance<S: Scalar>: Teamwork {
         None
     }
 
-    /// Changes a parameter. Returns whether the law has it and accepts the value. `value` is within
-    /// [`Parameter::range`].
+    /// Changes a parameter to a value within [`Parameter::range`]. Returns whether it was accepted.
     fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
         false
     }
 }
 
-/// Messages between robots that travel together, in addition to beacons. A law that does not use
-/// them takes the defaults: `impl Teamwork for MyLaw {}`.
+/// Messages between robots that travel together, in addition to beacons; all are optional.
 pub trait Teamwork {
-    /// Handles a request to choose another direction (A. V. Kuznetsov 2017, KUZ, section 7): the
-    /// last choice is excluded from the next decision.
+    /// Handles a request to choose another direction (A. V. Kuznetsov 2017, KUZ, section 7):
+    /// excludes the last choice from the next decision.
     fn redirect(&mut self) {}
 
-    /// Reports before a decision whether a stop request is active. The agent itself stops a robot
-    /// without a leader (unless [`Status::recovers`] is set). A law in which other robots stop as
-    /// well stores the flag.
+    /// Reports before a decision whether a stop request is active. The agent stops a robot without
+    /// a leader itself, unless [`Status::recovers`]; laws that stop other robots store the flag.
     fn note_stop(&mut self, _is_asked: bool) {}
 
-    /// Handles a part of a formation template. Returns whether it was accepted. `is_restarted`: the
-    /// sender changed or restarted.
+    /// Handles a part of a formation template; returns whether it was accepted. The flag reports
+    /// that the sender changed or restarted.
     fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
         false
     }
@@ -181,9 +177,8 @@ pub trait Teamwork {
     }
 }
 
-/// Forwards the functions of [`Teamwork`] to the wrapped law `$inside`: `orders` for formations,
-/// `land` for maps. A function that is missing here would fall back to its default without a
-/// warning (`tests/wrapped.rs` checks this).
+/// Forwards [`Teamwork`] to the law `$inside`: `orders` for formations, `land` for maps. A missing
+/// function would silently use its default (`tests/wrapped.rs` checks this).
 macro_rules! pass_on {
     (orders: $self:ident => $inside:expr) => {
         fn redirect(&mut $self) {
@@ -239,8 +234,7 @@ pub enum ToWaypoints {}
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Roams {}
 
-/// A kind of goal chosen at run time, set by [`Agent::assign`](super::Agent::assign), which every
-/// agent has.
+/// A kind of goal chosen at run time, set by [`Agent::assign`](super::Agent::assign).
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToAny {}
@@ -261,7 +255,7 @@ impl Destination for ToAny {
     const IS_CELL: bool = false;
 }
 
-/// Inputs of a decision that are common to all guidance laws. `P` is the [`Guidance::Payload`].
+/// Inputs of a decision that are common to all guidance laws.
 #[derive(Clone, Copy, Debug)]
 pub struct GuidanceInput<'a, S, P = ()> {
     /// Own id.
@@ -282,7 +276,7 @@ pub struct GuidanceInput<'a, S, P = ()> {
     pub neighbors: &'a [Neighbor<S, P>],
     /// Age limits of neighbour states.
     pub ages: Ages,
-    /// Terrain beyond the window, from a shared map: see [`MapSharing`](super::MapSharing).
+    /// Terrain beyond the window, from a [shared map](super::MapSharing).
     pub land: Option<&'a dyn FarLand>,
 }
 
@@ -310,12 +304,11 @@ impl<'a, S, P> GuidanceInput<'a, S, P> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use]
 pub struct Decision<S> {
-    /// The intended action, without regard to collisions. The supervisor and the safety layer may
-    /// change it.
+    /// The intended action; the supervisor and the safety layer may change it.
     pub action: Action<S>,
     /// Progress towards the goal.
     pub status: Status,
-    /// The cell that the robot heads for: the goal, or a cell near it if the goal is impassable.
+    /// The cell that it heads for: the goal, or a cell near it if the goal is impassable.
     pub target: Cell,
     /// The robot that this one follows.
     pub leader: RobotId,
@@ -338,8 +331,7 @@ pub enum Action<S> {
     Velocity {
         /// The desired velocity without regard to collisions, m/s.
         wish_mps: Vec3<S>,
-        /// Offset of the point that the robot heads straight for, relative to its own position,
-        /// metres. With `None`, the robot does not swerve to pass an approaching robot.
+        /// Offset of the point that it heads straight for, metres; `None` not to swerve for others.
         way_m: Option<Vec3<S>>,
     },
     /// Release control: the motors are off, or another controller steers
@@ -364,15 +356,15 @@ impl<S> Action<S> {
 pub struct Status {
     /// It is at its goal, or beside its occupied goal.
     pub is_at_goal: bool,
-    /// The reason to stand still and wait; [`Wait::GoalTaken`] if it arrived beside its occupied goal.
+    /// The reason to stand and wait; [`Wait::GoalTaken`] beside an occupied goal.
     pub waits_for: Option<Wait>,
     /// No exit of the window is reachable.
     pub is_stuck: bool,
-    /// It heads for its scattered followers, and therefore continues although they request a stop.
+    /// It heads for scattered followers, and therefore ignores their stop requests.
     pub recovers: bool,
     /// It is too far from its place in the formation.
     pub is_off_place: bool,
-    /// It moves even if it has arrived or waits: it was asked to make way, or its waypoint moves.
+    /// It moves although it arrived or waits: it makes way, or its waypoint moves.
     pub makes_way: bool,
 }
 

@@ -11,7 +11,7 @@ use crate::wire::{DecodeError, RequestKind};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Bytes that one step can send: a beacon and a few requests and acknowledgements.
+/// Capacity of [`Outputs::outbox`], bytes: a beacon and a few requests and acknowledgements.
 pub const OUTBOX: usize = 256;
 /// Events that one step can report.
 pub const EVENTS: usize = 8;
@@ -26,14 +26,14 @@ pub struct KinematicState<S> {
     pub velocity_mps: Vec3<S>,
 }
 
-/// Inputs of one step. `I` is the input of the guidance law: [`OnGrid`](super::OnGrid),
-/// [`InPlane`](super::InPlane), [`InCells`](super::InCells) or
-/// [`AnySurroundings`](super::AnySurroundings).
+/// Inputs of one step; `I` are the surroundings as the guidance law needs them
+/// ([`OnGrid`](super::OnGrid), [`InPlane`](super::InPlane), [`InCells`](super::InCells),
+/// [`AnySurroundings`](super::AnySurroundings)).
 #[derive(Clone, Copy, Debug)]
 pub struct Inputs<'a, S, I> {
     /// Own position and velocity.
     pub state: KinematicState<S>,
-    /// The surroundings as the guidance law needs them.
+    /// Terrain and obstacles as the robot's sensors report them.
     pub surroundings: I,
     /// Bytes received since the last step: frames of the agent's wire format, in order of arrival.
     /// Damaged, foreign and partial frames are detected and counted.
@@ -58,10 +58,10 @@ pub enum Command<S> {
     /// Stand still.
     #[default]
     Hold,
-    /// Take the first of these moves whose cell is free and passable; stand still if none is (A. V.
-    /// Kuznetsov 2017, KUZ, algorithm 4).
+    /// Take the first of these moves whose cell is free and passable, if any (A. V. Kuznetsov 2017,
+    /// KUZ, algorithm 4).
     Move(Vec<Dir, 8>),
-    /// Move with this world velocity, m/s, which is within the speed limit of the body.
+    /// Move with this world velocity, m/s, within the speed limit of the body.
     Velocity(Vec3<S>),
 }
 
@@ -100,36 +100,31 @@ pub enum Event {
     NeighborEvicted(RobotId),
     /// The clock or the sequence number of a neighbour restarted.
     NeighborRebooted(RobotId),
-    /// All neighbours are lost. [`ContactLossPolicy`](super::ContactLossPolicy) determines the reaction.
+    /// All neighbours are lost; see [`ContactLossPolicy`](super::ContactLossPolicy).
     ContactLost,
-    /// Two robots use this id, which is the own id or that of a neighbour. Give one of them another
-    /// id.
-    ///
-    /// Reported once, and again if the robot is found again after it was lost. The second robot is
-    /// avoided under the id [`RobotId::duplicate`], and is reported as lost under that id.
+    /// Two robots use this id; give one of them another id. Reported once, and again after the
+    /// robot was lost and found. The second robot is known as [`RobotId::duplicate`].
     DuplicateId(RobotId),
-    /// A robot reported a value beyond [`AgentConfig::plausibility`](super::AgentConfig::plausibility).
-    /// Reported when it begins; for ids that no robot has, once per step.
+    /// A robot began to report a value beyond its [limit](super::AgentConfig::plausibility); once
+    /// per step for ids of no robot.
     Implausible {
         /// The sender.
         id: RobotId,
         /// The implausible value.
         claim: Claim,
     },
-    /// The robot cannot send: its wire format has no counter or timestamp left to authenticate
-    /// frames with ([`EncodeError::Exhausted`](crate::wire::EncodeError)). Reported for each beacon
-    /// that is due, until a new key is set.
+    /// The wire format has no counter or timestamp left
+    /// ([`EncodeError::Exhausted`](crate::wire::EncodeError)): the robot needs a new key.
     Muted,
 }
 
-/// Counts of frames that failed authentication. Only formats that authenticate frames fill it:
-/// [`Sealed`](crate::wire::Sealed) and signed MAVLink.
+/// Counts of frames that failed authentication, by [`Sealed`](crate::wire::Sealed) or by MAVLink.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Refused {
     /// Without a tag or signature.
     pub unsigned: u16,
-    /// With a tag or signature that does not match: another key, or changed content.
+    /// With a wrong tag or signature: another key, or changed content.
     pub forged: u16,
     /// Recorded and replayed, repeated by the radio, or with a timestamp too far ahead.
     pub replayed: u16,
@@ -154,13 +149,13 @@ impl Refused {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ImplausibleCounts {
-    /// Ids that no robot has; the beacon was refused.
+    /// Beacons refused for an id that no robot has.
     pub numbers: u16,
     /// Radii that were reduced to the limit.
     pub radii: u16,
     /// Velocities that were reduced to the limit.
     pub speeds: u16,
-    /// Places that the robot cannot have reached yet; the beacon was refused.
+    /// Beacons refused for a place that the robot cannot have reached yet.
     pub jumps: u16,
 }
 
@@ -183,14 +178,12 @@ impl ImplausibleCounts {
 pub struct Outputs<S> {
     /// The motion of the body.
     pub command: Command<S>,
-    /// The cause if the robot does not advance; [`Wait::GoalTaken`] if it has arrived beside its
-    /// occupied goal.
+    /// The cause if the robot does not advance; [`Wait::GoalTaken`] if it arrived beside its goal.
     pub wait: Option<Wait>,
-    /// Frames of the inbox that were accepted: valid, not duplicates, from other robots.
+    /// Accepted frames: valid, not duplicates, from other robots.
     pub received: u16,
-    /// Frames of the inbox that were rejected: damaged, of another version, repeated or replayed.
-    /// Foreign frames on the same band ([`DecodeError::Foreign`](crate::wire::DecodeError)) count
-    /// as neither received nor rejected.
+    /// Rejected frames: damaged, of another version, repeated or replayed. Foreign frames
+    /// ([`DecodeError::Foreign`](crate::wire::DecodeError)) count as neither received nor rejected.
     pub rejected: u16,
     /// The rejected frames that failed authentication.
     pub refused: Refused,
@@ -198,14 +191,13 @@ pub struct Outputs<S> {
     pub implausible: ImplausibleCounts,
     /// Bytes to send: frames of the agent's wire format. Each postcard frame ends with a zero byte.
     pub outbox: Vec<u8, OUTBOX>,
-    /// Events of this step; if more than [`EVENTS`] occur, the first ones.
+    /// The first [`EVENTS`] events of this step.
     pub events: Vec<Event, EVENTS>,
     /// When to call the step again if nothing arrives earlier.
     pub call_again: Instant,
 }
 
 impl<S> Outputs<S> {
-    /// Resets to [`Outputs::default`] in place.
     pub(super) fn clear(&mut self) {
         (self.command, self.wait) = (Command::Hold, None);
         (self.received, self.rejected) = (0, 0);

@@ -1,4 +1,4 @@
-//! The radio link of an agent: decodes received frames and encodes frames to send.
+//! The radio link of an agent: decodes received frames, encodes frames to send.
 
 use super::contact_loss::ContactState;
 use super::duplicate_id::EchoFilter;
@@ -21,25 +21,22 @@ use serde::{Deserialize, Serialize};
 mod identity;
 mod sight;
 
-/// Capacity of requests that wait for an acknowledgement.
 const PENDING: usize = 4;
 const WAYPOINTS: usize = 4;
-/// Capacity of requests received from other robots.
 const ORDERS: usize = 8;
 
 pub(super) enum Received<S> {
-    /// A request to choose another direction.
+    /// Choose another direction.
     Redirect,
-    /// A stop or resume request to pass on to the own leader.
+    /// A stop or resume request for the own leader.
     PassOn(Request),
-    /// A part of a template for this robot. `is_restarted` is true if the sender changed or restarted,
-    /// so that its version numbers start anywhere.
+    /// `is_restarted`: the sender changed or restarted, so its version numbers start anywhere.
     Template { part: TemplateAssignment, is_restarted: bool },
-    /// A goal for the top leader of this robot's formation.
+    /// A goal for the top leader of the formation.
     Goal(Cell),
-    /// A patch of another robot's map.
+    /// Of another robot's map.
     Land(LandPatch),
-    /// Waypoint `index`. Call [`Link::placed`] if it was accepted.
+    /// Call [`Link::placed`] if it was accepted.
     Waypoint { index: u8, version: u8, waypoint: Waypoint<S> },
 }
 
@@ -47,7 +44,6 @@ pub(super) enum Received<S> {
 pub(super) struct Link<S, const N: usize, W, P> {
     wire: W,
     header: Header,
-    /// The last frames sent, to recognise echoes.
     said: EchoFilter,
     pub(super) table: NeighborTable<S, N, P>,
     pub(super) contact: ContactState,
@@ -58,20 +54,17 @@ pub(super) struct Link<S, const N: usize, W, P> {
     orders: Orders<ORDERS>,
     goal: Newest,
     waypoints: [Newest; WAYPOINTS],
-    /// The senders of the last goal, the last template and the last waypoint, each with its boot
-    /// number.
+    /// Sender and boot number of the last goal, template and waypoint.
     commanders: [Option<(RobotId, u8)>; 3],
     beacon_due: Instant,
     has_sent: bool,
-    /// The torus of simulated robots. It is constant in a run, so digests omit it.
+    /// Constant in a run, so digests omit it.
     #[cfg(feature = "host")]
     #[serde(with = "crate::digest::uncounted")]
     torus: Option<Torus<S>>,
 }
 
-/// The context in which frames are received: own position, the time at which arriving frames were
-/// sent, the top speed of other robots (if known), their beacon period, plausibility limits, and
-/// the robots that a full table must keep.
+/// The context of received frames; `heard_at` is the time at which arriving frames were sent.
 pub(super) struct ReceiveContext<'a, S> {
     pub(super) position: Position,
     pub(super) heard_at: Instant,
@@ -116,8 +109,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         None
     }
 
-    /// Returns the image of a position that is nearest to another one; without a torus, the
-    /// position itself.
     fn image(&self, place: Position, other: Position) -> Position {
         self.torus().map_or(place, |torus| torus.image(place, other))
     }
@@ -130,12 +121,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         &mut self.wire
     }
 
-    /// Moves neighbours from the table to the list of lost robots once they have been silent for
-    /// longer than packet loss explains. Call this first in each step.
-    ///
-    /// The limit follows from the beacon `period`, the radio's `latency` and the measured loss. If
-    /// lost robots are remembered (`remember` > 0), as stationary balls, a neighbour counts as lost
-    /// only after [`Ages::expire_after`].
+    /// Moves neighbours to the list of lost robots once their silence is longer than packet loss
+    /// explains; with `remember` > 0 only after [`Ages::expire_after`]. Comes first in each step.
     pub(super) fn expire(
         &mut self,
         own: Position,
@@ -167,8 +154,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.wire.next_frame(inbox)
     }
 
-    /// Processes one frame, acknowledges a request, and returns a message that the agent must
-    /// handle.
+    /// Returns a message that the agent must handle.
     pub(super) fn hear(
         &mut self,
         bytes: &[u8],
@@ -196,7 +182,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.take(frame, id, arrival, now, listener, out)
     }
 
-    /// Classifies a frame by its sequence number; `None` if it must be refused.
+    /// `None` if the frame must be refused.
     fn arrival(&mut self, sender: RobotId, header: Header, out: &mut Outputs<S>) -> Option<Arrival> {
         let window = self.windows.iter_mut().find(|(id, _)| *id == sender);
         let (missed, arrival) =
@@ -225,7 +211,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         match frame.message {
             Message::Beacon(beacon) if arrival.is_latest() => {
                 let mut neighbor = Neighbor::from_beacon(id, &beacon, listener.heard_at);
-                // The payload arrives in a separate frame. After a restart the old one is invalid.
+                // The payload arrives in a separate frame; after a restart the old one is invalid.
                 let known = self.table.get(id, now).known().filter(|_| arrival != Arrival::Rebooted);
                 neighbor.payload = known.map_or(neighbor.payload, |known| known.payload);
                 self.keep(neighbor, frame.header, now, listener, out);
@@ -240,7 +226,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 }
             }
             Message::Ack(ack) if is_mine(ack.to) => {
-                // A repeated acknowledgement has no effect.
                 let _ = self.requests.acknowledged(sender, &ack);
             }
             Message::Template(part) if is_mine(part.to) => {
@@ -282,7 +267,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                     self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
                 }
             }
-            // An outdated beacon, or a message for another robot.
             _ => {}
         }
         None
@@ -314,8 +298,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         }
     }
 
-    /// Marks a waypoint as accepted. A waypoint that was not accepted is reported again when it is
-    /// repeated, because it may be usable by then.
+    /// One that was not accepted is reported again when it is repeated: it may be usable by then.
     pub(super) fn placed(&mut self, index: u8, version: u8) {
         if let Some(newest) = self.waypoints.get_mut(usize::from(index)) {
             let _ = newest.admit(version);
@@ -338,8 +321,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.orders.is_stopped(now)
     }
 
-    /// Sends due requests, then the beacon if it is due, followed by the payload and a map patch if
-    /// there is room.
+    /// Sends due requests, the beacon if it is due, then the payload and a map patch if they fit.
     pub(super) fn speak(
         &mut self,
         now: Instant,
@@ -383,13 +365,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         };
     }
 
-    /// Appends a frame to the outbox if a beacon still fits behind it.
     fn say_early(&mut self, message: &Message, out: &mut Outputs<S>) {
         // A dropped frame is requested again by its receiver.
         let _ = self.say(message, self.wire.beacon_len(), out);
     }
 
-    /// Appends a frame to the outbox if `reserved` bytes remain free behind it.
+    /// Leaves `reserved` bytes free.
     fn say(&mut self, message: &Message, reserved: usize, out: &mut Outputs<S>) -> Result<(), EncodeError> {
         let before = out.outbox.len();
         self.wire.encode(self.header, message, &mut out.outbox)?;
@@ -402,8 +383,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 }
 
-/// Returns whether a frame comes from another sender or another boot than the last one, and stores
-/// its sender.
+/// Returns whether they changed.
 fn is_another(last: &mut Option<(RobotId, u8)>, header: Header) -> bool {
     let now = Some((header.sender, header.boot));
     core::mem::replace(last, now) != now
@@ -413,7 +393,7 @@ pub(super) fn report<S>(out: &mut Outputs<S>, event: Event) {
     let _ = out.events.push(event);
 }
 
-/// Builds the own beacon. Lengths saturate, and NaN counts as 0.
+/// Lengths saturate, and NaN counts as 0.
 pub(super) fn beacon<S: Scalar>(
     config: &AgentConfig<S>,
     last: &Last,

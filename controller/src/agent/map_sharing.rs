@@ -13,17 +13,12 @@ use crate::time::Instant;
 use crate::wire::TemplateAssignment;
 use serde::{Deserialize, Serialize};
 
-/// Guidance law `G` with a map of `T` tiles beyond the window: [`LandMap`]. Laws on the grid price
-/// the exits of their windows by it ([`GuidanceInput::land`]) while they lead; other laws ignore
-/// it.
+/// Guidance law `G` with a [`LandMap`] of `T` tiles beyond the window, shared by one patch per
+/// beacon. Laws on the grid price window exits by it while they lead ([`GuidanceInput::land`]).
 ///
-/// False reports of other robots cost only time. The robot uses its map as long as it reaches a new
-/// least distance to its goal at least once in 32 moves. Otherwise it moves as `G` without a map
-/// until it does, and the next limit is a quarter. That bounds the loss to 42 moves per goal, plus
-/// the ways back.
-///
-/// After each beacon the robot sends one patch of its map. A robot that does not share stores and
-/// sends nothing and behaves as `G`.
+/// False reports cost only time, at most 42 moves per goal plus the ways back: the robot stops
+/// using the map after 32 moves without a new least distance to its goal, then after a quarter of
+/// that.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MapSharing<G, const T: usize> {
     inside: G,
@@ -43,17 +38,14 @@ const PATIENCE: u8 = 32;
 
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Progress {
-    /// Last cell and goal.
     way: Option<(Cell, Cell)>,
-    /// Least squared distance to the goal so far.
+    /// Squared distance.
     least: u64,
     idle: u8,
-    /// Limit of `idle`.
     patience: u8,
 }
 
 impl Progress {
-    /// Returns whether the robot in `cell` still uses its map.
     fn goes_on(&mut self, cell: Cell, goal: Cell) -> bool {
         let before = self.way.replace((cell, goal));
         if before.is_none_or(|(_, old)| old != goal) {
@@ -72,7 +64,7 @@ impl Progress {
     }
 }
 
-/// Serialisation of the map; digests omit a map that does not exist.
+/// Digests omit a map that does not exist.
 mod counted_if_shared {
     use super::{Map, SparseVec};
     use serde::{Deserialize, Deserializer};
@@ -96,12 +88,11 @@ mod counted_if_shared {
 }
 
 impl<G, const T: usize> MapSharing<G, T> {
-    /// Wraps `inside` with a map kept according to `params`, or without a map if `None`.
+    /// Wraps `inside` with a map kept by `params`; with `None` it behaves as `G`.
     #[must_use]
     pub fn new(inside: G, params: Option<MapParams>) -> Self {
         let mut map = SparseVec::new();
         if let Some(params) = params {
-            // Cannot fail: the capacity is 1.
             let _ = map.push(Map { land: LandMap::new(), params, progress: Progress::default() });
         }
         Self { inside, map }

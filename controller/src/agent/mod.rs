@@ -2,8 +2,7 @@
 //!
 //! A step receives frames (`link`), decides (a [`Guidance`] law, then the [`crate::supervisor`]),
 //! avoids collisions (a [`Safety`] layer) and sends frames. The type of a law determines the inputs
-//! of a step ([`Guidance::Input`]) and the kinds of goal ([`Guidance::Destination`]), so that a
-//! wrong combination does not compile:
+//! of a step ([`Guidance::Input`]) and the kinds of goal ([`Guidance::Destination`]):
 //!
 //! | guidance law | surroundings | goal | command |
 //! | --- | --- | --- | --- |
@@ -20,11 +19,9 @@
 //! [move]: Command::Move
 //! [velocity]: Command::Velocity
 //!
-//! An input that the sensors did not deliver for some time is passed as missing
-//! ([`OnGrid::window`], [`InPlane::max_speed_mps`]). The robot then stops in [`Mode::Fault`].
-//!
-//! The crate `staya-robot` turns velocities into PWM, UART bytes into an inbox, and range readings
-//! into a window.
+//! Pass an input that the sensors have not delivered for some time as missing ([`OnGrid::window`],
+//! [`InPlane::max_speed_mps`]): the robot then stops in [`Mode::Fault`]. The crate `staya-robot`
+//! turns velocities into PWM, UART bytes into an inbox, and range readings into a window.
 //!
 //! A robot that moves cell by cell to a goal on the grid:
 //!
@@ -173,24 +170,20 @@ use crate::wire::{MAX_PAYLOAD, Postcard, Wire};
 use link::Link;
 use serde::{Deserialize, Serialize};
 
-/// Cells of a route search in a window of radius 5 (A. V. Kuznetsov 2017, KUZ) with a border: (2 *
-/// 5 + 3)^2.
+/// Cells of a search in a window of radius 5 (A. V. Kuznetsov 2017, KUZ), with its border.
 pub const CELLS: usize = 169;
 /// Capacity of the neighbour table of an agent with default capacities.
 pub const NEIGHBORS: usize = 16;
 /// Number of cells whose visits an agent with default capacities remembers.
 pub const VISITS: usize = 64;
-/// Number of costs that an agent with default capacities learns: 2 KiB. With 0 it leaves dead ends
-/// by following their walls.
+/// Costs that a default agent learns: 2 KiB. With 0 it leaves dead ends along their walls.
 pub const LEARNED: usize = 256;
-/// Tiles in the map of an agent with default capacities that shares its map: 128 x 128 cells around
-/// the robot, 3 KiB, and 6 KiB of stack during a decision.
+/// Tiles in a default shared map: 128 x 128 cells, 3 KiB, and 6 KiB of stack in a decision.
 pub const MAP_TILES: usize = 1024;
 /// Neighbours in a template of default capacity.
 pub const TEMPLATE: usize = 8;
 
-/// Half-planes in a safety layer of default capacity: one per neighbour, and equally many for
-/// obstacles.
+/// Half-planes in a default safety layer: one per neighbour, and equally many for obstacles.
 pub const HALF_PLANES: usize = 2 * NEIGHBORS;
 
 /// An agent for a single robot on the grid, with default capacities.
@@ -200,8 +193,7 @@ pub type FormationAgent = Agent<f32, FormationGuidance<CELLS, VISITS, TEMPLATE, 
 /// An agent for a single robot in the plane behind ORCA, with default capacities.
 pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>>;
 
-// Memory in firmware: one agent, and one workspace for all agents of a processor. A change of these
-// sizes changes the memory map of every user.
+// Memory of firmware: a change of these sizes changes the memory map of every user.
 #[cfg(not(feature = "host"))]
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
@@ -232,16 +224,15 @@ pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = P
     link: Link<S, N, W, G::Payload>,
     mode: Mode,
     goal: Option<Goal>,
-    /// Number of decisions so far; it keys the random numbers of each decision.
+    /// Keys the random numbers of each decision.
     decisions: u32,
     last: Last,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 enum Goal {
-    /// A goal for this robot, regardless of its place in a formation.
     Own(Cell),
-    /// A goal for the top leader of the formation; this robot goes to its own place beside it.
+    /// For the top leader; this robot heads for its own place beside it.
     Formation(Cell),
 }
 
@@ -258,8 +249,8 @@ struct Last {
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
     /// Creates a robot that has just started: idle, without a goal and without known neighbours.
     ///
-    /// Use [`Unguarded`] as `safety` where bodies cannot collide or may touch. All robots of a
-    /// swarm must use the same `wire` format, for example [`Postcard`].
+    /// Use [`Unguarded`] where bodies cannot collide or may touch. All robots of a swarm must use
+    /// the same `wire` format, for example [`Postcard`].
     #[must_use]
     pub const fn new(config: &AgentConfig<S>, guidance: G, safety: A, wire: W) -> Self {
         const { assert!(size_of::<G::Payload>() <= MAX_PAYLOAD, "what a law tells does not fit a frame") };
@@ -290,7 +281,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// Puts the robot on a torus: it sees other robots at their nearest image. For simulated boids.
+    /// Puts the robot on a torus: it sees others at their nearest image. For simulated boids.
     #[cfg(feature = "host")]
     pub const fn set_torus(&mut self, torus: crate::geom::Torus<S>) {
         self.link.set_torus(torus);

@@ -1,5 +1,4 @@
-//! Functions shared by the guidance laws on the grid: the last choice, requests to robots in the
-//! way, and impassable goals.
+//! Shared by the laws on the grid: the last choice, requests to robots in the way, reachable goals.
 
 use super::OnGrid;
 use super::guidance::{Ask, BadInput, GuidanceInput};
@@ -20,9 +19,7 @@ pub(super) const PATIENCE: u8 = 4;
 pub(super) struct MoveHistory {
     cell: Option<Cell>,
     choice: Dir,
-    /// Consecutive decisions to leave this cell.
     attempts: u8,
-    /// Another robot requested another direction.
     redirected: bool,
 }
 
@@ -39,13 +36,11 @@ impl MoveHistory {
         self.redirected = true;
     }
 
-    /// Returns whether another robot requested another direction, and clears the request.
     pub(super) fn take_redirection(&mut self) -> bool {
         core::mem::take(&mut self.redirected)
     }
 
-    /// Whether it has tried to leave this cell for so long that a robot without contact must be in
-    /// the way.
+    /// Whether a robot without contact must be in the way.
     pub(super) const fn is_jammed(&self) -> bool {
         self.attempts > PATIENCE
     }
@@ -54,15 +49,14 @@ impl MoveHistory {
         weights.without(self.choice)
     }
 
-    /// Returns at most `alternatives` moves in the order in which to try them.
     pub(super) fn order(weights: &Weights, sharpness: Sharpness, alternatives: usize, rng: &mut Rng) -> Vec<Dir, 8> {
         let mut moves = weighted_shuffle(weights, sharpness, rng);
         moves.truncate(alternatives);
         moves
     }
 
-    /// Stores the choice in `cell`. Returns a request to a robot that has been in the way for too
-    /// long. `idle`: moves since the robot was nearest to its target.
+    /// Stores the choice. Returns a request to a robot that has been in the way for too long.
+    /// `idle`: moves since the robot was nearest to its target.
     pub(super) fn note<S>(&mut self, input: &GuidanceInput<'_, S>, cell: Cell, choice: Dir, idle: u8) -> Option<Ask> {
         let is_waiting = self.cell == Some(cell) && choice != Dir::Stay;
         self.attempts = if is_waiting { self.attempts.saturating_add(1) } else { 0 };
@@ -70,13 +64,10 @@ impl MoveHistory {
         self.choice = choice;
         let patience = |other: &Neighbor<S>| {
             if other.cell != cell {
-                // An arrived robot does not leave by itself, and this robot may have tried other
-                // routes between its attempts.
                 return if other.mode == Mode::Arrived && idle > PATIENCE { 0 } else { PATIENCE };
             }
-            // In the plane two robots can share a cell, and usually pass each other. Otherwise the
-            // robot with the smaller id asks first: if both made way at once, they would meet
-            // again.
+            // In the plane two robots can share a cell and usually pass each other. Otherwise the
+            // smaller id asks first: if both made way at once, they would meet again.
             if input.id < other.id { 2 * PATIENCE } else { 3 * PATIENCE }
         };
         let wanted = cell + choice.offset();
@@ -93,10 +84,7 @@ fn occupant<'a, S>(input: &GuidanceInput<'a, S>, cell: Cell) -> Option<&'a Neigh
     input.neighbors.iter().find(|neighbor| neighbor.cell == cell)
 }
 
-/// Returns the own cell and the visible terrain.
-///
-/// # Errors
-/// [`BadInput`] without visible terrain, or if the window does not contain the cell.
+/// Fails if the window is missing or does not contain the cell.
 pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadInput> {
     let cell = here.cell.cell;
     let window = here.window.ok_or(BadInput)?;
@@ -104,9 +92,7 @@ pub(super) fn on_grid<'a>(here: &OnGrid<'a>) -> Result<(Cell, Window<'a>), BadIn
     is_in_sight.then_some((cell, window)).ok_or(BadInput)
 }
 
-/// Returns `goal`, or the nearest passable visible cell (the smallest of equals) if `goal` is
-/// visible and impassable; `goal` if no visible cell is passable. O(cells) for an impassable goal,
-/// otherwise O(1).
+/// `goal`, or the nearest passable visible cell (the smallest of equals) if it is impassable.
 pub(super) fn reachable_goal(window: &Window<'_>, goal: Cell) -> Cell {
     if window.get(goal) != Some(BLOCKED) {
         return goal;

@@ -15,12 +15,8 @@ use crate::wire::{TemplateAssignment, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Guidance law `G` of a robot that detects other robots with sensors ([`Agent::see`]), in the
-/// plane and in space. Detected robots appear in the neighbour table, merged with their beacons:
-/// see [`Tracker`].
-///
-/// It is a wrapper, so a robot without such sensors does not need memory for it. Without
-/// [`TrackParams`] it behaves as `G`.
+/// Guidance law `G` of a robot that detects other robots ([`Agent::see`]), in the plane and in
+/// space. The neighbour table holds detected robots merged with beacons: see [`Tracker`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTracking<S: Scalar, G> {
     inside: G,
@@ -28,7 +24,7 @@ pub struct NeighborTracking<S: Scalar, G> {
     tracker: SparseVec<Tracker<S>, 1>,
 }
 
-/// Serialisation of the tracker; digests omit a tracker that does not exist.
+/// Digests omit a tracker that does not exist.
 mod counted_if_it_sees {
     use super::{Scalar, SparseVec, Tracker};
     use serde::{Deserialize, Deserializer};
@@ -52,12 +48,11 @@ mod counted_if_it_sees {
 }
 
 impl<S: Scalar, G> NeighborTracking<S, G> {
-    /// Wraps `inside` with a tracker, or without one if `params` is `None`.
+    /// Wraps `inside` with a tracker; without `params` it behaves as `G`.
     #[must_use]
     pub fn new(inside: G, params: Option<TrackParams<S>>) -> Self {
         let mut tracker = SparseVec::new();
         if let Some(params) = params {
-            // Cannot fail: the capacity is 1.
             let _ = tracker.push(Tracker::new(params));
         }
         Self { inside, tracker }
@@ -71,12 +66,9 @@ impl<S: Scalar, G> NeighborTracking<S, G> {
 }
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// Processes the detections of all sensors at `now`, relative to the `state` that is passed to
-    /// the next step. Call it before each [`step`](Agent::step) for which detections exist. If the
-    /// law is not wrapped in a [`NeighborTracking`], all detections are dropped and counted in
-    /// [`Sighted::no_room`].
-    ///
-    /// Work: see [`Tracker::see`], and O(N TRACKS) in each step.
+    /// Processes the detections of all sensors at `now`, relative to the `state` of the next
+    /// [`step`](Agent::step), before that step. Without a [`NeighborTracking`] all are dropped and
+    /// counted in [`Sighted::no_room`]. Work: [`Tracker::see`], and O(N TRACKS) per step.
     pub fn see(&mut self, sightings: &[Sighting<S>], state: &KinematicState<S>, now: Instant) -> Sighted {
         let own = self.config.id;
         match self.guidance.tracker() {
@@ -85,7 +77,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// Stores detected robots as neighbours, after the frames of the step.
     pub(super) fn merge_sightings(&mut self, position: Position, now: Instant, out: &mut Outputs<S>) {
         if self.guidance.tracker().is_none() {
             return;

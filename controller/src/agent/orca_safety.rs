@@ -10,8 +10,8 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// An [`Avoider`] as a safety layer. Its source of constraints `P` determines whether it avoids in
-/// the plane, leaving heights unchanged, or in space.
+/// An [`Avoider`] as a safety layer; its source `P` acts in the plane (heights unchanged) or in
+/// space.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound(deserialize = "P: serde::Deserialize<'de>, Avoider<S, K, P>: serde::Deserialize<'de>"))]
 pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
@@ -23,8 +23,7 @@ pub struct OrcaSafety<S: Scalar, const K: usize, P: HalfSpaces<S> = Analytic> {
 pub type FlySafety<S, const K: usize> = OrcaSafety<S, K, InSpace<S>>;
 
 impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
-    /// Creates a layer in the plane with exact half-planes. `inflation`: growth of the balls of
-    /// silent neighbours.
+    /// Creates a layer in the plane; `inflation` is the growth of the balls of silent neighbours.
     #[must_use]
     pub const fn new(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
         Self::with_source(params, inflation, Analytic)
@@ -32,9 +31,8 @@ impl<S: Scalar, const K: usize> OrcaSafety<S, K> {
 }
 
 impl<S: Scalar, const K: usize> FlySafety<S, K> {
-    /// Creates a layer in space. `inflation`: growth of the balls of silent neighbours. For robots
-    /// with rotors, use [`OrcaSafety::with_source`] with [`InSpace::downwash`] to avoid each
-    /// other's downwash.
+    /// Creates a layer in space. For rotors, use [`OrcaSafety::with_source`] with
+    /// [`InSpace::downwash`] so that robots avoid each other's downwash.
     #[must_use]
     pub const fn in_space(params: AvoidParams<S>, inflation: StalenessInflation<S>) -> Self {
         Self::with_source(params, inflation, InSpace { downwash: S::ONE })

@@ -9,8 +9,8 @@ use crate::rand::Rng;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Push-out (V. E. and V. V. Pavlovsky, PAV) as a safety layer: corrects steps that lead too near
-/// to the current positions of other robots. It does not predict their motion.
+/// Push-out (V. E. and V. V. Pavlovsky, PAV): corrects steps that lead too near to the current
+/// positions of other robots, without a prediction of their motion.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PushOutSafety<S> {
     params: PushOutParams<S>,

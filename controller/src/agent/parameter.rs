@@ -1,7 +1,5 @@
-//! Parameters of a running robot that an operator or its firmware can tune.
-//!
-//! This module holds the names, units, limits and descriptions of all parameters.
-//! [`tunable`](super::tunable) maps each parameter to a field of a law or a safety layer.
+//! Parameters of a running robot that an operator or its firmware can tune: names, units, limits
+//! and descriptions. [`tunable`](super::tunable) maps each one to a field.
 
 use super::Agent;
 use super::guidance::Guidance;
@@ -12,11 +10,9 @@ use crate::time::Duration;
 use crate::wire::Wire;
 
 named! {
-    /// A number that may change while the robot runs. [`Parameter::what`] describes it in one line;
-    /// the linked field describes its effect.
+    /// A number that may change while the robot runs; the linked field describes its effect.
     pub enum Parameter {
-        /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m). A value below the radius of the
-        /// body is not safe.
+        /// [`AgentConfig::radius_m`](super::AgentConfig::radius_m); at least that of the body.
         Radius = "radius_m",
         /// [`AgentConfig::beacon_period`](super::AgentConfig::beacon_period).
         BeaconPeriod = "beacon_period_s",
@@ -48,11 +44,9 @@ named! {
         RepulsionGain = "k3",
         /// [`LatticeParams::spacing_m`](crate::flock::lattice::LatticeParams::spacing_m) (d).
         Spacing = "spacing_m",
-        /// [`LatticeParams::range_ratio`](crate::flock::lattice::LatticeParams::range_ratio) (r /
-        /// d).
+        /// [`range_ratio`](crate::flock::lattice::LatticeParams::range_ratio): r / d.
         RangeRatio = "range_ratio",
-        /// [`LatticeParams::obstacle_ratio`](crate::flock::lattice::LatticeParams::obstacle_ratio)
-        /// (d' / d).
+        /// [`obstacle_ratio`](crate::flock::lattice::LatticeParams::obstacle_ratio): d' / d.
         ObstacleRatio = "obstacle_ratio",
         /// [`LatticeParams::attraction`](crate::flock::lattice::LatticeParams::attraction) (a).
         Attraction = "attraction",
@@ -160,8 +154,7 @@ impl Parameter {
         }
     }
 
-    /// The least and the greatest value that are reasonable for any robot. [`Agent::set_parameter`]
-    /// refuses other values.
+    /// The least and the greatest value that [`Agent::set_parameter`] accepts.
     #[must_use]
     pub const fn range(self) -> [f32; 2] {
         self.facts().range
@@ -193,9 +186,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         value.map(cast)
     }
 
-    /// Changes a parameter from the next step on. Returns whether the change was made: this robot
-    /// has the parameter, `value` is within [`Parameter::range`], and it is consistent with the
-    /// other parameters.
+    /// Changes a parameter from the next step on. Returns false, without a change, if the robot
+    /// lacks it, `value` is outside [`Parameter::range`], or other parameters contradict it.
     pub fn set_parameter(&mut self, parameter: Parameter, value: f32) -> bool {
         let [least, greatest] = parameter.range();
         if !(least..=greatest).contains(&value) {

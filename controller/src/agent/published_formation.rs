@@ -1,23 +1,18 @@
 //! Moving in formation as published (A. V. Kuznetsov 2017, KUZ, algorithm 2): each robot weighs its
-//! own shortest route against all neighbours that it finds. It serves for comparison and not for
-//! use: it jams (`staya experiment formation`).
+//! own shortest route against all neighbours that it finds. For comparison only: it jams.
 //!
 //! [`PublishedFormation::decide`] follows algorithm 2 line by line; its criteria are in
 //! [`crate::formation::published`]. Where the paper is ambiguous or contradicts itself:
-//! - t = 0 (line 4) ends when every robot of the template was found once, because packets take a
-//!   tick and can be lost.
-//! - Lines 11 and 19 would replace the true target by the temporary one when they are repeated. The
-//!   true one is kept.
+//! - t = 0 (line 4) ends when every robot of the template was found once, since packets are lost.
+//! - Lines 11 and 19 would replace the true target when repeated. The true one is kept.
 //! - Line 12 heads for the cell that `def` points at, in one of eight directions.
-//! - A robot that is asked to stop stands, and so does each robot that passes the request on, but
-//!   not while it heads for `def`. It continues when its own sum is about r0 again (line 15), even
-//!   if other robots still ask it to stop. On the wire each stop belongs to its sender, so line 16
-//!   cancels only own requests. Robots farther up the chain judge by their own sums.
+//! - A robot that is asked to stop stands, as does each one that passes the request on, unless it
+//!   heads for `def`. It continues when its own sum is about r0 again (line 15). On the wire each
+//!   stop belongs to its sender, so line 16 cancels only own requests.
 //! - A robot that has reached its target stands there (eq. 2) and sends no requests.
-//! - `predict` knows the target of another robot from its beacon; the neighbours of that robot are
-//!   those of the own template.
-//! - Line 24 shuffles again, which is another draw; with [`Sharpness::Greedy`] it changes nothing.
-//!   The missing and the surplus robots are asked to choose another direction (item 6).
+//! - `predict` uses the target in another robot's beacon and the own template for its neighbours.
+//! - Line 24 shuffles again, which is another draw. Missing and surplus robots are redirected (item
+//!   6).
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
 use super::move_history::{on_grid, reachable_goal};
@@ -40,11 +35,8 @@ use crate::time::Duration;
 use crate::wire::{RequestKind, TemplateAssembler, TemplateAssignment};
 use serde::{Deserialize, Serialize};
 
-/// Moving in formation as published. Remembers the visits of `M` cells and a template of `F`
-/// neighbours.
-///
-/// Work of a decision: one search of the window; with [`Prediction::Reflexive`], one more per
-/// neighbour found.
+/// Moving in formation as published, with the visits of `M` cells and a template of `F` neighbours.
+/// Work of a decision: one search, plus one per neighbour found with [`Prediction::Reflexive`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize> {
     route: RouteParams,
@@ -55,19 +47,18 @@ pub struct PublishedFormation<const CELLS: usize, const M: usize, const F: usize
     visits: VisitMemory<M>,
     here: Option<Cell>,
     leader: RobotId,
-    /// All robots of the template were found once, so the leader is fixed (line 4).
+    /// The leader is fixed (line 4).
     has_chosen: bool,
     /// The temporary target (lines 11 and 19).
     detour: Option<Cell>,
     has_asked: bool,
     is_stopped: bool,
-    /// The last preferred move, which is excluded if another direction is requested.
     choice: Dir,
     is_redirected: bool,
 }
 
 impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELLS, M, F> {
-    /// Creates the law with these parameters and this place in the formation.
+    /// Creates the law for one place in the formation.
     #[must_use]
     pub const fn new(route: RouteParams, formation: PublishedParams, template: Template<F>) -> Self {
         Self {
@@ -149,8 +140,7 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         ways.plus(&price).best().map(|dir| seen.cell + dir.offset())
     }
 
-    /// Lines 10 to 23: the formation is kept, lost, or restored. `target` is the true one. Returns
-    /// the request to the own leader, and whether to continue despite a stop.
+    /// Lines 10 to 23. Returns a request to the own leader, and whether to continue despite a stop.
     fn keep(
         &mut self,
         (cell, target): (Cell, Cell),
@@ -161,7 +151,6 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
         match kept {
             Kept::Lost if is_leader => self.detour = Some(cell + def(cell, &found.members).offset()),
             Kept::Lost => {
-                // Without a known leader there is no place to head for.
                 let leader = found.members.iter().find(|member| member.seen.id == self.leader);
                 self.detour = leader.map(|member| member.seen.cell - member.offset).or(self.detour);
             }
@@ -175,13 +164,11 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
             Kept::Well | Kept::Fairly => None,
         };
         self.has_asked = is_asked_for || (self.has_asked && ask.is_none());
-        // A detour to the target is not a detour.
         self.detour = self.detour.filter(|&detour| detour != target);
         (ask, kept == Kept::Well || (is_leader && self.detour.is_some()))
     }
 
-    /// Line 24 and item 6: the robots to ask for another direction, the first surplus one and the
-    /// first missing one.
+    /// Line 24 and item 6.
     fn ask_others<S>(&self, input: &GuidanceInput<'_, S>, found: &Found<F>) -> [Option<Ask>; 2] {
         if !self.formation.is_crowded(found) {
             return [None; 2];
@@ -267,7 +254,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         let heads_for = reachable_goal(&window, self.detour.unwrap_or(target));
         let price = sums(self.formation.gain, cell, &found.members);
         let ways = if heads_for == cell {
-            // It is there: no direction has a weight (algorithm 3, line 6).
+            // Algorithm 3, line 6.
             Some(Weights::CLOSED)
         } else {
             let others = input.neighbors.iter().map(|neighbor| neighbor.cell);

@@ -18,7 +18,6 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug)]
 pub struct GridWorkspace<const CELLS: usize> {
     pub(super) field: CostField<CELLS>,
-    /// Terrain costs blended for a formation.
     pub(super) land: [u8; CELLS],
 }
 
@@ -65,8 +64,7 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         }
     }
 
-    /// Sets when to repeat the search. [`Replan::UntilChanged`] offers one move at a time and does
-    /// not shuffle.
+    /// Sets when to repeat the search; [`Replan::UntilChanged`] offers one move, unshuffled.
     #[must_use]
     pub const fn replan(mut self, replan: Replan) -> Self {
         self.replan = replan;
@@ -80,7 +78,6 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         self
     }
 
-    /// Returns the moves to try towards `target`; `None` if no route exists.
     fn moves<S>(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -99,14 +96,12 @@ impl<const CELLS: usize, const M: usize, const L: usize> RouteGuidance<CELLS, M,
         }
         let aside = |weights: Weights| self.travel.without_last(weights);
         let mut weights = if is_redirected && cell == target {
-            // At its target it does not need a route.
             Weights::CLOSED
         } else {
             self.router.weights_over(params, field, window, (cell, target), others, input.land).ok()?
         };
         if is_redirected {
             weights = aside(weights);
-            // No other route: move into any free cell.
             if weights.best().is_none() {
                 weights = aside(params.open_moves(window, cell));
             }
@@ -148,7 +143,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
             moves = open.unwrap_or_default();
         }
         let choice = moves.first().copied().unwrap_or_default();
-        // A robot that cannot make way asks other robots to.
         let idle = if makes_way { u8::MAX } else { self.router.idle() };
         Ok(Decision {
             action: Action::Moves(moves),

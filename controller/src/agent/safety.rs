@@ -14,10 +14,9 @@ use serde::{Deserialize, Serialize};
 pub struct SafetyInput<'a, S> {
     /// Own body.
     pub body: Body<S>,
-    /// The velocity desired by the guidance law, m/s: finite, and zero if the robot should stand.
+    /// The velocity desired by the guidance law, m/s: finite; zero if the robot should stand.
     pub wish_mps: Vec3<S>,
-    /// Offset of the point that the robot heads straight for, relative to its own position, metres;
-    /// `None` if it roams, flocks or should stand.
+    /// Offset of the point that the robot heads straight for, metres; `None` if there is none.
     pub way_m: Option<Vec3<S>>,
     /// Nearby robots, nearest first.
     pub nearby: &'a [Nearby<S>],
@@ -25,16 +24,13 @@ pub struct SafetyInput<'a, S> {
     pub obstacles: &'a [Obstacle<S>],
 }
 
-/// Avoids other robots and obstacles. It also runs while the robot stands, because other robots
-/// rely on it giving way.
+/// Avoids other robots and obstacles, also while the robot stands, because others rely on it.
 pub trait Safety<S: Scalar> {
-    /// Returns a safe velocity near the desired one, m/s. The agent limits it to a velocity that
-    /// the body can have ([`Body::reach`]).
+    /// Returns a safe velocity near the desired one, m/s; the agent limits it by [`Body::reach`].
     fn keep_clear(&mut self, input: &SafetyInput<'_, S>, rng: &mut Rng) -> Vec3<S>;
 
-    /// Returns how the balls of silent neighbours grow. With `None` the layer ignores silent
-    /// neighbours: the agent then neither limits velocities to the [`GapLimit`](crate::neighbor::GapLimit)
-    /// nor stops when contact is lost.
+    /// Returns how the balls of silent neighbours grow. With `None` they are ignored: there is no
+    /// [`GapLimit`](crate::neighbor::GapLimit), and no stop on contact loss.
     fn inflation(&self) -> Option<StalenessInflation<S>> {
         None
     }
@@ -49,15 +45,13 @@ pub trait Safety<S: Scalar> {
         None
     }
 
-    /// Changes a parameter. Returns whether the layer has it and accepts the value. `value` is
-    /// within [`Parameter::range`].
+    /// Changes a parameter to a value within [`Parameter::range`]. Returns whether it was accepted.
     fn tune(&mut self, _parameter: Parameter, _value: S) -> bool {
         false
     }
 }
 
-/// No safety layer: the desired velocity is the command. For robots that move cell by cell, and as
-/// a baseline for comparisons.
+/// No safety layer, for robots that move cell by cell and as a baseline for comparisons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unguarded;

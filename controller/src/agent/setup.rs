@@ -1,8 +1,4 @@
-//! The configuration of a robot as data, for scenarios and for hosts that configure firmware over a
-//! link.
-//!
-//! Numbers are `f32` regardless of the robot's scalar type, so host and robot need not agree on
-//! one.
+//! The configuration of a robot as data, for scenarios and host links; `f32` for any scalar type.
 
 use super::any::{AnyGuidance, AnyHalfPlanes, AnySafety, large};
 use super::cell_follower::CellFollower;
@@ -37,7 +33,7 @@ use crate::wire::{Format, FromFormat, Postcard, Wire};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// An agent with any law and any safety layer: `CELLS` of a search, `M` remembered visits, `N`
+/// An agent with any law and safety layer: `CELLS` of a search, `M` remembered visits, `N`
 /// neighbours, `K` half-planes, wire format `W`, `L` learned costs.
 pub type AnyAgent<
     S,
@@ -127,23 +123,20 @@ pub enum GuidanceSetup {
         route: RouteSetup,
         speed_mps: Option<f32>,
     },
-    /// In the plane with a speed, cell by cell without one. It searches a route in each cell.
     Formation {
         route: RouteSetup,
         formation: FormationParams,
         template: Template<TEMPLATE>,
         speed_mps: Option<f32>,
     },
-    /// The formation of the paper, cell by cell. This variant and the next are last, so that builds
-    /// without them can decode the others.
+    /// The formation of the paper. Gated variants are last: builds without them decode the others.
     #[cfg(feature = "published")]
     Published {
         route: RouteSetup,
         formation: PublishedParams,
         template: Template<TEMPLATE>,
     },
-    /// As `Formation` without a speed, with followers that use the leader's planned course
-    /// ([`Course`]).
+    /// Like `Formation` without a speed; followers use the leader's planned [`Course`].
     #[cfg(feature = "published")]
     LooksAhead {
         route: RouteSetup,
@@ -170,11 +163,9 @@ named! {
         /// Straight to the goal.
         #[default]
         Waypoint = "waypoint",
-        /// The alpha flock (R. Olfati-Saber, OLF): equal distances, with the first goal as its
-        /// reference.
+        /// The alpha flock (R. Olfati-Saber, OLF), with the first goal as its reference.
         Lattice = "lattice",
-        /// The goal flock (V. E. and V. V. Pavlovsky, PAV): together to the centre of the goals,
-        /// then each robot to one goal.
+        /// The goal flock (V. E. and V. V. Pavlovsky, PAV).
         GoalFlock = "goal_flock",
         /// Boids (V. A. Starovoitova, STA).
         Boids = "boids",
@@ -235,7 +226,7 @@ impl SafetyKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Task {
-    /// Go to this cell, or keep the formation whose top leader goes there.
+    /// Go to this cell, or keep the formation whose top leader heads there.
     Cell(Cell),
     /// Go to these waypoints, given with their indices.
     Waypoints(Vec<(u8, Waypoint<f32>), WAYPOINTS>),
@@ -275,8 +266,7 @@ impl Setup {
         Agent::new(&self.agent.cast(), self.guidance.guidance(), self.safety.safety(), wire)
     }
 
-    /// Returns the largest search of the robot, in cells of a
-    /// [`CostField`](crate::route::CostField): the minimum of `CELLS`. 0 if it does not search.
+    /// Returns the `CELLS` of a [`CostField`](crate::route::CostField) that it needs; 0 for none.
     #[must_use]
     pub fn cells(&self) -> usize {
         match &self.guidance {
@@ -351,7 +341,6 @@ impl GuidanceSetup {
 }
 
 impl RouteSetup {
-    /// Cells of a search.
     const fn cells(&self) -> usize {
         let side = 2 * self.params.radius as usize + 3;
         side * side

@@ -11,9 +11,8 @@ use crate::wire::Wire;
 use serde::Serialize;
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// Returns a hash of the whole state: two agents with equal hashes behave identically from then
-    /// on. For identical inputs it is identical on all targets and in all builds. O(bytes of the
-    /// state).
+    /// Returns a hash of the whole state, identical on all targets and in all builds for identical
+    /// inputs. Agents with equal hashes behave identically from then on. O(bytes of the state).
     #[must_use]
     pub fn digest(&self) -> u64
     where
@@ -46,7 +45,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.link.table.as_slice()
     }
 
-    /// Returns the knowledge about robot `id` at `now`: fresh, stale or unknown. O(log N).
+    /// Returns the knowledge about robot `id`: fresh, stale or unknown. O(log N).
     #[must_use]
     pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, G::Payload> {
         self.link.table.get(id, now)
@@ -75,8 +74,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.link.wire()
     }
 
-    /// The wire format, to change it between two steps; for example, MAVLink signatures need the
-    /// time.
+    /// The wire format, to change it between two steps, such as the time for MAVLink signatures.
     pub const fn wire_mut(&mut self) -> &mut W {
         self.link.wire_mut()
     }

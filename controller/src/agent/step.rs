@@ -1,4 +1,4 @@
-//! One step of an agent. Start with [`Agent::step_into`].
+//! One step of an agent: [`Agent::step_into`]. Phases are not inlined, so each frees its stack.
 
 use super::contact_loss::ContactState;
 use super::link::{ReceiveContext, Received, beacon, report};
@@ -19,7 +19,6 @@ use crate::time::{Duration, Instant};
 use crate::wire::Wire;
 use heapless::Vec;
 
-/// Separates the random numbers of the agent from other uses.
 const PURPOSE: u32 = u32::from_be_bytes(*b"step");
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
@@ -28,10 +27,9 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     ///
     /// Bounded work:
     /// - Receiving: O(frames of the inbox * N).
-    /// - The decision of the guidance law, when the robot is free to move. On the grid one search
-    ///   of the window, O((2r + 1)^2); with
-    ///   [`Prediction::Reflexive`](crate::formation::Prediction), one more per entry of the
-    ///   template. In the plane O(N + obstacles in sight).
+    /// - Deciding, when free to move: on the grid one search, O((2r + 1)^2), plus one per entry of
+    ///   the template with [`Prediction::Reflexive`](crate::formation::Prediction); in the plane
+    ///   O(N + obstacles in sight).
     /// - The safety layer: see its documentation.
     /// - Sending: at most [`OUTBOX`](super::OUTBOX) bytes.
     pub fn step(
@@ -45,10 +43,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         out
     }
 
-    /// Runs [`Agent::step`] with outputs that the caller provides, which saves about 500 bytes of
-    /// stack. Previous contents of `out` are discarded.
-    ///
-    /// The phases are not inlined, so each one frees its stack before the next one starts.
+    /// Runs [`Agent::step`] into `out`, discarding its contents; saves about 500 bytes of stack.
     pub fn step_into(
         &mut self,
         inputs: &Inputs<'_, S, G::Input<'_>>,
@@ -127,7 +122,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                     *goal = Some(Goal::Formation(top));
                     last.target = top + guidance.goal_offset();
                 }
-                // A refused template is dropped; its sender is not notified.
                 Some(Received::Template { part, is_restarted }) => {
                     let _ = guidance.assign_template(&part, is_restarted);
                 }
@@ -137,12 +131,11 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                         link.placed(index, version);
                     }
                 }
-                // A request beyond the capacity is lost: a stop is requested again, and an old one
-                // expires.
+                // Lost beyond the capacity: stops are requested again, and old ones expire.
                 Some(Received::PassOn(request)) => drop(pass_on.push(request)),
             }
         }
-        // Passed on at the end, when requests acknowledged in this step have freed their entries.
+        // At the end, when requests acknowledged in this step have freed their entries.
         for request in &pass_on {
             if leader.is_some() && leader != request.origin {
                 let valid = Duration::from_millis(request.valid_ms.into());
@@ -175,7 +168,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let situation = &mut self.last.situation;
         situation.has_goal = goal.is_some();
         let Some(goal) = goal else {
-            // Without a goal no input is required, so none is missing.
             (situation.is_passive, situation.has_fault) = (false, false);
             return None;
         };
@@ -228,12 +220,10 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         Some(decision)
     }
 
-    /// Whether the robot stands still because it lost contact with all other robots.
     fn is_left(&self) -> bool {
         self.link.contact == ContactState::Forgotten && !self.config.contact_loss.may_be_alone()
     }
 
-    /// Updates the mode, and turns the decision of the law into a command if the mode allows it.
     #[inline(never)]
     fn supervise(
         &mut self,
@@ -258,7 +248,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             Mode::Hold if status.waits_for.is_some() => status.waits_for,
             Mode::Hold if status.is_stuck => Some(Wait::Route),
             Mode::Hold => Some(Wait::Stopped),
-            // It intended to move in the last decision and is still in the same cell.
             _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Robots),
             _ => None,
         };
@@ -272,8 +261,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         }
     }
 
-    /// Replaces the command by a collision-free velocity. A stationary robot gives way too, except
-    /// in modes without [`Mode::gives_way`].
+    /// A stationary robot gives way too, except in modes without [`Mode::gives_way`].
     #[inline(never)]
     fn keep_clear(
         &mut self,
@@ -342,7 +330,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let beacon = || beacon(config, last, mode, &inputs.state, on_grid, velocity_mps, now);
         let told = || (guidance.payload(now), guidance.say_land(now));
         self.link.speak(now, config.beacon_period, beacon, told, out);
-        // A robot that is free decides again after a tick at the latest.
         let busy = on_grid.busy;
         let decision = now + if busy > Duration::ZERO { busy } else { config.tick };
         if decision.is_before(out.call_again) {

@@ -1,4 +1,4 @@
-//! The surroundings of a robot in a step, in the form that each guidance law needs.
+//! The surroundings of a robot in a step, as each guidance law needs them.
 
 use crate::geom::Vec2;
 use crate::grid::{Cell, Window};
@@ -14,8 +14,7 @@ use serde::{Deserialize, Serialize};
 pub struct CellState {
     /// The cell that it occupies.
     pub cell: Cell,
-    /// Time until it may leave the cell; zero or less if it is free now (A. V. Kuznetsov 2017, KUZ,
-    /// eq. 6).
+    /// Time until it may leave the cell; not above 0 if free (A. V. Kuznetsov 2017, KUZ, eq. 6).
     pub busy: Duration,
 }
 
@@ -24,20 +23,18 @@ pub struct CellState {
 pub struct OnGrid<'a> {
     /// Own state on the grid.
     pub cell: CellState,
-    /// The visible terrain, including the own cell. Without it the robot stops in
-    /// [`Mode::Fault`](crate::robot::Mode::Fault). Any size is allowed; routes are searched within
-    /// the radius of [`RouteParams`](crate::route::RouteParams).
+    /// The visible terrain of any size, including the own cell. Without it the robot is in
+    /// [`Mode::Fault`](crate::robot::Mode::Fault).
     pub window: Option<Window<'a>>,
 }
 
 /// Input of guidance laws that move by velocities, in the plane or in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InPlane<'a, S> {
-    /// Speed limit of the body at its current place, m/s; rough terrain reduces it. At 0 or less
-    /// the robot is in [`Mode::Fault`](crate::robot::Mode::Fault).
+    /// Speed limit at the current place, m/s; rough terrain reduces it. At 0 or less the robot is
+    /// in [`Mode::Fault`](crate::robot::Mode::Fault).
     pub max_speed_mps: S,
-    /// Visible static obstacles. [`grid_walls`](crate::obstacle::grid_walls) derives walls from a
-    /// terrain window.
+    /// Visible static obstacles; see [`grid_walls`](crate::obstacle::grid_walls).
     pub obstacles: &'a [Obstacle<S>],
 }
 
@@ -62,8 +59,8 @@ pub struct InCell<S> {
     pub cell_m: S,
 }
 
-/// Input of [`AnyGuidance`](super::AnyGuidance). Surroundings that the law inside cannot use put
-/// the robot into [`Mode::Fault`](crate::robot::Mode::Fault).
+/// Input of [`AnyGuidance`](super::AnyGuidance). A kind that the law cannot use puts the robot into
+/// [`Mode::Fault`](crate::robot::Mode::Fault).
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "each variant's type says it")]
 pub enum AnySurroundings<'a, S> {
@@ -72,13 +69,12 @@ pub enum AnySurroundings<'a, S> {
     InCells(InCells<'a, S>),
 }
 
-/// The parts of the surroundings that the agent itself needs, for the beacon and the safety layer.
+/// The parts of the surroundings that the agent itself needs, for beacons and the safety layer.
 pub trait Surroundings<S>: Copy + Debug {
     /// Returns the part on the grid, if any.
     fn on_grid(&self) -> Option<OnGrid<'_>>;
 
-    /// Returns the part in the plane or in space; `None` for a robot that moves cell by cell, which
-    /// does not have a safety layer.
+    /// Returns the part in the plane or in space; `None` for a robot that moves cell by cell.
     fn in_plane(&self) -> Option<InPlane<'_, S>>;
 }
 
@@ -128,7 +124,6 @@ impl<S: Scalar> Surroundings<S> for AnySurroundings<'_, S> {
     }
 }
 
-/// Drops the cells, for a law of the plane.
 impl<'a, S> From<InCells<'a, S>> for InPlane<'a, S> {
     fn from(cells: InCells<'a, S>) -> Self {
         cells.plane

@@ -5,8 +5,7 @@ use crate::grid::Cell;
 use crate::scalar::Scalar;
 use crate::wire::Wire;
 
-/// The guidance law cannot perform the task: it has another kind of goal, or moves by other means.
-/// The previous task continues.
+/// The guidance law has another kind of goal, or moves by other means. The previous task continues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WrongTask;
@@ -20,8 +19,8 @@ impl core::fmt::Display for WrongTask {
 impl core::error::Error for WrongTask {}
 
 impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, G, N, A, W> {
-    /// Sets a goal cell for this robot. It does not change with the robot's place in a formation,
-    /// unlike a goal received as a [`GoalAssignment`](crate::wire::GoalAssignment).
+    /// Sets a goal cell for this robot, regardless of its place in a formation (unlike a received
+    /// [`GoalAssignment`](crate::wire::GoalAssignment)).
     pub const fn assign_goal(&mut self, goal: Cell)
     where
         G: Guidance<S, Destination = ToCells>,

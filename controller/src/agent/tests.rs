@@ -31,7 +31,6 @@ fn route_agent(id: u32) -> RouteAgent {
     RouteAgent::new(&config(id), law, Unguarded, Postcard)
 }
 
-/// A member of a column of robots three cells apart, robot 1 in front.
 fn formation_agent(id: u32) -> FormationAgent {
     let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 2).unwrap();
@@ -39,7 +38,6 @@ fn formation_agent(id: u32) -> FormationAgent {
     FormationAgent::new(&config(id), guidance, Unguarded, Postcard)
 }
 
-/// Inputs with flat terrain around `at`.
 fn inputs<'a>(cells: &'a [u8], at: Cell, inbox: &'a [u8]) -> Inputs<'a, f32, OnGrid<'a>> {
     let origin = at - Cell::new(5, 5);
     Inputs {
@@ -211,7 +209,6 @@ fn goals_are_assigned_by_packet_and_older_ones_ignored() {
     let orders = [goal(0, 5, 40), goal(2, 4, 50), goal(3, 6, 60), goal(2, 7, 70), goal(2, 7, 80)];
     let inbox = bytes(99, 0, 0, &orders);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(0), &mut ws);
-    // Robot 2's place is three cells behind the top leader's.
     assert_eq!(agent.target(), Some(Cell::new(67, 0)));
 }
 
@@ -289,12 +286,11 @@ fn a_robot_that_falls_behind_requests_a_stop_and_later_a_resume() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
     agent.assign_goal(Cell::new(60, 5));
     let mut asked = Vec::new();
-    // The leader moves away to the east, then waits while the follower catches up.
     for (n, (leader_x, own_x)) in [(8, 5), (20, 5), (20, 16)].into_iter().enumerate() {
         let mut beacon = beacon_at(leader_x, 5);
         beacon.heading = Dir::East;
         let inbox = bytes(1, 0, n as u16, &[Message::Beacon(beacon)]);
-        // The steps are far enough apart for the first request to be acknowledged or given up.
+        // Far enough apart for the first request to be acknowledged or given up.
         let out = agent.step(&inputs(&FLAT, Cell::new(own_x, 5), &inbox), tick(20 * n as u32), &mut ws);
         asked.extend(sent(&out).into_iter().filter_map(|f| match f.message {
             Message::Request(request) => Some(request.kind),
@@ -329,7 +325,6 @@ fn a_redirected_robot_chooses_another_direction_even_when_arrived() {
 fn a_blocked_robot_sends_a_request_to_the_robot_in_its_way() {
     let (mut agent, mut ws) = (route_agent(1), workspace());
     agent.assign_goal(Cell::new(60, 5));
-    // A corridor one cell wide, and a robot in it.
     let mut cells = [BLOCKED; 121];
     cells[55..66].fill(1);
     let mut asked = None;

@@ -13,17 +13,15 @@ use crate::route::RouteParams;
 use crate::scalar::Scalar;
 
 pub(super) trait Tunable<S>: Copy {
-    /// Returns the value of a parameter, or `None` if the set does not have it.
     fn get(&self, parameter: Parameter) -> Option<S>;
 
-    /// Changes a parameter. Returns whether the set has it. `value` is within [`Parameter::range`].
+    /// `value` is within [`Parameter::range`].
     fn set(&mut self, parameter: Parameter, value: S) -> bool;
 
     fn is_sound(&self) -> bool {
         true
     }
 
-    /// Changes a parameter unless the values would become inconsistent.
     fn tune(&mut self, parameter: Parameter, value: S) -> bool {
         let mut tuned = *self;
         let takes = tuned.set(parameter, value) && tuned.is_sound();
@@ -34,7 +32,6 @@ pub(super) trait Tunable<S>: Copy {
     }
 }
 
-/// Implements [`Tunable`] for parameters that are plain fields.
 macro_rules! fields {
     ($params:ident { $($parameter:ident => $($field:ident).+),* $(,)? } $($is_sound:ident)?) => {
         impl<S: Scalar> Tunable<S> for $params<S> {
@@ -122,7 +119,6 @@ impl<S: Scalar> Tunable<S> for BoidsParams<S> {
     }
 }
 
-/// Converts a number to a whole number of `1 / parts`. `None` if that is 2^16 or more, or negative.
 fn whole<S: Scalar>(value: S, parts: i32) -> Option<u16> {
     let parts = (value * S::from_i32(parts) + S::HALF).floor_to_i32()?;
     u16::try_from(parts).ok()

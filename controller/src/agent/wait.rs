@@ -1,4 +1,4 @@
-//! The reasons why robots wait, for display to an operator.
+//! The reasons why robots wait.
 
 use super::safety::SafetyInput;
 use crate::geom::Vec3;
@@ -37,11 +37,10 @@ named! {
     }
 }
 
-/// A desired speed below this counts as arrived, thousandths of the top speed.
+/// A slower wish counts as arrived, thousandths of the top speed.
 const SLOW: i32 = 100;
 
-/// Returns whether `velocity_mps` gives less than a quarter of the progress that the body could
-/// make by its wish.
+/// Whether `velocity_mps` gives less than a quarter of the progress that the body could make.
 pub(super) fn is_hindered<S: Scalar>(input: &SafetyInput<'_, S>, velocity_mps: Vec3<S>) -> bool {
     let SafetyInput { body, wish_mps: wish, .. } = input;
     let possible = body.reach(*wish).dot(*wish);

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 /// Waypoints that a robot can store.
 pub const WAYPOINTS: usize = 4;
 
-/// Longest extrapolation of a moving waypoint.
 const LONG: Duration = Duration::from_millis(600_000);
 
 /// A position to go to, which may move.
@@ -36,9 +35,8 @@ impl<S: Scalar> Waypoint<S> {
         Self { position, velocity_mps: Vec3::ZERO, at: Instant::from_micros(0) }
     }
 
-    /// Returns its offset from `from` at `now`, metres. Call it at least every half hour: it then
-    /// moves the stored position along, so that the 32-bit clock cannot wrap (each update rounds to
-    /// a millimetre).
+    /// Returns its offset from `from` at `now`, metres. Call it at least every half hour, so that
+    /// the 32-bit clock cannot wrap: it moves the stored position along, rounded to a millimetre.
     #[must_use]
     pub fn way(&mut self, from: Position, now: Instant) -> Vec3<S> {
         let span = now.since(self.at);

@@ -9,16 +9,14 @@ use crate::scalar::Scalar;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// An intermediate waypoint counts as passed within this distance, in own radii, so that a robot
-/// that occupies it does not block the way.
+/// Within this distance, in own radii, an intermediate waypoint is passed, even if it is occupied.
 const PASSED_RADII: i32 = 3;
 
 /// Moves straight to a waypoint, stays there, and follows a waypoint that moves. If another robot
 /// occupies the last one, it arrives beside that robot.
 ///
-/// The course has at most [`WAYPOINTS`] waypoints, which are passed in the order of their indices.
 /// Index 0 starts a new course, the next free index extends it, and an existing index moves that
-/// waypoint. The last one is the goal.
+/// waypoint. The course is passed in the order of indices.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
@@ -29,16 +27,14 @@ pub struct WaypointGuidance<S> {
 }
 
 impl<S: Scalar> WaypointGuidance<S> {
-    /// Creates the law without waypoints. `tolerance_m`: distance at which the robot counts as
-    /// arrived, at least some millimetres, because waypoints are rounded to millimetres.
-    /// `speed_mps`: cruising speed.
+    /// Creates the law without waypoints. `tolerance_m`: distance that counts as arrived, at least
+    /// some millimetres, because waypoints are rounded to millimetres.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
         Self { course: Vec::new(), leg: 0, beside: GoalOccupancy::NEW, tolerance_m, speed_mps }
     }
 
-    /// Returns the offset of the current waypoint, metres, and its velocity. Advances to the next
-    /// one if the current one is passed. O([`WAYPOINTS`]).
+    /// Offset, metres, and velocity of the current waypoint. Advances when one is passed.
     fn next<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Option<(Vec3<S>, Vec3<S>)> {
         let passed_m = self.tolerance_m.max(input.body.radius_m * S::from_i32(PASSED_RADII));
         let mut ahead = self.course.iter_mut().skip(usize::from(self.leg));
@@ -55,14 +51,12 @@ impl<S: Scalar> WaypointGuidance<S> {
         Some((way, waypoint.velocity_mps))
     }
 
-    /// Implements [`Guidance::decide`] for any payload.
     pub(super) fn head<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
         let (way, velocity_mps) = self.next(input).ok_or(BadInput)?;
         let is_last = usize::from(self.leg) + 1 >= self.course.len();
         let distance = way.norm();
         let speed = self.speed_mps.min(input.body.max_speed_mps);
-        // The last step goes no farther than the waypoint.
         let needed = distance.checked_div(input.body.step_s).unwrap_or(speed);
         let ahead = way.normalized().unwrap_or_default();
         let claim = match is_last && velocity_mps == Vec3::ZERO {

@@ -1,18 +1,16 @@
-//! Distinguishes fresh authenticated frames from replayed ones.
-//!
-//! Implements the sliding window of IPsec (RFC 4303, section 3.4.3) per sender, on counters that
-//! never wrap or restart.
+//! Distinguishes fresh authenticated frames from replayed ones: the sliding window of IPsec (RFC
+//! 4303, section 3.4.3) per sender, on counters that never wrap or restart.
 
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// The class of a frame, given the frames of the same sender before it.
+/// The class of a frame, given earlier frames of its sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Freshness {
     /// Newer than all frames before, or the first of its sender.
     New,
-    /// Not received before, but a newer frame came first.
+    /// Not received before, but later than a newer frame.
     Late,
     /// Received before, or so old that the guard no longer knows.
     Replayed,
@@ -28,7 +26,6 @@ impl Freshness {
     }
 }
 
-/// The state of one sender; 16 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 struct Peer {
     newest: u64,
@@ -39,18 +36,16 @@ struct Peer {
 
 /// The newest counters of up to `N` senders; 16 bytes each.
 ///
-/// Pass only authenticated frames, so that an attacker without the key cannot fill the table. A
-/// sender is never evicted, since its frames could then be replayed. When the table is full, frames
-/// of further senders are refused ([`Freshness::NoRoom`]), so `N` must be at least the number of
-/// robots that have the key.
+/// Pass only authenticated frames, so that an attacker without the key cannot fill the table. No
+/// sender is evicted, since its frames could then be replayed: a full table refuses further senders
+/// ([`Freshness::NoRoom`]), so `N` must be at least the number of robots that have the key.
 ///
 /// # Restart of the receiver
 ///
-/// By default no state survives. Then the first frame of each sender is accepted, even a recorded
-/// one, and an attacker can replay a whole recording in order, from the restart until the true
-/// sender is received; from then on all older frames are refused. To close this gap, store
-/// [`Self::export`] in persistent memory, from time to time or at power-off, and restore it with
-/// [`Self::import`]; or raise [`Self::set_floor`] above the counters recorded on earlier days.
+/// By default no state survives. An attacker can then replay a whole recording in order until the
+/// true sender is received. To close this gap, store [`Self::export`] in persistent memory, from
+/// time to time or at power-off, and restore it with [`Self::import`]; or raise [`Self::set_floor`]
+/// above the counters recorded on earlier days.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ReplayGuard<const N: usize> {
     peers: Vec<Peer, N>,
@@ -91,13 +86,13 @@ impl<const N: usize> ReplayGuard<N> {
         }
     }
 
-    /// Each known sender with its newest counter, in the order of senders, for storing them.
+    /// Each known sender with its newest counter, in the order of senders, to be stored.
     pub fn export(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
         self.peers.iter().map(|peer| (peer.sender, peer.newest))
     }
 
-    /// Restores an entry of [`Self::export`]: frames of `sender` up to `counter` are not fresh.
-    /// Returns whether there was space.
+    /// Restores an entry of [`Self::export`]: frames up to `counter` are not fresh. False without
+    /// room.
     pub fn import(&mut self, sender: u32, counter: u64) -> bool {
         match self.find(sender) {
             Err(_) => self.insert(sender, counter, u32::MAX).is_fresh(),

@@ -4,8 +4,7 @@ use super::sha256::BLOCK;
 use super::{Key, Sha256};
 use core::fmt;
 
-/// Computes codes with one key; 64 bytes. The two blocks that depend on the key alone are hashed
-/// once.
+/// Computes codes with one key; 64 bytes. The two blocks of the key are hashed once.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Mac {
     inner: [u32; 8],
@@ -19,8 +18,7 @@ impl Mac {
         Self { inner: keyed(key, 0x36), outer: keyed(key, 0x5C) }
     }
 
-    /// The code of a message, given in parts. Two blocks of SHA-256 up to 55 bytes, and one for
-    /// each 64 more.
+    /// The code of a message in parts: two blocks of SHA-256 up to 55 bytes, then one per 64.
     #[must_use]
     pub fn of(&self, message: &[&[u8]]) -> [u8; 32] {
         let mut inner = Sha256::from_state(self.inner, 1);
@@ -39,7 +37,6 @@ impl fmt::Debug for Mac {
     }
 }
 
-/// The hash state after the key's block, with each byte xor `pad`.
 fn keyed(key: &Key, pad: u8) -> [u32; 8] {
     let mut block = [pad; BLOCK];
     for (byte, secret) in block.iter_mut().zip(key.as_bytes()) {

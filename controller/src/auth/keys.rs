@@ -9,12 +9,11 @@
 //! V                       = HMAC(own, "staya wrap" g seed)       (16 bytes of each)
 //! ```
 //!
-//! Integers are little-endian. A sent seed is encrypted and authenticated by V, a synthetic
-//! initialisation vector (RFC 5297, section 2.6, with HMAC instead of CMAC and AES, so that
-//! firmware links one primitive). Without the robot's own key an attacker can neither read nor
-//! forge it; the same seed sent twice gives the same bytes. An attacker that captures a robot gets
-//! its own key and the swarm's key of that time, but not the master, the own keys of other robots,
-//! or a generation that was not sent to that robot.
+//! Integers are little-endian. V is a synthetic initialisation vector (RFC 5297, section 2.6, with
+//! HMAC instead of CMAC and AES, so that firmware links one primitive): without the own key an
+//! attacker can neither read nor forge a sent seed; equal seeds give equal bytes. A captured robot
+//! reveals its own key and the swarm's current key, but not the master, other own keys, or
+//! generations not sent to it.
 
 use super::{KEY_LEN, Key, Mac, is_same};
 use crate::robot::RobotId;
@@ -60,7 +59,7 @@ impl Seed {
         Self(bytes)
     }
 
-    /// The secret bytes, for storing them.
+    /// The secret bytes, to be stored.
     #[must_use]
     pub const fn as_bytes(&self) -> &[u8; SEED_LEN] {
         &self.0
@@ -87,8 +86,7 @@ impl Seed {
         wrapped
     }
 
-    /// Decrypts a received seed; `None` if it was not encrypted with this own key for this
-    /// generation. Four blocks of SHA-256.
+    /// Decrypts a seed that was encrypted with this own key, if it was. Four blocks of SHA-256.
     #[must_use]
     pub fn unwrap(own: &Mac, generation: u16, wrapped: &[u8; WRAPPED_LEN]) -> Option<Self> {
         let (check_sent, hidden) = wrapped.split_first_chunk::<SEED_LEN>()?;

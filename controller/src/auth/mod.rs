@@ -1,9 +1,7 @@
-//! Authentication: a key that the whole swarm shares, codes made with it, and protection against
-//! replays.
+//! Authentication: a key that the whole swarm shares, codes made with it, and replay protection.
 //!
-//! Uses RustCrypto's SHA-256 compression function. Padding and HMAC are implemented here, in a few
-//! lines that visibly never panic, so that the linker's proof does not depend on how the optimiser
-//! treats the buffers of `digest` and `hmac`.
+//! Padding and HMAC are implemented here around RustCrypto's SHA-256 compression function, in a few
+//! lines that visibly never panic: the linker's proof then does not depend on the optimiser.
 
 mod guard;
 mod hmac;
@@ -21,8 +19,8 @@ use core::hint::black_box;
 /// Length of a [`Key`] in bytes.
 pub const KEY_LEN: usize = 32;
 
-/// A secret of 32 bytes from the configuration. It is never printed, logged or part of a digest of
-/// state. Serde serializes it, so the saved state of a robot is as secret as its key.
+/// A secret of 32 bytes, never printed, logged or part of a digest of state. Serde serializes it,
+/// so the saved state of a robot is as secret as its key.
 #[derive(Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Key([u8; KEY_LEN]);
 
@@ -33,8 +31,7 @@ impl Key {
         Self(bytes)
     }
 
-    /// The key of a passphrase: its SHA-256, as in ground stations (MAVProxy's `signing setup`,
-    /// Mission Planner). O(length).
+    /// The key of a passphrase: its SHA-256, as in MAVProxy and Mission Planner. O(length).
     #[must_use]
     pub fn of_passphrase(passphrase: &[u8]) -> Self {
         let mut hash = Sha256::new();

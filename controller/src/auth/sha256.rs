@@ -23,13 +23,12 @@ impl Sha256 {
         Self::from_state(START, 0)
     }
 
-    /// Continues after `blocks` whole blocks that led to `state`.
     #[expect(clippy::arithmetic_side_effects, reason = "called with 0 and 1")]
     pub(super) const fn from_state(state: [u32; 8], blocks: u64) -> Self {
         Self { state, block: [0; BLOCK], len: blocks * BLOCK as u64 }
     }
 
-    /// The state for [`Self::from_state`]; only valid after a whole number of blocks.
+    /// Valid only after a whole number of blocks.
     pub(super) const fn state(&self) -> [u32; 8] {
         self.state
     }

@@ -16,8 +16,7 @@ fn sha256(message: &[u8]) -> String {
     hex(&hash.finish())
 }
 
-/// FIPS 180-4's examples, and the lengths at which the padding takes another block (checked by
-/// Python's `hashlib`).
+/// FIPS 180-4's examples, and the lengths at which the padding takes another block (`hashlib`).
 #[test]
 fn hashes_match_the_standard() {
     assert_eq!(sha256(b""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
@@ -37,7 +36,7 @@ fn hashes_match_the_standard() {
     }
 }
 
-/// RFC 4231, section 4: those whose key has at most 32 bytes (shorter ones are filled with zeros).
+/// RFC 4231, section 4, for keys of at most 32 bytes.
 #[test]
 fn codes_match_the_rfc() {
     let key = |bytes: &[u8]| {
@@ -86,7 +85,6 @@ fn late_frames_are_fresh_once_and_within_the_window() {
     assert_eq!(guard.admit(1, 100), Freshness::New);
     assert_eq!(guard.admit(1, 100), Freshness::Replayed);
     assert_eq!(guard.admit(1, 131), Freshness::New);
-    // 131 - 31 was received, 131 - 32 is forgotten.
     assert_eq!(guard.admit(1, 100), Freshness::Replayed);
     assert_eq!(guard.admit(1, 99), Freshness::Replayed);
     assert_eq!(guard.admit(1, 101), Freshness::Late);
@@ -125,7 +123,6 @@ fn exported_counters_are_not_fresh_after_import() {
     assert_eq!(after.admit(4, 7), Freshness::Replayed);
     assert_eq!(after.admit(4, 8), Freshness::New);
     assert_eq!(after.admit(1, 1 << 40), Freshness::Replayed);
-    // Importing an older counter changes nothing.
     assert!(after.import(4, 2));
     assert_eq!(after.admit(4, 8), Freshness::Replayed);
 }
@@ -141,8 +138,6 @@ fn counters_of_unknown_senders_start_at_the_floor() {
 }
 
 proptest! {
-    /// For any frames in any order: no frame of a sender is fresh twice, and each frame not behind
-    /// the window is fresh once.
     #[test]
     fn no_frame_is_fresh_twice(frames in vec((0_u32..6, 0_u64..80), 0..300)) {
         let mut guard = ReplayGuard::<4>::new();

@@ -13,26 +13,23 @@ pub struct Torus<S> {
 }
 
 impl<S: Scalar> Torus<S> {
-    /// The position in [0, size) along both axes, metres; 0 if it is not a number or 2^31 turns
-    /// away.
+    /// The position in [0, size) along both axes, metres; 0 for NaN or 2^31 turns away.
     #[must_use]
     pub fn wrap(&self, place_m: Vec2<S>) -> Vec2<S> {
         let [width, height] = self.size_m;
         Vec2::new(wrap(place_m.x, width), wrap(place_m.y, height))
     }
 
-    /// The shortest of all vectors that differ from `offset_m` by whole turns around the torus:
-    /// each component is in [-size/2, size/2]. An exact half keeps its sign, so that two robots see
-    /// each other in opposite directions.
+    /// The shortest vector that differs from `offset_m` by whole turns. An exact half keeps its
+    /// sign, so that two robots see each other in opposite directions.
     #[must_use]
     pub fn shortest(&self, offset_m: Vec2<S>) -> Vec2<S> {
         let [width, height] = self.size_m;
         Vec2::new(shortest(offset_m.x, width), shortest(offset_m.y, height))
     }
 
-    /// Of the images of `place`, which differ from it by whole turns around the torus, the one
-    /// nearest to `own`: at most half a turn away along each axis. Exact for sizes in whole
-    /// millimetres; heights are unchanged. Constant work.
+    /// The image of `place` nearest to `own`: at most half a turn away along each axis, with its
+    /// height unchanged. Exact for sizes in whole millimetres.
     #[must_use]
     pub fn image(&self, place: Position, own: Position) -> Position {
         let ([x, y, z], [own_x, own_y, _]) = (place.mm, own.mm);
@@ -44,8 +41,7 @@ impl<S: Scalar> Torus<S> {
                 return mm;
             };
             let back = ahead.wrapping_sub(size_mm);
-            // An exact half keeps its sign, so that two robots see each other in opposite
-            // directions.
+            // An exact half keeps its sign, as in [`Torus::shortest`].
             let is_behind = ahead > size_mm >> 1 || ahead.wrapping_add(back) == 0 && mm < own;
             own.wrapping_add(if is_behind { back } else { ahead })
         };
@@ -69,7 +65,6 @@ fn shortest<S: Scalar>(x: S, size: S) -> S {
     if !wraps || x.abs() <= half {
         return x;
     }
-    // One turn is the usual case: both positions are on the torus.
     let near = if x > S::ZERO { x - size } else { x + size };
     if near.abs() <= half {
         return near;
@@ -78,7 +73,7 @@ fn shortest<S: Scalar>(x: S, size: S) -> S {
     if from_edge > half { from_edge - size } else { from_edge }
 }
 
-/// Whole turns in `x`, rounded down; 0 if they cannot be counted.
+/// Rounded down; 0 if they cannot be counted.
 fn turns<S: Scalar>(x: S, size: S) -> S {
     let turns = x.checked_div(size).and_then(S::floor_to_i32);
     turns.map_or(S::ZERO, S::from_i32)

@@ -1,15 +1,14 @@
-//! A bounded list in memory that it asks for when it is needed.
+//! A bounded list that allocates memory on demand.
 
 use alloc::vec::Vec;
 use core::ops::{Deref, DerefMut};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// At most `N` items; grows by a few at a time. In place of [`heapless::Vec`], with its functions
-/// and its answers.
+/// At most `N` items, with the functions of [`heapless::Vec`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct SparseVec<T, const N: usize>(Vec<T>);
 
-/// Bytes by which a list grows, about: that many cost less to hold for nothing than to move.
+/// Bytes by which a list grows, about: unused memory of that size costs less than moves.
 const STEP: usize = 48;
 
 impl<T, const N: usize> SparseVec<T, N> {
@@ -21,7 +20,6 @@ impl<T, const N: usize> SparseVec<T, N> {
         self.0.len() >= N
     }
 
-    /// Gives back what has no room.
     pub(crate) fn push(&mut self, item: T) -> Result<(), T> {
         if self.is_full() {
             return Err(item);
@@ -42,7 +40,7 @@ impl<T, const N: usize> SparseVec<T, N> {
         self.0.retain(is_kept);
     }
 
-    /// Gives its memory back, too.
+    /// Also releases the memory.
     pub(crate) fn clear(&mut self) {
         self.0 = Vec::new();
     }
@@ -83,7 +81,7 @@ impl<'a, T, const N: usize> IntoIterator for &'a mut SparseVec<T, N> {
     }
 }
 
-// A sequence with its length, as that of `heapless::Vec`: digests are the same.
+// Like `heapless::Vec`, so that digests are equal.
 impl<T: Serialize, const N: usize> Serialize for SparseVec<T, N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.deref().serialize(serializer)

@@ -7,30 +7,24 @@ use crate::list;
 use crate::scalar::Scalar;
 use heapless::Vec;
 
-/// A side between a blocked and a passable cell, or several in one line.
 #[derive(Clone, Copy)]
 struct Wall<S> {
-    /// Grows with the distance to the robot ([`Vec2::length_key`]).
+    /// By the distance to the robot ([`Vec2::length_key`]).
     key: u64,
     ends_m: [Vec2<S>; 2],
 }
 
-/// The sides of blocked cells that face passable ones, as walls relative to the robot at `place_m`
-/// (in the world), nearest first. Of two at one distance the one that runs north comes first, then
-/// the one farther west or south. Sides in one line are one wall. Walls beyond `reach_m` are
-/// omitted, and those that lead there may end there; if there are more than `K`, the farthest are
-/// omitted too.
+/// Returns the sides of blocked cells that face passable ones, as walls relative to the robot at
+/// `place_m` (in the world), nearest first; sides in one line are one wall. Of equally distant ones
+/// the one that runs north is first, then the one farther west or south. Walls beyond `reach_m`,
+/// and all but the `K` nearest, are omitted; unknown terrain beyond the window has none.
 ///
-/// Unknown land beyond the window has no walls. Choose a reach of at least the own radius plus the
-/// distance of one horizon at full speed, and a window that contains it.
-///
-/// A capacity too small for all walls in reach reduces foresight but not safety, as long as the
-/// walls that can be touched in one control step are among the `K` nearest: eight suffice for a
-/// body and a step smaller than a cell.
+/// Choose a reach of at least the own radius plus the distance of one horizon at full speed, and a
+/// window that contains it. A small `K` reduces foresight but not safety, if it holds the walls
+/// that can be touched in one control step: eight for a body and a step smaller than a cell.
 ///
 /// Empty if an input is not finite or the robot is off the grid. Bounded work: two reads of each
-/// cell of the window within reach (at most 255 cells each way), and for each wall found one
-/// insertion into a list of `K`.
+/// cell within reach (at most 255 cells each way), and one insertion into a list of `K` per wall.
 #[must_use]
 pub fn grid_walls<S: Scalar, const K: usize>(
     window: &Window<'_>,
@@ -44,7 +38,7 @@ pub fn grid_walls<S: Scalar, const K: usize>(
 }
 
 struct Walls<S, const K: usize> {
-    /// South-west corner of the robot's own cell relative to the robot, metres.
+    /// South-west corner of the own cell relative to the robot, metres.
     corner_m: Vec2<S>,
     own: Cell,
     cell_m: S,
@@ -73,8 +67,7 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         if width == 0 || height == 0 {
             return Some(walls);
         }
-        // West sides of cells from south to north, then south sides from west to east. All of them
-        // are in the window.
+        // West sides of cells from south to north, then south sides from west to east.
         let (cells, row) = (window.cells(), usize::from(window.width()));
         for x in first.x.saturating_add(1)..=last.x {
             let begin = window.index(Cell::new(x, first.y))?;
@@ -87,7 +80,7 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         Some(walls)
     }
 
-    /// Adds the walls along one line of the grid; `corner` is the corner before a side.
+    /// Adds the walls along one line; `corner` is the corner before a side.
     fn join(&mut self, (first, last): (i16, i16), sides: impl Iterator<Item = bool>, corner: impl Fn(i16) -> Cell) {
         let mut begin = None;
         for (at, is_side) in (first..=last).zip(sides) {
@@ -123,13 +116,12 @@ impl<S: Scalar, const K: usize> Walls<S, K> {
         for farther in self.nearest.iter_mut().skip(place) {
             core::mem::swap(farther, &mut wall);
         }
-        // A full list drops the farthest.
         let _ = self.nearest.push(wall);
     }
 }
 
-/// Whether the sides of cells towards the cells `back` places before them separate blocked from
-/// passable cells: for the cell at `begin`, then for the one `step` places on, and so on.
+/// Whether each side separates a blocked from a passable cell: `back` places before the cell at
+/// `begin` and each `step` after it.
 fn sides(cells: &[u8], begin: usize, step: usize, back: usize) -> impl Iterator<Item = bool> {
     let is_blocked = |at: usize| cells.get(at).map(|&cell| cell == BLOCKED);
     let mut at = begin;
@@ -150,8 +142,7 @@ mod tests {
 
     const FRAME: GridFrame<f64> = GridFrame { origin_m: Vec2::new(100.0, -50.0), cell_m: 2.0 };
 
-    /// A window from rows of `#` and `.`, the northernmost first, with its south-west cell at (10,
-    /// 20).
+    /// Rows of `#` and `.`, the northernmost first, with the south-west cell at (10, 20).
     fn cells(rows: &[&str]) -> List<u8> {
         let rows = rows.iter().rev();
         rows.flat_map(|row| row.bytes().map(|b| if b == b'#' { BLOCKED } else { 1 })).collect()
@@ -162,7 +153,6 @@ mod tests {
         Window::new(cells, Cell::new(10, 20), width, height).unwrap()
     }
 
-    /// Walls in units of cells from the window's south-west corner, for a robot at this position.
     fn seen<const K: usize>(rows: &[&str], at: (f64, f64), reach: f64) -> List<[f64; 4]> {
         let bytes = cells(rows);
         let corner = FRAME.origin_m + Vec2::new(10.0, 20.0) * FRAME.cell_m;
@@ -186,7 +176,6 @@ mod tests {
         let (east, north) = ([3.0, 1.0, 3.0, 3.0], [1.0, 3.0, 3.0, 3.0]);
         assert_eq!(seen::<8>(&rows, (0.75, 1.5), 1.0), [west, south]);
         assert_eq!(seen::<8>(&rows, (1.5, 0.5), 1.0), [south, west]);
-        // In front of the corner both are equally far: the one that runs north first.
         assert_eq!(seen::<8>(&rows, (0.5, 0.5), 1.0), [west, south]);
         assert_eq!(seen::<8>(&rows, (0.75, 1.5), 9.0), [west, south, north, east]);
     }
@@ -216,8 +205,7 @@ mod tests {
     fn at_full_capacity_the_farthest_are_omitted() {
         let rows = [".#.#.", "#.#.#", ".#.#.", "#.#.#", ".#.#."];
         let all = seen::<64>(&rows, (2.4, 2.45), 9.0);
-        // Each of four lines each way is one wall: across a corner of the board blocked and
-        // passable change sides.
+        // Each line is one wall: blocked and passable cells change sides at a corner of the board.
         assert_eq!(all.len(), 8);
         assert_eq!(seen::<5>(&rows, (2.4, 2.45), 9.0), all[..5]);
         assert_eq!(seen::<8>(&rows, (2.4, 2.45), 9.0), all);
@@ -265,7 +253,6 @@ mod tests {
             for others in [walls::<f32>(&window, x, y), walls::<Q16>(&window, x, y)] {
                 prop_assert_eq!(exact.len(), others.len());
                 for wall in &exact {
-                    // Two that are nearly equally far may be swapped.
                     let is_same = |other: &[f64; 4]| {
                         wall.iter().zip(other).all(|(a, b)| (a - b).abs() < 1e-3)
                     };

@@ -7,13 +7,11 @@ pub use grid_walls::grid_walls;
 use crate::geom::{Vec2, Vec3};
 use crate::scalar::Scalar;
 
-/// An obstacle relative to the robot's centre, metres, so that the distance from the world's origin
-/// does not matter.
+/// An obstacle relative to the robot's centre, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Obstacle<S> {
-    /// A vertical wall without thickness between two points; polygons, convex or not, are several
-    /// walls.
+    /// A vertical wall without thickness between two points; a polygon is several walls.
     Wall([Vec2<S>; 2]),
     /// A solid ball, in the plane a disc.
     Ball {

@@ -1,30 +1,22 @@
-//! Push-out: a step that would end too near to a robot or obstacle is pushed out, or turned aside.
+//! Push-out: a step that would end too near to a robot or obstacle is pushed out, or turned aside
+//! (V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous flock of
+//! robots", section 3). Start with [`push_out`]; [`zone`] has the effect of one obstacle.
 //!
-//! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous
-//! flock of robots", section 3 (the second stage of a motion). Read [`push_out`] first, then
-//! [`zone`] for the effect of one obstacle.
-//!
-//! It is fast and simple, and a robot alone with obstacles never comes too near. Among robots it
-//! guarantees less than reciprocal avoidance: each robot considers the positions of the others but
-//! not their velocities. Two robots that approach each other may come nearer than the least
-//! distance by one step of the other robot, and crowds may block each other.
+//! It is simple, and a robot alone with obstacles never comes too near. It considers the positions
+//! of robots but not their velocities: two robots may come nearer than the least distance by one
+//! step, and crowds may block each other.
 //!
 //! **Differences to the paper:**
 //!
-//! - Robots and obstacles have bodies: the least distance is at least the sum of two radii, from an
-//!   obstacle the own radius.
+//! - Robots and obstacles have bodies, whose radii raise the least distance.
 //! - The whole step counts instead of its end, so that a fast robot cannot jump through a small
-//!   obstacle. Model 1 pushes out the deepest point of the step, but not to a part of the border
-//!   that is hidden behind the zone.
-//! - The paper steps sideways if position, new position and centre are on one line. Here a robot
-//!   also does so if they nearly are, since a push back along the line leaves nothing of the step
-//!   there either.
+//!   obstacle. Model 1 pushes its deepest point to the visible border of the zone.
+//! - The paper steps sideways if position, new position and centre are on one line. Here they may
+//!   also nearly be, since a push back along the line leaves nothing of the step there either.
 //! - Robots that are already too near are pushed out no faster than they can move. Those in one
 //!   place separate by [`tie`](crate::neighbor::tie).
-//! - The paper's rule for evading several robots at once is lost with its figure 8; see
-//!   [`Evasion::Multiple`].
-//! - Walls and half-spaces are supported, and all computations are in space; in the plane z remains
-//!   0.
+//! - The paper's rule for several robots is lost with its figure 8; see [`Evasion::Multiple`].
+//! - Walls and half-spaces are supported. All computations are in space; in the plane z remains 0.
 
 pub mod zone;
 
@@ -44,12 +36,11 @@ named! {
     /// How a step that leads too near is changed.
     #[derive(Default)]
     pub enum Model {
-        /// Model 1: it ends where the radius through its end leaves the zone; straight at the
-        /// centre: sideways with the same length. The robot slides along the zone and slows down.
+        /// Model 1: the step ends where the radius through its end leaves the zone (straight at the
+        /// centre: sideways with the same length). The robot slides along the zone and slows down.
         #[default]
         Radial = "radial",
-        /// Model 2: it keeps its length and is turned by the smaller angle to the border of the
-        /// zone. The robot keeps its speed.
+        /// Model 2: the step keeps its length and is turned to the border by the smaller angle.
         Tangential = "tangential",
     }
 }
@@ -58,11 +49,10 @@ named! {
     /// How many robots are evaded at once. All obstacles are always evaded.
     #[derive(Default)]
     pub enum Evasion {
-        /// Only the nearest of those in the way: the evading step may lead too near to another
-        /// robot.
+        /// Only the nearest one in the way, so the evading step may lead too near to another robot.
         Single = "single",
-        /// All. Of the evading steps around each, to either side, the robot takes the one nearest
-        /// to its wish that is clear of all. If there is none it stops.
+        /// All. The robot takes the evading step around any of them, to either side, that is
+        /// nearest to its wish and clear of all; otherwise it stops.
         #[default]
         Multiple = "multiple",
     }
@@ -77,8 +67,7 @@ pub struct PushOutParams<S> {
     /// How many robots are evaded at once.
     pub evasion: Evasion,
     /// Least distance (R_MinDist) of two robots' centres, and of a centre from an obstacle's
-    /// border, metres; more than 0. Never less than bodies need. One step's length more keeps
-    /// robots apart if both move.
+    /// border, metres; above 0. Bodies raise it. One step's length more keeps moving robots apart.
     pub min_distance_m: S,
 }
 
@@ -96,23 +85,19 @@ impl<S: Scalar> PushOutParams<S> {
     }
 }
 
-/// How deep a step may lead into a zone without counting as in the way, millimetres: the precision
-/// of positions.
+/// How deep a step may lead into a zone, millimetres: the precision of positions.
 const TOLERANCE_MM: i32 = 1;
 
-/// The velocity nearest to `wish_mps` by the rules of the model, m/s, for the next
+/// Returns the velocity nearest to `wish_mps` by the rules of the model, m/s, for the next
 /// [`Body::step_s`].
 ///
-/// A step that does not come too near to anything is the wish, limited to the body's speed. If all
-/// evading steps lead too near to something the robot stops. If it is too near already, it takes
-/// the least deep one.
+/// A step that does not come too near is the wish, limited to the body's speed; acceleration is
+/// ignored. If all evading steps lead too near to something the robot stops, or takes the least
+/// deep one if it is too near already. Zero if the time step or the least distance is not above 0.
 ///
-/// `nearby` may be in any order. Values that are not a number count as absent (a wish: as zero);
-/// the result is finite and not faster than the body. Zero if the time step or the least distance
-/// is not above 0. Ignores the body's acceleration.
-///
-/// O(n) if nothing is in the way, otherwise O(n^2), with model 1 the number of those in the way
-/// times all; n = `nearby` + `obstacles`.
+/// `nearby` may be in any order. NaN counts as absent (a wish: as zero); the result is finite and
+/// not faster than the body. O(n) if nothing is in the way, otherwise O(n^2), n = `nearby` +
+/// `obstacles`.
 #[inline(never)]
 #[must_use]
 pub fn push_out<S: Scalar>(
@@ -140,7 +125,6 @@ pub fn push_out<S: Scalar>(
     Vec3::new(rate(evading.x), rate(evading.y), rate(evading.z)).clamp_norm(body.max_speed_mps)
 }
 
-/// All zones that a step may lead into.
 struct Scene<'a, S> {
     params: &'a PushOutParams<S>,
     body: &'a Body<S>,
@@ -157,8 +141,7 @@ impl<'a, S: Scalar> Scene<'a, S> {
         obstacles.chain(robots.filter_map(move |other| Zone::of_robot(other, body, least)))
     }
 
-    /// How deep the step leads into a zone, beyond the tolerance; 0 if it does not. A depth above
-    /// `limit` is only known to exceed it.
+    /// How deep the step leads into a zone, beyond the tolerance; inexact above `limit`.
     fn depth(&self, step: Vec3<S>, limit: S) -> S {
         let (path, limit) = (Path::new(step), limit.max(S::from_milli(TOLERANCE_MM)));
         let mut deepest = S::ZERO;
@@ -171,8 +154,7 @@ impl<'a, S: Scalar> Scene<'a, S> {
         if deepest > S::from_milli(TOLERANCE_MM) { deepest } else { S::ZERO }
     }
 
-    /// The nearest robot that the step leads too near to, as a slice of one; empty if there is
-    /// none. Ties by number.
+    /// The nearest robot that the step leads too near to, if any. Ties by number.
     fn nearest_in_the_way(&self, step: Vec3<S>) -> &'a [Nearby<S>] {
         let tolerance = S::from_milli(TOLERANCE_MM);
         let in_the_way = self.nearby.chunks(1).filter(|one| {
@@ -187,8 +169,7 @@ impl<'a, S: Scalar> Scene<'a, S> {
         let model = self.params.model;
         let longest = self.body.max_speed_mps * self.body.step_s;
         let mut best = Best { depth: self.depth(Vec3::ZERO, S::MAX), change: u64::MAX, step: Vec3::ZERO };
-        // Whether model 1 has tried to step sideways, which is the same step for all zones;
-        // vertical zones have another one.
+        // Sideways is one step for all zones, except for vertical ones.
         let (mut has_sidestepped, mut has_sidestepped_upright) = (false, false);
         for zone in self.zones(step) {
             // Model 1 pushes out of zones that the step leads into; model 2 may pass between two
@@ -220,7 +201,6 @@ impl<'a, S: Scalar> Scene<'a, S> {
                 if let Some((_, other)) = deepest
                     && let Some(again) = other.evade(evading, model, Side::Rule)
                 {
-                    // Pushed out of one zone and into another: push out of that too.
                     let again = again.clamp_norm(longest);
                     best.consider(again, step, |limit| self.depth(again, limit));
                 }
@@ -229,8 +209,7 @@ impl<'a, S: Scalar> Scene<'a, S> {
         best.step
     }
 
-    /// The zone that the step leads into deepest, beyond the tolerance, and its depth; the first of
-    /// equals.
+    /// The deepest zone, beyond the tolerance, and its depth; the first of equals.
     fn deepest(&self, step: Vec3<S>) -> Option<(S, Zone<S>)> {
         let path = Path::new(step);
         let mut deepest = None;
@@ -246,8 +225,7 @@ impl<'a, S: Scalar> Scene<'a, S> {
     }
 }
 
-/// The best evading step so far: the least deep one, then the one nearest to the wish, then the
-/// first.
+/// The least deep step so far, then the one nearest to the wish, then the first.
 struct Best<S> {
     depth: S,
     change: u64,
@@ -255,8 +233,7 @@ struct Best<S> {
 }
 
 impl<S: Scalar> Best<S> {
-    /// `depth` returns the depth of the evading step; beyond the limit given to it, it need not be
-    /// exact.
+    /// `depth` need not be exact beyond the limit given to it.
     fn consider(&mut self, evading: Vec3<S>, wish: Vec3<S>, depth: impl FnOnce(S) -> S) {
         let change = (evading - wish).length_key();
         if self.depth <= S::ZERO && change >= self.change {

@@ -26,7 +26,7 @@ fn params(model: Model, evasion: Evasion) -> PushOutParams<f64> {
     PushOutParams { model, evasion, min_distance_m: 2.0 }
 }
 
-/// A point that moves up to 100 m in a step of 1 s, so that velocities are steps.
+/// A step of 1 s, so that velocities are steps.
 fn body<S: Scalar>() -> Body<S> {
     Body {
         id: RobotId(1),
@@ -54,7 +54,6 @@ fn ball(center_m: V, radius_m: f64) -> Obstacle<f64> {
     Obstacle::Ball { center_m, radius_m }
 }
 
-/// The step of a robot among these.
 fn stepped(model: Model, wish: V, nearby: &[Nearby<f64>], obstacles: &[Obstacle<f64>]) -> V {
     push_out(&params(model, Evasion::Multiple), &body(), wish, nearby, obstacles)
 }
@@ -72,7 +71,6 @@ fn a_step_clear_of_everything_is_the_wish() {
             assert_eq!(stepped(model, wish, &robots, &around), wish);
         }
         assert_eq!(stepped(model, v(3.0, 4.0), &[], &[]), v(3.0, 4.0));
-        // Faster than the body.
         assert_close(stepped(model, v(0.0, -300.0), &robots, &around), v(0.0, -100.0));
     }
 }
@@ -96,7 +94,6 @@ fn model_1_steps_sideways_when_it_leads_straight_at_the_centre() {
     assert_close(stepped(Model::Radial, v(6.0, 0.05), &[], &around), v(-0.05, 6.0));
     let plane = Obstacle::Plane { normal: v(0.0, -1.0), distance_m: 3.0 };
     assert_close(stepped(Model::Radial, v(0.0, 4.0), &[], &[plane]), v(-4.0, 0.0));
-    // Straight up at a ball: to the east.
     let above = [ball(V::new(0.0, 0.0, 10.0), 3.0)];
     assert_close(stepped(Model::Radial, V::new(0.0, 0.0, 6.0), &[], &above), v(6.0, 0.0));
 }
@@ -109,7 +106,6 @@ fn model_2_turns_the_step_to_the_border_by_the_smaller_angle() {
     assert_close(stepped(Model::Tangential, v(6.0, 1.0), &[], &around), v(5.6, height));
     assert_close(stepped(Model::Tangential, v(6.0, -1.0), &[], &around), v(5.6, -height));
     assert_close(stepped(Model::Tangential, v(37f64.sqrt(), 0.0), &[], &around), v(5.6, height));
-    // Longer than the distance to the tangent point: along the tangent, with sine 1/2.
     let got = stepped(Model::Tangential, v(20.0, 0.1), &[], &around);
     let length = v(20.0, 0.1).norm();
     assert_close(got, v(length * 0.75f64.sqrt(), length * 0.5));
@@ -124,12 +120,10 @@ fn robots_slide_along_planes_and_walls() {
         let got = stepped(Model::Tangential, v(3.0, 4.0), &[], &[obstacle]);
         assert_close(got, v(24f64.sqrt(), 1.0));
     }
-    // Beside the wall's end there is a post.
     let got = stepped(Model::Radial, v(12.0, 0.5), &[], &[wall]);
     assert_eq!(got, v(12.0, 0.5), "farther than 2 m");
     let got = stepped(Model::Radial, v(10.0, 3.0), &[], &[wall]);
     assert!((got - v(9.0, 3.0)).norm() > 1.999 && got.y < 3.0, "{got:?}");
-    // At any speed a wall cannot be jumped, and heights along it are unrestricted.
     for model in MODELS {
         for x in [-6.0, -1.0, 0.0, 2.0] {
             let got = stepped(model, V::new(x, 90.0, 7.0), &[], &[wall]);
@@ -188,7 +182,7 @@ fn robots_in_one_place_separate_in_opposite_directions() {
 
 #[test]
 fn single_evasion_evades_the_nearest_and_multiple_all() {
-    // Two side by side: a robot that evades the first to the left runs into the second.
+    // A robot that evades the first to the left runs into the second.
     let robots = [robot(2, v(4.0, -0.2)), robot(3, v(4.0, 2.5))];
     let wish = v(3.5, 0.0);
     for model in MODELS {
@@ -209,7 +203,6 @@ fn single_evasion_evades_the_nearest_and_multiple_all() {
 
 #[test]
 fn an_enclosed_robot_stops() {
-    // Twelve robots around, 3 m away: no step of 2 m is clear.
     let ring: Vec<_> = (0..12)
         .map(|k| {
             let (sin, cos) = Scalar::sin_cos(f64::from(k) * core::f64::consts::PI / 6.0);
@@ -257,7 +250,7 @@ fn invalid_input_counts_as_absent() {
     }
 }
 
-/// Robots move to their goals with `model`; returns the least distance of two, and how many arrive.
+/// Returns the least distance of two robots, and how many arrive.
 fn walk(model: Model, robots: &mut [(V, V)], obstacles: &[(V, f64)], steps: u32) -> (f64, usize) {
     let (speed, step_s) = (1.0, 0.1);
     let own = |i: usize| Body { id: RobotId(i as u32 + 1), max_speed_mps: speed, step_s, ..body() };
@@ -307,7 +300,6 @@ fn pairs_pass_each_other_and_keep_the_distance_to_a_step() {
             let mut robots = [(v(0.0, 0.0), v(20.0, 0.0)), (v(20.0, y), v(0.0, y))];
             let (least, arrived) = walk(model, &mut robots, &[], 600);
             assert_eq!(arrived, 2, "{model:?} {y} {robots:?}");
-            // Each moves up to 0.1 m in a step.
             assert!(least > 1.89, "{model:?} {y} {least}");
         }
     }
@@ -319,7 +311,7 @@ fn places(height: f64) -> impl Strategy<Value = Vec<V>> {
     proptest::collection::vec(place, 0..8)
 }
 
-/// Depth of a step in zones of 2 m around positions, taken at 200 points of it.
+/// At 200 points of the step, in zones of 2 m.
 fn trespass(step: V, places: &[V]) -> f64 {
     let points = (0..=200).map(|k| step * (f64::from(k) / 200.0));
     let depths = points.flat_map(|at| places.iter().map(move |place| 2.0 - (*place - at).norm()));
@@ -337,7 +329,6 @@ fn answer<S: Scalar>(model: Model, wish: V, places: &[V]) -> V {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
-    /// In every number type, in the plane and in space.
     #[test]
     fn a_robot_that_is_clear_stays_clear(
         flat in places(0.0), deep in places(0.6),
@@ -377,7 +368,6 @@ proptest! {
         for model in MODELS {
             let plain = answer::<f64>(model, wish, &places);
             let got = answer::<f64>(model, turn(wish), &turned);
-            // Of two steps equally far from the wish, rounding chooses.
             let way = |got: V, wish: V| (got - wish).norm();
             let is_as_good = (way(got, turn(wish)) - way(plain, wish)).abs() < 1e-6;
             let is_same = (got - turn(plain)).norm() < 1e-6;

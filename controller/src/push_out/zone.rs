@@ -16,14 +16,14 @@ pub enum Side {
     Rule,
     /// The other side: the larger angle, or sideways to the left.
     Left,
-    /// Sideways to the right; model 1 only.
+    /// Sideways to the right, for model 1 only.
     Right,
 }
 
-/// In the order of trying.
+/// All sides in the order of trying.
 pub const SIDES: [Side; 3] = [Side::Rule, Side::Left, Side::Right];
 
-/// Shape of a zone, relative to the robot's centre, metres.
+/// Relative to the robot's centre, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape<S> {
     /// Around a robot, a ball or the end of a wall.
@@ -32,20 +32,17 @@ enum Shape<S> {
     Half { normal: Vec3<S>, room: S },
 }
 
-/// The exit from the exact centre of a ball. That of a pair of robots takes a sine, and is rarely
-/// needed.
+/// The exit from the exact centre of a ball; a tie takes a sine and is rarely needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Otherwise<S> {
-    /// This unit vector.
     Way(Vec3<S>),
     /// Backwards, or east if the robot stands still.
     Back(Vec3<S>),
-    /// The [`tie`] of the own robot and the other one.
     Tie(RobotId, RobotId),
 }
 
 impl<S: Scalar> Otherwise<S> {
-    /// The unit vector. Not inlined: it has few and distant callers.
+    /// Not inlined: it has few and distant callers.
     #[inline(never)]
     fn way(self) -> Vec3<S> {
         match self {
@@ -64,11 +61,10 @@ impl<S: Scalar> Otherwise<S> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Zone<S> {
     shape: Shape<S>,
-    /// Vertical at all heights, like walls: only the horizontal part of a step matters.
+    /// Only the horizontal part of a step matters.
     pub(super) is_upright: bool,
 }
 
-/// A step with its direction and length, computed once for all zones.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Path<S> {
     step: Vec3<S>,
@@ -83,8 +79,7 @@ impl<S: Scalar> Path<S> {
 }
 
 impl<S: Scalar> Zone<S> {
-    /// Around another robot: `min_distance_m`, at least both radii. `None` for the robot itself and
-    /// if the position is not known.
+    /// Around another robot: `min_distance_m`, at least both radii. `None` for the robot itself.
     #[must_use]
     pub fn of_robot(other: &Nearby<S>, body: &Body<S>, min_distance_m: S) -> Option<Self> {
         let radii = body.radius_m + other.radius_m;
@@ -99,8 +94,8 @@ impl<S: Scalar> Zone<S> {
         })
     }
 
-    /// Around the part of an obstacle that is nearest to `step`: `min_distance_m` from its border,
-    /// at least the own radius. `None` if it is not finite.
+    /// Around the part of an obstacle that is nearest to `step`: `min_distance_m`, at least the own
+    /// radius, from its border. `None` if it is not finite.
     #[must_use]
     pub fn of_obstacle(obstacle: &Obstacle<S>, body: &Body<S>, min_distance_m: S, step: Vec3<S>) -> Option<Self> {
         let margin = at_least(min_distance_m, body.radius_m);
@@ -123,10 +118,8 @@ impl<S: Scalar> Zone<S> {
         Some(Self { shape, is_upright })
     }
 
-    /// How deep `step` leads into the zone, metres; not above 0 if it does not.
-    ///
-    /// For a robot that is already too near, the end of a step counts if it leads out, and its
-    /// deepest point if it leads in.
+    /// How deep `step` leads into the zone, metres; not above 0 if it does not. If the robot is
+    /// already too near, the deepest point counts, or the end of a step that leads out.
     #[must_use]
     pub fn depth(&self, step: Vec3<S>) -> S {
         let step = self.part(step);
@@ -136,7 +129,6 @@ impl<S: Scalar> Zone<S> {
         }
     }
 
-    /// The depth if it is at least `floor`, otherwise `floor`.
     pub(super) fn depth_from(&self, path: &Path<S>, floor: S) -> S {
         let depth = match self.shape {
             Shape::Ball { center, radius, .. } if !self.is_upright => {
@@ -172,13 +164,11 @@ impl<S: Scalar> Zone<S> {
     }
 }
 
-/// `distance`, or what bodies need if that is more and known.
 fn at_least<S: Scalar>(distance: S, bodies: S) -> S {
     if bodies > distance && bodies.is_finite() { bodies } else { distance }
 }
 
-/// A wall is a half-space beside it and a post at its ends; takes whichever the step comes nearest
-/// to.
+/// A wall is a half-space and a post at its ends; takes the nearer one to the step.
 fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Shape<S>> {
     let is_sound = a.is_finite() && b.is_finite();
     if !is_sound {
@@ -186,7 +176,6 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
     }
     let east = Vec2::new(S::ONE, S::ZERO);
     let along = (b - a).normalized().unwrap_or(east);
-    // Out of the wall on the robot's side; on the wall to its left.
     let left = along.perp();
     let normal = if a.dot(left) > S::ZERO { -left } else { left };
     let room = (-a).dot(normal);
@@ -201,8 +190,7 @@ fn wall<S: Scalar>([a, b]: [Vec2<S>; 2], margin: S, step: Vec2<S>) -> Option<Sha
     Some(Shape::Ball { center: end.extend(S::ZERO), radius: margin, otherwise: Otherwise::Way(normal.extend(S::ZERO)) })
 }
 
-/// The point of the step that counts for a ball: the nearest to the centre, or the end if the robot
-/// is inside already and does not move deeper.
+/// The point of the step nearest to the centre, or its end if the robot is inside and moves out.
 fn deepest<S: Scalar>(center: Vec3<S>, radius: S, path: &Path<S>) -> Vec3<S> {
     let Some(direction) = path.direction else {
         return Vec3::ZERO;
@@ -212,7 +200,7 @@ fn deepest<S: Scalar>(center: Vec3<S>, radius: S, path: &Path<S>) -> Vec3<S> {
     if !goes_deeper && center.norm() < radius { path.step } else { direction * along }
 }
 
-/// A step of the same length to the left in the plane; east for a vertical one.
+/// Of the same length, to the left in the plane; east for a vertical step.
 fn sideways<S: Scalar>(step: Vec3<S>) -> Vec3<S> {
     let left = step.xy().perp().normalized();
     let left = left.unwrap_or(Vec2::new(S::ONE, S::ZERO));
@@ -223,7 +211,6 @@ fn is_straight<S: Scalar>(across: Vec3<S>, step: Vec3<S>) -> bool {
     across.norm() <= step.norm() * S::from_ratio(1, 100)
 }
 
-/// Model 1.
 fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
     // A robot on the border counts as outside.
     let inside = -S::from_milli(TOLERANCE_MM);
@@ -252,7 +239,7 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
             }
             let point = deepest(center, radius, &Path::new(step)) - center;
             let away = point.normalized().unwrap_or(-ahead);
-            // The border beyond the tangent point cannot be reached in a straight line; stop there.
+            // The border beyond the tangent point cannot be reached in a straight line.
             let horizon = radius.checked_div(distance).unwrap_or(S::ONE);
             if -away.dot(ahead) < horizon {
                 let reach = ((distance - radius) * (distance + radius)).sqrt();
@@ -266,12 +253,10 @@ fn push_radially<S: Scalar>(shape: Shape<S>, step: Vec3<S>) -> Vec3<S> {
     }
 }
 
-/// Model 2: to the border at the same length, by the smaller angle or on the other side; `None` for
-/// a step of zero.
+/// To the border at the same length, by the smaller angle or on the other side.
 fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<Vec3<S>> {
     let direction = step.normalized()?;
     let length = step.norm();
-    // The part of the new step along `axis`, and the axis.
     let (axis, along) = match shape {
         Shape::Half { normal, room } => (normal, (-room).clamp(-length, length)),
         Shape::Ball { center, radius, otherwise } => {
@@ -288,8 +273,7 @@ fn turn<S: Scalar>(shape: Shape<S>, step: Vec3<S>, is_smaller: bool) -> Option<V
     Some(axis * along + across * width)
 }
 
-/// Cosine of the angle between the centre of a ball at `distance` and a step of `length` that ends
-/// on its border, or touches it before.
+/// Of the angle between the centre at `distance` and a step that ends on the border or touches it.
 fn cosine<S: Scalar>(distance: S, radius: S, length: S) -> S {
     let gap = distance - radius;
     let sum = distance + radius;

@@ -6,20 +6,18 @@ use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use micromath::F32Ext;
 use serde::{Deserialize, Serialize};
 
-/// An `f32` whose functions are approximations: identical bits on every target, fewer of them
-/// correct.
+/// An `f32` whose functions are approximations with identical bits on every target.
 ///
 /// Sums, products and conversions are those of `f32`. Errors against exact functions: 0.2 % for
-/// `sqrt`, `norm` and `unit`; 0.002 and 1e-7 of the angle for `sin_cos`; 0.003 rad for `atan2`; 0.3
-/// % for `exp` (0 below -87, infinite above 88); 1e-4 and 1e-6 of the value for `ln`.
-///
-/// `atan2` of components beyond 1e18 is NaN, and of vectors shorter than 1e-18 it is 0.
+/// `sqrt`, `norm` and `unit`; 0.002 and 1e-7 of the angle for `sin_cos`; 0.003 rad for `atan2` (NaN
+/// for components beyond 1e18, 0 for vectors shorter than 1e-18); 0.3 % for `exp` (0 below -87,
+/// infinite above 88); 1e-4 and 1e-6 of the value for `ln`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
 pub struct Fast32(pub f32);
 
-/// 1 / sqrt(x) for normal positive x: micromath's estimate (off by 3.5 %) and a Newton step.
+/// For normal positive x: micromath's estimate (off by 3.5 %) and a Newton step.
 fn inverse_sqrt(x: f32) -> f32 {
     let estimate = F32Ext::invsqrt(x);
     estimate * (1.5 - 0.5 * x * estimate * estimate)

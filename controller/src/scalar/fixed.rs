@@ -6,10 +6,9 @@ use core::num::NonZeroU64;
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A number from -32768 to 32767.99998 in steps of 2^-16 (0.000015), saturating everywhere.
-///
-/// Products are rounded to nearest. There is neither NaN nor infinity: a result out of range
-/// becomes [`Scalar::MAX`] or its negative, and [`Scalar::is_finite`] is always true.
+/// A number from -32768 to 32767.99998 in steps of 2^-16 (0.000015), saturating everywhere;
+/// products are rounded to nearest. There is neither NaN nor infinity: [`Scalar::is_finite`] is
+/// always true.
 ///
 /// Errors against exact functions, each beside the half step of rounding: `sqrt` and `norm` one
 /// step (rounded down); `sin_cos`, `atan2`, `ln` one step; `exp` a factor of 1 + 1e-8.
@@ -140,8 +139,7 @@ impl Scalar for Q16 {
     }
 
     fn from_milli(milli: i32) -> Self {
-        // 65.536 in Q31; beyond the limit the result is out of range anyway, and below it the
-        // product stays under 2^62.
+        // 65.536 in Q31; below the limit the product stays under 2^62.
         const STEPS_Q31: i64 = 140_737_488_355;
         let milli = i64::from(milli).clamp(-32_768_000, 32_768_000);
         Self::saturating((milli * STEPS_Q31 + (1 << 30)) >> 31)
@@ -157,7 +155,6 @@ impl Scalar for Q16 {
     }
 
     fn from_f64(value: f64) -> Option<Self> {
-        // The cast saturates.
         (!value.is_nan()).then(|| Self::from_bits(libm::round(value * 65_536.0) as i32))
     }
 
@@ -256,8 +253,7 @@ impl Scalar for Q16 {
     }
 
     fn unit(components: [Self; 3]) -> Option<[Self; 3]> {
-        // All components shifted so that the longest one has 31 bits: their squares still fit, and
-        // a vector of a few steps gets a direction as precise as a long one.
+        // The longest component has 31 bits: squares fit, and short vectors keep their precision.
         let all = components.map(|c| c.bits().unsigned_abs()).iter().fold(0, |a, b| a | b);
         let shift = all.leading_zeros();
         if all == 0 {
@@ -272,7 +268,7 @@ impl Scalar for Q16 {
     }
 }
 
-/// `numerator / denominator` in steps of 2^-16, rounded to nearest; `None` for a zero denominator.
+/// In steps of 2^-16, rounded to nearest.
 fn quotient(numerator: i32, denominator: i32) -> Option<i64> {
     let denominator_abs = NonZeroU64::new(denominator.unsigned_abs().into())?;
     let halves = (u64::from(numerator.unsigned_abs()) << 17) / denominator_abs;

@@ -2,9 +2,7 @@
 
 use core::num::NonZeroU64;
 
-/// The value of a polynomial with coefficients in Q30 (constant term first) at `x` in Q32, 0..=1.
-///
-/// Every partial sum must stay below 2 in magnitude.
+/// Coefficients in Q30 (constant term first), `x` in Q32, 0..=1; partial sums must stay below 2.
 pub(super) fn polynomial_q30(coefficients: &[i64], x_q32: i64) -> i64 {
     coefficients.iter().rev().fold(0, |sum, c| c + ((sum * x_q32) >> 32))
 }
@@ -20,7 +18,6 @@ pub(crate) fn log2_q32(k: NonZeroU64) -> u64 {
     // k = 2^e (1 + x), log2(k) = e + x + x (1 - x) p(x); p interpolates at the Chebyshev nodes.
     const P_Q30: [i64; 5] = [475_296_191, -296_964_243, 197_676_760, -104_369_674, 27_585_783];
     let zeros = k.leading_zeros();
-    // The leading one drops out; the 32 bits below it are x.
     let x = ((k.get() << zeros << 1) >> 32) as i64;
     (u64::from(63 - zeros) << 32) + bow_q32(&P_Q30, x).cast_unsigned()
 }

@@ -1,8 +1,8 @@
 //! The numeric trait of the controller, and the four types that implement it.
 //!
 //! `f32` is the default, `f64` the reference, [`Q16`] serves parts without an FPU, and [`Fast32`]
-//! trades accuracy for time. All operations beyond + - * use [`Scalar`] and hence the same software
-//! routines on every target, so that all targets compute identical bits.
+//! trades accuracy for time. All use the same software routines on every target, and so compute
+//! identical bits.
 //!
 //! NaN fails closed: it passes through arithmetic, `min`, `max` and `clamp` unchanged, is the last
 //! in [`Scalar::order`], and conversions to integers return `None`.
@@ -29,10 +29,8 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// A real number of limited range and precision; sealed.
-///
-/// There is no `Div`: the caller must handle a division by zero where it occurs, see
-/// [`Scalar::checked_div`].
+/// A real number of limited range and precision; sealed. There is no `Div`: the caller must handle
+/// a division by zero where it occurs ([`Scalar::checked_div`]).
 pub trait Scalar:
     sealed::Sealed
     + Copy
@@ -67,18 +65,15 @@ pub trait Scalar:
     const EPSILON: Self;
     /// The largest finite number; its negative is in range too.
     const MAX: Self;
-    /// Whether precision is relative: the square of a short or a long vector's length is as precise
-    /// as the length.
+    /// Whether precision is relative, so that squares are as precise as lengths.
     const IS_FLOATING: bool;
 
     /// An integer, rounded to nearest; saturates.
     #[must_use]
     fn from_i32(value: i32) -> Self;
 
-    /// The fraction `numerator / denominator`, for constants and parameters.
-    ///
-    /// Saturates; a zero denominator gives an infinity or NaN, in fixed point ±[`Scalar::MAX`]. In
-    /// f32, integers above 2^24 are rounded first.
+    /// The fraction `numerator / denominator`, saturating; in f32, integers above 2^24 are rounded
+    /// first. A zero denominator gives an infinity or NaN, in fixed point ±[`Scalar::MAX`].
     #[must_use]
     fn from_ratio(numerator: i32, denominator: i32) -> Self;
 
@@ -94,8 +89,7 @@ pub trait Scalar:
     #[must_use]
     fn to_milli(self) -> Option<i32>;
 
-    /// The nearest number, saturating; NaN gives `None`. For hosts and start-up: slow without a
-    /// double-precision FPU.
+    /// The nearest number, saturating; NaN gives `None`. Slow without a double-precision FPU.
     #[must_use]
     fn from_f64(value: f64) -> Option<Self>;
 
@@ -103,8 +97,7 @@ pub trait Scalar:
     #[must_use]
     fn to_f64(self) -> f64;
 
-    /// The nearest number, saturating; NaN gives `None`. Values from elsewhere (a host, a file,
-    /// another robot's link) arrive as `f32`; uses integers and single precision only.
+    /// The nearest number, saturating; NaN gives `None`. Uses integers and single precision only.
     #[must_use]
     fn from_f32(value: f32) -> Option<Self>;
 
@@ -128,8 +121,7 @@ pub trait Scalar:
     #[must_use]
     fn floor_to_i32(self) -> Option<i32>;
 
-    /// The square root; a negative number counts as 0, the usual meaning of a rounding error just
-    /// below it.
+    /// The square root; a negative number (usually a rounding error) counts as 0.
     #[must_use]
     fn sqrt(self) -> Self;
 
@@ -149,19 +141,17 @@ pub trait Scalar:
     #[must_use]
     fn ln(self) -> Option<Self>;
 
-    /// Length of the vector with these components. Fixed point: exact to one bit and saturating,
-    /// though the squares do not fit; floats: infinite beyond 1e19 (f32).
+    /// Length of the vector. Fixed point: exact to one bit and saturating, though the squares do
+    /// not fit; floats: infinite beyond 1e19 (f32).
     #[must_use]
     fn norm(components: [Self; 3]) -> Self;
 
-    /// An integer that grows with the length of the vector, for comparing lengths without a root
-    /// and without overflow; `u64::MAX` when a component is NaN.
+    /// An integer that grows with the length, without a root or overflow; `u64::MAX` for NaN.
     #[must_use]
     fn length_key(components: [Self; 3]) -> u64;
 
-    /// The vector of length 1 with the same direction, to the full precision of the type at any
-    /// length; `None` for the zero vector (floats: also shorter than 2e-19) and if a component is
-    /// not finite.
+    /// The vector of length 1 with the same direction, to the full precision of the type; `None`
+    /// for the zero vector (floats: also below 2e-19) and if a component is not finite.
     #[must_use]
     fn unit(components: [Self; 3]) -> Option<[Self; 3]>;
 
@@ -189,8 +179,7 @@ pub trait Scalar:
         self.max(low).min(high)
     }
 
-    /// A total order by value with NaN after everything else, so that an unknown value is never the
-    /// least.
+    /// A total order by value with NaN last, so that an unknown value is never the least.
     #[must_use]
     fn order(self, other: Self) -> Ordering {
         self.partial_cmp(&other).unwrap_or_else(|| is_nan(self).cmp(&is_nan(other)))

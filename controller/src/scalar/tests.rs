@@ -1,14 +1,11 @@
 use super::*;
 use proptest::prelude::*;
 
-/// How far a number type may be from `f64`: a share of the exact value, or an absolute error.
 struct Tolerance {
-    /// Of sums, products, quotients and conversions.
     step: f64,
     relative: f64,
     root: f64,
     trig: f64,
-    /// Of sine and cosine per radian of the angle.
     reduction: f64,
     atan: f64,
     exp: f64,
@@ -53,7 +50,6 @@ fn near(got: f64, exact: f64, absolute: f64, relative: f64) -> Result<(), TestCa
     Ok(())
 }
 
-/// Compares every function at (a, b), if the exact result is in the range of `S`.
 fn agrees_with_f64<S: Scalar>(a: f64, b: f64, t: &Tolerance) -> Result<(), TestCaseError> {
     let (p, q) = (S::from_f64(a).unwrap(), S::from_f64(b).unwrap());
     let (a, b) = (p.to_f64(), q.to_f64());
@@ -115,7 +111,6 @@ fn agrees_with_f64<S: Scalar>(a: f64, b: f64, t: &Tolerance) -> Result<(), TestC
     Ok(())
 }
 
-/// Numbers of all magnitudes that every type can hold.
 fn number() -> impl Strategy<Value = f64> {
     let magnitude = (-12..15i32, 1.0..2.0f64, any::<bool>()).prop_map(|(e, m, negative)| {
         let x = libm::scalbn(m, e);
@@ -315,7 +310,6 @@ fn q16_direction_of_one_step_is_exact() {
     assert_eq!(Q16::unit([min, Q16::ZERO, step]), Some([-Q16::ONE, Q16::ZERO, Q16::ZERO]));
 }
 
-/// A hash of every function's bits over a sweep of all magnitudes.
 fn sweep<S: Scalar>() -> u64 {
     let mut hash = 0xCBF2_9CE4_8422_2325u64;
     let mut rng = crate::rand::Rng::new(1);
@@ -338,8 +332,7 @@ fn sweep<S: Scalar>() -> u64 {
 
 #[test]
 fn bits_are_pinned() {
-    // Identical on every target and with every version of the libraries, or recorded runs would
-    // change.
+    // Recorded runs depend on these bits.
     let (sin, cos) = Scalar::sin_cos(1f32);
     let known = [sin, cos, Scalar::exp(1f32), Scalar::sqrt(2f32), Scalar::atan2(1f32, 2.0)];
     let bits = [0x3F57_6AA4, 0x3F0A_5140, 0x402D_F854, 0x3FB5_04F3, 0x3EED_6338];

@@ -1,4 +1,4 @@
-//! Strategies that generate arbitrary messages, for the property tests of this module.
+//! Strategies for arbitrary messages.
 
 use super::*;
 use crate::grid::{Cell, Dir};

@@ -1,6 +1,4 @@
 //! Splits a formation template into parts for transmission and reassembles it.
-//!
-//! Parts may arrive in any order, more than once, or not at all.
 
 use super::{Newest, TEMPLATE_PART, TemplateAssignment};
 use crate::grid::Cell;
@@ -10,7 +8,6 @@ use crate::template::{Template, TemplateEntry};
 use heapless::Vec;
 use serde::{Deserialize, Serialize, Serializer};
 
-/// Parts that a [`TemplateAssembler`] can track: one bit each.
 const MAX_PARTS: usize = u64::BITS as usize;
 
 /// Entries in the largest template that [`TemplateAssignment::split`] accepts.
@@ -26,12 +23,11 @@ pub enum PartError {
     Number,
     /// A part before the last is not full, or the last of several is empty.
     Length,
-    /// The whole template has more entries than the assembler can hold.
+    /// The whole template has more entries than fit.
     TooLarge,
     /// An entry is 0 hops away: the robot would be its own neighbour.
     NoHops,
-    /// The part contradicts an earlier part of the same version: another slot, offset or number of
-    /// parts, or other entries for the same part.
+    /// The part contradicts an earlier part of the same version.
     Contradiction,
 }
 
@@ -50,7 +46,7 @@ impl core::fmt::Display for PartError {
 impl core::error::Error for PartError {}
 
 impl TemplateAssignment {
-    /// Splits a template into parts of one frame each, which may be sent in any order.
+    /// Splits a template into parts of one frame each, to be sent in any order.
     ///
     /// # Errors
     /// [`PartError::TooLarge`] for more than [`MAX_TEMPLATE`] entries, [`PartError::NoHops`] if an
@@ -78,7 +74,6 @@ impl TemplateAssignment {
             parts,
             slot,
             offset,
-            // A template without entries still has one part, which is empty.
             entries: list::collect(chunks.next().unwrap_or_default().iter().copied()),
         }))
     }
@@ -118,12 +113,11 @@ impl TemplateAssignment {
     }
 }
 
-/// Collects the parts of the newest template of one sender for one robot; about 12 `F` + 24 bytes.
+/// Collects the parts of the newest template of one sender for one robot; 12 `F` + 24 bytes.
 ///
-/// The caller passes only parts that are addressed to the robot and come from a sender that it
-/// obeys. The first part of a newer version (see [`Newest`]) discards all collected parts, complete
-/// or not; parts of older versions are ignored. A version that is lost in transmission does no
-/// harm: the sender resends it, or sends a newer one.
+/// Pass only parts addressed to the robot by a sender that it obeys, in any order and with repeats.
+/// A newer version (see [`Newest`]) discards all collected parts; older versions are ignored. Lost
+/// versions do no harm: the sender resends them, or sends newer ones.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TemplateAssembler<const F: usize> {
     #[serde(serialize_with = "as_slice")]
@@ -131,7 +125,7 @@ pub struct TemplateAssembler<const F: usize> {
     entries: [TemplateEntry; F],
     /// Bit p: part p has arrived.
     there: u64,
-    /// Total number of entries; valid once the last part has arrived.
+    /// Valid once the last part has arrived.
     len: usize,
     newest: Newest,
     parts: u8,
@@ -144,7 +138,6 @@ fn as_slice<const F: usize, Z: Serializer>(entries: &[TemplateEntry; F], seriali
     entries.as_slice().serialize(serializer)
 }
 
-/// The inverse of [`as_slice`].
 fn of_slice<'de, const F: usize, D: serde::Deserializer<'de>>(from: D) -> Result<[TemplateEntry; F], D::Error> {
     let entries: Vec<TemplateEntry, F> = serde::Deserialize::deserialize(from)?;
     let count = entries.len();
@@ -175,15 +168,10 @@ impl<const F: usize> TemplateAssembler<F> {
         }
     }
 
-    /// Stores a part. Returns the template once, with the part that completes it.
-    ///
-    /// Returns `None` while parts are missing, and for a part that is repeated or outdated.
+    /// Stores a part. Returns the template once, with the part that completes it. O(`F`).
     ///
     /// # Errors
-    /// Why the part was rejected, see [`PartError`]. A rejected part changes nothing, even if its
-    /// version is newer.
-    ///
-    /// Bounded work: O(`F`).
+    /// Why the part was rejected, see [`PartError`]. A rejected part changes nothing.
     #[expect(clippy::arithmetic_side_effects, reason = "as in `total`")]
     pub fn put(&mut self, part: &TemplateAssignment) -> Result<Option<Template<F>>, PartError> {
         part.check(F)?;
@@ -198,7 +186,6 @@ impl<const F: usize> TemplateAssembler<F> {
             return Err(PartError::Contradiction);
         }
         let end = part.start() + part.entries.len();
-        // `check` guarantees that both are in range.
         let bit = 1_u64.checked_shl(part.part.into()).ok_or(PartError::TooLarge)?;
         let place = self.entries.get_mut(part.start()..end).ok_or(PartError::TooLarge)?;
         if self.there & bit != 0 {
@@ -215,8 +202,7 @@ impl<const F: usize> TemplateAssembler<F> {
         Ok(self.complete())
     }
 
-    /// Discards everything, so that the next part is accepted with any version. Call it after the
-    /// sender has restarted, see [`Newest`].
+    /// Discards everything, so that any next version is accepted, after a restart of the sender.
     pub fn forget(&mut self) {
         *self = Self::new();
     }

@@ -1,8 +1,7 @@
 //! The trait of all wire formats, [`Wire`], and the format of this crate, [`Postcard`].
 //!
-//! The type of an [`Agent`](crate::agent::Agent) names a single format, so that a firmware contains
-//! no other. The state that a format keeps between frames (counters, keys) belongs to the agent's
-//! state and its digest; a format without state adds nothing to either.
+//! An [`Agent`](crate::agent::Agent) type names one format, so a firmware contains no other.
+//! Counters and keys of a format belong to the agent's state and its digest.
 
 use super::frame::next_frame;
 use super::{Beacon, DecodeError, EncodeError, Frame, Header, KeyPhase, Message, decode, encode};
@@ -10,21 +9,18 @@ use crate::names::named;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// A wire format: frames of one message each, which can be separated in a byte stream.
-///
-/// Its functions accept any bytes, do not allocate, do not panic, and do bounded work.
+/// A wire format: frames of one message each, which can be separated in a byte stream. Its
+/// functions accept any bytes, do not allocate or panic, and do bounded work.
 pub trait Wire: Clone + core::fmt::Debug + Serialize {
-    /// Maximum length in bytes of a frame that carries a [`Beacon`]. Acknowledgements and requests
-    /// leave this much space free in the outbox.
+    /// Maximum length in bytes of a frame with a [`Beacon`]; other messages leave this much free.
     fn beacon_len(&self) -> usize;
 
     /// Appends one frame to `out` and returns its length.
     ///
     /// # Errors
     /// [`EncodeError::Full`] if the whole frame does not fit, [`EncodeError::NoSender`] if the
-    /// header's sender is [`RobotId::NONE`](crate::robot::RobotId::NONE),
-    /// [`EncodeError::Robot`] if the format cannot represent a robot number. Nothing is written in
-    /// these cases.
+    /// sender is [`RobotId::NONE`](crate::robot::RobotId::NONE), [`EncodeError::Robot`] if the
+    /// format cannot represent a robot number. Nothing is written in these cases.
     fn encode<const N: usize>(
         &mut self,
         header: Header,
@@ -35,19 +31,16 @@ pub trait Wire: Clone + core::fmt::Debug + Serialize {
     /// Decodes one frame as returned by [`Wire::next_frame`].
     ///
     /// # Errors
-    /// The reason for rejecting the frame, see [`DecodeError`]. Any bytes give a defined result.
+    /// The reason for rejecting the frame, see [`DecodeError`].
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError>;
 
-    /// The robot's progress with the keys assigned to it, for the operator; `None` for a format
-    /// without own keys.
+    /// The robot's progress with its assigned keys; `None` for a format without own keys.
     fn held(&self) -> Option<(u16, KeyPhase)> {
         None
     }
 
     /// Removes the next frame from `rest`, or bytes between frames, which [`Wire::decode`] will
-    /// reject so that damage is counted.
-    ///
-    /// Returns `None` when nothing is left; otherwise `rest` is shorter than before.
+    /// reject and so count as damage. Returns `None` once `rest` is empty.
     fn next_frame<'a>(&self, rest: &mut &'a [u8]) -> Option<&'a [u8]>;
 }
 
@@ -69,14 +62,12 @@ pub trait FromFormat: Wire {
     fn from_format(format: Format) -> Option<Self>;
 }
 
-/// The frames of this crate: untagged postcard within COBS, see [`encode`] and [`decode`]. It has
-/// no state.
+/// The frames of this crate: untagged postcard within COBS, see [`encode`] and [`decode`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Postcard;
 
 impl Wire for Postcard {
-    // Includes the space of a tag, so that a robot sends as much per step without tags as with
-    // them.
+    // Includes the space of a tag, so that robots send as much per step without tags as with them.
     fn beacon_len(&self) -> usize {
         Beacon::MAX_FRAME_LEN
     }

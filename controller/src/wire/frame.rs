@@ -5,33 +5,20 @@
 //! content = version:u8 boot:u8 sender:varint sequence:u16 message:postcard [tag:8] crc:u16
 //! ```
 //!
-//! - `version` holds [`VERSION`] in its low 7 bits; its top bit says that a tag is present. Every
-//!   version of the format keeps COBS, this first byte and the final CRC, so that a receiver can
-//!   tell a foreign version from a damaged frame.
-//! - The tag authenticates everything before it ([`encode_tagged`], [`decode_verified`]).
-//!   [`Sealed`](super::Sealed) defines, creates and checks it. A tagged frame also fits into 60
-//!   bytes, because its robot numbers are below 2^21 and take at most 3 bytes instead of 5.
-//! - The CRC covers everything before it. Integers are little-endian.
-//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) removes the zero
-//!   bytes. It costs one byte, since the content never exceeds 253 bytes. This module implements
-//!   COBS itself instead of using the `cobs` crate, because these few lines visibly never panic.
+//! - Integers are little-endian. The top bit of `version` says that a tag is present. All versions
+//!   of the format keep COBS, this byte and the CRC, so that a receiver recognises them.
+//! - The tag authenticates everything before it; [`Sealed`](super::Sealed) defines it. Robot
+//!   numbers in a tagged frame are below 2^21, so that it fits into 60 bytes.
+//! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) costs one byte for
+//!   up to 253 bytes. The crate `cobs` is not used, because these few lines visibly never panic.
+//! - CRC-16/IBM-SDLC covers everything before it. It detects 1 to 3 flipped bits, any odd number of
+//!   them, and any burst of up to 16 bits in the content; 1 in 65,536 other errors passes, among
+//!   them flips of COBS' own bytes. It suffices because an undetected error must also parse as a
+//!   message, radios check their packets, and the next beacon replaces a wrong state. A bare UART
+//!   with one wrong bit in 10^4 and 80 beacons per second passes about one wrong beacon in 5 hours;
+//!   use the tag if that is too often.
 //!
-//! # Errors that the CRC detects
-//!
-//! The CRC is CRC-16/IBM-SDLC (X.25; polynomial 0x1021, reflected, start and final inversion
-//! 0xFFFF). At these lengths no 16-bit polynomial guarantees more than its Hamming distance of 4:
-//! it detects 1 to 3 flipped bits in the content, any odd number of flipped bits, and any burst of
-//! up to 16 bits. Of all other errors, 1 in 65,536 passes. A flipped bit in one of the bytes that
-//! COBS inserted moves a zero and counts among these other errors.
-//!
-//! Sixteen bits suffice for three reasons: an undetected error must also parse as a message, radios
-//! check their packets themselves, and the next beacon replaces a wrong state. A bare UART with one
-//! wrong bit in 10^4 and 80 beacons per second passes about one wrong beacon in 5 hours, which is
-//! believed for one period. Use the tag if that is too often.
-//!
-//! The CRC table takes 512 bytes of flash (16 tables with the feature `host`). [`encode`] and
-//! [`decode`] with all messages take 7 KiB in total on a Cortex-M0 (`opt-level = "s"`, one
-//! link-time unit). They cannot reach a panic.
+//! Flash on a Cortex-M0 (`opt-level = "s"`): CRC table 512 bytes, [`encode`] and [`decode`] 7 KiB.
 
 use super::message::{
     Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART, TemplateAssignment,
@@ -57,14 +44,14 @@ pub const MAX_TAGGED_ROBOT: RobotId = RobotId((1 << 21) - 1);
 
 const TAGGED: u8 = 0x80;
 const CRC_LEN: usize = 2;
-/// Maximum length of a robot number (a varint) in a tagged frame. An untagged number may take 5
-/// bytes, but no message has enough of them to exceed the length with a tag.
+/// A robot number (a varint) in a tagged frame. Untagged it may take 5 bytes, but no message has
+/// enough of them to exceed the length with a tag.
 const ID: usize = 3;
-/// Everything except the message: version, boot, sender, sequence, tag, CRC, COBS byte, delimiter.
+/// Version, boot, sender, sequence, tag, CRC, COBS byte, delimiter.
 const OVERHEAD: usize = 1 + 1 + ID + 2 + TAG_LEN + CRC_LEN + 2;
 const CELL: usize = 4;
 
-/// Number of CRC lookup tables; 16 tables process 16 bytes at a time.
+/// 16 tables process 16 bytes at a time.
 const TABLES: usize = if cfg!(feature = "host") { 16 } else { 1 };
 static CRC: Crc<u16, Table<TABLES>> = Crc::<u16, Table<TABLES>>::new(&CRC_16_IBM_SDLC);
 
@@ -175,7 +162,7 @@ pub struct Frame {
     pub tag: Option<[u8; TAG_LEN]>,
 }
 
-/// Why a message was not encoded. The outbox is unchanged.
+/// Why a message was not encoded; the outbox is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum EncodeError {
@@ -183,10 +170,9 @@ pub enum EncodeError {
     Full,
     /// The header's sender is [`RobotId::NONE`].
     NoSender,
-    /// The format cannot represent this robot number. Give the robot another number, or the swarm
-    /// another format.
+    /// The format cannot represent this robot number; change the number or the format.
     Robot(RobotId),
-    /// The format's counter has reached its end. Restart the robot, or give the swarm a new key.
+    /// The format's counter has reached its end; restart the robot, or give the swarm a new key.
     Exhausted,
 }
 
@@ -219,19 +205,18 @@ pub enum DecodeError {
     Cobs,
     /// The CRC differs, or the frame is too short to hold one: damaged or cut.
     Crc,
-    /// The frame is intact, but of another version of the format (the low 7 bits) than [`VERSION`].
+    /// The frame is intact, but of this version (the low 7 bits) instead of [`VERSION`].
     Version(u8),
     /// The frame is intact, but lacks the required tag or signature.
     Unsigned,
-    /// The frame is intact, but its tag or signature belongs to another key than the required one.
-    /// This includes an order that was not made with the robot's own key.
+    /// The frame is intact, but its tag or signature belongs to another key than the required one,
+    /// such as an order that was not made with the robot's own key.
     Forged,
-    /// The frame is authentic, but it was received before, or it is older than one that was.
+    /// The frame is authentic, but was received before or is older than one that was.
     Replayed,
     /// The frame is authentic, but its counter or timestamp is implausibly far ahead.
     Ahead,
-    /// The frame is authentic, but the table of senders is full, see
-    /// [`ReplayGuard`](crate::auth::ReplayGuard).
+    /// The frame is authentic, but the [`ReplayGuard`](crate::auth::ReplayGuard) is full.
     NoRoom,
     /// The frame is intact, but header or message are unknown to this code.
     Body,
@@ -239,8 +224,7 @@ pub enum DecodeError {
     Trailing,
     /// The frame is intact, but its sender is [`RobotId::NONE`].
     NoSender,
-    /// The frame is intact, but does not hold a message of the swarm: it belongs to another user of
-    /// a shared band.
+    /// The frame is intact, but not a message of the swarm: it belongs to another user of the band.
     Foreign,
 }
 
@@ -271,13 +255,11 @@ impl fmt::Display for DecodeError {
 
 impl core::error::Error for DecodeError {}
 
-/// Appends one untagged frame to `out` and returns its length.
+/// Appends one untagged frame to `out` and returns its length. O([`MAX_FRAME_LEN`]).
 ///
 /// # Errors
 /// [`EncodeError::Full`] if the whole frame does not fit (nothing is written),
 /// [`EncodeError::NoSender`] if the header's sender is [`RobotId::NONE`].
-///
-/// Bounded work: O([`MAX_FRAME_LEN`]).
 pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u8, N>) -> Result<usize, EncodeError> {
     write(header, message, None::<fn(&[u8]) -> [u8; TAG_LEN]>, out)
 }
@@ -295,12 +277,10 @@ pub fn encode_tagged<const N: usize>(
     write(header, message, Some(authenticate), out)
 }
 
-/// Decodes one frame, given without its delimiter. A tag is returned unchecked.
+/// Decodes one frame, given without its delimiter; a tag is not checked. O([`MAX_FRAME_LEN`]).
 ///
 /// # Errors
-/// The reason for rejecting the frame, see [`DecodeError`]. Any bytes give a defined result.
-///
-/// Bounded work: O([`MAX_FRAME_LEN`]).
+/// The reason for rejecting the frame, see [`DecodeError`].
 pub fn decode(frame: &[u8]) -> Result<Frame, DecodeError> {
     decode_verified(frame, |_, _| Ok(()))
 }
@@ -354,15 +334,12 @@ pub fn decode_verified(
 
 /// Splits a byte stream into frames without their delimiters; empty frames are skipped.
 ///
-/// The bytes after the last delimiter also count as a frame. If only its delimiter was lost,
-/// [`decode`] accepts it; if it was cut, [`decode`] rejects it, so that it is counted as damaged. A
-/// caller that reads a serial line in pieces must keep the bytes after the last delimiter until the
-/// rest has arrived.
+/// Bytes after the last delimiter also count as a frame, so that a cut frame is counted as damaged.
+/// A caller that reads a serial line in pieces must keep these bytes until the rest has arrived.
 pub fn frames(mut inbox: &[u8]) -> impl Iterator<Item = &[u8]> {
     core::iter::from_fn(move || next_frame(&mut inbox))
 }
 
-/// Removes the next frame and its delimiter from `rest`.
 pub(super) fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     while let [0, after @ ..] = *rest {
         *rest = after;
@@ -372,8 +349,8 @@ pub(super) fn next_frame<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     (!frame.is_empty()).then_some(frame)
 }
 
-/// Number of bytes before the first zero, found one machine word at a time (S. E. Anderson, "Bit
-/// Twiddling Hacks", "Determine if a word has a zero byte"; the lowest mark is never a false one).
+/// Finds the first zero one machine word at a time (S. E. Anderson, "Bit Twiddling Hacks",
+/// "Determine if a word has a zero byte"; the lowest mark is never a false one).
 #[expect(clippy::arithmetic_side_effects, reason = "lengths within a slice")]
 fn frame_len(bytes: &[u8]) -> usize {
     const WORD: usize = size_of::<usize>();
@@ -441,7 +418,7 @@ fn fill(
 }
 
 /// Replaces each zero by the distance to the next zero (the last one: to the delimiter). Returns
-/// the distance to the first zero, counted from the byte in front. At most 253 bytes.
+/// the distance from the byte in front to the first zero. At most 253 bytes.
 fn stuff(content: &mut [u8]) -> u8 {
     content.iter_mut().rev().fold(1, |distance, byte| {
         if *byte == 0 {

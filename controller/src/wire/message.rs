@@ -1,10 +1,9 @@
 //! The messages. All values are integers: millimetres, millimetres per second, microseconds, cells.
 //!
 //! The order and the types of the fields define the wire format (postcard): a field marked `fixint`
-//! takes its full width, all others are a byte or a varint. Any change to these types needs a new
-//! [`VERSION`](super::VERSION), with one exception: a message appended to [`Message`]. A robot that
-//! does not know the new message rejects it ([`DecodeError::Body`](super::DecodeError::Body)) and
-//! still receives all others.
+//! takes its full width, all others are a byte or a varint. Any change needs a new
+//! [`VERSION`](super::VERSION), except a message appended to [`Message`], which older robots reject
+//! ([`DecodeError::Body`](super::DecodeError::Body)).
 
 use super::payload::PayloadBytes;
 use crate::fixint;
@@ -41,8 +40,7 @@ pub struct Beacon {
     pub busy_ms: u16,
     /// Its leader, or [`RobotId::NONE`].
     pub leader: RobotId,
-    /// Its place in the formation, or the number of its flock. The frame is full, and a robot is
-    /// never in both.
+    /// Its place in the formation, or the number of its flock; a robot is never in both.
     pub slot: u8,
     /// Its current activity.
     pub mode: Mode,
@@ -51,8 +49,7 @@ pub struct Beacon {
     pub target: Cell,
 }
 
-/// What one robot asks of another. Requests travel up the leader chain, hop by hop (A. V. Kuznetsov
-/// 2017, KUZ, section 7).
+/// The kind of a request, which travels up the leader chain hop by hop (KUZ section 7).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RequestKind {
@@ -64,18 +61,17 @@ pub enum RequestKind {
     Redirect,
 }
 
-/// A request to one robot. It is resent until it is acknowledged, and abandoned when it expires.
+/// A request to one robot, resent until it is acknowledged or expires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Request {
     /// The addressee.
     pub to: RobotId,
-    /// The robot that made the request first; differs from the sender as it travels up the leader
-    /// chain.
+    /// The robot that made the request first; not the sender if it travels up the leader chain.
     pub origin: RobotId,
     /// Distinguishes the requests of one sender; unchanged in each retry.
     pub number: u8,
-    /// What it asks for.
+    /// The requested action.
     pub kind: RequestKind,
     /// How long the request is valid after its reception, ms.
     #[serde(with = "fixint")]
@@ -88,8 +84,7 @@ pub struct Request {
 pub struct Ack {
     /// The robot that sent the request.
     pub to: RobotId,
-    /// The boot number of that robot when it sent the request; its request numbers restart with
-    /// each boot.
+    /// The boot number of that robot when it sent the request.
     pub boot: u8,
     /// The number of the request.
     pub number: u8,
@@ -102,9 +97,8 @@ pub const TEMPLATE_PART: usize = 2;
 
 /// One part of a formation template, sent by the swarm's operator to one robot.
 ///
-/// All parts except the last are full, so that the number of a part determines where its entries
-/// belong. Only the single part of a template without neighbours is empty. See
-/// [`TemplateAssignment::split`] and [`TemplateAssembler`](super::TemplateAssembler).
+/// All parts except the last are full, so the number of a part determines where its entries belong.
+/// See [`TemplateAssignment::split`] and [`TemplateAssembler`](super::TemplateAssembler).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TemplateAssignment {
@@ -125,26 +119,21 @@ pub struct TemplateAssignment {
     pub entries: heapless::Vec<TemplateEntry, TEMPLATE_PART>,
 }
 
-/// A new goal for one robot or for all.
-///
-/// It is not acknowledged: the sender repeats it, with the same version, as long as a robot may
-/// have missed it. The same holds for [`TemplateAssignment`].
+/// A new goal for one robot or for all. Not acknowledged: the sender repeats it, with one version,
+/// as long as a robot may have missed it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalAssignment {
     /// The addressee; [`RobotId::NONE`] = all robots.
     pub to: RobotId,
-    /// Counts the goals of this sender, wraps. An older goal never replaces a newer one
-    /// ([`Newest`](super::Newest)).
+    /// Counts the goals of this sender, wraps; see [`Newest`](super::Newest).
     pub version: u8,
     /// The goal of the formation's top leader (each robot adds its own offset).
     #[serde(with = "fixint")]
     pub target: Cell,
 }
 
-/// A waypoint in the plane or in space for one robot or for all; it may move.
-///
-/// It is not acknowledged, see [`GoalAssignment`].
+/// A waypoint, possibly moving, for one robot or for all; not acknowledged, see [`GoalAssignment`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct WaypointAssignment {
@@ -162,20 +151,19 @@ pub struct WaypointAssignment {
     pub velocity_mmps: [i16; 3],
 }
 
-/// What a robot shall do with a new key of the swarm.
+/// The stages of a key change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum KeyPhase {
-    /// Accept frames made with it, in addition to the previous key.
+    /// Accept frames made with the new key, in addition to the previous one.
     Hear,
-    /// Send with it.
+    /// Send with the new key.
     Speak,
     /// Reject frames made with earlier keys.
     Forget,
 }
 
-/// A new key of the swarm for one robot, sealed with that robot's own key. The operator repeats it
-/// until [`KeyHeld`] arrives.
+/// A new key of the swarm, sealed with one robot's own key and repeated until [`KeyHeld`] arrives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct KeyAssignment {
@@ -184,14 +172,13 @@ pub struct KeyAssignment {
     /// Counts the keys of the swarm, from 0 for the first.
     #[serde(with = "fixint")]
     pub generation: u16,
-    /// What to do with the key.
+    /// The stage to advance to.
     pub phase: KeyPhase,
     /// The seed of the key, encrypted for the addressee: see `auth::Seed`.
     pub wrapped: [u8; 32],
 }
 
-/// A robot's progress with its keys: the answer to a [`KeyAssignment`], sealed with the robot's own
-/// key.
+/// A robot's progress with its keys: the answer to a [`KeyAssignment`], sealed with its own key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct KeyHeld {
@@ -200,7 +187,7 @@ pub struct KeyHeld {
     /// The latest generation that the robot has.
     #[serde(with = "fixint")]
     pub generation: u16,
-    /// What the robot does with that generation.
+    /// The stage of that generation.
     pub phase: KeyPhase,
 }
 

@@ -1,6 +1,4 @@
-//! The messages that robots exchange, and the frames that carry them.
-//!
-//! Start with `frame.rs`, the layout of a frame; `message.rs` lists the messages.
+//! The messages that robots exchange, and the frames that carry them; `frame.rs` has the layout.
 
 mod assembly;
 mod format;

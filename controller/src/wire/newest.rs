@@ -1,13 +1,11 @@
 //! Orders assignments by a version number that wraps.
 
 use serde::{Deserialize, Serialize};
-/// The version of the newest assignment so far; 2 bytes.
+/// The version of the newest assignment of one kind by one sender; 2 bytes.
 ///
-/// Each sender counts its own versions, so keep one instance per sender and kind of assignment. A
-/// version is newer if it is 1 to 127 ahead on the circle of 256 values; a version exactly 128 away
-/// counts as old from both sides. A restarted sender may count from anywhere: its owner calls
-/// [`Newest::forget`] when a [`SequenceWindow`](super::SequenceWindow) reports
-/// [`Arrival::Rebooted`](super::Arrival::Rebooted), or when it drops the sender.
+/// A version is newer if it is 1 to 127 ahead on the circle of 256 values. A restarted sender may
+/// count from anywhere: call [`Newest::forget`] when a [`SequenceWindow`](super::SequenceWindow)
+/// reports [`Arrival::Rebooted`](super::Arrival::Rebooted), or when the sender is dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Newest {
@@ -21,8 +19,7 @@ impl Newest {
         Self { version: None }
     }
 
-    /// Whether `version` is the first or newer than all before; if so, records it. A repeated or
-    /// late assignment is not. Constant work.
+    /// Records `version` and returns true if it is the first or newer than all before.
     #[must_use = "an assignment that is not newer must not be followed"]
     pub fn admit(&mut self, version: u8) -> bool {
         let is_newer = self.is_news(version);
@@ -32,8 +29,7 @@ impl Newest {
         is_newer
     }
 
-    /// Whether [`Newest::admit`] would accept `version`, without recording it. Use it if the
-    /// assignment may still prove unusable. Constant work.
+    /// Whether [`Newest::admit`] would accept `version`, for assignments that may prove unusable.
     #[must_use]
     pub fn is_news(self, version: u8) -> bool {
         self.version.is_none_or(|newest| version.wrapping_sub(newest).cast_signed() > 0)
@@ -97,8 +93,7 @@ mod tests {
     }
 
     proptest! {
-        /// The sender counts versions, and they arrive up to 100 versions late. Each is admitted
-        /// exactly if it is the highest so far.
+        /// Each is admitted exactly if it is the highest so far.
         #[test]
         fn late_and_repeated_versions_never_replace_a_newer_one(
             start: u8, lateness in vec((0..3_u32, 0..100_u32), 1..300),

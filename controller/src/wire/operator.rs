@@ -1,4 +1,4 @@
-//! The operator's side of the robots' own keys: [`OperatorWire`].
+//! The operator's side of the robots' own keys.
 
 use super::frame::decode_verified;
 use super::sealed::{Epochs, code, counter};
@@ -9,8 +9,8 @@ use crate::auth::{Mac, Master, ReplayGuard, is_same};
 use crate::robot::RobotId;
 use heapless::Vec;
 
-/// Sends to each robot under that robot's own key, and receives the robots' reports about their
-/// keys. Its counters work as in [`Sealed`](super::Sealed), with the same rule for starts.
+/// Sends to each robot under its own key, and receives the robots' reports about their keys. Its
+/// counters and starts follow the rules of [`Sealed`](super::Sealed).
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub struct OperatorWire<const N: usize = PEERS> {
     master: Master,
@@ -33,8 +33,7 @@ impl<const N: usize> OperatorWire<N> {
         &self.master
     }
 
-    /// Appends a frame for one robot. An order in it applies to that robot only, although others
-    /// may receive it.
+    /// Appends a frame for one robot. An order in it applies to that robot only.
     ///
     /// # Errors
     /// Those of [`Sealed`](super::Sealed).
@@ -69,8 +68,7 @@ impl<const N: usize> OperatorWire<N> {
     /// Decodes a robot's report about its keys.
     ///
     /// # Errors
-    /// [`DecodeError::Foreign`] for any other intact frame; otherwise the reason for rejecting the
-    /// frame.
+    /// [`DecodeError::Foreign`] for any other intact frame, or the reason for rejecting it.
     pub fn hear(&mut self, frame: &[u8]) -> Result<(RobotId, KeyHeld), DecodeError> {
         // The frame itself names the robot whose key verifies it.
         let Frame { header: Header { sender, .. }, message, .. } = decode(frame)?;

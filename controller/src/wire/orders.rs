@@ -1,7 +1,4 @@
-//! Received requests: each is executed once and acknowledged each time it arrives. A stop remains
-//! in force until it is lifted or expires.
-//!
-//! The sending side is [`Requests`](super::Requests).
+//! Received requests: executed once, acknowledged each time. Sender: [`Requests`](super::Requests).
 
 use super::{Ack, Header, Request, RequestKind};
 use crate::list::SparseVec;
@@ -9,8 +6,7 @@ use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// A request up to this far behind a newer one on the same matter is an old one that arrived late;
-/// a request that seems to be farther behind is a new one whose number wrapped.
+/// A request up to this far behind a newer one is late; farther behind, its number has wrapped.
 const LATE: u8 = 32;
 
 /// How to respond to a request.
@@ -20,12 +16,11 @@ const LATE: u8 = 32;
 pub struct Answer {
     /// The acknowledgement to send back.
     pub ack: Ack,
-    /// Whether the request arrived for the first time and is followed. If so, pass it on up the
-    /// leader chain, or choose another direction.
+    /// Whether to execute the request: pass it on up the leader chain, or choose another direction.
     pub is_new: bool,
 }
 
-/// The latest request on one matter (stop and resume, or direction) from one origin by one sender.
+/// The latest request on one matter: stop and resume, or direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Order {
     sender: RobotId,
@@ -34,7 +29,6 @@ struct Order {
     number: u8,
     kind: RequestKind,
     heard: Instant,
-    /// End of a stop.
     until: Instant,
 }
 
@@ -55,15 +49,10 @@ impl Order {
 
 /// The requests that a robot received, on at most `S` matters at a time; 20 bytes each.
 ///
-/// Each matter (sender, origin, and either stop/resume or direction) has its own entry. Therefore
-/// two followers, or two robots whose requests one follower passes on, stop and resume
-/// independently. Within an entry the request that was sent last decides, whatever the order of
-/// arrival. A request is remembered for a while after its last reception, so that repeats and
-/// replaced requests are recognised.
-///
-/// When all entries are in use, the entry without a stop that was received longest ago is evicted.
-/// If all entries hold stops, further stops and redirections are refused. A stop is never evicted
-/// before its time.
+/// A matter is a sender, an origin, and either stop/resume or direction, so origins stop and resume
+/// independently. On one matter the request that was sent last decides, in any order of arrival. A
+/// full table evicts the entry without a stop that was received longest ago. If all entries hold
+/// stops, further stops and redirections are refused. A stop is never evicted before its time.
 ///
 /// Times are compared by wrapped difference: call [`Orders::is_stopped`] at least every half hour.
 /// After a longer pause no stop is in force, but a repeat may be taken for a new request.
@@ -74,11 +63,9 @@ pub struct Orders<const S: usize> {
 }
 
 impl<const S: usize> Orders<S> {
-    /// Creates an empty table.
-    ///
-    /// `memory`: how long a request is remembered after its last reception. It must exceed the
-    /// sender's attempts times its retry interval plus the radio's longest delay, or a late repeat
-    /// is executed again. It must be shorter than the time in which the sender uses 200 numbers.
+    /// Creates an empty table. `memory`: how long a request is remembered after its last reception,
+    /// to recognise repeats. It must exceed the sender's attempts times its retry interval plus the
+    /// radio's longest delay, and be shorter than the time in which the sender uses 200 numbers.
     #[must_use]
     pub const fn new(memory: Duration) -> Self {
         Self { lines: SparseVec::new(), memory }
@@ -115,7 +102,7 @@ impl<const S: usize> Orders<S> {
         }
         match (self.lines.push(order), request.kind) {
             (Ok(()), _) => answer(true, true),
-            // No request of this origin is stored, so there is no stop to lift.
+            // No stop is stored, so there is none to lift.
             (Err(_), RequestKind::Resume) => answer(true, false),
             (Err(_), _) => answer(false, false),
         }
@@ -126,7 +113,7 @@ impl<const S: usize> Orders<S> {
         self.stopped_until(now).is_some()
     }
 
-    /// When the last of the stops now in force ends; `None` if there is none.
+    /// When the last stop in force ends, if any.
     pub fn stopped_until(&mut self, now: Instant) -> Option<Instant> {
         self.forget_old(now);
         self.lines
@@ -149,7 +136,6 @@ impl<const S: usize> Orders<S> {
         });
     }
 
-    /// Evicts the entry without a stop that was received longest ago.
     fn make_room(&mut self, now: Instant) {
         let stalest =
             self.lines.iter().filter(|line| !line.is_stop_at(now)).max_by_key(|line| now.since(line.heard)).copied();

@@ -1,4 +1,4 @@
-//! Data that a custom guidance law sends to robots with the same law, in addition to beacons.
+//! Data that a custom guidance law sends to robots with the same law.
 
 use core::fmt::Debug;
 use heapless::Vec;
@@ -8,13 +8,11 @@ use serde::{Deserialize, Serialize};
 /// Maximum length of a payload in bytes.
 pub const MAX_PAYLOAD: usize = 16;
 
-/// The data that a law sends after each beacon: any small value that serde supports. `()` sends
-/// nothing and costs nothing.
+/// The data that a law sends after each beacon: any small value that serde supports, or `()`.
 ///
-/// A neighbour has the default value until its first payload arrives. Payloads are encoded with
-/// postcard: an integer of more than 8 bits takes up to 3, 5 or 10 bytes depending on its type, a
-/// float 4 or 8. A value of more than [`MAX_PAYLOAD`] bytes is not sent; [`PayloadBytes::of`]
-/// reports this.
+/// A neighbour has the default value until its first payload arrives. Postcard encodes an integer
+/// of more than 8 bits in up to 3, 5 or 10 bytes depending on its type, a float in 4 or 8. A value
+/// of more than [`MAX_PAYLOAD`] bytes is not sent; [`PayloadBytes::of`] reports this.
 ///
 /// ```
 /// use serde::{Deserialize, Serialize};

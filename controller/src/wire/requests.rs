@@ -1,8 +1,5 @@
-//! Sent requests: each is resent until it is acknowledged, replaced or abandoned.
-//!
-//! The receiving side is [`Orders`](super::Orders). Source: A. V. Kuznetsov 2017 (KUZ), section 7
-//! (up the leader chain). The requests of the papers are never lost; these are small datagrams over
-//! a lossy radio.
+//! Sent requests (A. V. Kuznetsov 2017, KUZ, section 7): each is resent until it is acknowledged,
+//! replaced or abandoned. The receiving side is [`Orders`](super::Orders).
 
 use super::{Ack, Request, RequestKind};
 use crate::list::SparseVec;
@@ -11,12 +8,10 @@ use crate::robot::RobotId;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Separates the random jitter of resends from other uses of randomness.
 const PURPOSE: u32 = u32::from_be_bytes(*b"rsnd");
 
 impl RequestKind {
-    /// Whether it concerns stopping: of `Stop` and `Resume` the newer one cancels the older one;
-    /// `Redirect` is independent of both.
+    /// Whether it concerns stopping. Of `Stop` and `Resume` the newer one cancels the older one.
     #[must_use]
     pub const fn is_standing(self) -> bool {
         matches!(self, Self::Stop | Self::Resume)
@@ -27,12 +22,11 @@ impl RequestKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Retry {
-    /// Total number of sends, including the first; 0 counts as 1. With packet loss p, request or
-    /// acknowledgement fails in all attempts with probability (1 - (1 - p)^2)^attempts: 4 % at p =
-    /// 0.3 and 5 attempts.
+    /// Total number of sends; 0 counts as 1. With packet loss p, request or acknowledgement fails
+    /// in all attempts with probability (1 - (1 - p)^2)^attempts: 4 % at p = 0.3 and 5 attempts.
     pub attempts: u8,
-    /// Time between two sends. A random extension of up to a quarter prevents two robots from
-    /// colliding repeatedly. It must exceed the round-trip time, or each request is sent twice.
+    /// Time between two sends, plus a random quarter at most, which prevents repeated collisions of
+    /// two robots. It must exceed the round-trip time, or each request is sent twice.
     pub interval: Duration,
 }
 
@@ -63,13 +57,12 @@ impl core::fmt::Display for AskError {
 
 impl core::error::Error for AskError {}
 
-/// An action that [`Requests::poll`] returns to the caller.
+/// The next action of [`Requests::poll`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[must_use = "a request that is not sent counts as one lost in the air"]
 pub enum Due {
-    /// Send this request now. If it does not fit into the outbox, it counts as lost in
-    /// transmission.
+    /// Send this request now; it counts as lost in transmission if it does not fit into the outbox.
     Send(Request),
     /// No acknowledgement arrived in time; the request is dropped.
     Expired(Request),
@@ -79,9 +72,7 @@ pub enum Due {
 struct Pending {
     request: Request,
     sent: u8,
-    /// When to send again or to give up.
     due: Instant,
-    /// When to give up regardless of the number of sends.
     expiry: Instant,
 }
 
@@ -95,10 +86,8 @@ impl Pending {
     }
 }
 
-/// The requests of one robot to others, at most `P` at a time; 24 bytes each.
-///
-/// After a pause of any length [`Requests::poll`] continues with the pending requests: see
-/// [`Instant::has_reached`].
+/// The requests of one robot to others, at most `P` at a time; 24 bytes each. Pauses of any length
+/// are allowed: see [`Instant::has_reached`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Requests<const P: usize> {
     pending: SparseVec<Pending, P>,
@@ -117,8 +106,7 @@ impl<const P: usize> Requests<P> {
         self.boot = boot;
     }
 
-    /// Creates a table without requests. `own` and `boot` are the robot's number and boot number in
-    /// its frames.
+    /// Creates a table without requests, for frames with this robot number and boot number.
     #[must_use]
     pub const fn new(own: RobotId, boot: u8, retry: Retry) -> Self {
         let () = Self::FITS;
@@ -127,15 +115,13 @@ impl<const P: usize> Requests<P> {
 
     /// Adds a request to `to` and returns its number; the next [`Requests::poll`] sends it.
     ///
-    /// `origin` is the robot that made the request first: this robot, or the follower whose request
-    /// it passes on. If a request to the same robot with the same origin is pending, it is kept if
-    /// it asks for the same thing (its number is returned, and nothing changes), and replaced if it
-    /// asks for the opposite. The request is abandoned `valid_ms` after now, or after the interval
-    /// of the last send, but never before its first send.
+    /// `origin` is this robot, or the follower whose request it passes on. A pending request with
+    /// the same addressee and origin is kept if it is identical (its number is returned), and
+    /// replaced if it is the opposite. The request is abandoned after `valid_ms`, or the interval
+    /// after the last send, but never before its first send.
     ///
     /// # Errors
-    /// [`AskError::Full`] if `P` other requests are pending, [`AskError::Nobody`] if `to` is
-    /// [`RobotId::NONE`].
+    /// [`AskError::Full`] if `P` requests are pending, [`AskError::Nobody`] for [`RobotId::NONE`].
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn ask(
         &mut self,
@@ -168,8 +154,8 @@ impl<const P: usize> Requests<P> {
         Ok(number)
     }
 
-    /// Returns the next action at `now`. Call it until it returns `None`, which takes at most 2 `P`
-    /// calls (if [`Retry::interval`] is more than 0). O(`P`) each.
+    /// Returns the next action at `now`. Call it until it returns `None`, at most 2 `P` times if
+    /// [`Retry::interval`] is above 0. O(`P`) each.
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn poll(&mut self, now: Instant) -> Option<Due> {
         let retry = self.retry;
@@ -187,24 +173,20 @@ impl<const P: usize> Requests<P> {
         Some(Due::Send(request))
     }
 
-    /// When [`Requests::poll`] will have an action, seen from `now`; `None` if no request is
-    /// pending.
+    /// When [`Requests::poll`] will have an action, seen from `now`; `None` without requests.
     #[must_use]
     pub fn poll_at(&self, now: Instant) -> Option<Instant> {
         self.pending
             .iter()
             .map(|pending| {
-                // After a long pause a due time may only seem to lie ahead; it is due now.
+                // After a long pause a due time may only seem to lie ahead.
                 let has_come = pending.is_due(self.retry, now) && now.is_before(pending.due);
                 if has_come { now } else { pending.due }
             })
             .min_by_key(|due| due.since(now))
     }
 
-    /// Processes an acknowledgement by `from` and returns the request that it ends.
-    ///
-    /// Returns `None` if it ends none: it is meant for another robot or boot, a duplicate, or too
-    /// late. O(`P`).
+    /// Processes an acknowledgement by `from` and returns the request that it ends, if any. O(`P`).
     pub fn acknowledged(&mut self, from: RobotId, ack: &Ack) -> Option<Request> {
         let &Ack { to, boot, number, .. } = ack;
         if (to, boot) != (self.own, self.boot) {
@@ -235,7 +217,6 @@ impl<const P: usize> Requests<P> {
         self.pending.retain(|p| p.request.number != number);
     }
 
-    /// The next number that no pending request has.
     fn free_number(&self) -> u8 {
         let mut number = self.next;
         // As many steps as there are requests skip all of their numbers.
@@ -249,7 +230,7 @@ impl<const P: usize> Requests<P> {
     }
 }
 
-/// Between zero and a quarter of the interval; a function of robot, request and number of sends.
+/// Up to a quarter of the interval; a function of robot, request and number of sends.
 fn jitter(retry: Retry, own: RobotId, request: Request, sent: u8) -> Duration {
     let quarter = (retry.interval.as_micros() >> 2).max(0);
     let send = u32::from_be_bytes([0, 0, request.number, sent]);

@@ -1,5 +1,4 @@
-//! The keys of a robot: its own key, and the swarm's key in one generation, or in two during a key
-//! change.
+//! The keys of a robot: its own key, and the swarm's key in one generation, or two during a change.
 
 use super::{KeyAssignment, KeyPhase};
 use crate::auth::{Key, Mac, Seed};
@@ -32,9 +31,8 @@ pub enum Signer {
 /// | [`KeyPhase::Speak`] | both | the new key |
 /// | [`KeyPhase::Forget`] | the new key | the new key |
 ///
-/// A phase includes all phases before it, so that a robot that was switched off needs only one
-/// message. A key change never goes back: the later of two generations stays, and an assignment of
-/// an earlier generation has no effect.
+/// A phase includes all phases before it, so a robot that was switched off needs only one message.
+/// An assignment of an earlier generation has no effect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ring {
     speaks: Group,
@@ -82,7 +80,7 @@ impl Ring {
         self.speaks.generation
     }
 
-    /// The robot's progress: the latest generation that it has, and what it does with that.
+    /// The latest generation that the robot has, and the stage of its change.
     #[must_use]
     pub fn held(&self) -> (u16, KeyPhase) {
         match &self.also {
@@ -92,9 +90,8 @@ impl Ring {
         }
     }
 
-    /// The seeds to keep in persistent memory after each change: first that of the key that the
-    /// robot sends with, for [`Self::of_generation`] at the next start, then the other one, for
-    /// [`Self::hear`]. `None` for a key that was not derived from a seed.
+    /// The seeds to store after each change, if keys have them: first the one for
+    /// [`Self::of_generation`] at the next start, then the one for [`Self::hear`].
     #[must_use]
     pub fn seeds(&self) -> [Option<(u16, &Seed)>; 2] {
         [Some(&self.speaks), self.also.as_ref()].map(|group| {
@@ -103,8 +100,7 @@ impl Ring {
         })
     }
 
-    /// Finds the key for which `is_made` returns true; the most likely key is tried first. At most
-    /// three calls.
+    /// Finds the key for which `is_made` returns true, most likely first; at most three calls.
     pub fn signer(&self, is_made: impl Fn(&Mac) -> bool) -> Option<Signer> {
         let groups = [Some(&self.speaks), self.also.as_ref()];
         let group = groups.into_iter().flatten().find(|group| is_made(&group.mac));
@@ -119,7 +115,7 @@ impl Ring {
         }
     }
 
-    /// Also accepts a later generation, with a key that was not derived from a seed.
+    /// Like [`Self::hear`], with a key that was not derived from a seed.
     pub fn hear_key(&mut self, generation: u16, key: &Key) {
         if generation > self.held().0 && generation < u16::MAX {
             self.also = Some(Group { generation, mac: Mac::new(key), seed: None });
@@ -136,7 +132,7 @@ impl Ring {
         }
     }
 
-    /// Rejects all generations before this one from now on, if the robot sends with this one.
+    /// Rejects all earlier generations from now on, if the robot sends with this one.
     pub fn forget_before(&mut self, generation: u16) {
         if self.speaks.generation == generation && self.also.as_ref().is_some_and(|also| also.generation < generation) {
             self.also = None;
@@ -144,9 +140,7 @@ impl Ring {
     }
 
     /// Executes an assignment of the operator and returns whether its key was encrypted for this
-    /// robot. Generations older than the present one have no effect.
-    ///
-    /// Bounded work: twelve blocks of SHA-256.
+    /// robot. Earlier generations have no effect. Twelve blocks of SHA-256.
     pub fn apply(&mut self, told: &KeyAssignment) -> bool {
         let seed = self.own.as_ref().and_then(|own| Seed::unwrap(own, told.generation, &told.wrapped));
         let Some(seed) = seed else {

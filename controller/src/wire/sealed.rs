@@ -12,11 +12,10 @@ use serde::{Deserialize, Serialize};
 /// Default number of senders that a [`Sealed`] can track.
 pub const PEERS: usize = 64;
 
-/// How often the sequence may wrap within one start, as a power of two: 268 million frames, a month
-/// at 100 frames per second.
+/// 268 million frames per start, a month at 100 frames per second.
 const WRAP_BITS: u32 = 12;
 const EPOCH_LEN: usize = 4;
-/// How many starts a sender may be ahead of its latest known start: see [`Sealed`].
+/// Largest accepted lead of a sender, in starts over its latest known start: see [`Sealed`].
 pub const REACH_STARTS: u32 = 1024;
 
 /// The frames of [`Postcard`], with a tag and with replay protection.
@@ -27,51 +26,47 @@ pub const REACH_STARTS: u32 = 1024;
 /// ```
 ///
 /// The cost is 8 bytes and one [`Mac::of`] per frame; `cargo xtask size` prints its run time on
-/// each part.
+/// each part. Serde serializes the whole state, including the key; digests omit the key.
 ///
 /// # Threat model
 ///
 /// - **Forgery.** Without the key, an attacker can neither create nor modify a frame. A guessed
-///   code is right once in 2^32 tries. On a radio that takes 500 frames per second, continuous
-///   guessing passes one forged frame per 99 days. That frame would count as one beacon or one
-///   order, and could lock out the true sender, as described below. The signatures of MAVLink (48
-///   bits) are stronger.
+///   code is right once in 2^32 tries: on a radio that takes 500 frames per second, one forged
+///   frame per 99 days, which could also lock out the true sender (below). MAVLink signatures have
+///   48 bits.
 /// - **Replay.** A recorded frame is rejected because its counter (epoch and sequence together) was
 ///   received before: see [`ReplayGuard`].
-/// - **Not covered.** All robots share the key, so a robot captured with its key can impersonate
-///   all others. Frames are not encrypted. No code protects against jamming, or against frames that
-///   are delayed by less than the maximum age of a neighbour.
+/// - **Not covered.** All robots share the key, so a captured robot can impersonate all others.
+///   Frames are not encrypted. No code protects against jamming, or against delays below the
+///   maximum age of a neighbour.
 ///
 /// # Counters too far ahead
 ///
-/// A frame with a later counter than that of its sender locks the sender out, at each receiver that
-/// accepts it and for as long as that receiver remembers it. An attacker that recorded such a frame
-/// can replay it after each restart, without the key. Therefore a frame is rejected, without any
-/// effect, if it is more than [`REACH_STARTS`] starts ahead of the latest of three numbers: the
-/// last frame of its sender, the receiver's own start, and [`Self::refuse_before`].
+/// A frame with a later counter locks its sender out at each receiver that accepts it. A recording
+/// of such a frame can be replayed after each restart, without the key. Therefore a frame is
+/// rejected, without any effect, if it is more than [`REACH_STARTS`] starts ahead of the latest of
+/// three numbers: the last frame of its sender, the receiver's own start, and
+/// [`Self::refuse_before`].
 ///
 /// Remaining risk: an attacker with the key can lock a sender out for up to that many of its
-/// starts. To make a recording of such frames worthless, increase the sender's start number by
-/// [`REACH_STARTS`]. A robot that is started more often than that on its own can neither be
-/// received by the others nor receive them, until their start numbers are aligned again.
+/// starts. To make such recordings worthless, increase the sender's start number by
+/// [`REACH_STARTS`]. A robot that is started more often than that on its own cannot communicate
+/// with the others until their start numbers are aligned again.
 ///
 /// # Counting the starts
 ///
 /// A robot must never send two messages with the same counter. Therefore persistent memory holds
-/// one number, the count of starts. At each start, *before the first frame*: read it (0 if it was
-/// never written), store it plus 1, and pass the number read to [`Self::at_start`]. Nothing needs
-/// to be stored while the robot runs.
+/// the count of starts. At each start, *before the first frame*: read it (0 if it was never
+/// written), store it plus 1, and pass the number read to [`Self::at_start`].
 ///
-/// If the memory is lost, all robots that know this robot reject it as a replay until its number
-/// exceeds the last one again. Set the number above any value that it may have had, or give the
-/// swarm a new key, which invalidates all old frames; numbers may then restart at 0.
+/// If the memory is lost, robots that know this robot reject it as a replay until its number
+/// exceeds the last one. Set the number above any previous value, or give the swarm a new key;
+/// numbers may then restart at 0.
 ///
-/// An operator that starts all robots with the same increasing number (that of the mission) can
-/// also pass it to [`Self::refuse_before`]. Then frames of earlier missions are rejected even by
-/// receivers that lost their memory. The owner decides what else survives a restart of the
-/// receiver: [`ReplayGuard::export`] through [`Self::guard`].
-///
-/// Serde serializes the whole state, including the key; digests omit the key.
+/// An operator that starts all robots with one increasing number (that of the mission) can also
+/// pass it to [`Self::refuse_before`]: then even receivers that lost their memory reject frames of
+/// earlier missions. [`ReplayGuard::export`] through [`Self::guard`] gives what else can survive a
+/// restart.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Sealed<const N: usize = PEERS> {
     ring: Ring,
@@ -82,8 +77,7 @@ pub struct Sealed<const N: usize = PEERS> {
 }
 
 impl<const N: usize> Sealed<N> {
-    /// Creates the format for a robot with one key at its start number `starts`, counted from 0 in
-    /// persistent memory; `None` from 2^20 on.
+    /// Creates the format for a robot with one key at its start number `starts`, below 2^20.
     #[must_use]
     pub fn at_start(key: &Key, starts: u32) -> Option<Self> {
         Self::with_ring(Ring::new(key), RobotId::NONE, starts)
@@ -92,9 +86,8 @@ impl<const N: usize> Sealed<N> {
     /// Creates the format for robot `own` with the keys in `ring`, at its start number `starts`;
     /// `None` from 2^20 on.
     ///
-    /// If the ring holds the robot's own key, the robot accepts orders ([`Message::is_order`]) and
-    /// keys only if they are made with that key. It reports frames made with the own key of another
-    /// robot as foreign.
+    /// A robot with an own key accepts orders ([`Message::is_order`]) and keys only if they are
+    /// made with that key, and reports frames made with another own key as foreign.
     #[must_use]
     pub fn with_ring(ring: Ring, own: RobotId, starts: u32) -> Option<Self> {
         Some(Self { ring, own, epochs: Epochs::at_start(starts)?, guard: ReplayGuard::new() })
@@ -106,26 +99,25 @@ impl<const N: usize> Sealed<N> {
         &self.ring
     }
 
-    /// Mutable access to the keys, for hosts that change them by other means than the radio.
+    /// Mutable access to the keys, for changes by other means than the radio.
     pub const fn ring_mut(&mut self) -> &mut Ring {
         &mut self.ring
     }
 
-    /// Rejects frames of unknown robots from before their start number `starts`. No effect from
-    /// 2^20 on.
+    /// Rejects frames of unknown robots from before their start number `starts`, if below 2^20.
     pub fn refuse_before(&mut self, starts: u32) {
         if let Some(epoch) = epoch_of(starts) {
             self.guard.set_floor(domain(Signer::Swarm(self.ring.generation())) | counter(epoch, 0));
         }
     }
 
-    /// The counters of other robots, for storing them.
+    /// The counters of other robots, to be stored.
     #[must_use]
     pub const fn guard(&self) -> &ReplayGuard<N> {
         &self.guard
     }
 
-    /// Mutable access to the counters of other robots, for restoring them.
+    /// Mutable access to the counters of other robots, to restore them.
     pub const fn guard_mut(&mut self) -> &mut ReplayGuard<N> {
         &mut self.guard
     }
@@ -135,36 +127,30 @@ impl<const N: usize> Sealed<N> {
         known.max(counter(self.epochs.epoch, 0)).saturating_add(counter(REACH_STARTS << WRAP_BITS, 0))
     }
 
-    /// Checks that a holder of the key `signer` may send this frame to this robot.
     fn judge(&self, frame: &Frame, signer: Option<Signer>) -> Result<Signer, DecodeError> {
         let own = self.ring.own();
         let is_elses = frame.message.addressee().is_some_and(|to| to != self.own);
         match signer {
             Some(Signer::Swarm(_)) if own.is_some() && frame.message.is_order() => Err(DecodeError::Forged),
             Some(signer) => Ok(signer),
-            // Made with the own key of another robot.
             None if own.is_some() && is_elses => Err(DecodeError::Foreign),
             None => Err(DecodeError::Forged),
         }
     }
 }
 
-/// The counters under which frames are sealed; none occurs twice.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Epochs {
     epoch: u32,
-    /// The sequence number of the last frame.
     last: u16,
 }
 
 impl Epochs {
-    /// `None` from 2^20 starts on.
     pub(super) fn at_start(starts: u32) -> Option<Self> {
         Some(Self { epoch: epoch_of(starts)?, last: 0 })
     }
 
-    /// Appends a frame sealed with a key. Returns [`EncodeError::Exhausted`] if the sequence has
-    /// wrapped 4095 times since the start.
+    /// Returns [`EncodeError::Exhausted`] if the sequence has wrapped 4095 times since the start.
     pub(super) fn seal<const M: usize>(
         &mut self,
         mac: &Mac,
@@ -197,12 +183,10 @@ const fn epoch_of(starts: u32) -> Option<u32> {
     if starts >> (u32::BITS - WRAP_BITS) == 0 { Some(starts << WRAP_BITS) } else { None }
 }
 
-/// The bits of a counter that the sender counts. The bits above hold the generation of the key.
-/// Therefore a frame made with an earlier key is never fresh after a later one, and an attacker
-/// cannot use up the counters of a key that it does not have.
+/// The bits that the sender counts. Those above hold the generation of the key, so frames of an
+/// earlier key are never fresh, and an attacker cannot use up the counters of a key that it lacks.
 const COUNTED: u64 = (1 << 48) - 1;
 
-/// The bits of a counter above [`COUNTED`].
 const fn domain(signer: Signer) -> u64 {
     let number = match signer {
         Signer::Swarm(generation) => generation,
@@ -220,8 +204,7 @@ impl<const N: usize> Wire for Sealed<N> {
         Beacon::MAX_FRAME_LEN
     }
 
-    /// Also returns [`EncodeError::Exhausted`] if the sequence has wrapped 4095 times since the
-    /// start.
+    /// Also fails if the sequence has wrapped 4095 times since the start.
     fn encode<const M: usize>(
         &mut self,
         header: Header,
@@ -235,10 +218,8 @@ impl<const N: usize> Wire for Sealed<N> {
         self.epochs.seal(mac, header, message, out)
     }
 
-    /// Decodes a frame. A key that the frame assigns is in use on return.
-    ///
-    /// Bounded work: one [`Mac::of`] if the sender uses the same key, otherwise up to three; twelve
-    /// blocks of SHA-256 for a key assignment.
+    /// Decodes a frame and takes over a key that it assigns. One [`Mac::of`] if the sender uses the
+    /// same key, otherwise up to three; twelve blocks of SHA-256 for a key assignment.
     fn decode(&mut self, frame: &[u8]) -> Result<Frame, DecodeError> {
         let (mut epoch, mut signer) = (0, None);
         let frame = decode_verified(frame, |content, tag| {

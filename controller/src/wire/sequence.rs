@@ -1,7 +1,5 @@
-//! Classifies the frames of one sender: new, late, duplicate or replayed.
-//!
-//! Implements the sliding window of IPsec (RFC 4303, section 3.4.3) on a wrapping 16-bit sequence,
-//! with a boot number that marks a restart of the sequence.
+//! Classifies the frames of one sender: the sliding window of IPsec (RFC 4303, section 3.4.3) on a
+//! wrapping 16-bit sequence, with a boot number that marks a restart.
 
 use super::Header;
 use serde::{Deserialize, Serialize};
@@ -19,8 +17,7 @@ pub enum Arrival {
     OutOfOrder,
     /// Received before.
     Duplicate,
-    /// [`SEQUENCE_SPAN`] or more behind the newest. The window no longer knows whether it was
-    /// received; treat it as a replay.
+    /// [`SEQUENCE_SPAN`] or more behind the newest, so possibly a replay.
     TooOld,
     /// The first frame after a restart of the sender.
     Rebooted,
@@ -44,15 +41,14 @@ impl Arrival {
 
 /// The recent sequence numbers of one sender; 8 bytes.
 ///
-/// "Newer" means less than 2^15 ahead. Therefore the owner must drop the window of a silent sender
-/// after at most 2^15 frame periods (54 minutes at 10 Hz). Dropping also repairs a window that a
-/// damaged but undetected frame moved far ahead or to a wrong boot number, since rejected frames do
-/// not count as a sign of life.
+/// "Newer" means less than 2^15 ahead, so drop the window of a silent sender after at most 2^15
+/// frame periods (54 minutes at 10 Hz). Rejected frames must not count as a sign of life: dropping
+/// also repairs a window that an undetected error moved.
 ///
 /// A new boot number is accepted at once. The window remembers one earlier boot, whose frames give
-/// [`Arrival::PreviousBoot`]; frames of still earlier boots look like another restart. Count boot
-/// numbers in persistent memory. A random boot number equals the previous one once in 256 starts,
-/// and then the robot is rejected until the window is dropped.
+/// [`Arrival::PreviousBoot`]; still earlier boots look like another restart. Count boots in
+/// persistent memory: a random number equals the previous one once in 256 starts, and then the
+/// robot is rejected until the window is dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SequenceWindow {
@@ -60,7 +56,7 @@ pub struct SequenceWindow {
     seen: u32,
     newest: u16,
     boot: u8,
-    /// The boot number before `boot`; equal to it if there was none.
+    /// Equal to `boot` if there was none.
     previous: u8,
 }
 
@@ -111,8 +107,7 @@ impl SequenceWindow {
         if self.seen == 0 || header.boot != self.boot || ahead.cast_signed() <= 0 { 0 } else { ahead - 1 }
     }
 
-    /// The distance of this frame from the newest one, before or behind, if both are of the same
-    /// boot; otherwise 0.
+    /// The distance of this frame from the newest one, before or behind; 0 after a reboot.
     #[must_use]
     pub const fn distance(&self, header: Header) -> u16 {
         let ahead = header.sequence.wrapping_sub(self.newest);

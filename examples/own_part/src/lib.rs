@@ -8,8 +8,7 @@ use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::{rand::Rng, scalar::Scalar};
 
-/// State and parameters of the law. Serde carries them to devices, into checkpoints and into the
-/// trace hash.
+/// State and parameters of the law, which serde carries to devices, checkpoints and the trace hash.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Patrol {
     /// Radius of the ring, metres.

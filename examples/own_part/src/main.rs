@@ -1,5 +1,4 @@
-//! Twenty robots on patrol, some of them on emulated parts or boards. Takes the options of
-//! `staya hil`.
+//! Twenty robots on patrol, some of them emulated or boards; takes the options of `staya hil`.
 
 use patrol::Patrol;
 

@@ -1,6 +1,5 @@
-//! The law on emulated parts. `cargo xtask test` builds the firmware and runs these tests. By
-//! hand: `cargo xtask firmware --crate examples/own_part stm32f405`, then
-//! `cargo test -p patrol --test emulated`.
+//! The law on emulated parts, run by `cargo xtask test`. By hand: `cargo xtask firmware --crate
+//! examples/own_part stm32f405`, then `cargo test -p patrol --test emulated`.
 
 use clap::Parser;
 use patrol::Patrol;
@@ -19,7 +18,6 @@ const DEVICES: [&str; 6] = ["--device", "qemu:stm32f405", "--devices", "4", "--f
 const FIRMWARE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/target/firmware");
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/patrol.toml");
 
-/// The reason for which the firmware is refused as a device for `own`.
 fn refusal<G: OwnLaw + LinkedLaw<f32>>(own: &Own<G>) -> String {
     #[derive(Parser)]
     struct Line {
@@ -52,8 +50,7 @@ fn four_of_twenty_robots_on_parts_decide_like_their_shadows() {
     }
 }
 
-/// The patrol with the same serialised form but a speed that is 1 um/s higher: a host that was
-/// changed after its firmware was flashed.
+/// A host that was changed after its firmware was flashed: 1 um/s faster.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Changed(Patrol);
 

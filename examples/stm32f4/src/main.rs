@@ -20,7 +20,7 @@ use staya_robot::odometry::{Encoder, Odometry};
 use staya_robot::{drive::*, radio::PacketLink};
 
 const TICK: Duration = Duration::from_millis(50);
-/// Measured on the robot: wheel distance, wheel radius, body radius, and encoder edges per turn.
+/// Measured on the robot.
 const TRACK_M: f32 = 0.12;
 const WHEEL_M: f32 = 0.03;
 const BODY_M: f32 = 0.09;
@@ -31,7 +31,7 @@ bind_interrupts!(struct Irqs {
     RNG => rng::InterruptHandler<peripherals::RNG>;
 });
 
-/// Runs the robot; returns only if a measured value is invalid.
+/// Returns only if a measured value is invalid.
 async fn robot(p: Peripherals) -> Option<()> {
     let (mut tx, mut rx, mut modem) = ([0; 256], [0; 512], UartConfig::default());
     modem.baudrate = 57_600;
@@ -88,8 +88,7 @@ async fn robot(p: Peripherals) -> Option<()> {
 #[embassy_executor::main]
 async fn main(_spawner: Spawner) {
     let mut config = Config::default();
-    // 16 MHz / 8 * 168, divided by 2 for the core and by 7 (48 MHz) for the random number
-    // generator.
+    // 16 MHz / 8 * 168, divided by 2 for the core and by 7 (48 MHz) for random numbers.
     let (prediv, mul, divp, divq) = (PllPreDiv::DIV8, PllMul::MUL168, PllPDiv::DIV2, PllQDiv::DIV7);
     config.rcc.pll = Some(Pll { prediv, mul, divp: Some(divp), divq: Some(divq), divr: None });
     (config.rcc.pll_src, config.rcc.sys) = (PllSource::HSI, Sysclk::PLL1_P);

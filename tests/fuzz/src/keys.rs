@@ -7,7 +7,6 @@ use staya_controller::wire::{Beacon, Header, KeyPhase, MAX_FRAME_LEN, Message, O
 
 type Bytes = Bounded<u8, MAX_FRAME_LEN>;
 
-/// The robot that receives no new key.
 const LEFT_OUT: usize = 2;
 
 fn robot(index: usize, generation: u16, starts: u32) -> Sealed<8> {
@@ -29,11 +28,9 @@ fn hears(by: &mut Sealed<8>, bytes: &[u8]) -> bool {
     is_heard
 }
 
-/// Frames are lost, duplicated, delayed, damaged, or addressed to other robots, and carry any
-/// generation and phase. Robots restart with or without their stored keys.
-///
-/// A running robot never returns to an older key. The robot that is left out learns no new key. At
-/// the end all other robots hear each other and not that one.
+/// Frames are lost, duplicated, delayed, damaged, misdirected, and of any generation and phase.
+/// Robots restart with or without their stored keys, but never return to an older key. The excluded
+/// robot learns no new key; at the end all others hear each other and not that one.
 pub fn keys(bytes: &[u8]) {
     let mut operator = OperatorWire::<8>::at_start(master(), RobotId(99), 0).expect("a low number");
     let mut robots = [robot(0, 0, 0), robot(1, 0, 0), robot(LEFT_OUT, 0, 0)];

@@ -1,8 +1,8 @@
 //! Invariants that must hold for arbitrary bytes.
 //!
-//! Each function interprets its bytes as data or as a sequence of actions and panics if an
-//! invariant is violated. A fuzzer searches for such bytes (`cargo xtask fuzz`); the tests here try
-//! random ones and earlier findings.
+//! Each function interprets its bytes as data or actions and panics if an invariant is violated. A
+//! fuzzer searches for such bytes (`cargo xtask fuzz`); the tests here try random ones and earlier
+//! findings.
 
 mod keys;
 mod mavlink;
@@ -23,12 +23,10 @@ mod tests {
     use super::*;
     use staya_controller::rand::Rng;
 
-    /// Runs a model on `rounds` random inputs of up to `longest` bytes.
     fn on_random_bytes(model: fn(&[u8]), rounds: u32, longest: u32) {
         for round in 0..rounds {
             let mut rng = Rng::keyed(0, u32::from_be_bytes(*b"fuzz"), round, 0);
             let len = rng.below(longest + 1);
-            // Every other round uses small values, so that choices repeat.
             let limit = if round % 2 == 0 { 256 } else { 8 };
             let bytes: Vec<u8> = (0..len).map(|_| rng.below(limit) as u8).collect();
             model(&bytes);

@@ -6,12 +6,11 @@ use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::mavlink_core::{Message as _, calculate_crc};
 use staya_mavlink::wire::{COMPONENT, decode, encode, next_frame};
 
-/// Id of the first of the swarm's seven messages.
+/// Of the swarm's seven messages.
 const FIRST_ID: u32 = 9_500_000;
 
-/// Decodes the bytes both as a radio stream and as the payload of an intact frame, without panics.
-/// No byte between frames is lost. An accepted message can be encoded, and its encoding is accepted
-/// again.
+/// Decodes the bytes as a radio stream and as the payload of an intact frame, without panics or
+/// lost bytes. An accepted message can be encoded, and its encoding is accepted.
 pub fn mavlink_decode(bytes: &[u8]) {
     let (mut rest, mut pieces) = (bytes, Vec::new());
     while let Some(piece) = next_frame(&mut rest) {
@@ -21,7 +20,7 @@ pub fn mavlink_decode(bytes: &[u8]) {
     }
     assert!(rest.is_empty() && pieces == bytes);
     judge(bytes);
-    // Random bytes hardly ever have a valid checksum, so it is added here.
+    // Random bytes hardly ever have a valid checksum.
     let Some((which, payload)) = bytes.split_first() else {
         return;
     };

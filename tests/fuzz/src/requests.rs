@@ -11,23 +11,21 @@ use staya_controller::wire::{
 };
 use std::collections::BTreeMap;
 
-/// Enough for every matter: two origins, with standing requests and direction requests of each.
+/// Two origins, with standing requests and direction requests of each.
 const LINES: usize = 4;
 const DELAY_MS: i32 = 500;
 /// Longer than all attempts of a request and the delay of the last one.
 const MEMORY: Duration = Duration::from_millis(5_000);
-/// Time between two actions, so that sequence numbers do not wrap while packets are in the air.
+/// Long enough that sequence numbers do not wrap while packets are in the air.
 const STEP_MS: i32 = 100;
-/// All times are multiples of this.
 const GRAIN_MS: i32 = 10;
-/// A listener forgets a robot after this silence.
 const SILENCE_MS: i32 = 3_000;
 
 struct Packet {
     to: usize,
     sent_ms: i32,
     bytes: Vec<u8>,
-    /// Index of the request that the frame carries or acknowledges, in the order of asking.
+    /// The request that the frame carries or acknowledges, in the order of asking.
     place: usize,
 }
 
@@ -35,11 +33,10 @@ struct Asked {
     request: Request,
     sends: u32,
     was_delivered: bool,
-    /// How often it ended: acknowledged, replaced, expired, or lost when its sender rebooted.
+    /// Acknowledged, replaced, expired, or lost when its sender rebooted.
     ends: u32,
 }
 
-/// The latest received request on one matter.
 struct Line {
     boot: u8,
     place: usize,
@@ -54,13 +51,11 @@ struct Robot {
     requests: Requests<LINES>,
     orders: Orders<LINES>,
     window: SequenceWindow,
-    /// Model: all requests of this robot, across restarts.
+    /// All requests of this robot, across restarts.
     asked: Vec<Asked>,
-    /// Model: the pending requests, by number.
     pending: BTreeMap<u8, usize>,
-    /// Model: received requests, by origin and whether they are standing.
+    /// Model: by origin and whether they are standing.
     lines: BTreeMap<(RobotId, bool), Line>,
-    /// Model: time of the last accepted frame.
     heard_ms: i32,
 }
 
@@ -80,7 +75,6 @@ impl Robot {
         }
     }
 
-    /// Restarts the robot: all state is lost except its id and its boot counter.
     fn reboot(&mut self, sequence: u16) {
         for place in std::mem::take(&mut self.pending).into_values() {
             self.asked[place].ends += 1;
@@ -93,7 +87,6 @@ impl Robot {
         self.lines.clear();
     }
 
-    /// Makes a request and records in the model which requests it replaces.
     fn ask(&mut self, to: RobotId, origin: RobotId, kind: RequestKind, valid_ms: u16, now: Instant) {
         let same_matter =
             |request: &Request| request.origin == origin && request.kind.is_standing() == kind.is_standing();
@@ -121,7 +114,6 @@ impl Robot {
         });
     }
 
-    /// Sends the packets that are due at `now`.
     fn poll(&mut self, to: usize, now_ms: i32, now: Instant, air: &mut Vec<Packet>) {
         while let Some(due) = self.requests.poll(now) {
             let (Due::Send(request) | Due::Expired(request)) = due;
@@ -150,7 +142,6 @@ impl Robot {
         out[..out.len() - 1].to_vec()
     }
 
-    /// Receives a frame and returns the answering frame.
     fn receive(&mut self, packet: &Packet, peer: &mut Self, now_ms: i32, now: Instant) -> Option<Vec<u8>> {
         let frame = decode(&packet.bytes).expect("the radio damages nothing here");
         let arrival = self.window.check(frame.header);
@@ -158,7 +149,7 @@ impl Robot {
             self.orders.forget(frame.header.sender);
             self.lines.clear();
         }
-        // Duplicates are passed on: the request layer must tolerate them too.
+        // The request layer must tolerate duplicates too.
         if matches!(arrival, Arrival::PreviousBoot | Arrival::TooOld) {
             return None;
         }
@@ -191,8 +182,7 @@ impl Robot {
         }
     }
 
-    /// The model's answer: whether the request is accepted and whether it is new. Records the
-    /// request.
+    /// Returns whether the request is accepted and whether it is unknown.
     fn expected_answer(&mut self, header: Header, request: &Request, place: usize, now_ms: i32) -> (bool, bool) {
         let matter = (request.origin, request.kind.is_standing());
         let line = self.lines.get(&matter);
@@ -207,7 +197,6 @@ impl Robot {
         (true, true)
     }
 
-    /// Checks the invariants that hold at any time.
     fn check(&mut self, now_ms: i32, now: Instant) {
         let until = self
             .lines
@@ -238,8 +227,7 @@ impl World {
         self.start + Duration::from_millis(self.now_ms)
     }
 
-    /// Advances the time by [`GRAIN_MS`] steps. Skips all but the steps in which something can
-    /// happen and the steps right before them, in which nothing may happen.
+    /// Simulates only the steps in which something can happen and those right before.
     fn pass(&mut self, span_ms: i32) {
         let end_ms = self.now_ms + span_ms / GRAIN_MS * GRAIN_MS;
         while self.now_ms < end_ms {
@@ -262,7 +250,6 @@ impl World {
         }
     }
 
-    /// Time of the next event: a request is due or expires.
     fn next_ms(&self) -> Option<i32> {
         let now = self.now();
         let moments = self.robots.iter().flat_map(|robot| {
@@ -310,8 +297,7 @@ impl World {
             3 => {
                 let which = usize::from(choice.arbitrary::<bool>()?);
                 self.robots[which].reboot(choice.arbitrary()?);
-                // A start takes time, so that the air holds frames of at most two lives of one
-                // robot.
+                // The air holds frames of at most two lives of one robot.
                 self.pass(DELAY_MS / 2 + 10);
             }
             4 if !self.air.is_empty() => {
@@ -325,9 +311,7 @@ impl World {
         Ok(())
     }
 
-    /// Over a loss-free radio, each robot can stop each other robot and release it again.
     fn end(&mut self) {
-        // All pending requests end by themselves, and stops expire.
         self.pass(10_000);
         for robot in &mut self.robots {
             assert!(robot.requests.is_empty() && robot.pending.is_empty());
@@ -352,8 +336,7 @@ impl World {
     }
 }
 
-/// Executes the actions that the bytes describe and compares both robots with the model at each
-/// step.
+/// Executes the actions that the bytes describe and compares both robots with a model at each step.
 pub fn requests_model(bytes: &[u8]) {
     let mut choice = Unstructured::new(bytes);
     let start = Instant::from_micros(choice.arbitrary().unwrap_or_default());
@@ -378,7 +361,7 @@ mod tests {
 
     #[test]
     fn late_acknowledgement_from_before_a_reboot_ends_no_request() {
-        // Around the number of requests before the reboot at which the numbers meet.
+        // Around the number of requests at which the numbers of both lives meet.
         for requests in 90..=100 {
             let mut world = world();
             for _ in 0..requests {
@@ -394,8 +377,6 @@ mod tests {
             world.robots[0].reboot(0);
             world.pass(DELAY_MS / 2 + 10);
             ask(&mut world, RequestKind::Stop);
-            // The acknowledgement from before the reboot first, then the other packets in their
-            // order.
             while !world.air.is_empty() {
                 let oldest = (0..world.air.len()).min_by_key(|at| world.air[*at].sent_ms);
                 world.deliver(oldest.unwrap_or(0), false);

@@ -8,8 +8,7 @@ use staya_controller::wire::{Frame, GoalAssignment, Header, MAX_FRAME_LEN, Messa
 use staya_mavlink::signed::Signed;
 use staya_mavlink::signing::Signing;
 
-/// An attacker builds frames from two recorded ones: changed, truncated or new. No forged frame is
-/// accepted, and no recorded frame is accepted a second time.
+/// No frame that an attacker builds from two recorded ones is accepted, and no frame twice.
 pub fn sealed(bytes: &[u8]) {
     let key = Key::of_passphrase(b"not the fuzzer's");
     let sealed = || Sealed::<2>::at_start(&key, 1).expect("a low number");
@@ -30,7 +29,7 @@ fn refuses<W: Wire>(new: impl Fn() -> W, bytes: &[u8]) {
         }
     };
     judged(&mut receiver, bytes);
-    // A recorded frame with some of its bytes replaced; each change is a position and a value.
+    // Each change is a position and a value.
     let mut forged = heard.clone();
     for change in bytes.chunks_exact(2).take(8) {
         let frame = &mut forged[usize::from(change[0] & 1)];
@@ -40,12 +39,10 @@ fn refuses<W: Wire>(new: impl Fn() -> W, bytes: &[u8]) {
     let mut stranger = new();
     for (frame, true_one) in forged.iter().zip(&heard) {
         judged(&mut receiver, frame);
-        // A receiver without history accepts only the genuine frames.
         if let Some(found) = read(&mut stranger, frame) {
             assert_eq!(Some(found), read(&mut new(), true_one));
         }
     }
-    // The forged frames have not moved a counter.
     assert!(read(&mut receiver, &said(&mut sender, 2)).is_some());
 }
 
@@ -57,7 +54,6 @@ fn said<W: Wire>(by: &mut W, sequence: u16) -> Bounded<u8, MAX_FRAME_LEN> {
     out
 }
 
-/// The only frame of `bytes`, if it is accepted.
 fn read<W: Wire>(by: &mut W, bytes: &[u8]) -> Option<Frame> {
     let mut rest = bytes;
     let frame = by.next_frame(&mut rest)?;

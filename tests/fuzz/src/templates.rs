@@ -12,26 +12,22 @@ use staya_controller::wire::{
 const F: usize = 7;
 const TO: RobotId = RobotId(3);
 const HEADER: Header = Header { boot: 0, sender: RobotId(1), sequence: 0 };
-/// Largest age of a late part, in versions; the assembler distinguishes 127.
+/// In versions; the assembler distinguishes 127.
 const LATE: usize = 60;
 
-/// Executes the actions that the bytes describe. Either a commander sends one template after the
-/// other and their parts arrive in any order, repeatedly or never; or arbitrary parts arrive.
+/// Parts of a commander's templates arrive in any order, repeatedly or never; or arbitrary parts.
 pub fn templates(bytes: &[u8]) {
     let mut choice = Unstructured::new(bytes);
-    // Running out of bytes ends the sequence.
     let _ = match choice.arbitrary() {
         Ok(true) => from_one_commander(&mut choice),
         _ => from_anybody(&mut choice),
     };
 }
 
-/// Each template that comes out was sent, is complete, comes out once, and never after a newer one.
 fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut version: u8 = choice.arbitrary()?;
     let mut sent: Vec<(Template<F>, Vec<TemplateAssignment>)> = Vec::new();
     let mut assembler = TemplateAssembler::<F>::new();
-    // The newest template of which a part arrived, and its parts.
     let mut newest = None;
     let mut there = Vec::new();
     while !choice.is_empty() {
@@ -66,8 +62,7 @@ fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Arbitrary parts are answered without panics. A refused part changes nothing. A completed
-/// template consists of parts of one version.
+/// A refused part changes nothing. A completed template consists of parts of one version.
 fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut assembler = TemplateAssembler::<F>::new();
     let mut seen: Vec<TemplateAssignment> = Vec::new();
@@ -86,7 +81,6 @@ fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
             entries,
         };
         if choice.arbitrary()? {
-            // Small values, so that parts may fit together.
             part.version &= 3;
             part.part &= 3;
             part.parts &= 3;
@@ -109,7 +103,6 @@ fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
             };
             assert!(seen.iter().any(came));
         }
-        // No template comes out twice.
         for part in seen.iter().filter(|part| part.version == version) {
             assert!(!matches!(assembler.put(part), Ok(Some(_))));
         }

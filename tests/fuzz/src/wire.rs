@@ -6,25 +6,24 @@ use staya_controller::wire::{
     DecodeError, EncodeError, Frame, MAX_FRAME_LEN, TAG_LEN, decode, decode_verified, encode, encode_tagged, frames,
 };
 
-/// The CRC catalogue's parameters, to check the controller's CRC.
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_SDLC);
 
-/// Decodes the bytes both as a radio stream and as the content of an intact frame, without panics.
-/// An accepted message can be encoded in at most as many bytes, and its encoding is accepted again.
+/// Decodes the bytes as a radio stream and as the content of an intact frame, without panics. An
+/// accepted message can be encoded in at most as many bytes, and its encoding is accepted.
 pub fn wire_decode(bytes: &[u8]) {
     for piece in frames(bytes) {
         assert!(!piece.is_empty() && !piece.contains(&0));
         judge(piece);
     }
     judge(bytes);
-    // A stream cut at any place gives the same frames, except for the frame that was cut.
+    // A cut stream gives the same frames, except for the frame that was cut.
     if let Some(&at) = bytes.first() {
         let (front, back) = bytes.split_at(usize::from(at).min(bytes.len()));
         let whole = frames(bytes).count();
         let cut = frames(front).count() + frames(back).count();
         assert!(cut == whole || cut == whole + 1);
     }
-    // Random bytes hardly ever have a valid checksum, so it is added here.
+    // Random bytes hardly ever have a valid checksum.
     let mut content = bytes.to_vec();
     content.extend(CRC.checksum(bytes).to_le_bytes());
     let frame = stuffed(&content);
@@ -50,7 +49,6 @@ fn judge(piece: &[u8]) {
         assert!(frame.tag.is_some());
         return;
     };
-    // A number may have been encoded in more bytes than it needs.
     assert!(again.len() <= piece.len() + 1);
     let (delimiter, again) = again.split_last().expect("a frame has bytes");
     assert_eq!(*delimiter, 0);
@@ -78,7 +76,7 @@ fn encoded(frame: &Frame) -> Option<Bounded<u8, MAX_FRAME_LEN>> {
     Some(out)
 }
 
-/// COBS block by block, as in its paper, for contents of any length; without delimiter.
+/// COBS block by block, as in its paper, without delimiter.
 fn stuffed(content: &[u8]) -> Vec<u8> {
     let mut out = Vec::new();
     for block in content.split(|byte| *byte == 0) {
@@ -89,7 +87,7 @@ fn stuffed(content: &[u8]) -> Vec<u8> {
         while let Some(chunk) = chunks.next() {
             out.push(chunk.len() as u8 + 1);
             out.extend(chunk);
-            // A full chunk ends without a zero; if it also ends the block, an empty chunk follows.
+            // A full chunk has no zero; if it ends the block, an empty chunk follows.
             if chunk.len() == 254 && chunks.peek().is_none() {
                 out.push(1);
             }

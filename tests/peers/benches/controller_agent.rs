@@ -1,9 +1,7 @@
-//! Benchmarks of one whole step of an agent.
+//! Benchmarks of one whole step of an agent, which decides in every step.
 //!
-//! On the grid: the middle robot of a formation of nine. It receives eight beacons, searches its
-//! window of radius 5 and encodes its own beacon. With reflexive prediction it also searches once
-//! per visible neighbour. It is free to move in every step, so that every step decides.
-//!
+//! On the grid: the middle robot of a formation of nine receives eight beacons, searches its window
+//! of radius 5 (with reflexive prediction also once per visible neighbour), and encodes its beacon.
 //! In the plane: a disc with ORCA on its way to a waypoint, among eight moving robots.
 
 use core::hint::black_box;
@@ -39,18 +37,17 @@ const PLACES: [Cell; 9] = [
 const EDGES: [(u16, u16); 12] =
     [(0, 1), (1, 2), (3, 4), (4, 5), (6, 7), (7, 8), (0, 3), (1, 4), (2, 5), (3, 6), (4, 7), (5, 8)];
 const LEADERS: [u32; 9] = [0, 1, 2, 1, 2, 3, 4, 5, 6];
-/// Robot 5, in the middle: all eight neighbours are within two steps of the graph.
+/// All eight neighbours are within two steps of the graph.
 const OWN: usize = 4;
 const TICK: Duration = Duration::from_millis(100);
 /// Alternating windows keep the branch predictor from learning a single one.
 const LANDSCAPES: usize = 32;
 const TOP: Cell = Cell::new(50, 50);
 
-/// Received bytes of each step. There is one step per sequence number, so that the benchmark can
-/// repeat them cyclically.
+/// One per sequence number, to be repeated cyclically.
 fn inboxes() -> Vec<Vec<u8>> {
     let beacon = |robot: usize| Beacon {
-        // Each robot is off its place, so that prediction must search its route.
+        // Off its place, so that prediction must search its route.
         cell: TOP + PLACES[robot] + Cell::new(i16::from(robot != 0), 0),
         heading: Dir::NorthEast,
         leader: RobotId(LEADERS[robot]),
@@ -102,7 +99,7 @@ fn agent_step(c: &mut Criterion) {
                 black_box(agent.step(black_box(&inputs(step)), now(step), &mut workspace))
             });
         });
-        // The check does not apply if a filter skipped this benchmark.
+        // A filter may have skipped the benchmark.
         assert!(step == 0 || agent.neighbors().len() == 8);
     }
     let law = RouteGuidance::new(RouteParams::default());
@@ -118,10 +115,9 @@ fn agent_step(c: &mut Criterion) {
     group.finish();
 }
 
-/// Steps until the eight discs on their circles are back at their start.
 const ROUND: usize = 256;
 
-/// Received bytes of each step: eight discs, each on a small circle 1 to 3 m away, at 0.5 m/s.
+/// Eight discs on small circles 1 to 3 m away, at 0.5 m/s.
 fn in_plane_inboxes() -> Vec<Vec<u8>> {
     let turn = |step: usize, robot: usize| (step % ROUND) as f64 / ROUND as f64 * core::f64::consts::TAU + robot as f64;
     let milli = |metres: f64| libm::round(metres * 1e3) as i32;

@@ -1,5 +1,4 @@
-//! Benchmarks of a full table of 16 neighbours: storing a known robot, storing an unknown robot,
-//! and finding the nearest 8.
+//! Benchmarks of a full table of 16 neighbours.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -36,7 +35,6 @@ fn neighbor_table(c: &mut Criterion) {
         assert_eq!(put, Put::Inserted);
     }
     let known = neighbor(8 * 7, 10_000, &mut rng);
-    // Two unknown robots at one place, nearer than all others, evict each other in turn.
     let strangers = [neighbor(60, 1, &mut rng), neighbor(61, 1, &mut rng)];
 
     let mut group = c.benchmark_group("neighbors_16");

@@ -1,5 +1,4 @@
-//! Benchmarks of half-planes by formula and by template, in floating and fixed point, and of the
-//! intersection of ten of them.
+//! Benchmarks of half-planes by formula and by template, and of the intersection of ten of them.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -25,7 +24,7 @@ fn params<S: Scalar>() -> Params<S> {
     Params { horizon_s: S::TWO, separation_s: S::from_milli(50), share: S::HALF }
 }
 
-/// Own velocity, and a robot of the same radius 0.3 m within 5 m that does not overlap.
+/// A robot of radius 0.3 m within 5 m that does not overlap.
 fn pair<S: Scalar>(rng: &mut Rng) -> (Vec2<S>, MovingBall<Vec2<S>>) {
     let radii_m = S::from_milli(600);
     let mut offset_m = Vec2::ZERO;

@@ -81,7 +81,6 @@ fn wire(c: &mut Criterion) {
     group.finish();
 }
 
-/// Cost of a beacon's authentication tag, when sending and when receiving.
 fn sealed(c: &mut Criterion) {
     let header = Header { boot: 1, sender: TO, sequence: 4_711 };
     let [(_, beacon), ..] = messages();
@@ -105,7 +104,6 @@ fn sealed(c: &mut Criterion) {
     });
 }
 
-/// Fourteen benchmarks of tens of nanoseconds do not need five seconds each.
 fn short() -> Criterion {
     Criterion::default().warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2))
 }

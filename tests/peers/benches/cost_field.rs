@@ -1,5 +1,4 @@
-//! Benchmark of one cost field over a window of natural terrain: Staya's reverse search and
-//! `pathfinding`.
+//! Benchmark of one cost field over natural terrain: Staya's reverse search and `pathfinding`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_controller::route::CostField;

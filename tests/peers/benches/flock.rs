@@ -1,8 +1,5 @@
 //! Benchmark of one step of a flock of 100,000: Staya's cell index and boids, on one and on all
-//! threads, and `krabmaga`.
-//!
-//! Every sample starts with the same uniform flock and runs the same few steps, so that both are
-//! measured at the same density. Times are per step of the whole flock.
+//! threads, and `krabmaga`. Each sample runs equally many steps from one uniform flock.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use staya_lab::boids::Flock;

@@ -1,5 +1,4 @@
-//! Encoding and decoding one beacon in each wire format; decoding includes finding the frame in the
-//! inbox.
+//! Encoding one beacon in each wire format, and finding and decoding it in the inbox.
 
 use core::hint::black_box;
 use core::time::Duration;
@@ -37,7 +36,7 @@ fn format<W: Wire>(c: &mut Criterion, name: &str, mut wire: W) {
             wire.encode(header, black_box(&message), &mut out).unwrap()
         });
     });
-    // The previous benchmark may have been filtered out.
+    // A filter may have skipped the previous benchmark.
     out.clear();
     wire.encode(header, &message, &mut out).unwrap();
     c.bench_function(&format!("beacon/decode/{name}"), |bencher| {
@@ -54,7 +53,6 @@ fn formats(c: &mut Criterion) {
     format(c, "mavlink", Mavlink);
 }
 
-/// Benchmarks of tens of nanoseconds do not need five seconds each.
 fn short() -> Criterion {
     Criterion::default().warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2))
 }

@@ -1,6 +1,5 @@
 //! Benchmark of neighbour searches for all boids of a flock at the paper's density (STA, section
-//! 2.3): the project's searches, including the library's k-d tree, and the grid of `krabmaga`. As
-//! in a simulation step, a sample inserts all places and queries once for each boid.
+//! 2.3): the project's searches, including the k-d tree, and the grid of `krabmaga`.
 
 use core::hint::black_box;
 use criterion::measurement::WallTime;

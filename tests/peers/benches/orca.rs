@@ -1,5 +1,4 @@
-//! Benchmarks of ORCA and `dodgy_2d`: half-planes and solution among ten neighbours, and a whole
-//! step of 1000 robots with the neighbour search.
+//! Benchmarks of ORCA and `dodgy_2d`: ten neighbours, and a whole step of 1000 robots.
 
 use core::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};

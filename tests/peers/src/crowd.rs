@@ -39,9 +39,8 @@ impl Crowd {
                 neighbors.push(MovingBall { offset_m, velocity_mps, radii_m: 2.0 * RADIUS_M, tie: Vec2::ZERO });
             }
         }
-        // The robot takes the whole correction. `dodgy_2d` shares it only inside the velocity
-        // obstacle and grants the whole free space outside to both robots; Staya, like ORCA, always
-        // shares.
+        // The robot takes the whole correction: `dodgy_2d` shares it only inside the velocity
+        // obstacle, while Staya, like ORCA, always shares.
         let agent = |position: Vec2<f32>, velocity: Vec2<f32>, responsibility: f32| Agent {
             position: dodgy_2d::Vec2::new(position.x, position.y),
             velocity: dodgy_2d::Vec2::new(velocity.x, velocity.y),

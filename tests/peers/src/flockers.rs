@@ -1,5 +1,4 @@
-//! One flock in Staya's simulator and in `krabmaga`, with the same law, torus and start. Each finds
-//! neighbours and moves agents in its own way.
+//! One flock in Staya's simulator and in `krabmaga`, with the same law, torus and start.
 
 use krabmaga::engine::agent::Agent;
 use krabmaga::engine::fields::field::Field;
@@ -33,7 +32,6 @@ pub fn flock(boids: u32) -> Flock {
     plan.flock_on(boids, [whole; 2])
 }
 
-/// A boid as `krabmaga` expects it: an agent that is also the field's item.
 #[derive(Clone, Copy, Debug)]
 struct Boid {
     id: u32,
@@ -87,8 +85,7 @@ impl World {
         let boids = flock.places().iter().zip(flock.headings());
         let start = (0..).zip(boids).map(|(id, (&[x, y], &heading))| Boid { id, place: Real2D { x, y }, heading });
         Self {
-            // Not "toroidal": with that option, the field's search stops at the borders (version
-            // 0.6.2); without it, the search wraps around.
+            // With the option "toroidal", the field's search stops at the borders (version 0.6.2).
             field: Field2D::new(width, height, plan.closest, false),
             torus: Torus { size_m: [width, height] },
             params: BoidsParams::new(plan.crowded, plan.closest, plan.max_turn, plan.max_turn_away),
@@ -135,8 +132,7 @@ impl Agent for Boid {
         let Some(world) = state.as_any().downcast_ref::<World>() else {
             return;
         };
-        // All boids in the nine surrounding cells. The law skips those out of range and the boid
-        // itself.
+        // The nine surrounding cells; the law skips boids out of range and the boid itself.
         let others = world.field.get_neighbors_within_relax_distance(self.place, world.closest);
         let seen = others.iter().map(|other| {
             let offset = Vec2::new(other.place.x - self.place.x, other.place.y - self.place.y);
@@ -208,8 +204,7 @@ impl Grid {
         Self { field, torus, closest, boids: start }
     }
 
-    /// Inserts all places and counts the neighbours of all boids. The field returns the boids of
-    /// the surrounding cells; those out of range are filtered here.
+    /// Inserts all places and counts the neighbours of all boids.
     pub fn neighbours(&mut self) -> usize {
         for boid in &self.boids {
             self.field.set_object_location(*boid, boid.place);
@@ -243,8 +238,7 @@ mod tests {
             peer.step();
         }
         let same = flock.headings().iter().zip(peer.headings());
-        // Sums over neighbours run in another order, so a boid between two choices may take the
-        // other one.
+        // Sums run in another order, so a boid between two choices may take the other one.
         let alike = same.filter(|(one, other)| (**one - *other).norm() < 1e-4).count();
         assert!(alike >= 1990, "{alike} of 2000");
     }

@@ -1,5 +1,4 @@
-//! Tasks that Staya and comparable crates both solve, so that their results agree before their
-//! speed is compared.
+//! Tasks that Staya and comparable crates both solve, with equal results.
 
 pub mod crowd;
 pub mod flockers;
@@ -21,13 +20,12 @@ pub struct Task {
 
 impl Task {
     /// Creates natural terrain as in KUZ section 5: `peaks` cells of impassability 9, falling by
-    /// one per cell of distance down to 1. Robot and target are in opposite quadrants, and `walls`
-    /// cells are blocked. The result is a function of the arguments.
+    /// one per cell of distance down to 1, with robot and target in opposite quadrants.
     #[must_use]
     pub fn natural(side: u16, peaks: usize, walls: usize, seed: u64) -> Self {
         let mut state = seed;
         let mut below = |limit: u16| {
-            // Knuth's MMIX generator; its upper bits are random enough to scatter peaks.
+            // Knuth's MMIX generator.
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             ((state >> 33) % u64::from(limit)) as i16
         };
@@ -65,14 +63,12 @@ impl Task {
         let none: Option<&VisitMemory<0>> = None;
         let (from, target) = (self.from, self.target);
         if let Some(window) = window {
-            // A robot enclosed by walls has a cost field too; it reaches no cell.
             let _ = field.weights(&self.params(), &window, from, target, [], none);
             field.complete(&self.params());
         }
     }
 
-    /// Cost of travel to the target from every cell by the `pathfinding` crate, without unreachable
-    /// cells.
+    /// Computes the same costs with the `pathfinding` crate, without unreachable cells.
     pub fn pathfinding(&self) -> impl Iterator<Item = (Cell, Cost)> + use<> {
         // No route uses the robot's own cell.
         let others = |(cell, _): &(Cell, Cost)| *cell != self.from;
@@ -80,7 +76,6 @@ impl Task {
         field.into_iter().map(|(cell, (_, cost))| (cell, cost))
     }
 
-    /// Travel time alone, over the whole window.
     fn params(&self) -> RouteParams {
         RouteParams {
             radius: u8::try_from(self.side).unwrap_or(u8::MAX),
@@ -91,7 +86,6 @@ impl Task {
         }
     }
 
-    /// The cells from which one move leads into `cell`, and the cost of that move.
     fn moves_into(&self, cell: Cell) -> impl Iterator<Item = (Cell, Cost)> {
         let params = self.params();
         let u = u32::from(self.get(cell));

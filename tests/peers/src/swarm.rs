@@ -1,5 +1,4 @@
-//! A whole step of collision avoidance for many robots: neighbours from Staya's cell index,
-//! velocities from Staya's ORCA or from `dodgy_2d`.
+//! A step of collision avoidance for many robots, by Staya's ORCA or by `dodgy_2d`.
 
 use crate::crowd::{HORIZON_S, NEIGHBORS, RADIUS_M, SPEED_MPS, STEP_S};
 use dodgy_2d::{Agent, AvoidanceOptions};
@@ -11,7 +10,7 @@ use std::borrow::Cow;
 
 const RANGE_M: f32 = 5.0;
 const CELL_M: f32 = 2.5;
-/// Area per robot, square metres: about 22 robots are in range, of which the nearest ten are used.
+/// About 22 robots are in range, of which the nearest ten are used.
 const GROUND_M2: f32 = 3.6;
 
 /// Robots on a square, each with a preferred velocity.
@@ -148,7 +147,7 @@ mod tests {
         assert!(is_sound(&swarm));
         swarm.dodgy();
         assert!(is_sound(&swarm));
-        // The shares differ outside velocity obstacles (see `crowd`), yet most robots choose alike.
+        // The shares differ outside velocity obstacles (see `crowd`).
         let off = |(a, b): (&[f32; 2], &[f32; 2])| Vec2::new(a[0] - b[0], a[1] - b[1]).norm();
         let alike = own.iter().zip(&swarm.chosen).filter(|pair| off(*pair) < 0.5);
         assert!(alike.count() > 500);

@@ -1,6 +1,5 @@
 //! Compares `controller/mavlink/src/dialect.rs` with the output of `mavlink-bindgen` for its XML,
-//! after removing code for missing features. `STAYA_BLESS=1 cargo test --test dialect` writes the
-//! file.
+//! after removing code for missing features. `STAYA_BLESS=1 cargo test --test dialect` writes it.
 
 use mavlink_bindgen::{XmlDefinitions, generate};
 use std::path::Path;

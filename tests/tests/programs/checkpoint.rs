@@ -1,5 +1,4 @@
-//! Checkpoints at the command line: a killed, stopped or moved run continues with identical
-//! results.
+//! Checkpoints at the command line: an interrupted or moved run continues with identical results.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -19,7 +18,6 @@ fn scenario(name: &str) -> String {
     folder.join(name).to_str().expect("a path in UTF-8").to_owned()
 }
 
-/// Runs `staya run`. Returns its standard error.
 fn run(arguments: &[&str]) -> String {
     let Output { status, stderr, .. } =
         staya(&[&["run", "--quiet"], arguments].concat()).output().expect("staya starts");
@@ -28,7 +26,6 @@ fn run(arguments: &[&str]) -> String {
     stderr
 }
 
-/// The files of a results folder; the summary without duration and paths.
 fn results(out: &str) -> BTreeMap<String, Vec<u8>> {
     let files = fs::read_dir(out).expect("a folder").map(|entry| {
         let path = entry.expect("it can be read").path();
@@ -73,7 +70,6 @@ fn a_run_continues_in_another_process_with_identical_results() {
     }
 }
 
-/// Robots that are on their way for as long as `--ticks` allows.
 const LONG: &str = "name = \"long\"\nticks = 10000000\ntick_s = 0.5\n[terrain]\n\
     uniform = { width = 200, height = 200, classes = 1 }\n[robots.scattered]\ncount = 60\ntravel = 30\n\
     [radio]\nrange_m = 20\nloss = 0.3\njitter_ms = 900\n\
@@ -104,7 +100,7 @@ fn killed_and_stopped_runs_continue() {
             assert_eq!(status.code(), Some(130));
             assert!(String::from_utf8_lossy(&stderr).contains("checkpoint at tick"));
         }
-        // The error names the tick of the checkpoint; the run lasts a little longer.
+        // The run lasts a little longer than its checkpoint.
         let refused = staya(&["run", "--quiet", path, "--out", &again, "--from", &checkpoint, "--ticks", "1"]).output();
         let refused = String::from_utf8_lossy(&refused.expect("staya starts").stderr).into_owned();
         let tick = refused.split("it is at tick ").nth(1).and_then(|rest| rest.split(',').next());

@@ -17,7 +17,6 @@ use tungstenite::Message;
 
 const CROWD: usize = 200;
 
-/// Connections that misbehave in one of seven ways, close and reopen.
 struct Crowd {
     stop: Arc<AtomicBool>,
     connected: Arc<AtomicUsize>,
@@ -25,7 +24,6 @@ struct Crowd {
 }
 
 impl Crowd {
-    /// Opens connections to a page, and waits until all are open.
     fn around(url: &str) -> Self {
         let (stop, connected) = <(Arc<AtomicBool>, Arc<AtomicUsize>)>::default();
         let (stops, connects) = (Arc::clone(&stop), Arc::clone(&connected));
@@ -69,7 +67,6 @@ impl Drop for Crowd {
     }
 }
 
-/// Opens connection `number` with its kind of misbehaviour; it never reads.
 fn misbehave(address: SocketAddr, token: &str, number: usize) -> Option<TcpStream> {
     let mut stream = TcpStream::connect(address).ok()?;
     let head = format!(
@@ -78,19 +75,14 @@ fn misbehave(address: SocketAddr, token: &str, number: usize) -> Option<TcpStrea
     );
     let garbage: Vec<u8> = (0..900_usize).map(|at| (at * (number + 7) % 251) as u8).collect();
     let words = match number % 7 {
-        // Sends nothing.
         0 => Vec::new(),
         // Half a handshake.
         1 => head[..head.len() / 2].to_owned().into_bytes(),
-        // Not a request.
         2 => garbage,
-        // A page that never reads.
         3 => format!("{head}\r\n").into_bytes(),
         // A page that sends invalid messages.
         4 => [format!("{head}\r\n").as_bytes(), &garbage].concat(),
-        // A page of another origin.
         5 => format!("{head}Origin: http://evil.example\r\n\r\n").into_bytes(),
-        // A wrong token.
         _ => head.replacen(token, "0", 1).into_bytes().into_iter().chain(*b"\r\n").collect(),
     };
     let _ = stream.write_all(&words);
@@ -110,12 +102,11 @@ fn scenario(name: &str, overrides: &Overrides) -> Scenario {
     Scenario::load(&path, overrides).expect("a good scenario")
 }
 
-/// Connects a well-behaved page despite the crowd, and checks that it gets frames.
 fn shows_an_honest_page(url: &str) -> JoinHandle<()> {
     let url = url.replace("http:", "ws:").replace("/?", "/live?");
     std::thread::spawn(move || {
         let shown = (0..200).any(|_| {
-            // Pages of the crowd may occupy all places until they are disconnected.
+            // Misbehaving pages may occupy all places until they are disconnected.
             std::thread::sleep(Duration::from_millis(20));
             let Ok((mut page, _)) = tungstenite::connect(&url) else { return false };
             std::iter::repeat_with(|| page.read())
@@ -140,7 +131,6 @@ fn a_run_has_the_same_hash_with_two_hundred_connections() {
         })
         .expect("they can be placed")
     };
-    // Repeats the run until the page has seen it.
     let crowded = loop {
         let outcome = run(&mut watcher);
         assert_eq!((outcome.trace_hash, outcome.ticks), (alone.trace_hash, alone.ticks));
@@ -158,7 +148,6 @@ fn a_run_has_the_same_hash_with_two_hundred_connections() {
     );
 }
 
-/// Reads standard error of a command up to the address of its page.
 fn address(child: &mut Child) -> String {
     let lines = BufReader::new(child.stderr.take().expect("it is piped")).lines();
     let mut urls = lines.map_while(Result::ok).filter(|line| line.contains("/?token="));
@@ -167,8 +156,7 @@ fn address(child: &mut Child) -> String {
 
 #[test]
 fn a_bridge_misses_no_deadline_for_two_hundred_connections() {
-    // Ticks longer than any other work of a busy machine, but shorter than a wait for one of the
-    // crowd.
+    // Longer than any other work of a busy machine, shorter than a wait for a connection.
     let text = "name = \"t\"\nseed = 1\nticks = 100\ntick_s = 0.5\n[radio]\nrange_m = 50\n[plane]\nradius_m = 0.2\n\
          max_speed_mps = 1\n[[plane.robots.list]]\nstart_m = [0, 0]\ngoal_m = [9, 0]\n\
          [[plane.robots.list]]\nstart_m = [9, 0.1]\ngoal_m = [0, 0]\n";

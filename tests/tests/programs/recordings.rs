@@ -16,14 +16,12 @@ fn scenario(name: &str) -> String {
     path.to_str().expect("UTF-8").to_owned()
 }
 
-/// Summary of a run that must succeed.
 fn run(arguments: &[&str]) -> Value {
     let ended = staya(&[&["run", "--json", "--quiet"], arguments].concat());
     assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
     serde_json::from_slice(&ended.stdout).expect("one JSON object")
 }
 
-/// Error line of a command that must fail.
 fn refusal(arguments: &[&str]) -> String {
     let ended = staya(arguments);
     assert_eq!(ended.status.code(), Some(1));

@@ -29,7 +29,6 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Standard error of a run that must fail with one line.
 fn refusal(arguments: &[&str]) -> String {
     let Output { status, stdout, stderr } = staya(arguments).output().expect("staya starts");
     let stderr = text(&stderr);
@@ -241,7 +240,7 @@ fn experiments_check_their_output_folder_first() {
     fs::write(&in_the_way, "mine").expect("write");
     let way = in_the_way.to_str().expect("UTF-8");
     for experiment in ["route", "formation"] {
-        // Such a number of runs would take hours.
+        // A million runs would take hours.
         let most = ["experiment", experiment, "--runs", "1000000", "--out", way];
         let refused = refusal(&most);
         assert!(refused.contains(way) && refused.contains("choose another output directory"), "{refused}");
@@ -283,7 +282,6 @@ fn every_json_command_prints_one_object_and_leaves_no_probe_file() {
     }
 }
 
-/// The folder with the incomplete results of a run into `out`.
 fn partial(out: &str) -> Option<PathBuf> {
     let out = Path::new(out);
     let found = fs::read_dir(out.parent()?).ok()?.flatten().map(|entry| entry.path());
@@ -314,7 +312,6 @@ fn a_full_disk_ends_the_run_and_keeps_the_old_results() {
     assert!(full.contains("trace.csv") && full.contains("free some space"), "{full}");
     assert!(full.contains(kept.to_str().expect("UTF-8")) && full.contains("is unchanged"), "{full}");
     assert_eq!(fs::read(Path::new(&out).join("summary.json")).expect("still there"), before);
-    // The next run removes incomplete results, but no other files.
     let next = staya(&["run", &small, "--quiet", "--ticks", "3", "--out", &out]).output().expect("staya starts");
     assert!(next.status.success());
     assert_eq!(partial(&out), None);
@@ -322,7 +319,6 @@ fn a_full_disk_ends_the_run_and_keeps_the_old_results() {
     assert_eq!(fs::read_to_string(Path::new(&out).join("notes.txt")).expect("kept"), "mine");
 }
 
-/// A robot that can never leave its room.
 const PRISON: &str = "name = \"prison\"\nticks = 4000000000\n[terrain]\nfile = \"prison.map\"\n\
                       [robots]\nlist = [{ start = [0, 0], goal = [4, 0] }]\n";
 
@@ -334,7 +330,6 @@ fn prison(dir: &Path) -> PathBuf {
     path
 }
 
-/// Waits until a run into `out` has written data.
 fn wait_for_series(out: &str, child: &mut std::process::Child) {
     let patience = Instant::now() + Duration::from_secs(120);
     let written = || fs::metadata(partial(out)?.join("series.csv")).ok();

@@ -8,7 +8,6 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// A run takes some hundredths of a second.
 const SCENARIO: &str = "name = 'swap'\nticks = 200\ntick_s = 0.05\n[radio]\nrange_m = 5\n[plane]\nradius_m = 0.15\n\
     max_speed_mps = 0.5\n[plane.robots.circle]\ncount = 12\nradius_m = 2\nnoise_m = 0.05\n";
 const PLAN: &str = "name = 'p'\nscenario = 'swap.toml'\nseeds = 4\nmeasures = ['arrived', 'least_gap_m', 'packets.lost']\n\
@@ -41,7 +40,6 @@ impl Folder {
         text(&stdout)
     }
 
-    /// The error line of a command that must fail.
     fn refused(&self, arguments: &[&str], code: i32) -> String {
         let Output { status, stderr, .. } = self.sweep(arguments).output().expect("staya starts");
         assert_eq!(status.code(), Some(code), "{}", text(&stderr));
@@ -100,7 +98,6 @@ fn any_number_of_shards_gives_identical_bytes() {
         assert_eq!((&json["runs"], json["points"].as_array().map(Vec::len)), (&32.into(), Some(8)));
         assert_eq!(folder.results(&out), alone);
     }
-    // With explicit file names, from another folder.
     let files: Vec<String> = (1..=7).map(|index| format!("of-7/shards/{index}-of-7.csv")).collect();
     let arguments: Vec<&str> =
         ["merge", "plan.toml", "--out", "named"].into_iter().chain(files.iter().map(String::as_str)).collect();
@@ -165,7 +162,6 @@ fn invalid_plans_are_refused_with_place_and_remedy() {
         let said = folder.refused(&arguments, 1);
         assert!(said.contains(what), "{said}");
     }
-    // Rows of a changed plan do not mix with existing ones, which are kept.
     let before = fs::read(folder.path("out/shards/1-of-4.csv")).expect("rows");
     fs::write(folder.path("plan.toml"), PLAN.replace("0.2", "0.3")).expect("room");
     for arguments in [&["plan.toml", "--out", "out", "--resume"][..], &["merge", "plan.toml", "--out", "out"]] {

@@ -18,8 +18,7 @@ const MAX_FORESIGHT: i16 = 3;
 impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Steering>
     FormationGuidance<CELLS, M, F, L, K>
 {
-    /// Collects the other robots with their cells at the end of the own next move. Of more than 32
-    /// robots, those of the template and the leader come first, then the smallest ids.
+    /// At most 32 robots: those of the template and the leader first, then the smallest ids.
     #[inline(never)]
     pub(super) fn seen<S>(
         &self,
@@ -57,8 +56,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         }
     }
 
-    /// Predicts the cell of a robot at the end of the next move, at constant velocity on the
-    /// visible terrain. At most [`MAX_FORESIGHT`] cells away.
+    /// At constant velocity on the visible terrain, at most [`MAX_FORESIGHT`] cells away.
     fn foresee<S>(&self, input: &GuidanceInput<'_, S>, window: &Window<'_>, other: &Neighbor<S>) -> Cell {
         let mut cell = other.cell;
         if !matches!(other.mode, Mode::Cruise | Mode::Forming) || other.heading == Dir::Stay {
@@ -88,8 +86,7 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
         cell
     }
 
-    /// The choice that this law would make in another robot's place (KUZ section 7, item 1); `None`
-    /// if its surroundings are not visible or it is not free to move.
+    /// The choice of this law in another robot's place (KUZ section 7, item 1).
     fn choice_of<S>(
         &self,
         input: &GuidanceInput<'_, S>,

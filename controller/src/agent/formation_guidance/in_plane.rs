@@ -1,5 +1,4 @@
-//! Moving in formation in the plane. Places are points that move with the top leader; routes around
-//! obstacles are those of the grid.
+//! Moving in formation in the plane.
 
 use super::{FormationGuidance, comes_after};
 use crate::agent::cell_follower::CellFollower;
@@ -22,16 +21,14 @@ use serde::{Deserialize, Serialize};
 /// [`FormationGuidance`] on a body that moves in the plane; [`crate::formation::Drive`] is the
 /// control law.
 ///
-/// Leaders, requests and given-up robots are handled as on the grid, as often as [`CellFollower`]
-/// decides. In addition, in each step a follower heads for its place as a point, with the velocity
-/// of its leader. The top leader heads straight for its goal on even visible terrain, at the pace
-/// of the slowest robot in contact. Where the straight line is blocked or costly, both follow the
-/// cells.
+/// Leaders and requests are those of the grid, as often as [`CellFollower`] decides. In each step a
+/// follower heads for its place as a point, with the velocity of its leader, and the top leader
+/// straight for its goal on even terrain, at the pace of the slowest robot in contact. Where the
+/// straight line is blocked or costly, both follow the cells.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationInPlane<S, const CELLS: usize, const M: usize, const F: usize, const L: usize = 0> {
     cells: CellFollower<S, FormationGuidance<CELLS, M, F, L>>,
     beside: GoalOccupancy<S>,
-    /// The last desired velocity as a leader, m/s.
     wish_mps: Vec2<S>,
     waited: Duration,
     is_there: bool,
@@ -54,8 +51,7 @@ impl<S: Scalar> Step<'_, S> {
         self.metres(cell - self.cell) - self.offset_m
     }
 
-    /// The offset of the place that is `offset` cells away from another robot, metres, extrapolated
-    /// by its reported velocity.
+    /// Offset of a place `offset` cells from another robot, extrapolated by its velocity, metres.
     #[inline(never)]
     fn beside(&self, input: &GuidanceInput<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
         other.offset_at(input.state.position, input.now, input.ages.expire_after).xy() + self.metres(offset)
@@ -65,8 +61,7 @@ impl<S: Scalar> Step<'_, S> {
         is_straight(&self.window, (self.cell, self.offset_m, self.cell_m), way_m, is_good)
     }
 
-    /// Whether a follower can go straight: all cells are passable, and none costs more than twice
-    /// the own cell.
+    /// No cell of the way is impassable or costs more than twice the own one.
     fn is_open(&self, way_m: Vec2<S>) -> bool {
         let own = self.window.get(self.cell).unwrap_or(BLOCKED);
         self.is_straight(way_m, &|cell| {
@@ -74,7 +69,6 @@ impl<S: Scalar> Step<'_, S> {
         })
     }
 
-    /// Top speed of other robots at their places, as far as these are visible, m/s.
     fn slowest_mps(&self, own_mps: S, entries: &[TemplateEntry]) -> S {
         let price = |cell: Cell| self.window.get(cell).filter(|&u| u != BLOCKED);
         let own = price(self.cell).unwrap_or(1);
@@ -82,8 +76,7 @@ impl<S: Scalar> Step<'_, S> {
         own_mps * S::from_ratio(own.into(), dearest.into())
     }
 
-    /// Whether a leader can go straight: no visible cell is easier than the cells below its line
-    /// and below the places of the others along it.
+    /// No visible cell is easier than those below the line and below the places of the others.
     fn is_even(&self, way_m: Vec2<S>, entries: &[TemplateEntry]) -> bool {
         let least = self.window.cells().iter().copied().filter(|&u| u != BLOCKED).min();
         let is_dear = |cell: Cell| self.window.get(cell).is_some_and(|u| u != BLOCKED && Some(u) > least);
@@ -97,8 +90,7 @@ impl<S: Scalar> Step<'_, S> {
 impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usize>
     FormationInPlane<S, CELLS, M, F, L>
 {
-    /// Runs `law` in the plane at a cruising speed of `speed_mps`. The speed limit of the body
-    /// holds too, minus a tenth for the top leader.
+    /// Runs `law` at a cruising speed of `speed_mps`, minus a tenth for the top leader.
     #[must_use]
     pub fn new(mut law: FormationGuidance<CELLS, M, F, L>, speed_mps: S) -> Self {
         law.is_rigid = true;
@@ -111,14 +103,13 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         }
     }
 
-    /// The wrapped law of the grid, for inspection.
+    /// The wrapped law of the grid.
     #[must_use]
     pub const fn inside(&self) -> &FormationGuidance<CELLS, M, F, L> {
         self.cells.inside()
     }
 
-    /// Returns the leader and the own place relative to it, cells; `None` if this robot leads or
-    /// goes alone.
+    /// Returns the leader and the own place relative to it, unless this robot leads or is alone.
     fn leader<'a>(&self, input: &GuidanceInput<'a, S>, view: &Template<F>) -> Option<(&'a Neighbor<S>, Cell)> {
         let law = self.inside();
         let (id, offset) = law.top(input, view)?;
@@ -188,8 +179,8 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         Ok(())
     }
 
-    /// Returns whether the robot is at its goal at offset `way_m`, or beside it if another robot
-    /// stands there. Adjusts the wish of a robot that must let another one go first.
+    /// Whether the robot is at its goal, or beside it if occupied. Adjusts the wish of a robot that
+    /// must let another one pass first.
     fn comes_to_rest(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -212,8 +203,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         self.is_there
     }
 
-    /// How far the robots that this leader waits for are behind, metres. 0 when its patience is
-    /// exhausted, or if it goes alone.
+    /// Metres; 0 if patience is exhausted or the robot travels alone.
     fn lag_to_wait_for(
         &mut self,
         input: &GuidanceInput<'_, S>,
@@ -237,7 +227,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
     }
 }
 
-/// Deviation of the last follower behind its place, metres. O(F log N).
 fn lag_m<S: Scalar, const F: usize>(
     input: &GuidanceInput<'_, S>,
     view: &Template<F>,
@@ -291,7 +280,6 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
         if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_some() {
-            // The leader is silent: choose another one now.
             self.cells.decide_anew();
         }
         let mut decision = self.cells.decide(input, here, rng, workspace)?;

@@ -11,9 +11,8 @@ use crate::time::Duration;
 use crate::wire::{Frame, Header, Payload, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
-    /// Returns the id under which the sender of a frame is known: its own id, or
-    /// [`RobotId::duplicate`] for the second robot with that id. `None` for an echo of an own frame,
-    /// and for a beacon with an implausible id or position.
+    /// Returns the sender's id, or [`RobotId::duplicate`] for a second robot. `None` for an own
+    /// echo and for a beacon with an implausible id or position.
     pub(super) fn known_as(
         &mut self,
         frame: &Frame,
@@ -44,14 +43,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.is_believed(id, header, place, listener, out).then_some(id)
     }
 
-    /// Returns a known robot, not a lost one.
     fn known(&self, id: RobotId) -> Option<&Neighbor<S, P>> {
         let all = self.table.as_slice();
         all.binary_search_by_key(&id, |known| known.id).ok().and_then(|at| all.get(at))
     }
 
-    /// The time since the last beacon of `known`: by the clock, or by its sequence numbers if its
-    /// packets were delayed.
+    /// By the clock, or by its sequence numbers if its packets were delayed.
     fn time_since(&self, known: &Neighbor<S, P>, header: Header, listener: &ReceiveContext<'_, S>) -> Duration {
         let window = self.windows.iter().find(|(id, _)| *id == known.id);
         let frames = window.map_or(0, |(_, window)| window.distance(header));
@@ -59,14 +56,12 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         counted.max(known.age(listener.heard_at).unwrap_or(Duration::ZERO))
     }
 
-    /// Whether a beacon comes from the second of two other robots with one id.
     fn is_double(&self, header: Header, place: Position, listener: &ReceiveContext<'_, S>, fastest_mps: S) -> bool {
         let at = listener.heard_at;
         // Duplicate ids are the largest.
         let has_doubles = self.table.as_slice().last().is_some_and(|last| last.id.duplicate_of().is_some());
         let double = if has_doubles { self.known(header.sender.duplicate()) } else { None };
         match (self.known(header.sender), double) {
-            // Then it is the only robot in contact with that id.
             (None, _) => false,
             (Some(known), None) => !is_within(
                 self.image(place, known.position),
@@ -85,7 +80,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         }
     }
 
-    /// Whether robot `id` can be at `place`, or has reported consistent places for long enough.
+    /// Whether `id` can be at `place`, or has reported consistent places for long enough.
     fn is_believed(
         &mut self,
         id: RobotId,
@@ -95,12 +90,10 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         out: &mut Outputs<S>,
     ) -> bool {
         let plausibility = listener.plausibility;
-        // Then no robot is ever in doubt.
         if plausibility.believes_all_places() {
             return true;
         }
-        // The first position of a second robot with one id is accepted, since both robots are
-        // avoided. Further positions of both are checked.
+        // A second robot's first position is accepted, since both are avoided.
         let Some(known) = self.known(id) else {
             return true;
         };
@@ -118,8 +111,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         doubt == Verdict::Settled
     }
 
-    /// Reduces radius and speed of a report to the limits. An event is reported only for the first
-    /// of consecutive violations.
+    /// Reduces radius and speed to the limits. Reports the first of consecutive violations.
     pub(super) fn cut(&self, said: &mut Neighbor<S, P>, plausibility: &PlausibilityLimits<S>, out: &mut Outputs<S>) {
         let (is_large, is_fast) = plausibility.cut(said);
         if !is_large && !is_fast {

@@ -11,11 +11,8 @@ use crate::time::Instant;
 use crate::wire::{Payload, SequenceWindow, Wire};
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
-    /// Stores detected robots in the neighbour table, each merged with its beacons. Call it after
-    /// the frames of a step. A full table keeps the robots in `needed`.
-    ///
-    /// A detection counts as contact for a robot that has been in contact by radio before. A robot
-    /// that never was moves freely when no robot is in sight.
+    /// Runs after the frames of a step. A detection counts as contact only for a robot that was in
+    /// contact by radio; one that never was moves freely when no robot is in sight.
     pub(in super::super) fn see(
         &mut self,
         tracker: &mut Tracker<S>,
@@ -42,8 +39,6 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 report(out, Event::NeighborEvicted(evicted));
             }
             if matches!(put, Put::Inserted | Put::Evicted(_)) {
-                // Frames of a detected robot pass the usual check for duplicates. There are as many
-                // windows as entries.
                 let _ = self.windows.push((id, SequenceWindow::new()));
                 report(out, Event::NeighborFound(id));
             }

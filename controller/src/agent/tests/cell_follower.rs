@@ -61,7 +61,6 @@ impl Guidance<f32> for Counting {
 
 type Told = (GuidanceInput<'static, f32>, InCells<'static, f32>);
 
-/// A body in a cell of 2 m, at an offset from its centre.
 fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
     let input = GuidanceInput {
         land: None,
@@ -101,13 +100,12 @@ where
     law.decide(input, here, &mut Rng::new(1), &mut ())
 }
 
-/// Returns the decision, and the number of decisions of the law inside so far.
+/// Also returns the number of decisions of the law inside.
 fn ask(law: &mut CellFollower<f32, Counting>, told: &Told) -> (Decision<f32>, u32) {
     let decision = decide(law, told).expect("a decision");
     (decision, law.inside().decisions)
 }
 
-/// Returns the velocity and the way point.
 fn motion(decision: &Decision<f32>) -> (Vec3<f32>, Option<Vec3<f32>>) {
     match &decision.action {
         Action::Velocity { wish_mps, way_m } => (*wish_mps, *way_m),
@@ -155,7 +153,6 @@ fn the_law_does_not_decide_again_on_a_border() {
     let counts =
         [(here, 0.9), (there, -0.9), (here, 0.9), (there, -0.6), (there, -0.4)].map(|(cell, x)| count(cell, x));
     assert_eq!(counts, [1, 1, 1, 1, 2]);
-    // The way back behaves alike.
     let counts = [(there, -0.9), (here, 0.9), (here, 0.4)].map(|(cell, x)| count(cell, x));
     assert_eq!(counts, [2, 2, 3]);
 }
@@ -181,13 +178,10 @@ fn the_robot_heads_for_the_centre_of_the_next_cell() {
     let (ahead, length) = ([1.5, 2.25], Vec2::new(1.5_f32, 2.25).norm());
     let (v, way_m) = motion(&decision);
     assert!((v.x - ahead[0] / length).abs() < 1e-6 && (v.y - ahead[1] / length).abs() < 1e-6);
-    // The cell is not the goal of the robot.
     assert_eq!(way_m, None);
-    // The same position, given relative to the next cell, which the robot has not reached yet.
     let (beside, _) = ask(&mut guidance, &told(Cell::new(6, 5), [-0.75, -0.25], 9.0, 0));
     let (v, _) = motion(&beside);
     assert!((v.x / v.y - 0.75 / 2.25).abs() < 1e-6, "{v:?}");
-    // The centre is not passed.
     let near = told(Cell::new(5, 5), [0.03, 0.04], 9.0, 0);
     let (v, _) = motion(&decide(&mut CellFollower::new(Stays, 1.0), &near).unwrap());
     assert!((v.x + 0.3).abs() < 1e-6 && (v.y + 0.4).abs() < 1e-6, "{v:?}");
@@ -244,7 +238,6 @@ fn without_a_speed_or_a_cell_size_there_is_no_decision() {
     }
 }
 
-/// A robot on flat terrain with cells of 2 m.
 #[test]
 fn a_robot_in_the_plane_moves_to_its_goal_cell() {
     let config = AgentConfig::new(RobotId(1), 0.2, STEP);
@@ -273,7 +266,6 @@ fn a_robot_in_the_plane_moves_to_its_goal_cell() {
     }
     cells.dedup();
     assert_eq!(agent.mode(), Mode::Arrived);
-    // Seven cells, three of them diagonal; it may cut a corner.
     assert_eq!(cells.last(), Some(&Cell::new(12, 8)));
     assert!((8..=11).contains(&cells.len()), "{cells:?}");
     assert!(cells.windows(2).all(|pair| pair[0].chebyshev(pair[1]) == 1));

@@ -49,7 +49,7 @@ fn where_is(robot: &Listener, id: u32) -> Option<i32> {
 fn plausible_values_are_accepted_unchanged() {
     let mut robot = listener(CLAIMS);
     for n in 0..50_i32 {
-        // Two metres per second, back and forth, and a jump within the slack.
+        // 2 m/s back and forth, and a jump within the slack.
         let x_mm = 5000 + 200 * (n % 20 - 10).abs() + if n == 33 { 700 } else { 0 };
         let said = beacon(x_mm, |beacon| (beacon.radius_mm, beacon.velocity_mmps) = (400, [2000, 0, 0]));
         let out = robot.step(step_number(n), &frame(20, n as u16, &said));
@@ -74,7 +74,6 @@ fn an_excessive_radius_or_speed_is_reduced_reported_once_and_always_counted() {
         assert!((known.velocity_mps.norm() - 2.0).abs() < 1e-3, "{:?}", known.velocity_mps);
     }
     assert_eq!(told, [(3, Claim::Radius), (3, Claim::Speed)]);
-    // After a plausible beacon, a violation is reported again.
     let _ = robot.step(step_number(10), &frame(3, 10, &beacon(9000, |_| ())));
     let lie = beacon(9000, |beacon| beacon.radius_mm = 65_000);
     assert_eq!(claims(&robot.step(step_number(11), &frame(3, 11, &lie))), [(3, Claim::Radius)]);
@@ -104,8 +103,6 @@ fn duplicate_ids_evict_no_neighbour() {
     assert_eq!(known, [11, 12, 13, 14, 15, 16, 17, 18]);
 }
 
-/// The first jump may be a second robot with that id, so both positions are avoided at once. A jump
-/// from either of them is refused.
 #[test]
 fn a_robot_that_jumps_again_is_refused_until_it_has_settled() {
     let mut robot = listener(CLAIMS);
@@ -139,7 +136,6 @@ fn a_robot_that_always_jumps_is_never_accepted() {
     }
 }
 
-/// The sequence number shows how much time passed since the last beacon.
 #[test]
 fn delayed_packets_do_not_count_as_a_jump() {
     let mut robot = listener(CLAIMS);

@@ -43,7 +43,6 @@ fn a_velocity_command_expires() {
     let _ = robot.step(step_number(5), &[]);
     assert_eq!((robot.velocity_mps, robot.agent.mode()), ([0.0; 2], Mode::Hold));
     assert_eq!(robot.agent.guidance().wish(), &Wish::Hold);
-    // A repeated command starts again, at any time.
     robot.agent.guidance_mut().command(east(500)).unwrap();
     let _ = robot.step(step_number(60), &[]);
     assert_eq!(robot.velocity_mps, [0.5, 0.0]);
@@ -165,7 +164,6 @@ fn on_the_grid_a_cell_replaces_the_own_goal_and_velocities_are_refused() {
     agent.guidance_mut().command(Wish::Cell(Cell::new(5, 9))).unwrap();
     assert_eq!(heading(&mut agent, 1), Some(Dir::North));
     assert_eq!(agent.target(), Some(Cell::new(5, 9)));
-    // An impossible command returns an error and changes nothing.
     let there = Wish::Waypoint { waypoint: place(1000, 0), valid: None };
     for wrong in [east(1000), there] {
         assert_eq!(agent.guidance_mut().command(wrong), Err(WrongTask));
@@ -226,7 +224,6 @@ fn parameters_keep_their_values_and_reject_values_out_of_range() {
         }
     }
     assert_eq!(known, 10);
-    // A law on the grid does not have a speed, and unknown parameters are not set.
     let mut other = route_agent(1);
     assert_eq!(other.parameter(Parameter::Speed), None);
     assert!(!other.set_parameter(Parameter::Speed, 1.0));

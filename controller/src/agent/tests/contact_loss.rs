@@ -1,5 +1,4 @@
-//! Tests of radios that lose packets or fail, and of silent robots: no robots touch, and no robot
-//! waits for ever without need.
+//! Tests of radios that lose packets or fail, and of silent robots.
 
 use super::plane::{Robot, STEP, in_plane, length, one_step_late, orca, place, step_number, waypoint};
 use super::*;
@@ -10,12 +9,11 @@ use crate::scalar::Q16;
 
 pub(super) type Mover<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>>;
 
-/// ORCA among robots of up to 1 m/s, the speed of [`Robot`].
+/// Growth of 1 m/s, the speed of [`Robot`].
 pub(super) fn safety<S: Scalar>() -> OrcaSafety<S, 16> {
     OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: S::ONE, max_m: S::from_milli(200) })
 }
 
-/// Robots on a circle of 2 m at slightly uneven angles, each with a goal on the opposite side.
 fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
     let mover = |i: u32| {
         let mut rng = Rng::keyed(9, 9, seed, i);
@@ -28,8 +26,7 @@ fn circle<S: Scalar>(count: u32, seed: u32) -> Vec<Mover<S>> {
     (0..count).map(mover).collect()
 }
 
-/// Runs until all have arrived, at most `steps`. Returns the least gap and whether all arrived.
-/// `is_lost` drops packets.
+/// Runs until all have arrived. Returns the least gap and whether all arrived.
 pub(super) fn run<S: Scalar>(
     robots: &mut [Mover<S>],
     steps: i32,
@@ -103,7 +100,6 @@ fn no_robots_touch_in_a_crowd_with_long_steps() {
     }
 }
 
-/// Another robot approaches one that falls silent two seconds earlier and stays in the way.
 #[test]
 fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
     fn check<S: Scalar>() {
@@ -112,7 +108,7 @@ fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
             let _ = robot.agent.assign_waypoint(0, &place(to_mm[0], to_mm[1]));
             robot
         };
-        // The third robot keeps the first one in contact, away from its route.
+        // The third robot keeps the first one in contact.
         let mut robots = vec![
             mover(1, [-8.0, 0.02], [8000, 20]),
             mover(2, [0.0, 0.0], [0, 0]),
@@ -126,8 +122,7 @@ fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
     check::<Q16>();
 }
 
-/// Contact with a distant robot (or none), then six seconds of silence. Returns the speed, the
-/// mode, and whether the loss of contact was reported.
+/// Six seconds of silence. Returns speed, mode, and whether a loss was reported.
 fn left_alone(hears: bool, silence: ContactLossPolicy<f32>) -> (f64, Mode, bool) {
     let config = AgentConfig { contact_loss: silence, ..in_plane(1) };
     let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);

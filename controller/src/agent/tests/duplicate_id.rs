@@ -42,7 +42,6 @@ fn duplicate_ids_are_distinct_from_real_ids() {
     );
 }
 
-/// Echoes arrive with any delay, in any order and repeatedly, while the robot moves.
 #[test]
 fn echoes_of_own_frames_are_not_another_robot() {
     let mut robot = walker(3, [0.0; 2], [60_000, 0]);
@@ -57,7 +56,6 @@ fn echoes_of_own_frames_are_not_another_robot() {
         assert!(!out.events.iter().any(is_double));
         said.push(out.outbox.to_vec());
     }
-    // After a restart it receives its own frames from before.
     let mut robot = walker(4, robot.at_m, [60_000, 0]);
     for n in 0..20 {
         let out = robot.step(step_number(n), &said.concat());
@@ -65,8 +63,7 @@ fn echoes_of_own_frames_are_not_another_robot() {
     }
 }
 
-/// Two robots approach each other, each receiving the frames of the previous step. The second one
-/// starts `late` steps later.
+/// Two robots approach each other; the second one starts `late` steps later.
 fn meet(boots: [u8; 2], late: i32) -> [usize; 2] {
     let mut robots = [walker(boots[0], [-4.0, 0.0], [4000, 0]), walker(boots[1], [4.0, 0.02], [-4000, 0])];
     let (mut said, mut noticed) = ([Vec::new(), Vec::new()], [0; 2]);
@@ -136,7 +133,6 @@ fn the_own_duplicate_stays_in_a_full_table_and_its_orders_are_ignored() {
     }
 }
 
-/// A third robot, 4 m from each of two robots with id 5 whose counters are equal or slightly apart.
 #[test]
 fn two_other_robots_with_one_id_are_both_known_and_not_confused() {
     for (apart, boot) in [(0, 0), (1, 0), (5, 0), (40, 0), (0, 1)] {
@@ -144,7 +140,6 @@ fn two_other_robots_with_one_id_are_both_known_and_not_confused() {
         let mut noticed = Vec::new();
         for n in 0..60_u16 {
             let mut inbox = Vec::new();
-            // Frames of each are lost occasionally.
             if n % 5 != 3 {
                 inbox.extend(frame(5, 0, n, &standing(40_000)));
             }
@@ -163,7 +158,6 @@ fn two_other_robots_with_one_id_are_both_known_and_not_confused() {
 }
 
 proptest! {
-    /// One robot moves freely at up to 1 m/s; its frames are lost, repeated, delayed and reordered.
     #[test]
     fn one_robot_is_never_mistaken_for_two(
         turns in proptest::collection::vec((any::<[i8; 2]>(), 0..40_usize, any::<bool>(), 0..3_usize), 1..150),
@@ -177,7 +171,6 @@ proptest! {
             for (at, step) in at.iter_mut().zip(step) {
                 *at += step;
             }
-            // Its reported velocity varies as well.
             let said = frame(5, 0, n as u16, &body_at(at, if x > 0 { [0, 0] } else { step.map(|v| v as i16 * 10) }, Mode::Cruise));
             if !is_lost {
                 let arrives = n + if delay < 30 { 0 } else { delay - 29 };
@@ -189,8 +182,6 @@ proptest! {
     }
 }
 
-/// A robot that is carried away looks like two robots at first; its previous position soon becomes
-/// free.
 #[test]
 fn a_robot_that_was_moved_is_forgotten_at_its_previous_position() {
     let mut robot = Robot::new(&in_plane(7), waypoint::<f32>(), orca(), [0.0; 2]);

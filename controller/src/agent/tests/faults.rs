@@ -1,4 +1,4 @@
-//! Tests of the chain of requests, of leaders that are lost and found, and of orders during a run.
+//! Tests of requests along the chain, lost leaders, and orders during a run.
 
 use super::*;
 use crate::formation::Recovery;
@@ -9,8 +9,7 @@ fn goal(version: u8, x: i16) -> Message {
     Message::Goal(GoalAssignment { to: RobotId::NONE, version, target: Cell::new(x, 5) })
 }
 
-/// The parts of a template for a robot `behind` cells west of the top leader, robot 1, with
-/// `others` neighbours besides the leader.
+/// A template for a robot `behind` cells west of robot 1, with `others` more neighbours.
 fn parts(to: u32, version: u8, behind: i16, others: u32) -> Vec<Message> {
     let neighbors = std::iter::once((1, behind)).chain((20..20 + others).map(|id| (id, 9)));
     let entries: Vec<TemplateEntry> =
@@ -27,7 +26,6 @@ fn requests(out: &Outputs<f32>) -> Vec<Request> {
     requests.collect()
 }
 
-/// A robot in fault or at its goal does not come nearer.
 #[test]
 fn a_leader_does_not_wait_for_a_failed_or_arrived_robot() {
     for (mode, expected) in [(Mode::Cruise, Mode::Hold), (Mode::Fault, Mode::Cruise), (Mode::Arrived, Mode::Cruise)] {
@@ -43,7 +41,6 @@ fn a_leader_does_not_wait_for_a_failed_or_arrived_robot() {
     }
 }
 
-/// After its patience is exhausted, the leader does not wait again.
 #[test]
 fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
@@ -61,7 +58,6 @@ fn a_leader_leaves_a_robot_that_stays_behind_for_too_long() {
     assert!(held.iter().copied().eq(0..patience), "{held:?}");
 }
 
-/// A leader waits only for robots of its own leader chain.
 #[test]
 fn a_leader_does_not_wait_for_a_robot_that_does_not_follow_it() {
     let (mut agent, mut ws) = (formation_agent(1), workspace());
@@ -74,7 +70,6 @@ fn a_leader_does_not_wait_for_a_robot_that_does_not_follow_it() {
     }
 }
 
-/// A template is complete even if one step receives several copies of its parts.
 #[test]
 fn a_template_is_assembled_from_repeated_parts() {
     let (mut agent, mut ws) = (formation_agent(2), workspace());
@@ -85,7 +80,6 @@ fn a_template_is_assembled_from_repeated_parts() {
     assert_eq!(agent.guidance.template().entries.len(), 8);
 }
 
-/// The goal belongs to the formation, so another place in it means another goal.
 #[test]
 fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
     let target_after = |orders: &[&[Message]]| {
@@ -100,7 +94,6 @@ fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
     assert_eq!(target_after(&[&goal]), Some(Cell::new(57, 5)));
     assert_eq!(target_after(&[&goal, &parts]), Some(Cell::new(54, 5)));
     assert_eq!(target_after(&[&parts, &goal]), Some(Cell::new(54, 5)));
-    // An own goal does not depend on the place in the formation.
     let (mut agent, mut ws) = (formation_agent(2), workspace());
     agent.assign_goal(Cell::new(40, 5));
     let inbox = bytes(99, 0, 0, &parts);
@@ -108,7 +101,6 @@ fn a_new_template_moves_the_goal_that_was_given_to_the_formation() {
     assert_eq!(agent.target(), Some(Cell::new(40, 5)));
 }
 
-/// One packet sends the whole column elsewhere during its run.
 #[test]
 fn one_goal_for_all_robots_turns_the_whole_formation() {
     let mut agents = [1, 2, 3].map(formation_agent);
@@ -137,7 +129,6 @@ fn one_goal_for_all_robots_turns_the_whole_formation() {
     assert!(agents.iter().all(|agent| agent.mode() == Mode::Arrived));
 }
 
-/// A column in which all frames of robot 2 between ticks 20 and 60 are lost.
 #[test]
 fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
@@ -157,8 +148,6 @@ fn a_lost_leader_is_forgotten_and_followed_again_when_it_is_back() {
     assert_eq!(leaders, [2, 0, 2]);
 }
 
-/// Beacons with cyclic leaders, with a robot as its own leader, or with a robot that follows its
-/// follower.
 #[test]
 fn cyclic_leader_chains_end() {
     for [second, first] in [[1, 2], [2, 1], [3, 3], [7, 7], [0, 0]] {
@@ -178,8 +167,7 @@ fn cyclic_leader_chains_end() {
     }
 }
 
-/// Robots 3, 2 and 1: the request of robot 3 reaches robot 1 although every second packet is lost,
-/// takes effect once, and expires after robot 3 falls silent for good.
+/// Every second packet is lost, then robot 3 falls silent for good.
 #[test]
 fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin() {
     let mut agents = [1, 2, 3].map(formation_agent);
@@ -188,7 +176,6 @@ fn a_stop_reaches_the_top_leader_over_a_lossy_radio_and_expires_with_its_origin(
     let mut held = vec![];
     for n in 0..130_u32 {
         let heard = core::mem::take(&mut air);
-        // Robot 3 is stuck while the others continue.
         let ahead = if n < 6 { 0 } else { 6 };
         let cells = [16 + ahead, 13 + ahead, 10].map(|x| Cell::new(x, 5));
         for (i, agent) in agents.iter_mut().enumerate() {
@@ -224,7 +211,6 @@ fn a_stop_of_a_restarted_robot_is_cancelled() {
     let inbox = bytes(2, 1, 0, &[beacon()]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(1), &mut ws);
     assert_eq!(agent.mode(), Mode::Cruise);
-    // Its request numbers restart as well.
     let inbox = bytes(2, 1, 1, &[stop(2, 1, 0, RequestKind::Stop)]);
     let _ = agent.step(&inputs(&FLAT, Cell::new(5, 5), &inbox), tick(2), &mut ws);
     assert_eq!(agent.mode(), Mode::Hold);
@@ -245,7 +231,6 @@ fn a_repeated_redirection_is_followed_once() {
     assert_eq!(moved, [true, false, false, false]);
 }
 
-/// A robot that slept for longer than half of the clock's range.
 #[test]
 fn after_a_long_sleep_a_robot_sends_and_no_stop_is_active() {
     for sleep in [60_u32, 36 * 60, 50 * 60, 70 * 60] {
@@ -261,7 +246,6 @@ fn after_a_long_sleep_a_robot_sends_and_no_stop_is_active() {
         assert!(sent(&out).iter().any(is_beacon), "after {sleep} s");
         assert!(out.call_again.since(woken) <= Duration::from_micros(TICK));
         assert_eq!(agent.mode(), Mode::Cruise, "after {sleep} s");
-        // Old requests do not occupy their entries for another half hour.
         let mut late = vec![];
         for n in 1..10 {
             let now = woken + Duration::from_micros(n * TICK);
@@ -272,7 +256,6 @@ fn after_a_long_sleep_a_robot_sends_and_no_stop_is_active() {
     }
 }
 
-/// A window without the robot's own cell contradicts that cell.
 #[test]
 fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
     let one = |width, height, origin| {
@@ -292,8 +275,7 @@ fn windows_without_the_robot_are_a_fault_and_tiny_ones_a_dead_end() {
     assert_eq!(one(1, 1, Cell::new(5, 5)), Mode::Hold);
 }
 
-/// With `Recovery::Def` the top leader heads for a scattered follower instead of standing, even if
-/// asked to stop.
+/// With `Recovery::Def`, even if asked to stop.
 #[test]
 fn a_recovering_leader_heads_for_its_scattered_followers() {
     let go = |recovery| {
@@ -320,7 +302,6 @@ fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
     agent.assign_goal(Cell::new(60, 5));
     let mut asked = vec![];
     for n in 0..5 {
-        // Robot 9 is in the place of robot 2.
         let inbox = bytes(9, 0, n, &[Message::Beacon(beacon_at(2, 5))]);
         let at = Cell::new(5, 5);
         let out = agent.step(&inputs(&FLAT, at, &inbox), tick(n.into()), &mut ws);
@@ -331,7 +312,6 @@ fn strangers_in_a_neighbour_s_place_are_asked_to_choose_another_direction() {
     assert_eq!(asked, [(3, RobotId(9), RequestKind::Redirect)]);
 }
 
-/// The template allows any robot as the leader, and the leader follows a robot out of range.
 #[test]
 fn a_robot_leads_although_its_own_leader_is_out_of_range() {
     let (mut agent, mut ws) = (formation_agent(3), workspace());
@@ -352,13 +332,12 @@ fn a_robot_leads_although_its_own_leader_is_out_of_range() {
     assert_eq!(at.y, 5, "beside its leader, not to its own goal in the north");
 }
 
-/// The window is larger than the search.
 #[test]
 fn terrain_costs_of_the_whole_formation_count_in_any_window() {
     let first = |radius: i16| {
         let side = 2 * radius + 1;
         let at = Cell::new(0, 0);
-        // Mud from y = -2 down to -4 below robot 2's place, three cells south of the leader's.
+        // Mud at y = -4 to -2, below robot 2's place, three cells south of the leader's.
         let cells: Vec<u8> = (-radius..=radius)
             .flat_map(|y| (-radius..=radius).map(move |x| (x, y)))
             .map(|(x, y)| if x > 0 && (-4..=-2).contains(&y) { 60 } else { 1 })

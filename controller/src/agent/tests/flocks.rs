@@ -1,4 +1,4 @@
-//! Tests of the flocks, with one agent per robot and packets between them.
+//! Tests of the flocks with packets between robots.
 
 use super::plane::{Robot, length, one_step_late, place, step_number};
 use super::*;
@@ -7,7 +7,6 @@ use crate::flock::goal::{GoalParams, Stage};
 use crate::flock::lattice::{Gain, LatticeParams};
 use core::ops::Range;
 
-/// Runs robots that all receive each other.
 fn run<G>(robots: &mut [Robot<f32, G, Unguarded>], steps: Range<i32>)
 where
     G: for<'a> Guidance<f32, Input<'a> = InPlane<'a, f32>, Workspace = ()>,
@@ -112,7 +111,6 @@ fn a_goal_flock_follows_goals_that_move() {
     let Stage::Goal(drawn) = robot.agent.guidance().stage() else { panic!("still at {:?}", robot.at_m) };
     let was_m = [2.0, -2.0][drawn];
     assert!(distance(robot.at_m, [10.0, was_m + 0.4 * 60.0]) <= 0.6, "{:?}", robot.at_m);
-    // A waypoint without a velocity replaces the moving one.
     let index = u8::try_from(drawn).unwrap();
     assert!(robot.agent.assign_waypoint(index, &place(10_000, 0)));
     run(&mut robots, 600..1600);
@@ -134,7 +132,7 @@ fn boids_keep_their_speed_and_align_their_headings() {
         let speed = distance(robot.velocity_mps, [0.0; 2]);
         assert!((speed - 0.5).abs() < 1e-3, "{speed}");
         let off = distance(robot.velocity_mps, robots[0].velocity_mps);
-        // Up to 127 degrees apart at first; they keep swaying about their common heading.
+        // Up to 127 degrees apart at first.
         assert!(off < 0.2, "{:?}", robot.velocity_mps);
     }
 }
@@ -154,7 +152,6 @@ fn a_stationary_boid_starts_in_a_random_direction() {
     assert_ne!(heading(1, 1), heading(1, 2));
 }
 
-/// Each robot sends its flock, and does not gather with robots of another one.
 #[test]
 fn goal_flocks_of_different_numbers_do_not_gather() {
     let parted = |other| {

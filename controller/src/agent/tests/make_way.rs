@@ -2,7 +2,6 @@
 
 use super::*;
 
-/// A corridor one cell wide, from west to east through the window.
 fn corridor() -> [u8; 121] {
     let mut cells = [BLOCKED; 121];
     cells[55..66].fill(1);
@@ -16,8 +15,7 @@ fn request_of(out: &Outputs<f32>) -> Option<(RobotId, RequestKind)> {
     })
 }
 
-/// Returns the step in which robot 2, which moves along `way` in a corridor, asks robot `other` at
-/// `place` to redirect.
+/// Returns the step in which robot 2, moving along `way`, asks robot `other` to redirect.
 fn asks(other: u32, place: Cell, mode: Mode, way: &[Cell]) -> Option<u16> {
     let (mut agent, mut ws) = (route_agent(2), workspace());
     agent.assign_goal(Cell::new(60, 5));
@@ -64,7 +62,6 @@ fn a_robot_without_another_route_moves_back() {
 #[test]
 fn an_arrived_robot_makes_way_to_varying_cells() {
     let mut closed = corridor();
-    // No exit leads out of the window.
     (closed[55], closed[65]) = (BLOCKED, BLOCKED);
     for cells in [corridor(), closed] {
         let mut first = Vec::new();

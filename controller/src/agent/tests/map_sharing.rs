@@ -20,7 +20,6 @@ fn sharer(id: u32, maps: Option<MapParams>) -> Sharer {
     Agent::new(&config, law, Unguarded, Postcard)
 }
 
-/// Runs a step on known terrain. Returns the next cell and the bytes sent.
 fn step(
     agent: &mut Sharer,
     land: &dyn Fn(Cell) -> u8,
@@ -79,8 +78,7 @@ fn a_map_patch_follows_each_beacon_and_is_stored_by_receivers() {
     assert_eq!(known.ticks_16(), Some(64));
 }
 
-/// Returns the moves to `goal` around a wall on open terrain, while `liar` sends in each tick;
-/// `None` if it is not reached.
+/// While `liar` sends in each tick; `None` if the goal is not reached.
 fn moves_among_lies(liar: &dyn Fn(Cell) -> [LandPatch; 3]) -> Option<u32> {
     let land = |cell: Cell| if cell.x == 20 && (-6..7).contains(&cell.y) { BLOCKED } else { 2 };
     let goal = Cell::new(40, 0);

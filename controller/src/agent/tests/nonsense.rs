@@ -13,7 +13,6 @@ use proptest::prelude::*;
 
 const OWN: RobotId = RobotId(3);
 
-/// Cells near the origin, at the ends of the coordinates, and anywhere.
 fn cell() -> impl Strategy<Value = Cell> {
     let coordinate = || {
         prop_oneof![
@@ -26,7 +25,7 @@ fn cell() -> impl Strategy<Value = Cell> {
     (coordinate(), coordinate()).prop_map(|(x, y)| Cell::new(x, y))
 }
 
-/// Valid frames. Most come from few robots, concern this one and refer to each other.
+/// Valid frames, mostly from few robots, which concern this one and refer to each other.
 pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
     let few = || prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
     let sender = few().prop_filter("somebody sends it", |id| id.is_some());
@@ -51,7 +50,6 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
             Message::Waypoint(waypoint) => waypoint.to = to,
             Message::Key(key) => key.to = to,
             Message::KeyHeld(held) => held.to = to,
-            // Near the robot, or anywhere.
             Message::Land(patch) if to == OWN => patch.corner = crate::land::tile_of(here),
             Message::Land(_) | Message::Payload(_) => {}
         }
@@ -66,13 +64,12 @@ struct Step {
     frames: Vec<(Header, Message)>,
     noise: Vec<u8>,
     own: CellState,
-    /// South-west corner, size and content of the window.
+    /// South-west corner, width, height and content.
     window: Option<(Cell, u16, u16, Vec<u8>)>,
     pose: [u32; 6],
 }
 
 impl Step {
-    /// Whether the robot can decide with this input.
     fn makes_sense(&self) -> bool {
         let land = self.land();
         land.is_some_and(|land| land.get(self.own.cell).is_some())
@@ -88,7 +85,6 @@ impl Step {
     }
 }
 
-/// An inbox: frames, then noise.
 pub(super) fn noise_and_frames(frames: &[(Header, Message)], noise: &[u8]) -> Vec<u8> {
     let mut inbox = heapless::Vec::<u8, 1024>::new();
     for (header, message) in frames {
@@ -120,7 +116,6 @@ fn own() -> impl Strategy<Value = CellState> {
     (cell(), busy).prop_map(|(cell, busy)| CellState { cell, busy: Duration::from_micros(busy) })
 }
 
-/// Steps separated by a tick, or by any time.
 fn steps() -> impl Strategy<Value = Vec<Step>> {
     let later = prop_oneof![6 => Just(TICK as u32), 1 => any::<u32>()];
     let heard = (vec(frame(), 0..8), vec(any::<u8>(), 0..30));
@@ -190,7 +185,6 @@ fn template() -> impl Strategy<Value = Template<TEMPLATE>> {
     })
 }
 
-/// Checks the invariants after each step.
 fn survives<G>(law: G, goal: Option<Cell>, steps: &[Step]) -> Result<(), TestCaseError>
 where
     G: for<'a> Guidance<f32, Input<'a> = OnGrid<'a>, Destination = ToCells, Workspace = GridWorkspace<CELLS>>,

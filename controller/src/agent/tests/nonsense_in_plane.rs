@@ -1,5 +1,4 @@
-//! Tests of robots in the plane with arbitrary input: the command is finite and within the
-//! abilities of the body.
+//! Tests of robots in the plane with arbitrary input: commands stay finite and within limits.
 
 use super::nonsense::{frame, noise_and_frames};
 use super::*;
@@ -18,7 +17,6 @@ use proptest::prelude::*;
 
 type Any = Agent<f32, AnyGuidance<f32, CELLS, VISITS, TEMPLATE>, NEIGHBORS, AnySafety<f32, 16>>;
 
-/// Values of real sensors, and any others.
 fn number() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![
         6 => -5.0..5.0_f32,
@@ -48,7 +46,6 @@ fn obstacle() -> impl Strategy<Value = Obstacle<f32>> {
     ]
 }
 
-/// Robots nearby or anywhere, and waypoints.
 fn near() -> impl Strategy<Value = (Header, Message)> {
     let header = (0..2_u8, 1..7_u32, 0..40_u16).prop_map(|(boot, sender, sequence)| Header {
         boot,
@@ -174,7 +171,6 @@ proptest! {
         let mut agent = Any::new(&config, guidance(which.0, speed, length), safety(which.1, length, speed), Postcard);
         let there = (0, Waypoint::fixed(Position::from_mm([9000, 9000, 0])));
         let tasks = [Task::Cell(Cell::new(7, 7)), Task::Waypoints(heapless::Vec::from_array([there]))];
-        // Boids accept neither task.
         prop_assert!(tasks.iter().filter(|task| agent.assign(task).is_ok()).count() <= 1);
         let mut ws = workspace();
         for step in &steps {

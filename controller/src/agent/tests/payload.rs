@@ -9,7 +9,6 @@ use proptest::prelude::{any, prop_assert_eq, proptest};
 
 type Told = (u8, i16, f32);
 
-/// Stands still, sends a constant payload, and stores received ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 struct Teller {
     own: Told,

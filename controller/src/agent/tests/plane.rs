@@ -21,7 +21,6 @@ pub(super) fn in_plane<S: Scalar>(id: u32) -> AgentConfig<S> {
     AgentConfig { seed: 1, ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP) }
 }
 
-/// A robot whose received states are one step old.
 pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
     AgentConfig { latency: STEP, ..in_plane(id) }
 }
@@ -43,7 +42,7 @@ pub(super) fn length([x, y]: [f64; 2]) -> f64 {
     Vec2::new(x, y).norm()
 }
 
-/// An agent with a body that follows commands at once.
+/// A body that follows commands at once.
 pub(super) struct Robot<S: Scalar, G: Guidance<S>, A> {
     pub(super) agent: Agent<S, G, 8, A>,
     pub(super) at_m: [f64; 2],
@@ -58,7 +57,7 @@ where
         Self { agent: Agent::new(config, guidance, safety, Postcard), at_m, velocity_mps: [0.0; 2] }
     }
 
-    /// Runs one step with a speed limit of 1 m/s.
+    /// The speed limit is 1 m/s.
     pub(super) fn step(&mut self, now: Instant, inbox: &[u8]) -> Outputs<S> {
         let number = |x: f64| S::from_f64(x).unwrap();
         let [vx, vy] = self.velocity_mps.map(number);
@@ -88,7 +87,6 @@ where
     }
 }
 
-/// Stores the nearby robots and stands still.
 #[derive(Default)]
 struct Onlooker {
     seen: Vec<Nearby<f32>>,
@@ -122,7 +120,6 @@ impl Guidance<f32> for Onlooker {
     }
 }
 
-/// The beacon of a body of equal size.
 pub(super) fn body_at(position_mm: [i32; 2], velocity_mmps: [i16; 2], mode: Mode) -> Message {
     let ([x, y], [vx, vy]) = (position_mm, velocity_mmps);
     Message::Beacon(Beacon {
@@ -203,7 +200,6 @@ fn an_invalid_radius_is_sent_as_zero() {
     }
 }
 
-/// Returns whether a stationary robot in `mode` evades an approaching one.
 fn evades(mode: Mode) -> bool {
     let guidance = Onlooker { is_broken: mode == Mode::Fault, ..Onlooker::default() };
     let coming = body_at([1000, 50], [-1000, 0], Mode::Cruise);
@@ -293,7 +289,7 @@ fn a_silent_neighbour_is_extrapolated_then_grows_then_expires() {
     assert_eq!(sights[31], None);
 }
 
-/// Two robots swap their places head on. Returns their positions after each step.
+/// Two robots swap places head on. Returns their positions after each step.
 fn swap<S: Scalar>() -> Vec<[[f64; 2]; 2]> {
     let mut one = Robot::new(&one_step_late(1), waypoint::<S>(), orca(), [-2.0, 0.0]);
     let mut two = Robot::new(&one_step_late(2), waypoint::<S>(), orca(), [2.0, 0.0]);
@@ -362,7 +358,6 @@ fn a_desired_velocity_of_nan_is_ignored() {
     assert_eq!(out.command, Command::Velocity(Vec3::ZERO));
 }
 
-/// The goal is set locally or by radio; the robot stays idle and gives way.
 #[test]
 fn a_goal_on_the_grid_changes_nothing_for_a_law_with_waypoints() {
     let crowding = body_at([2 * RADIUS_MM + 60, 0], [-900, 0], Mode::Cruise);
@@ -384,7 +379,6 @@ fn a_goal_on_the_grid_changes_nothing_for_a_law_with_waypoints() {
     assert_eq!(after_three(false, &[crowding, goal]), idle);
 }
 
-/// Each law that moves by velocities, with a goal, on a body that cannot move.
 #[test]
 fn a_robot_without_a_speed_is_in_fault_and_stands() {
     use crate::flock::{boids::BoidsParams, goal::GoalParams, lattice::LatticeParams};
@@ -409,7 +403,6 @@ fn a_robot_without_a_speed_is_in_fault_and_stands() {
     check(BoidsGuidance::new(BoidsParams::new(0.3, 1.5, 0.05, 0.02), 0.5));
 }
 
-/// A law chosen at run time can receive the input of another one.
 #[test]
 fn the_input_of_another_law_is_a_fault() {
     type Any = AnyGuidance<f32, CELLS, VISITS, TEMPLATE>;

@@ -1,5 +1,4 @@
-//! Tests of the paper's formation (KUZ algorithm 2), branch by branch: a column of three on flat
-//! terrain, robot 1 in front.
+//! Tests of KUZ algorithm 2: a column of three on flat terrain, robot 1 in front.
 
 use super::*;
 use crate::formation::published::PublishedParams;
@@ -8,7 +7,7 @@ use crate::grid::UNIT;
 type Law = PublishedFormation<CELLS, VISITS, TEMPLATE>;
 type Published = Agent<f32, Law, NEIGHBORS>;
 
-/// r0: lost above four cells in total, kept again within one.
+/// Lost above four cells in total, kept again within one.
 fn agent(id: u32) -> Published {
     let places: Vec<Cell> = (0..3).map(|i| Cell::new(-3 * i, 0)).collect();
     let template = Template::from_graph(&places, &[(0, 1), (1, 2)], id as usize - 1, 1).unwrap();
@@ -19,7 +18,7 @@ fn agent(id: u32) -> Published {
     agent
 }
 
-/// The beacon of robot `id`, which follows `leader`, `off` cells east of its place.
+/// `off` cells east of its place.
 fn at(id: u32, off: i16, leader: u32) -> Beacon {
     let x = 50 - 3 * (id as i16 - 1) + off;
     Beacon { leader: RobotId(leader), target: Cell::new(90, 50), heading: Dir::East, ..beacon_at(x, 50) }
@@ -31,7 +30,6 @@ struct Told {
     mode: Mode,
 }
 
-/// Runs a step of robot `id`, `off` cells east of its place, with these received messages.
 fn step(agent: &mut Published, n: u16, id: u32, off: i16, heard: &[(u32, Message)]) -> Told {
     let numbered = (10 * n..).zip(heard);
     let inbox: Vec<u8> =
@@ -69,7 +67,7 @@ fn the_leader_found_first_stays_the_leader() {
     assert_eq!(three.leader(), RobotId::NONE, "nobody was heard yet");
     let _ = step(&mut three, 1, 3, 0, &hears(&[(2, at(2, 0, 1))]));
     assert_eq!(three.leader(), RobotId(2));
-    // Outside eps it is not found any more, but line 4 chooses the leader only at t = 0.
+    // Outside eps it is not found, but line 4 chooses the leader only at t = 0.
     let _ = step(&mut three, 2, 3, 0, &hears(&[(2, at(2, 20, 1))]));
     assert_eq!(three.leader(), RobotId(2));
 }
@@ -81,7 +79,6 @@ fn a_robot_too_far_behind_requests_a_stop_and_heads_for_its_place() {
     let told = step(&mut three, 1, 3, 0, &hears(&[(2, at(2, 7, 1))]));
     assert_eq!(told.asks, [(2, RequestKind::Stop)]);
     assert_eq!((told.moves[0], told.mode), (Dir::East, Mode::Forming));
-    // Meanwhile the place stays the target.
     let told = step(&mut three, 2, 3, 5, &hears(&[(2, at(2, 7, 1))]));
     assert_eq!(told.mode, Mode::Forming);
     let told = step(&mut three, 3, 3, 7, &hears(&[(2, at(2, 7, 1))]));
@@ -93,7 +90,6 @@ fn a_robot_too_far_behind_requests_a_stop_and_heads_for_its_place() {
 fn a_leader_with_a_distant_follower_heads_for_def_and_requests_a_stop() {
     let mut two = agent(2);
     let _ = step(&mut two, 0, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, 0, 2))]));
-    // Robot 3 is eight cells behind, so the sum of deviations points west.
     let told = step(&mut two, 1, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, -8, 2))]));
     assert_eq!((told.asks, told.mode), (vec![(1, RequestKind::Stop)], Mode::Forming));
     let told = step(&mut two, 2, 2, 0, &hears(&[(1, at(1, 0, 0)), (3, at(3, -8, 2))]));

@@ -47,7 +47,6 @@ fn only_fresh_authentic_frames_are_obeyed_and_all_others_are_counted() {
     assert_eq!(target, Some(Cell::new(20, 5)));
     let (out, target) = hear(&said(&mut friend, 1, &goal(40)), 2);
     assert_eq!((out.received, target), (1, Some(Cell::new(40, 5))));
-    // Its own frames are accepted with the key.
     let mut listener = wire(b"swarm");
     let mut outbox = out.outbox.as_slice();
     let beacon = listener.next_frame(&mut outbox).unwrap();

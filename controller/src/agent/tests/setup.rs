@@ -59,7 +59,6 @@ fn setups() -> impl Iterator<Item = Setup> {
     })
 }
 
-/// Returns the digests of an agent with one neighbour after each step.
 fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
     let agent = setup.agent::<S, CELLS, VISITS, NEIGHBORS, HALF_PLANES, Postcard, 0>();
     let mut agent = agent.unwrap();

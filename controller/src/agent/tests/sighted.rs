@@ -31,7 +31,6 @@ fn seer<S: Scalar>(id: u32, at_m: [f64; 2], goal: Waypoint<S>) -> Seer<S> {
     robot
 }
 
-/// Detects an anonymous body of equal size.
 fn look<S: Scalar>(robot: &mut Seer<S>, other_m: [f64; 2], now: Instant) -> crate::neighbor::Sighted {
     recognize(robot, None, other_m, now)
 }

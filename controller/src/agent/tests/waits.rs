@@ -9,7 +9,7 @@ use crate::rand::Rng;
 use crate::scalar::Q16;
 use proptest::prelude::*;
 
-/// Returns the waits of a robot that moves 10 m east while the others repeat their messages.
+/// Waits of a robot that moves 10 m east while the others repeat their messages.
 fn waits(others: &[Message], steps: u16) -> Vec<Option<Wait>> {
     let mut robot = Robot::new(&in_plane(9), waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(10_000, 0));
@@ -30,7 +30,6 @@ fn an_advancing_robot_reports_no_wait() {
 
 #[test]
 fn robots_in_the_way_are_reported() {
-    // A row without gaps that does not give way.
     let row: Vec<_> = (-3..=3).map(|i| body_at([1000, i * 420], [0, 0], Mode::Fault)).collect();
     let waits = waits(&row, 40);
     assert_eq!(waits[0], None);
@@ -52,7 +51,6 @@ fn a_robot_without_contact_waits_for_the_radio() {
 
 #[test]
 fn a_wall_is_reported_as_the_way_and_a_door_as_a_turn() {
-    // A robot at a door, 1 m wide, in a wall of 40 m; another one comes out.
     let door = |half: f32| {
         let wall = |from: f32, to: f32| Obstacle::Wall([Vec2::new(1.5, from), Vec2::new(1.5, to)]);
         [wall(-20.0, -half), wall(half, 20.0)]
@@ -77,7 +75,6 @@ fn a_wall_is_reported_as_the_way_and_a_door_as_a_turn() {
     assert_eq!(last(&door(5.0), &[]), None);
 }
 
-/// The wall relative to a point `x_m` farther east.
 fn moved(wall: &Obstacle<f32>, x_m: f32) -> Obstacle<f32> {
     match wall {
         Obstacle::Wall(ends) => Obstacle::Wall(ends.map(|end| end + Vec2::new(x_m, 0.0))),
@@ -141,8 +138,7 @@ fn a_robot_beside_its_goal_takes_it_when_it_becomes_free() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Up to six robots have one goal, or goals closer together than a body: all arrive, one of
-    /// them at the goal.
+    /// Goals closer together than a body: all robots arrive, one of them at the goal.
     #[test]
     fn robots_with_one_goal_settle_around_it(
         angles in prop::collection::vec(0.0..1.0, 2..6),
@@ -155,7 +151,6 @@ proptest! {
                 let angle = (f64::from(i) + 0.5 * off) / count * core::f64::consts::TAU;
                 let at_m = [2.5 * libm::cos(angle), 2.5 * libm::sin(angle)];
                 let mut robot = Robot::new(&one_step_late(i + 1), waypoint(), safety(), at_m);
-                // Each goal is beyond the centre.
                 let goal = at_m.map(|x| (-x / 2.5 * f64::from(apart_mm)) as i32);
                 let _ = robot.agent.assign_waypoint(0, &place(goal[0], goal[1]));
                 robot

@@ -3,7 +3,6 @@
 use super::*;
 use crate::land::{LandPatch, PATCH_TILES};
 
-/// Stores the calls.
 #[derive(Default)]
 struct Listener {
     redirected: bool,

@@ -9,7 +9,7 @@ const TO: RobotId = RobotId(7);
 
 type Assembler = TemplateAssembler<F>;
 
-/// A template whose fields all identify it by `mark`.
+/// All fields identify it by `mark`.
 fn template(mark: u8, len: usize) -> Template<F> {
     let entry =
         |k: usize| TemplateEntry { offset: Cell::new(k as i16, mark.into()), id: RobotId(k as u32), hops: 1 + k as u8 };
@@ -21,7 +21,6 @@ fn parts(version: u8, template: &Template<F>) -> StdVec<TemplateAssignment> {
     TemplateAssignment::split(TO, version, *slot, *offset, entries).unwrap().collect()
 }
 
-/// Puts all parts and returns the templates that were completed.
 fn put_all<'a>(
     assembler: &mut Assembler,
     parts: impl IntoIterator<Item = &'a TemplateAssignment>,
@@ -162,7 +161,6 @@ fn newer_version_replaces_unfinished_and_finished_ones() {
         assert_eq!(whole.len(), usize::from(finished));
         let new_parts = parts(0, &new);
         assert_eq!(put_all(&mut assembler, &new_parts[..1]), []);
-        // Late parts of the old version neither complete it nor disturb the new one.
         assert_eq!(put_all(&mut assembler, &old_parts), []);
         assert_eq!(put_all(&mut assembler, &new_parts[1..]), [new]);
         assert_eq!(put_all(&mut assembler, &old_parts), []);
@@ -205,7 +203,6 @@ proptest! {
         let parts = parts(version, &sent);
         let mut assembler = Assembler::new();
         let mut missing = (0..parts.len()).collect::<std::collections::BTreeSet<_>>();
-        // The parts missing from `order` follow at the end.
         let drawn = order.iter().map(|index| index.index(parts.len()));
         for part in drawn.chain(0..parts.len()) {
             let completes = missing.remove(&part) && missing.is_empty();
@@ -214,8 +211,6 @@ proptest! {
         }
     }
 
-    /// Up to 100 successive versions with late, repeated and lost parts: only whole templates come
-    /// out, each as sent, and never an older one after a newer one.
     #[test]
     fn any_mix_of_versions_returns_only_templates_that_were_sent(
         start: u8,
@@ -237,16 +232,14 @@ proptest! {
                 finished = Some(count);
             }
         }
-        // The newest version always gets through at the end, if it has not before.
+        // The newest version gets through at the end.
         if let Some(count) = newest.filter(|_| newest != finished) {
             let whole = put_all(&mut assembler, &of(count));
             prop_assert_eq!(whole, [sent[count].clone()]);
         }
     }
 
-    /// Parts with arbitrary content and so few versions and numbers that they often collide. The
-    /// result never mixes versions, and each of its entries was sent for that place in a part of
-    /// that version.
+    /// So few versions and numbers that they often collide.
     #[test]
     fn arbitrary_parts_never_panic_or_mix_versions(
         start: u8,

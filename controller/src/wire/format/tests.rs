@@ -10,7 +10,6 @@ fn a_format_without_state_adds_nothing_to_a_digest() {
     assert_eq!(digest(&(1_u8, Postcard)), digest(&1_u8));
 }
 
-/// Bytes with many zeros, as the splitter sees a stream of frames.
 fn stream() -> impl Strategy<Value = std::vec::Vec<u8>> {
     vec(prop_oneof![Just(0), 0..4_u8], 0..40)
 }

@@ -16,7 +16,7 @@ const LAST: RobotId = MAX_TAGGED_ROBOT;
 const FAR: Cell = Cell::new(i16::MIN, i16::MAX);
 const HEADER: Header = Header { boot: 7, sender: RobotId(12), sequence: 0x0102 };
 
-/// [`beacon`] under [`HEADER`], encoded by hand from the description of the format.
+/// [`beacon`] under [`HEADER`], encoded by hand.
 const GOLDEN_BEACON: [u8; 48] = [
     0x06, 0x03, 0x07, 0x0C, 0x02, 0x01, 0x04, 0x40, 0x42, 0x0F, 0x03, 0x39, 0x30, 0x01, 0x05, 0x5A, 0xFD, 0xFF, 0xFF,
     0x01, 0x01, 0x01, 0x02, 0xFA, 0x01, 0x01, 0x04, 0xFF, 0xFF, 0x96, 0x02, 0x03, 0x0A, 0xFE, 0xFF, 0x03, 0x90, 0x01,
@@ -99,7 +99,6 @@ fn encoded(header: Header, message: &Message, tag: Option<[u8; TAG_LEN]>) -> Std
     out.to_vec()
 }
 
-/// Whether the robot numbers fit into a tagged frame.
 fn fits(header: Header, message: &Message) -> bool {
     let leader = match message {
         Message::Beacon(beacon) => beacon.leader,
@@ -108,7 +107,6 @@ fn fits(header: Header, message: &Message) -> bool {
     header.sender.max(leader) <= MAX_TAGGED_ROBOT
 }
 
-/// Makes a valid frame, without delimiter, of any content.
 fn seal(content: &[u8]) -> StdVec<u8> {
     let mut content = content.to_vec();
     content.extend(CRC.checksum(&content).to_le_bytes());
@@ -148,7 +146,6 @@ fn the_longest_message_of_each_kind_reaches_its_bound() {
 fn frames_fit_into_the_packets_of_common_radios() {
     assert_eq!(Beacon::MAX_FRAME_LEN, 60);
     assert_eq!(Request::MAX_FRAME_LEN - TAG_LEN, 22);
-    // One more entry would not fit, neither with a tag nor with large robot numbers.
     assert_eq!(TemplateAssignment::MAX_FRAME_LEN, 48);
     const { assert!(TemplateAssignment::MAX_FRAME_LEN + CELL + 5 + 1 > 57) };
 }
@@ -283,7 +280,6 @@ fn a_cut_frame_is_refused_at_every_length_but_a_lost_delimiter_is_accepted() {
     }
 }
 
-/// The messages in a stream with flipped bits, and the number of rejected frames.
 fn received(stream: &[u8]) -> (StdVec<Frame>, usize) {
     let mut refused = 0;
     let read = frames(stream).filter_map(|frame| decode(frame).map_err(|_| refused += 1).ok());
@@ -339,8 +335,7 @@ fn every_two_bit_error_is_detected_unless_it_moves_a_zero() {
 
 #[test]
 fn one_in_65536_random_errors_passes_the_crc_and_fewer_parse() {
-    // Damage beyond the guarantees of the polynomial: 8 to 23 bits anywhere. Expected to pass the
-    // CRC: 400,000 / 65,536 = 6.
+    // 8 to 23 flipped bits anywhere; expected to pass the CRC: 400,000 / 65,536 = 6.
     let mut rng = Rng::new(1);
     let mut accepted = 0;
     let mut passed = 0;
@@ -366,7 +361,6 @@ fn one_in_65536_random_errors_passes_the_crc_and_fewer_parse() {
     assert!(accepted + passed <= 20, "{accepted} accepted, {passed} passed");
 }
 
-/// Decodes a body with the deserializer; `None` unless it is complete.
 #[cfg(feature = "host")]
 fn by_postcard(body: &[u8]) -> Option<(Header, Message)> {
     let (read, trailing) = postcard::take_from_bytes::<(Header, Message)>(body).ok()?;
@@ -467,7 +461,6 @@ proptest! {
         likely.extend(&bytes);
         for content in [bytes, likely] {
             if let Ok(frame) = decode(&seal(&content)) {
-                // An accepted message can be encoded again.
                 let tag = frame.tag.filter(|_| fits(frame.header, &frame.message));
                 let frame = Frame { tag, ..frame };
                 let again = encoded(frame.header, &frame.message, frame.tag);

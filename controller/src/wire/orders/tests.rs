@@ -9,7 +9,7 @@ const MEMORY: Duration = Duration::from_millis(5_000);
 const OWN: RobotId = RobotId(9);
 const A: RobotId = RobotId(2);
 const B: RobotId = RobotId(3);
-/// A start time from which the clock wraps within each test.
+/// The clock wraps within each test.
 const START: Instant = Instant::from_micros(u32::MAX - 150_000);
 
 fn after(millis: i32) -> Instant {
@@ -24,7 +24,7 @@ fn request(origin: RobotId, number: u8, kind: RequestKind, valid_ms: u16) -> Req
     Request { to: OWN, origin, number, kind, valid_ms }
 }
 
-/// Receives a request that its sender makes for itself; returns (accepted, new).
+/// Returns (accepted, new).
 fn receive<const S: usize>(
     orders: &mut Orders<S>,
     sender: RobotId,
@@ -52,7 +52,6 @@ fn a_stop_lasts_for_its_validity_and_repeats_do_not_prolong_it() {
     assert_eq!(orders.stopped_until(after(900)), Some(after(1_000)));
     assert!(orders.is_stopped(after(999)));
     assert!(!orders.is_stopped(after(1_000)));
-    // A late repeat does not renew the stop; a new request does.
     assert_eq!(receive(&mut orders, A, 7, Stop, after(2_000)), REPEATED);
     assert!(!orders.is_stopped(after(2_000)));
     assert_eq!(receive(&mut orders, A, 8, Stop, after(2_000)), NEW);
@@ -81,7 +80,6 @@ fn the_robot_is_stopped_until_the_last_active_stop_ends() {
     assert!(orders.receive(frame(A, 0), &long, START).is_new);
     assert_eq!(receive(&mut orders, B, 1, Stop, START), NEW);
     assert_eq!(orders.stopped_until(START), Some(after(65_535)));
-    // Longer than requests are remembered; the stop remains in force nevertheless.
     assert!(orders.is_stopped(after(65_534)));
     assert!(!orders.is_stopped(after(65_535)));
     let none = request(B, 2, Stop, 0);
@@ -170,8 +168,7 @@ fn of_two_entries_without_a_stop_the_staler_is_evicted() {
     assert_eq!(receive(&mut orders, B, 1, Resume, after(5)), NEW);
 }
 
-/// A radio link between two robots that loses, duplicates and delays packets, so that packets
-/// overtake each other.
+/// Loses, duplicates and delays packets, so that they overtake each other.
 struct Radio {
     rng: Rng,
     loss_percent: u32,
@@ -194,26 +191,22 @@ impl Radio {
     }
 }
 
-/// One request in the model and its fate.
 struct Asked {
     kind: RequestKind,
     valid_ms: i32,
     sends: u32,
     delivered: Option<i32>,
-    /// How often it was acknowledged, replaced or expired.
+    /// Acknowledged, replaced or expired.
     ends: u32,
     expired: bool,
 }
 
-/// A robot makes random requests to another for 20 s over `radio`. Both sides are compared with a
-/// model that identifies each request by its position in the order of asking. Returns how many
-/// expired.
+/// Random requests for 20 s, compared with a model. Returns how many expired.
 fn converse(mut radio: Radio, start: Instant) -> u32 {
     let retry = Retry::default();
     let mut requests = Requests::<4>::new(A, 3, retry);
     let mut orders = Orders::<4>::new(MEMORY);
     let mut asked: StdVec<Asked> = StdVec::new();
-    // Position of each pending request, indexed by number.
     let mut places = [usize::MAX; 256];
     let (mut to_b, mut to_a) = (StdVec::new(), StdVec::new());
     let mut decisive: Option<usize> = None;

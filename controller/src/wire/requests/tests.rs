@@ -5,7 +5,7 @@ use std::vec::Vec as StdVec;
 const OWN: RobotId = RobotId(1);
 const A: RobotId = RobotId(2);
 const B: RobotId = RobotId(3);
-/// A start time from which the clock wraps within each test.
+/// The clock wraps within each test.
 const START: Instant = Instant::from_micros(u32::MAX - 150_000);
 
 fn after(millis: i32) -> Instant {
@@ -45,7 +45,6 @@ fn a_request_is_sent_at_once_and_then_once_per_interval() {
     for millis in 0..200 {
         assert_eq!(poll(&mut requests, after(millis)), []);
     }
-    // 200 ms and at most a quarter more.
     let again = requests.poll_at(START).unwrap();
     assert!(!again.is_before(after(200)) && again.is_before(after(250)));
     let before = again - Duration::from_micros(1);
@@ -74,7 +73,6 @@ fn a_request_expires_with_its_validity_but_not_before_its_first_send() {
     let mut requests = requests::<1>();
     for valid_ms in [0, 300] {
         requests.ask(A, OWN, Stop, valid_ms, START).unwrap();
-        // Polled late: it is still sent once, and then abandoned at once.
         let late = poll(&mut requests, after(400));
         assert_eq!(late.len(), 2);
         assert!(matches!(late.as_slice(), [Due::Send(_), Due::Expired(_)]));
@@ -113,7 +111,6 @@ fn a_repeated_request_changes_nothing_and_its_opposite_replaces_it() {
     assert_eq!(requests.len(), 1);
     assert_eq!(sent(&poll(&mut requests, after(60))), [resume]);
     assert_eq!(requests.acknowledged(A, &ack(stop)), None);
-    // Another matter, another robot or another origin makes another request.
     requests.ask(A, OWN, Redirect, 1_000, after(60)).unwrap();
     requests.ask(A, B, Stop, 1_000, after(60)).unwrap();
     assert_eq!(requests.len(), 3);

@@ -63,7 +63,6 @@ fn a_seed_can_be_unwrapped_only_by_its_robot_and_for_its_generation() {
             assert_eq!(Seed::unwrap(&own(3), 5, &damaged), None, "byte {at}");
         }
     }
-    // All keys derived from the master differ.
     let keys =
         [master().own_key(RobotId(1)), master().own_key(RobotId(2)), master().seed(1).key(1), master().seed(2).key(2)];
     for (at, key) in keys.iter().enumerate() {
@@ -73,7 +72,6 @@ fn a_seed_can_be_unwrapped_only_by_its_robot_and_for_its_generation() {
     assert_eq!(std::format!("{:?}", master().seed(1)), "Seed(secret)");
 }
 
-/// A complete key change that excludes the third robot.
 #[test]
 fn a_robot_without_the_new_key_is_excluded_after_the_change() {
     let mut operator = operator();
@@ -93,7 +91,6 @@ fn a_robot_without_the_new_key_is_excluded_after_the_change() {
             assert!(matches!(read(&mut robots[at], &frame), Ok(Message::Key(_))));
             assert_eq!(robots[at].held(), Some((1, phase)));
             assert_eq!(read(&mut robots[1 - at], &frame), Err(DecodeError::Foreign), "somebody else's");
-            // The two robots receive each other at every step of the key change.
             assert_eq!((hears(&mut robots, 0, 1), hears(&mut robots, 1, 0)), (Ok(()), Ok(())), "{phase:?} {id}");
         }
         let out = Err(DecodeError::Forged);
@@ -104,7 +101,6 @@ fn a_robot_without_the_new_key_is_excluded_after_the_change() {
     }
 }
 
-/// The strongest attack by an insider: orders in the name of the operator.
 #[test]
 fn only_the_operator_can_give_orders() {
     let mut operator = operator();
@@ -117,13 +113,11 @@ fn only_the_operator_can_give_orders() {
     operator.say(RobotId(2), &goal(2), &mut out).unwrap();
     assert_eq!(read(&mut listener, &out), Ok(goal(2)));
     assert_eq!(read(&mut listener, &out), Err(DecodeError::Replayed));
-    // Robots may still send requests and acknowledgements to each other.
     let ack = Message::Ack(Ack { to: RobotId(2), boot: 0, number: 1, accepted: true });
     let frame = said(&mut insider, 1, 7, &ack);
     assert_eq!(read(&mut listener, &frame), Ok(ack));
 }
 
-/// An attacker with the key can use up the counters of other robots, but not those of the next key.
 #[test]
 fn counters_used_up_by_an_insider_are_free_with_the_next_key() {
     let mut operator = operator();
@@ -144,7 +138,6 @@ fn a_robot_that_was_off_needs_one_message() {
     let mut late = robot(1, 0, 4);
     assert!(read(&mut late, &key(&mut operator, 1, 7, KeyPhase::Forget)).is_ok());
     assert_eq!((late.held(), late.ring().generation()), (Some((7, KeyPhase::Forget)), 7));
-    // The stored seed is all it needs at its next start.
     let [Some((generation, seed)), None] = late.ring().seeds() else {
         panic!("one seed");
     };
@@ -173,10 +166,7 @@ fn the_operator_accepts_a_report_only_under_the_robots_own_key() {
 }
 
 proptest! {
-    /// Key frames are lost, repeated, delayed, reordered, damaged and misdirected; robots restart
-    /// in between with their stored keys or with none. The generation of a running robot never goes
-    /// back, and each key that it holds was sent to it. After the operator repeats the last phase
-    /// to all, these robots receive each other, but not the excluded one.
+    /// Robots also restart with their stored keys or with none.
     #[test]
     fn a_key_change_completes_despite_faults(steps in vec((0_u32..3, 1_u16..4, 0_u8..3, any::<u8>(), 0_usize..400), 0..60)) {
         let mut operator = operator();
@@ -185,7 +175,6 @@ proptest! {
         let mut starts = 0;
         for (index, generation, phase, fate, at) in steps {
             let phase = [KeyPhase::Hear, KeyPhase::Speak, KeyPhase::Forget][usize::from(phase)];
-            // The third robot is excluded from generation 1 on.
             if index < 2 {
                 recorded.push(key(&mut operator, index + 1, generation, phase));
             }
@@ -193,7 +182,6 @@ proptest! {
             let before = wire.held().unwrap().0;
             match fate % 8 {
                 0 => {}
-                // Restarts with its stored keys, or with its first key.
                 1 | 2 => {
                     starts += 1;
                     let [stored, _] = wire.ring().seeds();
@@ -210,7 +198,6 @@ proptest! {
                         prop_assert_eq!(wire.held().unwrap().0, before);
                     }
                 }
-                // Any frame that was ever sent, at any time and to any robot.
                 _ => {
                     if let Some(frame) = recorded.get(recorded.len().saturating_sub(1 + at % 8)) {
                         let _ = read(wire, frame);

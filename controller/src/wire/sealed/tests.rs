@@ -33,7 +33,7 @@ fn said<W: Wire>(by: &mut W, header: Header) -> StdVec<u8> {
     out.to_vec()
 }
 
-/// Removes the COBS encoding; like [`stuffed`], plain loops written from the paper.
+/// Plain loops written from the paper, like [`stuffed`].
 fn unstuffed(frame: &[u8]) -> StdVec<u8> {
     let mut content = StdVec::new();
     let mut rest = frame;
@@ -60,8 +60,7 @@ fn a_sealed_frame_has_the_golden_bytes() {
     let (body, crc) = content.split_at(content.len() - 2);
     assert_eq!(X25.checksum(body).to_le_bytes(), crc);
     let (text, code) = body.split_at(body.len() - 4);
-    // version | tagged, boot, sender, sequence, goal: kind, to, version, x, y (zigzag); epoch 5 <<
-    // 12.
+    // version | tagged, boot, sender, sequence, goal: kind, to, version, x, y (zigzag); epoch.
     assert_eq!(text, [0x83, 3, 12, 2, 1, 4, 2, 4, 0xFD, 0xFF, 8, 0, 0x00, 0x50, 0, 0]);
     assert_eq!(code, &Mac::new(&key()).of(&[text])[..4]);
     let plain = said(&mut Postcard, header(12, 0x0102));
@@ -82,7 +81,6 @@ fn a_frame_with_the_key_is_accepted_once_and_others_never() {
     let forged = said(&mut stranger, header(1, 1));
     assert_eq!(receiver.decode(&forged), Err(DecodeError::Forged));
     assert_eq!(stranger.decode(&frame), Err(DecodeError::Forged));
-    // The rejected frames did not advance any counter.
     assert!(receiver.decode(&said(&mut sealed(0), header(1, 1))).is_ok());
 }
 
@@ -128,7 +126,6 @@ fn frames_per_start_and_starts_are_limited() {
     let before = out.clone();
     let end = sender.encode(header(1, 0), &goal(), &mut out);
     assert_eq!((end, &out), (Err(EncodeError::Exhausted), &before));
-    // The first counter of the next start exceeds all of these.
     let mut receiver = sealed(0);
     let first = said(&mut sealed(1), header(1, 0));
     let last = before.strip_suffix(&[0]).unwrap();
@@ -149,7 +146,6 @@ fn a_restarted_sender_is_accepted_and_its_old_frames_are_not() {
     for frame in &recorded {
         assert_eq!(receiver.decode(frame), Err(DecodeError::Replayed));
     }
-    // Its memory was lost: rejected until its starts are counted past the last one.
     let forgotten = said(&mut sealed(0), header(1, 0));
     assert_eq!(receiver.decode(&forgotten), Err(DecodeError::Replayed));
 }
@@ -201,14 +197,13 @@ fn a_full_table_refuses_new_senders_and_an_attacker_cannot_fill_it() {
     assert!(receiver.decode(&said(&mut sealed(0), header(2, 1))).is_ok());
 }
 
-/// A frame of any epoch, as an attacker with the key can make it.
+/// As an attacker with the key can make it.
 fn said_in(epoch: u32, header: Header) -> StdVec<u8> {
     let mut by = sealed(0);
     by.epochs.epoch = epoch;
     said(&mut by, header)
 }
 
-/// The attack: a recorded frame of the last epoch is replayed after each start of the receiver.
 #[test]
 fn a_frame_of_the_last_epoch_locks_no_sender_out() {
     let evil = said_in(u32::MAX, header(1, u16::MAX));
@@ -219,7 +214,6 @@ fn a_frame_of_the_last_epoch_locks_no_sender_out() {
             assert_eq!(receiver.decode(&evil), Err(DecodeError::Ahead));
             assert!(receiver.decode(&said(&mut sender, header(1, n))).is_ok());
         }
-        // The next start of its sender is not locked out either.
         assert!(receiver.decode(&said(&mut sealed(3), header(1, 0))).is_ok());
     }
 }
@@ -241,7 +235,6 @@ fn starts_are_accepted_up_to_the_limit_ahead_of_sender_receiver_or_mission() {
     assert!(known.decode(&last(700)).is_ok());
     // The owner's remedy for a sender that was locked out.
     assert!(known.decode(&said(&mut sealed(701 + REACH_STARTS), header(1, 0))).is_ok());
-    // No start lies beyond the last one.
     let mut end = sealed((1 << 20) - 1);
     assert!(end.decode(&said_in(u32::MAX, header(1, 0))).is_ok());
 }
@@ -253,7 +246,6 @@ fn the_state_does_not_hold_the_key() {
     assert_ne!(digest(&sealed(1)), digest(&sealed(2)));
 }
 
-/// Appends a valid checksum, as an attacker would.
 fn summed(body: &[u8]) -> StdVec<u8> {
     stuffed(&[body, &X25.checksum(body).to_le_bytes()].concat())
 }
@@ -268,7 +260,6 @@ proptest! {
         let bit = bit % (content.len() * 8);
         content[bit / 8] ^= 1 << (bit % 8);
         prop_assert!(sealed(0).decode(&summed(&content)).is_err());
-        // A flipped bit in the transmitted frame is detected, too.
         let mut frame = frame;
         let bit = bit % (frame.len() * 8);
         frame[bit / 8] ^= 1 << (bit % 8);
@@ -295,7 +286,6 @@ proptest! {
         }
     }
 
-    /// Whatever frames an attacker replays in whatever order, no frame is accepted twice.
     #[test]
     fn any_replay_is_refused(order in vec(0_usize..20, 0..100)) {
         let mut sender = sealed(0);

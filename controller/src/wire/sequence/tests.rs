@@ -8,7 +8,6 @@ fn frame(boot: u8, sequence: u16) -> Header {
     Header { boot, sender: RobotId(1), sequence }
 }
 
-/// A window that received these frames of boot 0.
 fn after(sequences: &[u16]) -> SequenceWindow {
     let mut window = SequenceWindow::new();
     for sequence in sequences {
@@ -65,7 +64,6 @@ fn a_rebooted_sender_is_accepted_at_once_and_its_old_frames_are_refused() {
     assert_eq!(window.check(frame(1, 1)), Arrival::New);
     assert_eq!(window.check(frame(2, 9)), Arrival::Rebooted);
     assert_eq!(window.check(frame(1, 2)), Arrival::PreviousBoot);
-    // The window remembers only one earlier boot.
     assert_eq!(window.check(frame(0, 503)), Arrival::Rebooted);
 }
 
@@ -85,7 +83,6 @@ fn accepted_and_latest_arrivals() {
     }
 }
 
-/// A reference model whose memory is unlimited and does not wrap.
 #[derive(Default)]
 struct Model {
     seen: BTreeSet<i64>,
@@ -109,8 +106,7 @@ impl Model {
 }
 
 proptest! {
-    /// Each step skips some frames and delivers the next one, or one up to 99 before it: losses,
-    /// duplicates, reordering and any number of wraps.
+    /// Losses, duplicates, reordering up to 99 frames, and any number of wraps.
     #[test]
     fn the_window_agrees_with_an_unlimited_model(
         start in any::<u16>(),

@@ -2,7 +2,6 @@
 
 use super::*;
 
-/// An order to go to `x_mm`.
 fn order(to: u32, version: u8, index: u8, x_mm: i32) -> Message {
     Message::Waypoint(WaypointAssignment {
         to: RobotId(to),
@@ -50,7 +49,6 @@ fn a_rejected_waypoint_is_accepted_when_it_is_repeated() {
         })
     };
     let (first, second) = (goal(0, [40_000, 0, 0]), goal(1, [0, 40_000, 0]));
-    // The first goal was lost at first.
     let mut robot = Robot::new(&in_plane(1), guidance(), Unguarded, [0.0; 2]);
     for (n, message) in [second.clone(), first, second].into_iter().enumerate() {
         let _ = robot.step(step_number(n as i32), &bytes(99, 0, n as u16, &[message]));
@@ -64,7 +62,7 @@ fn a_waypoint_moves_across_wraps_of_the_clock() {
     fn check<S: Scalar>(tolerance: f64) {
         let velocity_mps = Vec3::new(S::from_milli(-50), S::from_milli(125), S::ZERO);
         let mut place = Waypoint { velocity_mps, ..place::<S>(1000, 2000) };
-        // Four hours: the clock wraps three times, and passes half of its range six times.
+        // Four hours: the clock wraps three times.
         for minute in 0..240 {
             let now = (0..minute).fold(step_number(0), |now, _| now + Duration::from_millis(60_000));
             let way = place.way(Position::from_mm([1000, 0, 0]), now);
@@ -108,10 +106,8 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
             arrived.push(n);
         }
     }
-    // It passes the first two within three own radii, as if a robot occupied them, and reaches the
-    // last one exactly.
     assert!(nearest_m[0] < 0.6 && nearest_m[1] < 0.6 && nearest_m[2] < 0.01, "{nearest_m:?}");
-    // 15 m minus two corners, at 1 m/s: it did not stop at an intermediate waypoint.
+    // 15 m minus two corners, at 1 m/s without stops.
     assert!((130..150).contains(&arrived[0]) && arrived.len() > 40, "{:?}", arrived.first());
     assert!(robot.agent.assign_waypoint(0, &place(0, 0)));
     for n in 200..300 {
