@@ -15,10 +15,9 @@ const MAX_EVALS: usize = 2000;
 
 /// A Norton-Rice law; alpha and beta have the unit of x.
 ///
-/// p(x) = (alpha m / beta^2) (x / alpha)^m exp(-m (alpha^2 + x^2) / (2 beta^2)) I_{m-1}(m x alpha /
-/// beta^2) for x > 0. With sigma^2 = beta^2 / m, (X / sigma)^2 is a noncentral chi-square with 2m
-/// degrees of freedom and noncentrality (alpha / sigma)^2. m = 1 is Rice's law, alpha -> 0
-/// Nakagami's.
+/// With s = beta^2 / m, p(x) = (alpha / s) (x / alpha)^m exp(-(alpha^2 + x^2) / 2s) I_{m-1}(x alpha
+/// / s) for x > 0. X^2 / s is a noncentral chi-square with 2m degrees of freedom and noncentrality
+/// alpha^2 / s. m = 1 is Rice's law, alpha -> 0 Nakagami's.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct NortonRice {
     m: f64,
