@@ -4,9 +4,6 @@ use crate::flock::Plan;
 use crate::flock::closing::Closing;
 use clap::Args;
 
-/// c1 of alpha- and gamma-agents and the reference's speed, which the paper does not give, are the
-/// best of those tried: A: 50 and 1. C: 10 and 0.2. D, E: 10, 200 (beta) and 2, with a reference
-/// that moves at 3/7 d per second. B has no gains.
 #[derive(Args, Clone, Debug)]
 pub struct FlockArgs {
     #[command(flatten)]
