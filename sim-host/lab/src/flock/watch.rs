@@ -91,6 +91,7 @@ impl Record for Run {
 }
 
 impl Run {
+    /// Writes the run to a file and creates its folder.
     pub fn keep(&self, file: &Path) -> Result<()> {
         let bytes = postcard::to_stdvec(self).context("a run as bytes")?;
         let folder = file.parent().unwrap_or(Path::new(""));

@@ -48,6 +48,7 @@ fn in_rows(index: u32, row: u32, count: u32) -> [f64; 2] {
 }
 
 impl Plan {
+    /// Builds the scenario of one run of a case.
     #[must_use]
     pub fn scenario(&self, case: Case, seed: u64) -> Scenario {
         let count = self.robots.unwrap_or_else(|| case.robots());
