@@ -32,7 +32,6 @@ pub struct Pair {
 }
 
 impl Default for Pair {
-    /// The paper's worked example.
     fn default() -> Self {
         Self { places_m: [[2.0, -3.0], [-2.0, 3.0]], radii_m: [1.0, 1.0], horizon_s: 2.0 }
     }

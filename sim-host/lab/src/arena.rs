@@ -8,7 +8,6 @@ use staya_sim::radio::RadioParams;
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario, Start, Target};
 use staya_sim::world::plane::{Abilities, Solid};
 
-/// Highest speed that a beacon can represent.
 pub(super) const FASTEST_MPS: f64 = 32.0;
 
 #[derive(Clone, Debug)]
@@ -58,12 +57,10 @@ pub(super) fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
 
 /// Mean 0 (Box and Muller).
 pub(super) fn normal(rng: &mut Rng, deviation: f64) -> f64 {
-    // 1 - u is never 0.
     let length = libm::sqrt(-2.0 * libm::log(1.0 - uniform(rng, 0.0, 1.0)));
     deviation * length * libm::cos(2.0 * std::f64::consts::PI * uniform(rng, 0.0, 1.0))
 }
 
-/// Draws before the arena counts as full.
 const TRIES: u32 = 1000;
 
 /// Draws starts with these `targets`, at least `apart_m` from each other; `None` if there is no

@@ -195,7 +195,6 @@ impl Plan {
         }
     }
 
-    /// Answers a query on a map that is too large for the router's search.
     fn planned(&self, query: &Query) -> Answer {
         let RouteParams { norm, corner_cutting, .. } = self.params();
         let route = optimal::route(&self.benchmark.land, query.start, query.goal, norm, corner_cutting);

@@ -49,9 +49,7 @@ pub fn route(terrain: &Terrain, from: Cell, to: Cell, norm: Norm, corner_cutting
 pub struct Planner {
     /// With a blocked border around the map.
     land: Vec<u8>,
-    /// Cost from the start, indexed like `land`.
     cost: Vec<u64>,
-    /// Cells with the cost at which they were inserted.
     buckets: Vec<Vec<(u64, u32)>>,
     stride: usize,
 }
@@ -141,7 +139,6 @@ impl Planner {
             .is_none_or(|beside| beside.iter().all(|offset| self.land[at.wrapping_add_signed(*offset)] != BLOCKED))
     }
 
-    /// Settles cells by their costs until the goal is settled or no cell is left.
     fn spread(&mut self, goal: usize, moves: &[Step; 8], corner_cutting: bool) {
         let mut waiting = 1_usize;
         let mut number = 0_u64;
@@ -175,7 +172,6 @@ impl Planner {
 struct Step {
     dir: Dir,
     offset: isize,
-    /// Orthogonal neighbours of a diagonal move.
     beside: Option<[isize; 2]>,
     length: u64,
 }
@@ -185,7 +181,6 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Relaxes all moves until nothing changes.
     fn by_definition(land: &Terrain, from: Cell, norm: Norm, corner_cutting: bool) -> Vec<u64> {
         let cells = || (0..land.height() as i16).flat_map(|y| (0..land.width() as i16).map(move |x| Cell::new(x, y)));
         let mut costs = vec![UNKNOWN; land.cells().len()];

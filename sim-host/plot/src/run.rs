@@ -62,7 +62,6 @@ pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
     Some(charts.fold(Panels::new("Formation over time"), Panels::with))
 }
 
-/// A noisy curve is pale, with its running mean on top.
 fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -> Chart {
     let chart = chart.size(760.0, 300.0);
     let colour = colour::nth(index);
@@ -126,7 +125,6 @@ pub(super) fn packets(history: &History) -> Panels {
         )
 }
 
-/// Middle, length (both in the clock's unit) and sum of neighbouring points.
 fn bin(points: &[SeriesPoint], clock: &Clock) -> (f64, f64, PacketCounts) {
     let mut sum = PacketCounts::default();
     let mut ticks = 0;

@@ -5,7 +5,6 @@ use super::font;
 use super::look::Look;
 use super::ticks::{self, Tick};
 
-/// Font size.
 const NUMBER: f64 = 11.5;
 
 /// Overhang of numbers at the ends of the x axis, less than the margins there.
@@ -86,7 +85,6 @@ impl Axes {
 struct Extent {
     x: Option<[f64; 2]>,
     y: Option<[f64; 2]>,
-    /// Whether there are marks, which need space at the ends of the x axis.
     marks: bool,
     bars: bool,
 }

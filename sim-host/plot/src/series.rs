@@ -65,7 +65,6 @@ pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]
             Data::Intervals(points) => points.iter().filter_map(|[x, y, ..]| place(look, *x, *y)).collect(),
             Data::Line(_) | Data::Bars(_) => continue,
         };
-        // Marks that overlap within half a unit are drawn once.
         let mut taken = BTreeSet::new();
         for point in points.into_iter().filter(inside) {
             if taken.insert(point.map(|value| (value * 2.0) as i32)) {

@@ -8,7 +8,6 @@ use std::path::Path;
 
 /// Largest side of a picture, pixels.
 pub const MAX_PIXELS: u32 = 16_384;
-/// Brightness of the least passable class.
 const DARKEST: u8 = 60;
 
 /// Brightness of an impassability from 1 to `classes`: 255 for 1, then linear; 0 for walls.
@@ -52,7 +51,6 @@ pub fn render(terrain: &Terrain, scale: u32) -> (u32, u32, Vec<u8>) {
     (width, height, pixels)
 }
 
-/// Rows from the north, counted from 0.
 fn file_rows(terrain: &Terrain) -> impl Iterator<Item = (u16, &[u8])> {
     let width = usize::from(terrain.width());
     (0..terrain.height()).map(move |file_row| {
@@ -94,7 +92,6 @@ fn png(terrain: &Terrain, scale: u32) -> Result<Vec<u8>, TerrainError> {
         .map_err(|error| parameter_error(error.to_string(), "choose a smaller scale"))
 }
 
-/// 8 bits per channel, row by row from the top.
 pub(crate) fn encode_png(
     width: u32,
     height: u32,
@@ -109,7 +106,6 @@ pub(crate) fn encode_png(
     Ok(bytes)
 }
 
-/// Equal neighbours are merged.
 fn svg(terrain: &Terrain, scale: u32) -> String {
     let classes = classes(terrain);
     let (columns, rows) = (terrain.width(), terrain.height());

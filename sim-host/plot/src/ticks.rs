@@ -23,7 +23,6 @@ pub fn sound(low: f64, high: f64) -> [f64; 2] {
     if high - low > 1e-9 * largest && high - low > 1e-150 {
         return [low, high];
     }
-    // A range of width 0 gets a margin.
     let half = if largest == 0.0 { 0.5 } else { largest * 0.1 };
     [low - half, high + half]
 }
@@ -35,7 +34,6 @@ struct Step {
 }
 
 impl Step {
-    /// Smallest step that divides `span` into at most `most` parts.
     fn new(span: f64, most: usize) -> Self {
         let wanted = span / most.max(1) as f64 * (1.0 - 1e-12);
         let exponent = libm::floor(libm::log10(wanted)) as i32;
@@ -148,7 +146,6 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     };
     let fine = [marks(&[1, 2, 5], 1), marks(&[1], 1)];
     if let Some(fits) = fine.into_iter().find(|ticks| ticks.len() <= most + 1) {
-        // Less than a decade contains at most one power of ten.
         return if fits.len() >= 2 { fits } else { linear(low, high, most) };
     }
     (2..).map(|every| marks(&[1], every)).find(|ticks| ticks.len() <= most + 1).unwrap_or_default()

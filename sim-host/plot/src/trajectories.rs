@@ -70,7 +70,6 @@ pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u
     canvas.height = top + map.area[3] + map::FOOTER + 6.0;
     canvas.clip(Some(map.area));
     map.ground(&mut canvas);
-    // One rectangle for each vertical run.
     for cells in changing.chunk_by(|below, cell| below.x == cell.x && below.y + 1 == cell.y) {
         let ([left, bottom], high) = (map.place(corner_m(terrain, cells[0])), map.cell * cells.len() as f64);
         canvas.rectangle([left, bottom - high, map.cell, high], Some(CHANGING), None);
@@ -136,7 +135,6 @@ fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
     ways
 }
 
-/// The map, or the part around all paths and targets if that is small.
 fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain> {
     let sides = [terrain.width(), terrain.height()].map(f64::from);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -229,7 +227,6 @@ fn line(map: &Map<'_>, way: &Way) -> Vec<Point> {
         let point = map.place(*position);
         match line[..] {
             [.., last] if close(last, point) => continue,
-            // The previous point is on the line.
             [.., before, last] if straight(before, last, point) => {
                 line.pop();
             }
@@ -305,7 +302,6 @@ fn cross(canvas: &mut Canvas, [x, y]: Point, size: f64, colour: Colour) {
     canvas.lines(lines, Stroke::new(colour, size * 0.4));
 }
 
-/// 0 (first, light) to 1 (last, dark).
 fn moment_colour(share: f64) -> Colour {
     Colour::hex(0xb0_8c_f0).towards(Colour::hex(0x1f_06_4a), share)
 }
@@ -399,7 +395,6 @@ fn crowd_keys(density: &Density, robots: usize) -> Vec<(Key, String)> {
     keys
 }
 
-/// Returns the lower end of the legend.
 fn legend(canvas: &mut Canvas, keys: &[(Key, String)], top: f64, right: f64) -> f64 {
     let (mut x, mut top) = (PAD, top);
     for (key, name) in keys {

@@ -6,7 +6,6 @@ use super::special::{gamma_q, ln_bessel_i_scaled};
 use libm::{ceil, exp, log, pow, sqrt};
 
 const PARAMETERS: usize = 3;
-/// Smallest number of samples for a fit.
 const MIN_SAMPLES: usize = 10;
 /// Expected samples in a bin of the test, at least.
 const MIN_EXPECTED: f64 = 8.0;
@@ -194,7 +193,6 @@ impl NortonRice {
             Self::from_coordinates(at)
                 .map_or(f64::INFINITY, |law: Self| -scaled.iter().map(|&x| law.ln_pdf(x)).sum::<f64>())
         };
-        // Near Nakagami, between, and Rice (m = 1) if the moments allow it.
         let rice = sqrt((1.0 - variance).max(0.25));
         let (best, _) = [0.1, 0.5, rice]
             .map(|r| {

@@ -283,7 +283,6 @@ impl Drawing {
         equation.map(|c| c / libm::sqrt(squares))
     }
 
-    /// The voxel template and its errors.
     fn template(&self) -> Canvas {
         let mut canvas = canvas("The normal to the nearest border, as the template has it", 3, SMALL_SIDE, 0.0);
         let look_up = |at: V| {

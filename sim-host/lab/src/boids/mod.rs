@@ -184,7 +184,6 @@ impl Plan {
         self.seconds_a_step(|| flock.step_in_parallel(&mut cells)) * 1e6 / f64::from(boids)
     }
 
-    /// Median time of a step, which is robust against other load.
     fn seconds_a_step(&self, mut step: impl FnMut()) -> f64 {
         let timed = |_| {
             let begun = Instant::now();

@@ -21,9 +21,7 @@ use std::time::Instant;
 const ROWS: &str = "rows.csv";
 const AGGREGATES: &str = "aggregates.csv";
 const SCHEMA: &str = "rows.schema.json";
-/// Points in the table on standard output.
 const SHOWN: usize = 40;
-/// Figures in that table.
 const FIGURES: usize = 4;
 
 #[derive(Args, Clone, Debug)]
@@ -296,7 +294,6 @@ impl ScriptArgs {
 struct Report<'a> {
     plan: &'a str,
     fingerprint: String,
-    /// Of the plan or of the shard.
     runs: u64,
     done_before: u64,
     done_now: u64,
@@ -394,7 +391,6 @@ impl<'a> Report<'a> {
         Ok(text)
     }
 
-    /// First figures of each point: mean, and half the width of its 95 % interval.
     fn points_table(&self, text: &mut String) -> std::fmt::Result {
         let plan = self.source;
         let measures = &plan.measures()[..plan.measures().len().min(FIGURES)];

@@ -281,7 +281,6 @@ fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
                 way_m += crate::arena::distance_m(from, target.position_m);
                 from = target.position_m;
             }
-            // Noise alone is not a distance to travel.
             if way_m > 0.1 { way_m / plane.group(index).cruise_mps } else { 0.0 }
         })
     })

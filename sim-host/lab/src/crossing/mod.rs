@@ -74,7 +74,6 @@ impl Conditions {
         ]
     }
 
-    /// Robots that go to places.
     fn group(&self, radius_m: f64, tolerance_m: f64) -> RobotGroup {
         self.group_at(self.speed_mps, radius_m, tolerance_m)
     }
@@ -91,7 +90,6 @@ impl Conditions {
         Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
     }
 
-    /// Time from which each robot stays at its goal.
     fn arrivals_s(&self, outcome: &Outcome) -> Vec<Option<f64>> {
         let seconds = |units: u64| units as f64 / f64::from(UNIT) * self.step_s;
         let times = outcome.arrival_times.iter();

@@ -89,7 +89,6 @@ fn robots_without_a_radio_collide_and_the_depth_is_reported() {
     let run = &plan.measure().expect("a sound plan").runs[0];
     assert!(run.overlaps > 0 && run.deepest_m > 0.1, "{run:?}");
     let ratio = run.time_ratio.expect("nothing stops them");
-    // Less than 1 because of the goal's tolerance.
     assert!((0.98..1.1).contains(&ratio), "{run:?}");
 }
 

@@ -45,7 +45,6 @@ pub trait Cell {
     fn set(&mut self, value: Option<f64>) -> bool;
 }
 
-/// Doubles represent every whole number up to this one exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 macro_rules! whole_cells {
@@ -128,7 +127,6 @@ impl RowRetention {
     }
 }
 
-/// Adapts an experiment to [`Design`]; its plan is checked.
 pub(crate) struct Sheet<'a, E> {
     plan: &'a E,
     fingerprint: u64,
@@ -154,7 +152,6 @@ impl<'a, E: Experiment> Sheet<'a, E> {
         Self { plan, fingerprint, parameters, figures }
     }
 
-    /// Point, and number within the point.
     fn place(&self, run: u64) -> (usize, u32) {
         let runs = self.runs_per_point();
         ((run / runs) as usize, (run % runs) as u32)
@@ -167,7 +164,6 @@ impl<'a, E: Experiment> Sheet<'a, E> {
         Row { run: number, outcome: Outcome::Done, figures, trace_hash }
     }
 
-    /// `false` if no run gives such a row.
     fn read(&self, row: &Row, run: &mut E::Run) -> bool {
         let (mut cells, mut fits) = (row.figures.iter(), true);
         run.figures(&mut |_, _, cell| fits &= cells.next().is_some_and(|figure| cell.set(figure.0)));
@@ -342,14 +338,12 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         Ok(())
     }
 
-    /// Writes rows in order, schema and means.
     pub(crate) fn write(&self) -> Result<Vec<PathBuf>> {
         let Some((out, _)) = self.place else {
             return Ok(Vec::new());
         };
         let merged = Merged::read(&self.sheet, &files(out)?)?;
         let mut texts = vec![("rows.schema.json", schema(&self.sheet)), (ROWS, merged.text(&self.sheet))];
-        // With one run per point, means repeat the rows.
         if self.sheet.runs_per_point() > 1 {
             let points = aggregate::points(&self.sheet, &merged);
             texts.insert(0, (AGGREGATES, aggregate::text(&self.sheet, &points)));

@@ -70,7 +70,6 @@ impl Case {
         }
     }
 
-    /// x, y, radius; `gap` is in spacings.
     fn balls(self, gap: f64, seed: u64, run: u32) -> Vec<[f64; 3]> {
         match self {
             Self::Free | Self::Fragment | Self::Rendezvous3d => Vec::new(),
@@ -193,7 +192,6 @@ impl Case {
     }
 }
 
-/// Each ball is drawn again until it is 8 units from the others.
 fn forest(rng: &mut Rng) -> Vec<[f64; 3]> {
     let mut trees: Vec<[f64; 3]> = Vec::new();
     while trees.len() < 30 {

@@ -27,7 +27,6 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
 const OFFSETS: u32 = 0x0046_0201;
-/// In d.
 const GAP: f64 = 4.0;
 
 /// The flocking law.
@@ -68,7 +67,6 @@ pub struct Closing {
 }
 
 impl Default for Closing {
-    /// 1, 2, 4, 8 d/s at d = 7 m, near the limit of beacons.
     fn default() -> Self {
         Self { speeds: vec![1.0, 2.0, 4.0, 8.0], runs: 10, spacing_m: 7.0, step_s: 0.03, seed: 1 }
     }
@@ -158,7 +156,6 @@ impl Closing {
         lines
     }
 
-    /// Sides start a gap apart in motion; at the end, they have passed and moved twice as far.
     fn scenario(&self, flock: Flock, sides: Sides, speed: f64, safety: SafetyKind, run: u32) -> Scenario {
         let d = self.spacing_m;
         let side_mps = speed * d / 2.0;
@@ -173,7 +170,6 @@ impl Closing {
                 arrival_m: d as f32,
                 seed,
             },
-            // Crowded below d, visible up to 4 d.
             Flock::Boids => GuidanceSetup::Boids {
                 params: BoidsSetup { crowded_m: d as f32, closest_m: (4.0 * d) as f32, ..BoidsSetup::PAPER },
                 speed_mps: side_mps as f32,
@@ -207,12 +203,10 @@ impl Closing {
             Sides::Groups => 3_u32,
         };
         let mut rng = Rng::keyed(self.seed, OFFSETS, run, 0);
-        // A random northward offset, small enough for bodies to meet.
         let off_m = uniform(&mut rng, -1.0, 1.0) * self.radius_m();
         let mut starts = Vec::new();
         for (way, off_m) in [(1.0, 0.0), (-1.0, off_m)] {
             let target = match flock {
-                // The reference passes straight through the other side.
                 Flock::Alpha => {
                     Target { position_m: [-way * GAP * d / 2.0, off_m, 0.0], velocity_mps: [way * side_mps, 0.0, 0.0] }
                 }

@@ -47,7 +47,6 @@ use watch::Watch;
 /// Bodies without inertia need only some steps.
 const HORIZON_S: f64 = 0.3;
 
-/// For one robot, spacings.
 const GAP: f64 = 8.0 / 7.0;
 
 /// The five flocking simulations of Olfati-Saber 2006 (section VIII), with agents that know others
@@ -167,7 +166,6 @@ impl Reference {
     }
 }
 
-/// A case and, if it has obstacles, its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Point {
     case: Case,
@@ -220,7 +218,6 @@ fn check_spacing_and_step(spacing_m: f64, step_s: f64) -> Result<()> {
     Ok(())
 }
 
-/// Folder of time series, next to the rows.
 const COURSES: &str = "courses";
 
 impl Experiment for Plan {

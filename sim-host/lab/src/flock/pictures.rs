@@ -33,7 +33,6 @@ impl Report {
         Ok(files)
     }
 
-    /// Moments of the first run; in space, three from above and three from the south.
     fn sheet(&self, case: &CaseReport) -> Sheet {
         let title = format!("{}: {} robots, d = {} m, {}", title(case), case.robots, self.spacing_m, self.who());
         let moments = case.case.setting().moments;
@@ -106,7 +105,6 @@ impl Report {
             .with(hamiltonian)
     }
 
-    /// H per robot.
     fn hamiltonian(&self, case: &CaseReport) -> Chart {
         let label = format!("iteration ({} s)", self.step_s);
         let mut chart = Chart::new("Structural Hamiltonian", label, "log10 H / n").size(560.0, 300.0);
@@ -161,7 +159,6 @@ fn thinned<T>(trace: &[T]) -> impl Iterator<Item = (usize, &T)> {
     all.filter(move |(at, _)| at % every == 0 || *at == last)
 }
 
-/// A measure in the first run, and its smallest and largest value over several runs.
 fn curves(case: &CaseReport, value: &dyn Fn(&FlockMeasure) -> f64) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let first: Vec<[f64; 2]> =
         thinned(&case.traces[0]).filter_map(|(at, moment)| Some([at as f64, value(moment.as_ref()?)])).collect();
@@ -190,7 +187,6 @@ fn edges(places_m: &[[f64; 3]], range_m: f64, view: View) -> Vec<Vec<[f64; 2]>> 
     lines
 }
 
-/// All robots with a margin of two spacings.
 fn around(places_m: &[[f64; 2]], spacing_m: f64) -> Option<[[f64; 2]; 2]> {
     let along = |axis: usize| {
         let values = || places_m.iter().map(|place| place[axis]);

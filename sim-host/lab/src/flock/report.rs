@@ -219,7 +219,6 @@ pub(super) fn verdict(plan: &Plan, case: Case, run: &Run) -> Verdict {
     }
 }
 
-/// Largest rise in a tick divided by the total loss.
 fn rise(energies: &[f64]) -> f64 {
     let rise = energies.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     let lost = energies.first().zip(energies.last()).map_or(0.0, |(first, last)| first - last);
@@ -253,10 +252,8 @@ impl RunReport {
 fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
     let (n, d) = (robots as f64, plan.spacing_m);
     if case == Case::Rendezvous3d {
-        // Volume per robot: d^3 / sqrt 2.
         d * libm::cbrt(3.0 * n / (4.0 * std::f64::consts::PI * std::f64::consts::SQRT_2))
     } else {
-        // Area per robot: d^2 sqrt 3 / 2.
         d * libm::sqrt(n * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI))
     }
 }

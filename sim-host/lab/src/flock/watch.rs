@@ -113,7 +113,6 @@ pub struct Frame {
     pub velocities_mps: Vec<[f64; 3]>,
 }
 
-/// x beyond which a robot is past all obstacles.
 fn behind_m(solids: &[Solid]) -> Option<f64> {
     let end = |solid: &Solid| match *solid {
         Solid::Ball { center_m, radius_m } => Some(center_m[0] + radius_m),

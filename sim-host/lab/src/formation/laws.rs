@@ -54,7 +54,6 @@ impl Law {
     pub(super) const ALL: [Self; 6] =
         [Self::Staya, Self::Lookahead, Self::Loose, Self::Shared, Self::Unwaiting, Self::Paper];
 
-    /// Distance from its place up to which a neighbour counts as found.
     pub(super) const fn eps(self, plan: &Plan) -> u8 {
         match self {
             Self::Paper => plan.published.params.eps,
@@ -72,7 +71,6 @@ impl Law {
         }
     }
 
-    /// Changes the planned scenario `together`; an error if there is no template with radius rho.
     pub(super) fn on(self, plan: &Plan, together: &Scenario, loss: f64) -> Result<Scenario> {
         let mut scenario = together.clone();
         scenario.formation_params = self.params(plan);

@@ -43,7 +43,6 @@ const RUNS: u32 = 0x0045_0102;
 
 /// Robots in the formation of figure 5.
 pub const ROBOTS: usize = 6;
-/// Rows 1 2 3 and 4 5 6.
 const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
 /// Only beacons and requests depend on it.
 const TICK_US: u32 = 1_000_000;
@@ -90,7 +89,6 @@ pub struct Plan {
 }
 
 impl Default for Plan {
-    /// KUZ section 8: 100 x 100 cells, nine classes.
     fn default() -> Self {
         Self {
             obstacles: vec![0, 10, 20, 40, 70, 100, 130],
@@ -115,7 +113,6 @@ impl Default for Plan {
     }
 }
 
-/// How the six robots cross a landscape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
     /// Over a perfect radio.
@@ -175,12 +172,10 @@ impl Record for Crossing {
 pub type Run = Vec<Crossing>;
 
 impl Plan {
-    /// Rows run west and columns south, with robot 1 in front.
     fn graph(&self) -> Result<Formation> {
         self.graph_within(self.rho)
     }
 
-    /// An error if there is no template with radius `rho`.
     fn graph_within(&self, rho: u8) -> Result<Formation> {
         let spacing = i16::from(self.spacing);
         let places: Vec<Cell> =
@@ -219,7 +214,6 @@ impl Plan {
         (self.obstacles[point / ways.len()], ways[point % ways.len()])
     }
 
-    /// Seed of a landscape, a function of seed, obstacles and number of the run.
     fn landscape_seed(&self, obstacles: u32, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, obstacles, run).next_u64()
     }
@@ -290,7 +284,6 @@ impl Plan {
         Ok(Crossing { entropy, ..cross(&scenario)? })
     }
 
-    /// Groups runs by number of obstacles and landscape, without incomplete landscapes.
     fn by_landscape(&self, runs: &[Vec<Crossing>]) -> Vec<Vec<Run>> {
         let all_ways = |ways: &[Vec<Crossing>]| {
             let least = ways.iter().map(Vec::len).min().unwrap_or(0);

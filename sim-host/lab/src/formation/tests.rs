@@ -41,7 +41,6 @@ fn formation_is_kept_and_all_robots_arrive() {
 
 #[test]
 fn formation_parameters_reduce_the_error() {
-    // Without gain, waiting and common costs the robots follow at a larger distance.
     let loose = Plan {
         formation: FormationParams { halt_lag: u16::MAX, gain: Gain::ZERO, ..FormationParams::default() },
         ..small()

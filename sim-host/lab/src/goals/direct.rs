@@ -103,7 +103,6 @@ impl<'a> Crowd<'a> {
         Ok(())
     }
 
-    /// Nearest first.
     fn look_around(
         &self,
         robot: usize,

@@ -211,7 +211,6 @@ impl Plan {
         arena.scenario(setup)
     }
 
-    /// `draws` stores moments for pictures.
     fn run(&self, setting: &Setting, number: u32, draws: bool) -> Result<Run> {
         let scene = Scene::new(self, setting, number)?;
         let mut watch = Watch::new(self, setting, &scene, draws);

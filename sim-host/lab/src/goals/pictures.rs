@@ -71,7 +71,6 @@ impl Report {
                 let name = if words.is_empty() { "measured".to_owned() } else { words.join(", ") };
                 let ends = values.first().zip(values.last()).map(|(first, last)| [first[0], last[0]]);
                 chart = chart.with(Series::points(name.clone(), values).joined());
-                // Independent robots, for comparison.
                 let alone = own().filter_map(|point| {
                     let with = own().find(|other| other.setting.k1 == point.setting.k1 && other.k1_over_k2.is_some());
                     if point.setting.k2 == 0.0 { Some([with?.k1_over_k2?, value(point)?]) } else { None }
@@ -103,7 +102,6 @@ impl Report {
             .with(chart("Time until half were at the middle", "s", |p| p.half_gathered_s))
     }
 
-    /// Company over K1 / K2 and R_nbh, if only these vary.
     fn heat(&self, curves: &[Setting]) -> Option<HeatMap> {
         let first = curves.first()?;
         let is_alike = |s: &Setting| Setting { neighborhood_m: first.neighborhood_m, ..*s } == *first;

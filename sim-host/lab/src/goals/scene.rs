@@ -9,16 +9,12 @@ use staya_controller::rand::Rng;
 use staya_sim::scenario::{Start, Target};
 use staya_sim::world::plane::Solid;
 
-/// Middle of the goals.
 const MIDDLE: [f64; 2] = [70.0, 0.0];
 const AROUND: f64 = 25.0;
 /// Largest distance from the middle, and smallest distance from each other.
 const GOAL_FIELD: [f64; 2] = [40.0, 25.0];
-/// New place of the first goal when it moves.
 const MOVED: [f64; 2] = [90.0, 20.0];
-/// Well before the goals.
 const LAST: f64 = 50.0;
-/// Between the start and obstacles, and between obstacles.
 const ROOM: f64 = 3.0;
 const RADII: [f64; 2] = [1.0, 3.0];
 const TRIES: u32 = 1000;
@@ -29,7 +25,6 @@ pub struct Scene {
     pub solids: Vec<Solid>,
     goals_m: Vec<[f64; 3]>,
     velocity_mps: [f64; 3],
-    /// Tick in which the first goal moves, and its new place.
     moves: Option<(u32, [f64; 3])>,
     step_s: f64,
 }
@@ -95,7 +90,6 @@ pub fn middle_m(goals_m: &[[f64; 3]]) -> [f64; 3] {
     [mean(0), mean(1), 0.0]
 }
 
-/// Evenly around their middle (a single one there), or random.
 fn goals(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<[f64; 3]>> {
     let unit = plan.min_distance_m;
     let place_m = |x: f64, y: f64| [(MIDDLE[0] + x) * unit, (MIDDLE[1] + y) * unit, 0.0];

@@ -109,7 +109,6 @@ impl Setting {
         1.5 * lattice.max(2.0)
     }
 
-    /// In R_MinDist.
     pub(super) fn start_half(&self) -> f64 {
         self.start_side * libm::sqrt(f64::from(self.robots)) / 2.0
     }
@@ -153,7 +152,6 @@ pub(super) fn short(name: &'static str) -> &'static str {
     }
 }
 
-/// Indices of parameters that differ, and of K1.
 pub(super) fn varying(settings: &[Setting]) -> Vec<usize> {
     let given: Vec<_> = settings.iter().map(Setting::given).collect();
     let Some(first) = given.first() else {
@@ -163,7 +161,6 @@ pub(super) fn varying(settings: &[Setting]) -> Vec<usize> {
     (0..first.len()).filter(differs).collect()
 }
 
-/// Values change first.
 fn cross<T: Copy>(settings: &[Setting], values: &[T], set: impl Fn(&mut Setting, T)) -> Vec<Setting> {
     let with = |setting: &Setting, value: T| {
         let mut setting = *setting;

@@ -64,7 +64,6 @@ fn moving_goals_are_reached_at_their_current_place() {
         let moved = &report(&Plan { moves_goal: true, ..plan.clone() }).points[0];
         assert!(moved.arrived >= 0.9 && moved.goal_shares[0] > 0.1, "{} {:?}", moved.arrived, moved.goal_shares);
         let drifting = &report(&Plan { goal_speeds_mps: vec![2.0], ..plan }).points[0];
-        // The goals are 400 m to the north by then, with some of the crowd behind them.
         assert!(drifting.arrived >= 0.5, "{}", drifting.arrived);
     }
 }
@@ -162,7 +161,6 @@ fn pictures_are_written() {
         Plan { k1: vec![0.0, 50.0, 150.0], neighborhoods_m: vec![20.0, 40.0], seconds: 10.0, runs: 1, ..small() };
     let runs = plan.carry_out(|_| true).unwrap();
     let files = plan.report(&runs).draw(dir.path()).unwrap();
-    // The order; company over both; K1 = 50 and 150.
     assert_eq!(files.len(), 8);
     for file in &files {
         assert!(file.metadata().unwrap().len() > 1000, "{}", file.display());

@@ -10,7 +10,6 @@ use crate::experiment::Maybe;
 use serde::Serialize;
 use std::fmt::{self, Formatter};
 
-/// Excess over independent robots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gain {
     pub setting: Setting,
@@ -61,14 +60,12 @@ impl Crossing {
         let crossed = step.map(|step| {
             let [[x, y], [next_x, next_y]] = [step[0], step[1]];
             let part = (y - half) / (y - next_y);
-            // Geometric interpolation is impossible from 0.
             if x > 0.0 { x * libm::pow(next_x / x, part) } else { next_x * part }
         });
         Self { peak: Some(peak), peak_k1_over_k2: Some(ratio), k1_over_k2: crossed }
     }
 }
 
-/// Curves need at least three points.
 pub(super) fn of(points: &[Gain]) -> Vec<Threshold> {
     let mut curves: Vec<Setting> = Vec::new();
     for point in points {
@@ -134,7 +131,6 @@ mod tests {
         let curve = [[0.0, 0.2], [0.25, 0.8], [1.0, 0.6], [4.0, 0.2], [16.0, 0.1]];
         let crossing = Crossing::of(&curve);
         assert_eq!((crossing.peak, crossing.peak_k1_over_k2), (Some(0.8), Some(0.25)));
-        // 0.4 is halfway from 0.6 at 1 to 0.2 at 4.
         let at = crossing.k1_over_k2.unwrap();
         assert!((at - 2.0).abs() < 1e-9, "{at}");
     }

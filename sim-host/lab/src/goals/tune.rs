@@ -28,7 +28,6 @@ const K1: f64 = 50.0;
 const UNTUNED: [f64; 3] = [1.0, 2.0, 4.0];
 /// Bounds of log2 of K2 / K1, log2 of K3 / K1, R_nbh in R_MinDist.
 const BOUNDS: [[f64; 3]; 2] = [[-5.0, -3.0, 2.0], [3.0, 4.0, 12.0]];
-/// First run number for validation.
 const JUDGED_FROM: u32 = 1_000_000_000;
 /// Standard PSO 2011: inertia 1 / (2 ln 2), attraction 1/2 + ln 2. Literals have the same bits on
 /// every machine.
@@ -68,11 +67,8 @@ pub struct Tuned {
     /// K2 / K1, K3 / K1, R_nbh in R_MinDist.
     gains: [f64; 3],
     evaluations: u64,
-    /// On the runs of the search.
     found: Verdict,
-    /// On the validation runs.
     judged: Verdict,
-    /// Default gains on the validation runs.
     untuned: Verdict,
     hash: u64,
 }
@@ -150,7 +146,6 @@ impl Tuning {
         Verdict { cost: (1.0 - together) + (1.0 - arrived) + (time_ratio - 1.0), together, arrived, time_ratio }
     }
 
-    /// `None` if it was stopped.
     fn tune(&self, scene: &Setting, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Option<Tuned>> {
         let bounds = BOUNDS.map(|bound| bound.to_vec());
         let [low, high] = bounds;

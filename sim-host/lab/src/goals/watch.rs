@@ -17,7 +17,6 @@ const LINK: f64 = 2.0;
 /// In R_MinDist: the paper's R_nbh, independent of the run's, so that runs are comparable.
 const COMPANY: f64 = 4.0;
 
-/// Shares of the run time.
 pub(super) const MOMENTS: [f64; 6] = [0.0, 0.125, 0.25, 0.375, 0.5, 1.0];
 
 /// Measurements of one run.
@@ -43,7 +42,6 @@ pub struct Run {
 
 impl Record for Run {
     fn figures(&mut self, each: &mut Each<'_>) {
-        // All or none.
         let way = self.way;
         let part = |value: fn(&Way) -> f64| way.as_ref().map(value);
         let [mut polarisation, mut together, mut company, mut spread] =
@@ -146,7 +144,6 @@ impl<'a> Watch<'a> {
             let off_m = |place_m: [f64; 3]| libm::hypot(x - place_m[0], y - place_m[1]);
             *has_gathered |= off_m(middle_m) <= self.arrival_m;
             let nearest = (0..).zip(&goals_m).map(|(goal, &at)| (off_m(at), goal)).min_by(|a, b| a.0.total_cmp(&b.0));
-            // Tolerates rounding.
             if let Some((_, goal)) = nearest.filter(|(off, _): &(f64, usize)| *off <= self.arrival_m + 0.01) {
                 self.run.at_goals[goal] += usize::from(*has_gathered);
             }

@@ -77,13 +77,11 @@ impl GroupPlan {
         self.robots.params()
     }
 
-    /// Ordered by group, without sharing first.
     fn cases(&self) -> Vec<(u32, Option<f64>)> {
         let shared = || [None].into_iter().chain(self.losses.iter().copied().map(Some));
         self.groups.iter().flat_map(|&group| shared().map(move |shared| (group, shared))).collect()
     }
 
-    /// Different starts and goals; all queries if there are fewer.
     fn queries(&self, group: u32, run: u32) -> Vec<&Query> {
         let mut rng = Rng::keyed(self.seed, QUERIES, group, run);
         let mut left: Vec<&Query> = self.benchmark().queries.iter().filter(|query| query.start != query.goal).collect();
@@ -230,7 +228,6 @@ mod tests {
     use staya_controller::grid::{BLOCKED, Cell};
     use staya_sim::terrain::Terrain;
 
-    /// Open to the west, between starts in the west and goals in the east.
     fn pocket(robots: i16) -> Benchmark {
         let mut land = Terrain::flat(60, 40);
         (10..=30).for_each(|y| land.set(Cell::new(40, y), BLOCKED));

@@ -3,7 +3,6 @@ use staya_controller::grid::{BLOCKED, Cell};
 
 const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n...S\n";
 
-/// `rows` are queries without bucket and map.
 fn files(rows: &[&str]) -> (tempfile::TempDir, PathBuf) {
     let dir = tempfile::tempdir().unwrap();
     let scen = dir.path().join("a.map.scen");
@@ -57,7 +56,6 @@ fn mismatched_files_are_named() {
 
 #[test]
 fn map_too_large_for_the_search_is_planned_optimally() {
-    // A gap at the wall's eastern end, far from the straight line.
     let mut land = Terrain::flat(300, 260);
     (0..299).for_each(|x| land.set(Cell::new(x, 100), BLOCKED));
     let [start, goal] = [Cell::new(298, 0), Cell::new(298, 200)];

@@ -126,7 +126,6 @@ pub struct Plan {
 }
 
 impl Default for Plan {
-    /// KUZ section 5, natural land.
     fn default() -> Self {
         Self {
             lands: [10, 40, 70, 100, 130, 160].map(Land::Natural).to_vec(),
@@ -224,7 +223,6 @@ impl Plan {
         (self.lands[point / variants.len()], variants[point % variants.len()])
     }
 
-    /// Groups runs by landscape, without incomplete landscapes.
     fn by_land(&self, runs: &[Vec<Run>]) -> Vec<Vec<Run>> {
         let all_walks = |variants: &[Vec<Run>]| {
             let least = variants.iter().map(Vec::len).min().unwrap_or(0);
@@ -267,7 +265,6 @@ impl Plan {
         }
     }
 
-    /// In ascending order, without start and target.
     fn parked(&self, land: Land, run: u32) -> Vec<Cell> {
         let key = land.obstacles().unwrap_or(u32::MAX);
         let mut rng = Rng::keyed(self.seed, PARKED, key, run);
@@ -443,7 +440,6 @@ impl Experiment for Plan {
         jobs.each(|scratch, point, run| Ok(Some(self.run_one(scratch, self.point(point), run)?)))
     }
 
-    /// Fits take up to a second per point and run in parallel.
     fn report(&self, runs: &[Vec<Run>]) -> Report {
         Report::of(self, &self.by_land(runs))
     }

@@ -39,7 +39,6 @@ impl Report {
         self.points.iter().all(|point| point.land == "natural")
     }
 
-    /// dT, dL and properties of the landscapes over the number of obstacles (KUZ figures 2 and 3).
     fn losses(&self) -> Panels {
         let (title, label) = if self.is_natural() {
             ("Routes by window on natural land", "obstacles N")
@@ -93,7 +92,6 @@ impl Report {
         Panels::new(title).with(loss).with(entropy).with(edges)
     }
 
-    /// Points with a number of obstacles, or the one with equal classes.
     fn ordered(&self, equal: bool) -> Vec<&Point> {
         let wanted = |point: &&Point| point.obstacles.is_none() == equal;
         let mut points: Vec<&Point> = self.points.iter().filter(wanted).collect();
@@ -105,12 +103,10 @@ impl Report {
         let places = || self.points.iter().map(place);
         let (low, high) =
             places().fold((f64::INFINITY, 1.0), |(low, high), x| (low.min(x.max(1.0)), f64::max(high, x)));
-        // N(0) is 0.0160518.
         let zero = staya_sim::terrain::metrics::obstacles_of_entropy(0.0);
         (0..=60).map(|i| low + (high - low) * f64::from(i) / 60.0).map(|n| [n, log(n / zero) / 4.227_69]).collect()
     }
 
-    /// At the number of obstacles nearest to the paper's.
     fn arrivals(&self) -> Option<Panels> {
         let off = |point: &&Point| point.obstacles.map_or(u32::MAX, |n| n.abs_diff(SHOWN));
         let point = self.points.iter().min_by_key(off)?;
@@ -126,7 +122,6 @@ impl Report {
         Some(panels)
     }
 
-    /// dT and dL over the values of one coefficient.
     fn answers(&self, coefficient: Coefficient) -> Option<Panels> {
         let answers: Vec<_> = self.sweep.iter().filter(|answer| answer.coefficient == coefficient).collect();
         if answers.is_empty() {
@@ -173,7 +168,6 @@ impl Report {
     }
 }
 
-/// Uniform land is placed by its entropy.
 fn place(point: &Point) -> f64 {
     point.obstacles.map_or(point.obstacles_of_entropy, f64::from)
 }

@@ -339,7 +339,6 @@ impl Display for Report {
     }
 }
 
-/// About three digits; `-` for a missing value.
 fn digits(value: Option<f64>) -> String {
     match value {
         Some(x) if x < 0.01 => format!("{x:.0e}"),

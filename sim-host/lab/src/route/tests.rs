@@ -5,7 +5,6 @@ use staya_controller::robot::RobotId;
 use staya_controller::route::{CostField, ExitRule, Router};
 use staya_sim::world::{MoveRules, World};
 
-/// Independent of the controller's defaults.
 fn plan() -> Plan {
     Plan {
         lands: vec![Land::Natural(6), Land::Natural(20)],
@@ -200,7 +199,6 @@ fn robot_without_a_free_move_stays() {
 
 #[test]
 fn robot_that_cannot_arrive_gives_up() {
-    // The target is enclosed by walls.
     let mut cells = vec![1; 64];
     for at in [54, 55, 62] {
         cells[at] = BLOCKED;

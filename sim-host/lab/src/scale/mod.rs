@@ -104,7 +104,6 @@ impl Plan {
         (self.ground[point % self.ground.len()], self.robots[point / self.ground.len()])
     }
 
-    /// Repeats until the time is reliable; `None` if it was stopped.
     fn row(&self, ground: Ground, robots: u32, goes_on: &dyn Fn() -> bool) -> Result<Option<Row>> {
         let scenario = Scenario::parse(&self.text(ground, robots), Path::new("scale.toml"), &Overrides::default())?;
         let runs = WORTH.div_ceil(u64::from(robots) * u64::from(self.ticks)).max(1);
@@ -117,7 +116,6 @@ impl Plan {
         Ok(Some(row))
     }
 
-    /// `false` if it was stopped.
     fn run(&self, scenario: &Scenario, row: &mut Row, goes_on: &dyn Fn() -> bool) -> Result<bool> {
         let mut begun = None;
         let mut is_whole = true;

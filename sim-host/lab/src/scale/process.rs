@@ -2,7 +2,6 @@
 
 use std::fs;
 
-/// Clock of the processor times in Linux.
 const CLOCK_HZ: f64 = 100.0;
 
 /// Processor time of all threads; `None` if the system does not report it.

@@ -8,7 +8,6 @@ use staya_sim::record::{Error, write_atomically};
 use std::fmt::{self, Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
-/// Tick at 10 Hz.
 const TICK_S: f64 = 0.1;
 
 /// Measurements of one swarm.

@@ -14,7 +14,6 @@ use std::collections::BinaryHeap;
 
 #[derive(Default)]
 pub(super) struct Foresight {
-    /// With the ticks from which they hold.
     classes: Vec<Vec<(u32, u8)>>,
     arrival: Vec<u64>,
     queue: BinaryHeap<Reverse<(u64, u32)>>,
@@ -58,7 +57,6 @@ impl Foresight {
         None
     }
 
-    /// Earliest time at which a cell is crossed.
     fn crossed(&self, cell: usize, now: u64, length: u64) -> u64 {
         let classes = &self.classes[cell];
         let tick = now.div_ceil(u64::from(UNIT));

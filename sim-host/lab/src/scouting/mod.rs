@@ -196,7 +196,6 @@ impl Plan {
     }
 }
 
-/// In each tick, this share of cells becomes slower or faster.
 fn drifting(land: &Terrain, share: f64) -> Vec<LandChange> {
     let draws = libm::round(share * land.cells().len() as f64) as u32;
     let kind = ChangeKind::Drift { cells: None, draws, step: 1, classes: CLASSES };

@@ -43,7 +43,6 @@ const PLACES: u32 = 0x0045_0203;
 
 /// Only beacons depend on it.
 const TICK_US: u32 = 1_000_000;
-/// Time limit of a run.
 const TICKS: u32 = 20_000;
 /// Distance in a group that starts together, cells.
 const SPACING: i16 = 3;
@@ -164,7 +163,6 @@ impl Record for Trip {
 }
 
 impl Plan {
-    /// Cases of one group and land are adjacent, without sharing first.
     pub(crate) fn cases(&self) -> Vec<Case> {
         let shared: Vec<Option<f64>> = [None].into_iter().chain(self.losses.iter().copied().map(Some)).collect();
         let mut cases = Vec::new();
@@ -188,7 +186,6 @@ impl Plan {
         natural_by(&plan, obstacles, self.hill_norm, self.hills)
     }
 
-    /// All starts differ, and so do all goals.
     fn places(&self, case: Case, run: u32) -> Vec<(Cell, Cell)> {
         let last = self.size.cast_signed() - 2;
         if case.starts != Starts::Anywhere {

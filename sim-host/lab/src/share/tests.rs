@@ -23,7 +23,6 @@ fn followers_are_faster_with_the_maps_of_robots_ahead() {
     let last = |outlook: &Outlook| outlook.last_percent.unwrap();
     assert!(last(perfect) < 0.6 * last(alone), "{report}");
     assert!(last(lossy) < 0.8 * last(alone), "{report}");
-    // A second packet after each beacon, but for a shorter time.
     assert!(perfect.packets > alone.packets, "{report}");
 }
 

@@ -70,9 +70,7 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
 
 struct Levels {
     names: Vec<String>,
-    /// `None` if the levels are words.
     numbers: Option<Vec<f64>>,
-    /// Whether levels are parts of the axis.
     is_parts: bool,
     is_log: bool,
     ends: [f64; 2],
@@ -85,7 +83,6 @@ impl Levels {
         let is_log = plan.is_log(axis);
         let numbers: Option<Vec<f64>> = values.iter().map(Value::number).collect();
         let Some(mut numbers) = numbers else {
-            // In the order of the plan.
             let mut names: Vec<String> = Vec::new();
             for value in values.drain(..).map(|value| value.to_string()) {
                 if !names.contains(&value) {
@@ -158,7 +155,6 @@ impl Picture<'_> {
         format!("{what} of {} runs{over}", self.rows.len())
     }
 
-    /// Level `x` of the first axis and, if any, `y` of the second.
     fn summary(&self, x: usize, y: Option<usize>) -> Option<Summary> {
         let is_here = |(over, and, _): &&(Value, Option<Value>, f64)| {
             let at_y = self.y.as_ref().zip(and.as_ref()).map(|(levels, value)| levels.of(value));

@@ -29,7 +29,6 @@ pub struct Plan {
     pub name: String,
     path: PathBuf,
     scenario: PathBuf,
-    /// With the plan's settings for all runs.
     base: toml::Table,
     axes: Vec<Axis>,
     /// Axes that advance together, as ranges of `axes`; groups are crossed with each other.
@@ -236,7 +235,6 @@ impl Plan {
         Run { number, point, values, seed: self.seeds[(number % self.seeds()) as usize] }
     }
 
-    /// An error names the fault of the plan or of the scenario.
     pub(crate) fn scenario(&self, run: &Run<'_>) -> Result<Scenario, ScenarioError> {
         let mut table = self.base.clone();
         for (axis, value) in self.axes.iter().zip(&run.values) {
@@ -266,7 +264,6 @@ impl Plan {
         };
         if let Some(axis) = self.axes.iter().find(is_meant) {
             let field = axis.field.name().to_owned();
-            // Serde's message for a field that expects text.
             let is_word = axis.is_range && what.contains("string");
             let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
             return ScenarioError::Field { path: self.path.clone(), line: axis.line, field, what, remedy };
@@ -386,7 +383,6 @@ fn check_seeds(source: &Source<'_>, seeds: &Seeds) -> Result<Vec<u64>, ScenarioE
     Err(source.error("seeds", what, "give a number of them, a list, or { from, count }"))
 }
 
-/// By default the figures that every run has.
 fn check_measures(
     source: &Source<'_>,
     measures: Option<Vec<String>>,

@@ -3,7 +3,6 @@
 use serde::Deserialize;
 use staya_controller::rand::Rng;
 
-/// Separate from streams of runs.
 const PLACE: u32 = u32::from_be_bytes(*b"swpl");
 const ORDER: u32 = u32::from_be_bytes(*b"swor");
 

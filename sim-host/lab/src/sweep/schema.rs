@@ -27,7 +27,6 @@ pub fn schema(design: &dyn Design) -> String {
     format!("{schema:#}\n")
 }
 
-/// Suffix of a name, as in `radius_m`.
 fn unit(name: &str) -> &'static str {
     match name.rsplit('_').next().unwrap_or_default() {
         "m" => "m",

@@ -44,7 +44,6 @@ impl Job<'_> {
         format!("{program} sweep {plan} --out {out} --shard {shard} --threads 1 --resume --quiet")
     }
 
-    /// As a comment in a script.
     fn merging(&self) -> String {
         let Self { program, plan, out, .. } = self;
         let [plan, out] = [plan, out].map(|path| quoted(&path.display().to_string()));

@@ -23,7 +23,6 @@ use std::time::{Duration, Instant};
 pub const FOLDER: &str = "shards";
 /// Run times are not part of rows, because they differ between machines.
 const TIMES: &str = "times";
-/// Shortest time between two synchronisations with the disk.
 const SYNC: Duration = Duration::from_secs(2);
 
 /// One of several equal parts of a plan.
@@ -161,7 +160,6 @@ struct Appended {
 }
 
 impl Appended {
-    /// Appends after the first complete lines.
     fn open(plan: &dyn Design, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
         let path = out.join(FOLDER).join(shard.file_name());
         make_dir(&out.join(FOLDER))?;
@@ -277,7 +275,6 @@ pub fn perform_shard<S: Default>(
             return ControlFlow::Break(());
         }
         if let Some(times) = &mut file.times {
-            // The times are optional, so errors are ignored.
             let _ = writeln!(times, "{},{seconds:.6}", row.run);
         }
         if let Some(why) = refusal {

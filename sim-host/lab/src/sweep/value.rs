@@ -18,7 +18,6 @@ pub enum Value {
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 impl Value {
-    /// Reads a value of a plan; the error states the cause.
     pub(crate) fn read(value: &toml::Value) -> Result<Self, String> {
         match value {
             toml::Value::Integer(number) => Ok(Self::Whole(*number)),

@@ -5,14 +5,12 @@ use tiny_skia::Pixmap;
 
 /// Transparent colour, for unchanged pixels.
 pub const CLEAR: u8 = 255;
-/// Every n-th pixel is a sample.
 const STEP: i32 = 5;
 /// Bits of each channel in the lookup table.
 const BITS: u32 = 6;
 
 pub struct Palette {
     colours: Vec<u8>,
-    /// Nearest colour by the leading bits of each channel.
     nearest: Vec<u8>,
 }
 

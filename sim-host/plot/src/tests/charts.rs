@@ -31,7 +31,6 @@ fn drawn(canvas: &Canvas) -> Vec<Point> {
 #[test]
 fn both_files_are_readable_and_reproducible() {
     let dir = tempfile::tempdir().unwrap();
-    // A point in the stem is not an extension.
     let stem = dir.path().join("new/loss-0.3");
     let files = full().write(&stem).unwrap();
     let names: Vec<_> = files.iter().map(|path| path.file_name().unwrap()).collect();

@@ -111,7 +111,6 @@ fn invalid_items_are_skipped_and_a_chosen_view_is_kept() {
     let nowhere = Obstacle::Disc { centre_m: [f64::NAN; 2], radius_m: 2.0 };
     wild.obstacles.push(nowhere);
     assert_eq!(circles(&wild.draw()), circles(&everything().draw()));
-    // A valid view does not depend on the content.
     let view = |snapshot: Snapshot, view_m| Snapshot { view_m: Some(view_m), ..snapshot };
     let near = view(ring(12, 1.0), [[-50.0, 50.0]; 2]);
     let far = view(Snapshot { goals_m: vec![[900.0, 0.0]], ..ring(12, 1.0) }, [[-50.0, 50.0]; 2]);

@@ -132,7 +132,6 @@ fn missing_values_leave_gaps_and_an_empty_chart_is_skipped() {
 
 #[test]
 fn packets_are_counted_per_second() {
-    // 10 packets in each half second.
     for ticks in [2, 3, 101, 250, 1000] {
         let canvas = run::packets(&history(1, ticks, 0.0, 1.0)).draw();
         let dir = tempfile::tempdir().unwrap();
@@ -207,7 +206,6 @@ fn large_swarms_and_noisy_terrain_give_small_files() {
 
 #[test]
 fn long_paths_give_small_files() {
-    // 200 robots that turn at every step, 400 steps each: 80,000 corners.
     let mut recorder = Recorder::in_memory(Options::default());
     for now in 0..400 {
         let rows = (1..=200).map(|id| {

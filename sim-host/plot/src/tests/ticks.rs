@@ -96,7 +96,6 @@ proptest! {
                 prop_assert!((read - tick.value).abs() <= 1e-6 * step.max(read.abs()), "{tick:?}");
             }
         }
-        // One more tick would need a finer step.
         prop_assert!((high - low) / step > most as f64 / 2.5 - 1e-6);
     }
 

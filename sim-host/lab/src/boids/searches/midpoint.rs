@@ -67,7 +67,6 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
         }
     }
 
-    /// Visits all points of leaves that the ball touches, with their offsets from `at`.
     fn visit(&self, ball: [R; D], radius: R, at: [R; D], each: &mut dyn FnMut(u32, [R; D])) {
         let reach = radius + margin(ball.iter().fold(radius, |far, &c| far.max(c.abs())), radius);
         let mut open = vec![0_u32];
@@ -94,7 +93,6 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
     }
 }
 
-/// A box whose subtree is not built yet.
 struct Open<R, const D: usize> {
     from: usize,
     to: usize,
@@ -107,7 +105,6 @@ struct Open<R, const D: usize> {
 fn cut<R: Real, const D: usize>(part: &[u32], points: &[[R; D]], low: [R; D], high: [R; D]) -> Option<(usize, R)> {
     let along = |axis: usize| part.iter().map(move |&index| points[index as usize][axis]);
     let ends = |axis: usize| along(axis).fold((R::MAX, -R::MAX), |(low, high), c| (low.min(c), high.max(c)));
-    // An axis along which all points coincide cannot be cut.
     let mut axes: [usize; D] = std::array::from_fn(|axis| axis);
     axes.sort_by(|&a, &b| (high[b] - low[b]).order(high[a] - low[a]));
     let (axis, (least, greatest)) = axes.into_iter().map(|axis| (axis, ends(axis))).find(|(_, (a, b))| a < b)?;
@@ -115,7 +112,6 @@ fn cut<R: Real, const D: usize>(part: &[u32], points: &[[R; D]], low: [R; D], hi
     let at = if middle > greatest {
         greatest
     } else if middle <= least {
-        // Only the lowest points are below.
         along(axis).filter(|c| *c > least).fold(R::MAX, R::min)
     } else {
         middle
@@ -161,7 +157,6 @@ impl<R: Real, const D: usize> Search<R, D> for MidpointTree<R, D> {
         for ball in images(at, query.radius, period) {
             self.visit(ball, query.radius, at, &mut |index, way| ways.push((index, way)));
         }
-        // A point may be near several images of the ball.
         ways.sort_unstable_by_key(|(index, _)| *index);
         ways.dedup_by_key(|(index, _)| *index);
         ways.into_iter().for_each(|(index, way)| nearest.offer(index, way));

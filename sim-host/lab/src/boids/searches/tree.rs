@@ -4,7 +4,6 @@ use kiddo::SquaredEuclidean;
 use kiddo::immutable::float::kdtree::ImmutableKdTree;
 use staya_sim::nearby::{Found, Nearest, Query, Real, Search, Space, margin, numbered};
 
-/// The library's default.
 const LEAF: usize = 32;
 
 /// A number type supported by the library, whose own trait bounds are not public.
@@ -48,7 +47,6 @@ impl_tree!(f64);
 pub struct Tree<R: Grow, const D: usize> {
     space: Space<R, D>,
     tree: Option<R::Over<D>>,
-    /// Finite points, folded into the torus.
     points: Vec<[R; D]>,
     /// Original indices; empty if all points are finite.
     indices: Vec<u32>,
@@ -99,7 +97,6 @@ impl<R: Grow, const D: usize> Search<R, D> for Tree<R, D> {
                 R::visit(tree, ball, squared(ball, query.radius), &mut offer);
             }
         } else {
-            // A point may be in several images of a large ball.
             let mut places = Vec::new();
             for ball in &balls {
                 let squared = squared(ball, query.radius);

@@ -14,18 +14,15 @@ use staya_sim::world::plane::Solid;
 use std::f64::consts::PI;
 
 pub(super) const RADIUS_M: f64 = 0.3;
-/// Distance from its goal at which a robot has arrived.
 const TOLERANCE_M: f64 = 0.1;
 /// Half the width of a road: three robots fit side by side.
 const ROAD_M: f64 = 1.2;
 const FAR_M: f64 = 30.0;
-/// Distance between robots of a group.
 const APART_M: f64 = 0.9;
 pub(super) const SPACING_M: f64 = 0.7;
 
 const NOISE: u32 = 0x0045_0002;
 
-/// A robot at rest, with via points to the last of `places`.
 fn start(at: [f64; 2], places: &[[f64; 2]]) -> Start {
     let fixed = |&[x, y]: &[f64; 2]| Target { position_m: [x, y, 0.0], velocity_mps: [0.0; 3] };
     Start {
@@ -73,7 +70,6 @@ impl Plan {
             self.mix(&mut setup);
         }
         if case == Case::Intruder {
-            // The intruder reaches the middle together with the robots.
             let way_m = circle_m(count);
             setup.intruders.push(Intruder {
                 position_m: [-way_m - 2.0, 0.2, 0.0].map(|x| x * self.size),
@@ -91,7 +87,6 @@ impl Plan {
         let mut scenario = self.conditions.scenario(case.name(), seed, self.longest_s, setup);
         scenario.radio.range_m *= self.size;
         if case == Case::Blackout {
-            // The failure starts just before the robots meet.
             let meet_s = circle_m(count) / self.conditions.speed_mps;
             scenario.radio.blackout_s = vec![[0.6 * meet_s, 0.6 * meet_s + self.blackout_s]];
         }
@@ -179,7 +174,6 @@ fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
             let goal = at(5.0 + end);
             let turn = if index % 2 == 0 { 1.0 } else { -1.0 };
             let stem = arms == 3 && wx == 0.0;
-            // Behind the robots that go straight.
             let [behind, _] = in_rows(count + 1, 2, count);
             let turned = [turn * (5.0 + behind + end), turn * side.abs()];
             let places = if stem { vec![[0.0, 0.0], turned] } else { vec![goal] };
@@ -282,7 +276,6 @@ fn parked(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, Vec::new())
 }
 
-/// Enough space for robots of the largest size.
 fn circle_m(count: u32) -> f64 {
     (0.2 * f64::from(count)).max(3.0)
 }
@@ -310,10 +303,8 @@ fn sphere(count: u32) -> Vec<Start> {
         .collect()
 }
 
-/// Side in cells of 1 m.
 const LAND: i16 = 40;
 
-/// The goals are behind the bottom of the bag.
 fn dead_end(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let starts = (0..count).map(|index| {
         let [x, y] = [14 + (index / 5) as i16, 18 + (index % 5) as i16].map(|cell| f64::from(cell) + 0.5);
@@ -346,7 +337,6 @@ fn on_land(scenario: &mut Scenario) {
         .collect();
 }
 
-/// The reference moves past two balls.
 fn flock(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let row = libm::ceil(libm::sqrt(f64::from(count))) as u32;
     let target = Target { position_m: [0.0; 3], velocity_mps: [0.3, 0.0, 0.0] };

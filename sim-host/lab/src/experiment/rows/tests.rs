@@ -101,7 +101,6 @@ fn early_end_keeps_finished_runs() {
     assert_eq!(jobs.course().expect("rows").found, course.done);
 }
 
-/// Rows of a plan are valid, and another plan has another fingerprint.
 fn check<E: Experiment>(plan: &E, other: &E) {
     plan.check().unwrap_or_else(|what| panic!("{}: {what}", E::NAME));
     let sheet = Sheet::new(plan);
@@ -117,7 +116,6 @@ fn check<E: Experiment>(plan: &E, other: &E) {
     for run in [0, sheet.runs() - 1] {
         assert_eq!(sheet.values(run).len(), sheet.parameters().len());
     }
-    // No two rows mean the same run.
     let mut points: Vec<Vec<String>> =
         (0..plan.points() as u64).map(|p| sheet.values(p * sheet.runs_per_point())).collect();
     points.sort_unstable();

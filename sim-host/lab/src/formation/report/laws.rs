@@ -32,7 +32,6 @@ impl Point {
 }
 
 impl Report {
-    /// The planned law first; losses in ascending order.
     fn laws(&self) -> (Vec<Law>, Vec<f64>) {
         let tried = self.points.first().map_or(&[][..], |point| &point.other_laws);
         let has = |law: Law| law == Law::Staya || tried.iter().any(|other| other.law == law);
@@ -83,7 +82,6 @@ impl Report {
         self.write_waiting(f)
     }
 
-    /// Benefit and cost of waiting at the lowest loss.
     fn write_waiting(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (laws, losses) = self.laws();
         let (Some(&loss), true) = (losses.first(), laws.contains(&Law::Unwaiting)) else {
@@ -116,7 +114,6 @@ impl Report {
         Ok(())
     }
 
-    /// Figure 6 for each law.
     pub(in crate::formation) fn laws_picture(&self) -> Option<Panels> {
         let (laws, losses) = self.laws();
         let loss = *losses.first()?;

@@ -225,7 +225,6 @@ fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
         }
         (None, Some(step)) => {
             let steps = libm::floor((to - from) / step + 1e-9);
-            // Otherwise the step never reaches the end.
             if log || !(0.0..f64::from(MOST)).contains(&steps) {
                 let what = format!("steps of {step} do not lead from {from} to {to}");
                 return Err((what, "give a step towards `to`, at most a million times; for equal ratios give `count`"));

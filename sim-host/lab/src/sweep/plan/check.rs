@@ -8,7 +8,6 @@ use staya_sim::summary::Summary;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-/// Points to check in larger plans.
 const MOST: u64 = 500;
 
 /// Checks points with the scenario's parser and returns the names of all figures.
@@ -37,7 +36,6 @@ pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioEr
     }
 }
 
-/// From the first run before its first tick.
 fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
     let scenario = plan.scenario(&plan.run(0))?;
     let outcome = simulate(&scenario, |_, _| ControlFlow::Break(())).map_err(|error| {

@@ -107,7 +107,6 @@ fn samples_depend_only_on_their_seed() {
         let ranges = values(&a, "radio.range_m");
         assert!(ranges.iter().any(|value| value == "3") && ranges.iter().any(|value| value == "8"));
     }
-    // Half of the parts lie below the geometric mean.
     let even = plan(&text(3, "latin_hypercube"));
     let delays = even.values("radio.delay_ms").expect("an axis").iter().filter_map(Value::number);
     assert_eq!(delays.filter(|&delay| delay < 31.62).count(), 10);
@@ -260,7 +259,6 @@ fn every_field_of_a_plan_is_documented() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// A plan is refused or gives a different run for each number.
     #[test]
     fn numbers_denote_different_runs(
         losses in proptest::collection::btree_set(0u32..100, 1..5),

@@ -59,7 +59,6 @@ fn any_number_of_shards_gives_identical_bytes() {
     assert_eq!(merged(&plan, &out("2")), whole);
     perform_all(&plan, &out("7"), &["3/7", "1/7", "7/7", "2/7", "6/7", "5/7", "4/7"], Existing::Refuse);
     assert_eq!(merged(&plan, &out("7")), whole);
-    // Rows may be in any order.
     let file = out("1").join("shards/1-of-1.csv");
     let text = fs::read_to_string(&file).expect("rows");
     let (header, rows) = text.split_once('\n').expect("lines");
@@ -93,7 +92,6 @@ fn early_end_keeps_finished_runs_and_resume_makes_the_missing_ones() {
     let goes_on = || asked.fetch_add(1, Ordering::Relaxed) < 40;
     let course = done(&plan, Shard::default(), &out, Existing::Refuse, &goes_on).expect("no error");
     assert!(course.done > 0 && course.missing() > 0, "{course:?}");
-    // Rows of another process count too.
     let other = perform_all(&plan, &out, &["2/3"], Existing::Resume);
     let rest = perform_all(&plan, &out, &["1/1"], Existing::Resume);
     assert_eq!(rest.done, 18 - course.done - other.done);
