@@ -49,8 +49,7 @@ pub struct VoxelArgs {
 
 #[derive(Clone, Debug, Subcommand)]
 enum Action {
-    /// Make a model: circle, ball, polygon, room, or the velocity obstacle of one or all
-    /// neighbours.
+    /// Make a model: circle, ball, polygon, room, or velocity obstacles of one or all neighbours.
     Build(Box<BuildArgs>),
     /// Draw a model's values and M-images (PNG, SVG).
     Draw(DrawArgs),
@@ -58,8 +57,7 @@ enum Action {
     Evaluate(EvaluateArgs),
     /// Measure the errors of a template's models by resolution and depth.
     Measure(Box<MeasureArgs>),
-    /// Simulate robots that swap places in a room, with half-planes from formulas, tables or
-    /// models.
+    /// Simulate a swap of places in a room with half-planes from formulas, tables or models.
     Swarm(SwarmArgs),
 }
 

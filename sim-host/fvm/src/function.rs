@@ -17,8 +17,7 @@ use std::sync::Arc;
 pub enum System {
     /// alpha = 0. Smooth except where both arguments are 0; values are not distances.
     R0,
-    /// alpha = 1: minimum and maximum. Distances stay distances, with a kink where arguments are
-    /// equal.
+    /// alpha = 1: minimum and maximum. Distances stay distances; kinks where arguments are equal.
     R1,
     /// Another alpha, -1 < alpha <= 1.
     Alpha(f64),

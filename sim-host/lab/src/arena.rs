@@ -63,9 +63,8 @@ pub(super) fn normal(rng: &mut Rng, deviation: f64) -> f64 {
 
 const TRIES: u32 = 1000;
 
-/// Draws starts with these `targets`, at least `apart_m` from each other; `None` if there is no
-/// room. `draw` returns place and velocity of robot i from its own generator, and is repeated until
-/// the distance fits.
+/// Starts at least `apart_m` from each other, or `None` without room. `draw` returns place and
+/// velocity of robot i from its own generator, and is repeated until the distance fits.
 pub(super) fn starts(
     count: u32,
     apart_m: f64,

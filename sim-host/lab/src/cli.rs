@@ -1,6 +1,5 @@
-//! The command line of `staya-lab`: `staya sweep` and `staya experiment`.
-//!
-//! A module converts the options of an experiment that are not simply the fields of its plan.
+//! The commands `staya sweep` and `staya experiment`. A module converts options that are not simply
+//! the fields of a plan.
 
 mod crossing;
 mod flock;
@@ -60,8 +59,7 @@ enum Experiment {
     Swap(crossing::SwapArgs),
     /// Two crowds pass one gap in opposite directions.
     Doorway(crossing::DoorwayArgs),
-    /// Fourteen scenes of conflicts: crossings, doors, corridors, sizes, intruders, dead ends,
-    /// space.
+    /// Fourteen scenes of conflicts: crossings, doors, corridors, intruders, dead ends, space.
     Crossing(Box<crossing::CrossingArgs>),
     /// Queries of a Moving AI benchmark: arrivals, and lengths compared with the optimal ones.
     Movingai(movingai::MovingAiArgs),
@@ -71,8 +69,7 @@ enum Experiment {
     Flock(Box<flock::FlockArgs>),
     /// Group order of 225 robots with three goals, and tuned gains (Pavlovsky and Pavlovsky).
     Goals(Box<goals::GoalsArgs>),
-    /// Time and memory per robot in swarms of a thousand to a million, on the grid and in the
-    /// plane.
+    /// Time and memory per robot in swarms of a thousand to a million.
     Scale(Box<scale::Plan>),
 }
 

@@ -19,7 +19,7 @@ use std::time::Instant;
 /// Some hundred megabytes of results.
 pub(crate) const MAX_RUNS: u32 = 1_000_000;
 
-/// Progress callback, called from any thread with the number of finished runs; returns whether to
+/// Progress callback: takes the number of finished runs, on any thread; returns whether to
 /// continue.
 pub type GoesOn<'a> = dyn Fn(usize) -> bool + Sync + 'a;
 

@@ -102,8 +102,8 @@ pub struct Robots {
     pub memory: Memory,
     /// Size of the memory of learned costs.
     pub learning: Learning,
-    /// Parameters of routing, except radius ([`Robots::sight`]) and moves (the benchmark's:
-    /// diagonals are sqrt 2 long and cut no corners).
+    /// Parameters of routing; radius and moves are ignored ([`Robots::sight`], the benchmark's
+    /// moves).
     pub params: RouteParams,
     /// Condition for a repeated search.
     pub replan: Replan,

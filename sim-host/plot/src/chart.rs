@@ -115,8 +115,7 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Creates a chart of 720 x 420 units without data (the PNG has two pixels per unit). Labels
-    /// include the unit.
+    /// Creates an empty chart of 720 x 420 units (two PNG pixels each). Labels include the unit.
     #[must_use]
     pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
         Self {

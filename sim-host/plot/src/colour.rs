@@ -43,8 +43,7 @@ pub const MUTED: Colour = Colour::hex(0x5c_5c_5c);
 /// Grid lines.
 pub const GRID: Colour = Colour::hex(0xe6_e6_e6);
 
-/// The palette of Okabe and Ito ("Color universal design", 2008) without yellow, which is too pale
-/// on white. Adjacent entries differ in brightness too.
+/// Colours of Okabe and Ito ("Color universal design", 2008) without yellow, which is too pale.
 pub const PALETTE: [Colour; 7] = [
     Colour::hex(0x00_72_b2),
     Colour::hex(0xd5_5e_00),

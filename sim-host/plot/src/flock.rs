@@ -29,8 +29,7 @@ use frame::Frame;
 use staya_sim::terrain::Terrain;
 use std::sync::Arc;
 
-/// Largest number of robots with individual sizes; in larger swarms, robots are dots or small
-/// darts.
+/// Larger swarms are drawn as dots or small darts.
 pub const MOST_DISCS: usize = 3000;
 
 /// An obstacle.
@@ -68,8 +67,7 @@ pub struct Snapshot {
     pub positions_m: Vec<[f64; 2]>,
     /// Velocities, m/s: one per robot, or none. Stationary robots have no arrow.
     pub velocities_mps: Vec<[f64; 2]>,
-    /// Speed of the longest arrow, m/s, equal in comparable snapshots; at least that of the fastest
-    /// robot.
+    /// Speed of the longest arrow, m/s; at least that of the fastest robot.
     pub fastest_mps: f64,
     /// Radius of the bodies, metres. Bodies too small to see become darts.
     pub radius_m: f64,
@@ -161,7 +159,7 @@ pub enum View {
     Plan,
     /// From the south: x and height.
     Elevation,
-    /// From the south-east and above: x to the right, y to the upper right at half length, height
+    /// From the south-east and above: east right, north to the upper right (half length), height
     /// up.
     Oblique,
 }
@@ -191,8 +189,7 @@ impl View {
     }
 }
 
-/// Several snapshots in one picture, row by row, such as OLF figures 7 to 12 (R. Olfati-Saber
-/// 2006).
+/// Several snapshots in one picture, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
     title: String,

@@ -1,5 +1,4 @@
-//! Pictures of terrain: darker is less passable (A. V. Kuznetsov 2017, KUZ, figure 7), walls are
-//! black.
+//! Pictures of terrain: darker is less passable (A. V. Kuznetsov 2017, figure 7), walls are black.
 
 use staya_controller::grid::BLOCKED;
 use staya_sim::terrain::{Terrain, TerrainError, parameter_error, rows::flip_row, write};

@@ -44,8 +44,8 @@ impl Summary {
         })
     }
 
-    /// The 95 % interval of the mean by Student's t: exact for normal values, otherwise as good as
-    /// the normality of their mean. For one value, both ends are the mean.
+    /// The 95 % interval of the mean by Student's t: exact for normal values, else approximate. For
+    /// one value, both ends are the mean.
     #[must_use]
     pub fn mean_interval95(&self) -> [f64; 2] {
         let error = self.mean_error95.unwrap_or(0.0);

@@ -18,8 +18,7 @@ impl LogFit {
     /// The paper's curve for six agents on natural terrain (KUZ section 8).
     pub const PAPER: Self = Self { a: 0.901_073, b: -0.673_763, r2: 0.992_729 };
 
-    /// Least squares over points (N, y). `None` unless two N differ, all N > -1, and all are
-    /// finite.
+    /// Least squares over points (N, y); `None` unless all are finite, N > -1, and two N differ.
     #[must_use]
     pub fn of(points: &[[f64; 2]]) -> Option<Self> {
         let x: Vec<f64> = points.iter().map(|p| log1p(p[0])).collect();

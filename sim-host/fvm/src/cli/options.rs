@@ -17,8 +17,7 @@ pub enum Kind {
     Room,
     /// Relative velocities that lead two robots to a collision (--place-a and so on, --form).
     VelocityObstacle,
-    /// As velocity-obstacle, for any pair of robots (--form): three variables, half-planes for
-    /// ORCA.
+    /// As velocity-obstacle, for any pair: three variables, half-planes for ORCA (--form).
     Neighbor,
 }
 
@@ -149,8 +148,7 @@ fn fixed<const V: usize>(option: &str, text: &str) -> Result<[f64; V]> {
     found.try_into().map_err(|_| anyhow!("{option}: `{text}`: give {V} numbers with commas"))
 }
 
-/// A grid with `resolution` nodes along the longest axis and equal steps; at least two nodes per
-/// axis.
+/// Equal steps along all axes, `resolution` nodes along the longest, at least two along others.
 pub fn grid<const V: usize>(extent: [[f64; 2]; V], resolution: u16) -> Result<Grid<V>> {
     let sides = extent.map(|[low, high]| high - low);
     let longest = sides.iter().copied().fold(0.0, f64::max);

@@ -96,8 +96,7 @@ impl TableArgs {
 
 #[derive(Debug, Serialize)]
 struct Drawn {
-    /// Smallest change of the relative velocity that avoids a collision, m/s; negative if it is
-    /// free.
+    /// Smallest change of the relative velocity, m/s; negative if it is already free.
     change_mps: f64,
     point_mps: [f64; 2],
     normal: [f64; 2],

@@ -39,8 +39,7 @@ const PIECE: usize = 256;
 /// Default limit of boids for searches over all pairs: about a second per step.
 pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
-/// Boids on a torus: five neighbour searches, equal trajectories, and their cost (Starovoitova,
-/// section 2.3). Lengths, turns and area are the paper's by default.
+/// Boids on a torus: trajectories and cost of five neighbour searches (Starovoitova, section 2.3).
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Numbers of boids, one line of the table each.
@@ -349,8 +348,7 @@ impl Flock {
         self.advance();
     }
 
-    /// Like [`Flock::step`] with equal results, in the order of the cells, which is faster because
-    /// neighbours stay in the cache.
+    /// Like [`Flock::step`] with equal results, in the order of the cells: better for the cache.
     pub fn step_by_cells(&mut self, cells: &mut Cells<f32, 2>) {
         cells.rebuild(&self.places);
         let mut scratch = Scratch::default();

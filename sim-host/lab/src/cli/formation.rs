@@ -41,8 +41,7 @@ pub struct FormationArgs {
         value_enum
     )]
     other_laws: Vec<Law>,
-    /// Sum of deviations from found neighbours at which the paper's law waits (much more than r0),
-    /// cells.
+    /// Sum of deviations from found neighbours at which the paper's law waits, cells.
     #[arg(long, value_name = "CELLS")]
     paper_halt: Option<f64>,
     /// Sum at which the paper's law moves again (about r0), cells.

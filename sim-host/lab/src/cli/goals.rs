@@ -8,8 +8,7 @@ use clap::Args;
 pub struct GoalsArgs {
     #[command(flatten)]
     pub plan: Plan,
-    /// Instead, search K2 / K1, K3 / K1 and R_nbh with the lowest cost of --seeds runs for each
-    /// scene.
+    /// Instead, search gains and R_nbh with the lowest cost of --seeds runs for each scene.
     #[arg(long, conflicts_with_all = ["k1", "k2", "k3", "neighborhoods_m"])]
     tune: bool,
     /// Particles of the search.

@@ -20,14 +20,12 @@ pub struct MovingAiArgs {
     /// Visited cells that the robot remembers, to leave dead ends larger than its window.
     #[arg(long, value_name = "CELLS", default_value = "64", value_enum)]
     visits: Memory,
-    /// Cells for which the robot learns travel costs while it comes no nearer; 0: follow walls
-    /// only.
+    /// Cells with learned travel costs, used while the robot comes no nearer; 0: walls only.
     #[arg(long, value_name = "CELLS", default_value = "256", value_enum)]
     learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
-    /// Instead, run groups of robots with and without shared maps; results go to the folder's
-    /// `share`.
+    /// Instead, run groups with and without shared maps; results go to the folder's `share`.
     #[arg(long, conflicts_with_all = ["visits", "learned", "replan", "exit"])]
     share: bool,
     /// Robots per group.

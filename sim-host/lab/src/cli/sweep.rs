@@ -118,8 +118,7 @@ struct SlurmArgs {
 struct ParallelArgs {
     #[command(flatten)]
     script: ScriptArgs,
-    /// Host reachable by ssh, as for GNU parallel (8/name: eight tasks; `:`: this machine);
-    /// repeatable.
+    /// Host reachable by ssh, as for GNU parallel (8/name: eight tasks; `:`: here); repeatable.
     #[arg(long = "host", value_name = "HOST")]
     hosts: Vec<String>,
 }

@@ -1,7 +1,5 @@
-//! Fourteen scenes in which robots obstruct each other, and their common table: [`Case`].
-//!
-//! For scenes known from the RVO2 library (plain ORCA with perfect state), the report gives the
-//! outcome there; sizes and walls are approximately equal.
+//! Fourteen scenes in which robots obstruct each other: [`Case`]. For similar scenes of the RVO2
+//! library (plain ORCA with perfect state), the report gives the outcome there.
 
 mod scene;
 
@@ -171,8 +169,7 @@ pub struct Crossing {
     pub robots: usize,
     /// Robots at their goals at the end; in a flock, robots past the balls.
     pub arrived: usize,
-    /// Seconds until the last robot arrived; `None` if not all did, and for a flock, which does not
-    /// stop.
+    /// Seconds until the last robot arrived; `None` if not all did, and for a flock.
     pub last_s: Option<f64>,
     /// Largest ratio of travel time to free time (distance / speed) of a robot.
     pub time_ratio: Option<f64>,

@@ -33,8 +33,7 @@ pub struct Conditions {
     pub step_s: f64,
     /// Highest speed, m/s.
     pub speed_mps: f64,
-    /// Range of the radio, metres; at least the distance of two robots one horizon before they
-    /// meet.
+    /// Range of the radio, metres; at least the distance of robots one horizon before they meet.
     pub range_m: f64,
     /// Share of packets lost.
     pub loss: f64,

@@ -328,8 +328,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         if keeping.existing(out) != Existing::Forget || !keeping.shard.is_whole() {
             return Ok(());
         }
-        // Completeness is removed last: after a kill here, the rest still counts as complete
-        // results, which may be replaced.
+        // Removed last: after a kill here, the rest still counts as complete and may be replaced.
         for file in files(out)?.into_iter().chain([AGGREGATES, ROWS].map(|name| out.join(name))) {
             if file.exists() {
                 std::fs::remove_file(&file).map_err(Error::new("remove", &file))?;

@@ -33,8 +33,7 @@ pub enum Case {
     Split,
     /// E: 150 robots through a gap, algorithm 3 (figure 11).
     Squeeze,
-    /// Like E, through a gap for one robot, by default 8/7 d between balls of 30/7 d; not in the
-    /// paper.
+    /// Like E, through a gap for one robot (by default 8/7 d); not in the paper.
     Gap,
     /// Like E, through 30 balls at random places, at least 8/7 d apart; not in the paper.
     Forest,
@@ -284,8 +283,7 @@ impl Plan {
             seconds: self.seconds.unwrap_or(setting.seconds),
             radius_m,
             max_speed_mps: match case {
-                // The safety layer for space avoids every robot within the reach of its highest
-                // speed.
+                // The safety layer for space avoids all robots within reach at the highest speed.
                 Case::Rendezvous3d => FASTEST_MPS.min(12.0 * unit_m),
                 _ => FASTEST_MPS,
             },

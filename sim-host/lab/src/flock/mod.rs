@@ -49,8 +49,7 @@ const HORIZON_S: f64 = 0.3;
 
 const GAP: f64 = 8.0 / 7.0;
 
-/// The five flocking simulations of Olfati-Saber 2006 (section VIII), with agents that know others
-/// from packets.
+/// The five flocking simulations of Olfati-Saber 2006 (section VIII), with agents.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Cases [default: the paper's five].
@@ -109,8 +108,7 @@ pub struct Plan {
     /// Distance behind a resting reference over which its velocity fades.
     #[arg(long, value_name = "SPACINGS", default_value_t = 10.0)]
     pub rest: f64,
-    /// Robots do not push towards robots nearer to the reference, so they pass gaps one by one
-    /// (algorithm 3 only; not in the paper).
+    /// Do not push towards robots nearer to the reference (algorithm 3 only; not in the paper).
     #[arg(long)]
     pub takes_turns: bool,
     /// Width of the gap in case "gap".

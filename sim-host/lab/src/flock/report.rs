@@ -24,8 +24,7 @@ pub struct RunReport {
     pub least_pair_over_d: Option<f64>,
     /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Smallest distance of a centre from an obstacle's border, in d, negative inside; `null`
-    /// without obstacles.
+    /// Smallest clearance of a centre from an obstacle, in d, negative inside, if there are any.
     pub least_clearance_over_d: Option<f64>,
     /// Robots whose centre was ever inside an obstacle.
     pub inside: usize,
@@ -247,8 +246,7 @@ impl RunReport {
     }
 }
 
-/// Radius of a perfect lattice's disc (in space: ball); a cohesive flock is within twice this
-/// radius.
+/// Radius of a perfect lattice's disc or ball; a cohesive flock is within twice this radius.
 fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
     let (n, d) = (robots as f64, plan.spacing_m);
     if case == Case::Rendezvous3d {

@@ -27,8 +27,7 @@ pub struct Run {
     pub least_pair_m: f64,
     /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Smallest distance of a centre from an obstacle's border, metres, negative inside; infinite
-    /// without obstacles.
+    /// Smallest clearance of a centre from an obstacle, metres, negative inside; else infinite.
     pub least_clearance_m: f64,
     /// Robots whose centre was ever inside an obstacle.
     pub inside: usize,

@@ -46,8 +46,7 @@ impl Law {
 /// Half as likely for each half tick of additional cost.
 const SHUFFLE: Sharpness = Sharpness::HalvedPer(Gain::from_sixteenths(8));
 
-/// Lag at which the leader waits under the "loose" law, whose formation is as loose as the paper's;
-/// tuned on seed 1.
+/// Makes the formation about as loose as the paper's; tuned on seed 1.
 const LOOSE: u16 = 12 * UNIT as u16;
 
 impl Law {

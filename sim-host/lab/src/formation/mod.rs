@@ -132,8 +132,7 @@ pub struct Crossing {
     pub arrived: usize,
     /// Arrival of the last robot, ticks; `None` if not all arrived.
     pub time_ticks: Option<f64>,
-    /// Formation error per robot, cells: mean over robots and ticks, with the graph on the top
-    /// leader.
+    /// Mean formation error per robot, cells, with the graph on the top leader.
     pub error: f64,
     /// Formation error with the graph at its best-fitting translation, cells.
     pub best_fit_error: f64,
@@ -224,8 +223,8 @@ impl Plan {
         natural_by(&plan, obstacles, self.hill_norm, self.hills)
     }
 
-    /// The six robots on a landscape. The rearmost one starts one cell from the south-west corner;
-    /// the goal of robot 1 is one cell from the north-east corner.
+    /// The rearmost robot starts one cell from the south-west corner; the goal of robot 1 is one
+    /// cell from the north-east corner.
     fn scenario(&self, terrain: Terrain, graph: Option<Formation>, places: &[Cell], seed: u64) -> Scenario {
         let spacing = i16::from(self.spacing);
         let start = Cell::new(2 * spacing + 1, spacing + 1);

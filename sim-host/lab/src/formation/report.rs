@@ -35,8 +35,7 @@ pub struct Journey {
     pub graph_distance: f64,
     /// Largest error per robot in any tick, cells.
     pub worst_error: f64,
-    /// Mean arrival time of the last robot, ticks, if all robots arrived with and without
-    /// formation.
+    /// Mean arrival time of the last robot, ticks, if all arrived with and without formation.
     pub time_ticks: Option<f64>,
     /// Ratio of `time_ticks` to the time without formation.
     pub time_ratio: Option<f64>,
@@ -65,8 +64,7 @@ pub struct Point {
     pub error_over_paper: Option<f64>,
     /// Obstacles at which the paper's terrain has this entropy: N(S) with its constant corrected.
     pub obstacles_of_entropy: f64,
-    /// dPhi / 6 of the paper's curve at that number. Below N = 70, our terrain of equal entropy is
-    /// smoother than the paper's.
+    /// dPhi / 6 of the paper's curve at that number; rougher terrain than ours below N = 70.
     pub paper_error_at_entropy: Option<f64>,
     /// Ratio of our error to the paper's at this entropy.
     pub error_over_paper_at_entropy: Option<f64>,
@@ -119,8 +117,7 @@ pub struct Report {
     pub classes: u8,
     /// Interpretation of natural terrain.
     pub hills: String,
-    /// Additional cost of a move that halves its chance, ticks; 0: the cheapest move is always
-    /// first.
+    /// Additional cost of a move that halves its chance, ticks; 0: the cheapest is first.
     pub shuffle_ticks: f64,
     /// Distance of adjacent robots, cells.
     pub spacing: u8,

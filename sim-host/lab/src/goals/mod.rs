@@ -64,16 +64,15 @@ use watch::Watch;
 /// First random number stream: starts, then draws of goals, obstacles, and places of goals.
 const STARTS: u32 = 0x0047_0101;
 
-/// The goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals: group order over K1 / K2
-/// and R_nbh. All lists are crossed with each other.
+/// The goal flock of Pavlovsky and Pavlovsky: group order over K1 / K2 and R_nbh. All lists are
+/// crossed with each other.
 #[derive(Args, Clone, Debug, PartialEq)]
 #[command(allow_negative_numbers = true)]
 pub struct Plan {
     /// Gains of the attraction to the goal.
     #[arg(long, value_name = "K1,...", value_delimiter = ',', default_value = "0,5,15,30,50,100,150")]
     pub k1: Vec<f64>,
-    /// Gains of the attraction to the middle of the neighbours; 0: independent robots, for
-    /// comparison.
+    /// Gains of the attraction to the middle of the neighbours; 0: independent robots.
     #[arg(long, value_name = "K2,...", value_delimiter = ',', default_value = "0,50")]
     pub k2: Vec<f64>,
     /// Gains of the repulsion from robots that are too near.
@@ -100,8 +99,7 @@ pub struct Plan {
     /// Move the first goal after a quarter of the time, by an operator's order.
     #[arg(long = "move-goal")]
     pub moves_goal: bool,
-    /// Sides of the square of the starts, in R_MinDist per root of the number of robots; 2: one
-    /// group.
+    /// Sides of the square of the starts, in R_MinDist per root of the robots; 2: one group.
     #[arg(long = "start-side", value_name = "SIDE,...", value_delimiter = ',', default_value = "4")]
     pub start_sides: Vec<f64>,
     /// Numbers of round obstacles, at random between the start and the goals.

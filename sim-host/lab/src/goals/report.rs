@@ -26,8 +26,7 @@ pub struct Point {
     pub together: Option<f64>,
     /// Robots within four R_MinDist of a robot on the way.
     pub company: Option<f64>,
-    /// Difference of `together` to independent robots (K2 = 0, all else equal); `null` without such
-    /// a point.
+    /// Difference of `together` to the point with K2 = 0 and all else equal, if there is one.
     pub together_gain: Option<f64>,
     /// Difference of `company` to independent robots.
     pub company_gain: Option<f64>,

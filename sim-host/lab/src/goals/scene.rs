@@ -1,5 +1,4 @@
-//! Random places of robots, goals and obstacles: a function of the run's number. Lengths are in
-//! R_MinDist.
+//! Random places of robots, goals and obstacles, a function of the run's number, in R_MinDist.
 
 use super::setting::Setting;
 use super::{Plan, STARTS};
@@ -79,8 +78,8 @@ impl Scene {
     }
 }
 
-/// Straight distance of robots until they have gathered, in R_MinDist: from the middle of the start
-/// to the edge of the goals' middle. Random goals are about as far away.
+/// Straight distance from the middle of the start to the edge of the goals' middle, in R_MinDist.
+/// Random goals are about as far away.
 pub fn way(setting: &Setting) -> f64 {
     MIDDLE[0] - setting.arrival()
 }

@@ -101,8 +101,7 @@ impl Setting {
         }
     }
 
-    /// Arrival distance at the middle or a goal, in R_MinDist: 1.5 times the radius of the lattice
-    /// of the robots that go to one goal.
+    /// In R_MinDist: 1.5 times the radius of the lattice of the robots that go to one goal.
     pub(super) fn arrival(&self) -> f64 {
         let each = f64::from(self.robots) / f64::from(self.goals);
         let lattice = libm::sqrt(each * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI));

@@ -56,8 +56,7 @@ pub struct Verdict {
     pub together: f64,
     /// Mean share of robots at a goal at the end.
     pub arrived: f64,
-    /// Mean of the time until half were at the middle / time straight there; at most that of the
-    /// run.
+    /// Mean time until half were at the middle / time straight there; at most that of the run.
     pub time_ratio: f64,
 }
 

@@ -9,8 +9,7 @@ use staya_sim::nearby::Space;
 
 /// Robots start at rest, so nothing is measured before.
 const WARM_UP_S: f64 = 5.0;
-/// Share of gathered robots at which the way ends: from then on robots part and crowd around the
-/// middle, so that measures show nothing about the group.
+/// From this share of gathered robots on, robots part and crowd around the middle.
 const WAY_ENDS: f64 = 0.1;
 /// Largest distance in a group, in R_MinDist: the repulsion's range.
 const LINK: f64 = 2.0;

@@ -16,8 +16,7 @@ pub struct Answer {
     pub arrived: bool,
     /// Length of the path, cells; until the robot gave up if it did not arrive.
     pub length_cells: f64,
-    /// Shortest route by the router with the whole map in its window, cells; `None` if there is
-    /// none or the robot sees only a part.
+    /// Shortest route by the router with the whole map in its window, cells, if there is one.
     pub priced_cells: Option<f64>,
 }
 
@@ -75,8 +74,7 @@ pub struct Report {
     pub arrived: usize,
     /// Excess of paths over the optimal length, percent, over arrived robots.
     pub loss_percent: Option<Summary>,
-    /// With the whole map in the window: largest absolute deviation from the optimal length,
-    /// percent.
+    /// Largest absolute deviation of `priced_cells` from the optimal length, percent.
     pub worst_price_error_percent: Option<f64>,
     /// With the whole map in the window: queries for which the router finds no route.
     pub without_price: Option<usize>,

@@ -78,8 +78,7 @@ pub struct Point {
     pub time_loss_percent: Option<Loss>,
     /// dL (KUZ): absolute difference of the path's length to that of the fastest route, percent.
     pub length_loss_percent: Option<Loss>,
-    /// Mean signed difference of the lengths, percent; negative if robots go straight over bad
-    /// ground.
+    /// Mean signed difference of the lengths, percent; negative if robots cross bad ground.
     pub length_excess_percent: Option<f64>,
     /// Mean configuration entropy S.
     pub entropy: f64,
@@ -130,8 +129,7 @@ pub struct Report {
     pub classes: u8,
     /// Interpretation of natural terrain.
     pub hills: String,
-    /// Additional cost of a move that halves its chance, ticks; 0: the cheapest move is always
-    /// first.
+    /// Additional cost of a move that halves its chance, ticks; 0: the cheapest is first.
     pub shuffle_ticks: f64,
     /// Norm of the distance to an obstacle.
     pub hill_norm: Norm,

@@ -65,8 +65,7 @@ pub struct Line {
     pub tick_s: f64,
     /// Whether a tick takes at most 0.1 s.
     pub is_real_time: bool,
-    /// Resident memory per robot, bytes; `null` if unknown, and mostly the program's in small
-    /// swarms.
+    /// Resident memory per robot, bytes; mostly the program's in small swarms.
     pub bytes: Option<f64>,
     pub heard: f64,
     pub trace_hash: String,

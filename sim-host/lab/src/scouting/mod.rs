@@ -123,8 +123,7 @@ impl Known {
 /// Result of one landscape.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
-    /// Smallest travel time with perfect knowledge, [`UNIT`](staya_controller::grid::UNIT)ths of a
-    /// tick.
+    /// Smallest travel time, [`UNIT`](staya_controller::grid::UNIT)ths of a tick.
     pub least_cost: u64,
     /// Whether the robot reached its target.
     pub arrived: bool,

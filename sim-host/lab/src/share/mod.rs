@@ -53,8 +53,7 @@ pub enum Starts {
     /// Random places, at least half the land apart.
     #[default]
     Anywhere,
-    /// A block in one corner and the same block in the opposite corner: all robots see the same
-    /// land at the same time.
+    /// Opposite corners, all at once: robots see the same land at the same time.
     Together,
     /// Like `Together`, with departures one after the other.
     InTurn,

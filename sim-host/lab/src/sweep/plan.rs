@@ -278,8 +278,7 @@ impl Plan {
         }
     }
 
-    /// Hash of everything that rows depend on: fields, values, seeds, figures, and the scenario's
-    /// files.
+    /// Covers everything that rows depend on: fields, values, seeds, figures, the scenario's files.
     fn digest(&self) -> u64 {
         let scenario = toml::to_string(&self.base).unwrap_or_default();
         let mut all = chained(FORMAT, digest(scenario.as_bytes()));

@@ -12,8 +12,7 @@ const ORDER: u32 = u32::from_be_bytes(*b"swor");
 pub enum Kind {
     /// Independent values.
     Random,
-    /// One sample in each of as many equal parts of each axis as there are samples (McKay, Beckman
-    /// and Conover 1979).
+    /// One sample in each equal part of each axis (McKay, Beckman and Conover 1979).
     LatinHypercube,
 }
 

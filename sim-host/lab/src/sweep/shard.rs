@@ -46,8 +46,7 @@ impl Shard {
         self.of == 1
     }
 
-    /// Whether the shard contains a run; consecutive runs are in different shards, so that all take
-    /// about equally long.
+    /// Whether the shard contains a run; consecutive runs are in different shards.
     #[must_use]
     pub fn has(&self, run: u64) -> bool {
         run % self.of == self.index - 1

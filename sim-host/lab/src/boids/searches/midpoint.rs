@@ -36,8 +36,7 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
         Self { space, nodes: Vec::new(), order: Vec::new(), points: Vec::new() }
     }
 
-    /// Uses an explicit stack, because the tree of uneven points may be as deep as there are
-    /// points.
+    /// Uses an explicit stack, because the tree may be as deep as there are points.
     fn grow(&mut self, folded: &[[R; D]]) {
         let (mut low, mut high) = ([R::MAX; D], [-R::MAX; D]);
         for &index in &self.order {
