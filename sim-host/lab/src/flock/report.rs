@@ -24,7 +24,7 @@ pub struct RunReport {
     pub least_pair_over_d: Option<f64>,
     /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Smallest clearance of a centre from an obstacle, in d, negative inside, if there are any.
+    /// Smallest clearance from obstacles, in d, negative inside; `null` without obstacles.
     pub least_clearance_over_d: Option<f64>,
     /// Robots whose centre was ever inside an obstacle.
     pub inside: usize,

@@ -27,7 +27,7 @@ pub struct Run {
     pub least_pair_m: f64,
     /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Smallest clearance of a centre from an obstacle, metres, negative inside; else infinite.
+    /// Smallest clearance from obstacles, metres, negative inside; infinite without obstacles.
     pub least_clearance_m: f64,
     /// Robots whose centre was ever inside an obstacle.
     pub inside: usize,

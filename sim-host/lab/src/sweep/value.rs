@@ -7,7 +7,7 @@ use std::fmt::{self, Display, Formatter};
 pub enum Value {
     /// A whole number, for integer and floating-point fields.
     Whole(i64),
-    /// A number that is not whole.
+    /// Any other number.
     Number(f64),
     /// `true` or `false`.
     Truth(bool),
