@@ -12,7 +12,6 @@ pub struct Grid<const V: usize> {
     pub nodes: [u16; V],
 }
 
-/// Size limit of a model, bytes: more than any microcontroller's flash.
 const MOST_BYTES: usize = 64 << 20;
 
 /// Why a model cannot be built.
@@ -43,11 +42,9 @@ pub enum BuildError {
     },
 }
 
-/// Builds the model of a function on a grid, with components of `depth` bits. Returns the bytes for
-/// `staya_voxel::Model`.
-///
-/// Each node's plane has the function's value there; its slopes are central differences over half a
-/// step to both sides.
+/// Builds the model of a function on a grid, as bytes for `staya_voxel::Model`. Each node's plane
+/// has the function's value there; its slopes are central differences over half a step to both
+/// sides. `depth`: bits per component, 4 to 16.
 ///
 /// # Errors
 /// [`BuildError`].

@@ -1,5 +1,4 @@
-//! The command line of `staya-voxel`: `staya voxel build | draw | evaluate | measure | swarm`,
-//! `staya orca table | draw`.
+//! The commands of `staya-voxel`: `staya voxel` and `staya orca`.
 
 mod options;
 mod orca;
@@ -41,8 +40,7 @@ impl Command {
     }
 }
 
-/// Functional voxel models: any function of two or three variables as a table of tangent planes for
-/// a microcontroller.
+/// Functional voxel models: functions as tables of tangent planes for a microcontroller.
 #[derive(Args, Clone, Debug)]
 pub struct VoxelArgs {
     #[command(subcommand)]
@@ -51,8 +49,7 @@ pub struct VoxelArgs {
 
 #[derive(Clone, Debug, Subcommand)]
 enum Action {
-    /// Make a model: circle, ball, polygon, room, velocity obstacle, or every neighbour's velocity
-    /// obstacle.
+    /// Make a model: circle, ball, polygon, room, or velocity obstacles of one or all neighbours.
     Build(Box<BuildArgs>),
     /// Draw a model's values and M-images (PNG, SVG).
     Draw(DrawArgs),
@@ -60,8 +57,7 @@ enum Action {
     Evaluate(EvaluateArgs),
     /// Measure the errors of a template's models by resolution and depth.
     Measure(Box<MeasureArgs>),
-    /// Simulate robots that swap places in a room, with half-planes from formulas, from ORCA's
-    /// table and from models.
+    /// Simulate a swap of places in a room with half-planes from formulas, tables or models.
     Swarm(SwarmArgs),
 }
 
@@ -124,8 +120,7 @@ struct MeasureArgs {
 
 #[derive(Args, Clone, Debug)]
 struct SwarmArgs {
-    /// A room as TOML (`outline`, `[[circle]]`, `[[polygon]]`) [default: the room of the
-    /// documentation].
+    /// A room as TOML (`outline`, `[[circle]]`, `[[polygon]]`) [default: the documentation's].
     #[arg(long, value_name = "FILE")]
     room: Option<PathBuf>,
     /// Number of robots.
@@ -245,10 +240,9 @@ impl DrawArgs {
 struct Evaluated {
     value: f32,
     gradient: Vec<f32>,
-    /// First-order distance to the border, positive where the function is positive; two variables
-    /// only.
+    /// Distance to the border to first order, positive inside the set; two variables only.
     distance: Option<f32>,
-    /// Normal out of the positive set; two variables only.
+    /// Outward normal of the set; two variables only.
     normal: Option<[f32; 2]>,
 }
 

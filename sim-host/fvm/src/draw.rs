@@ -33,8 +33,8 @@ const NAMES: [&[&str]; 2] = [
 ];
 
 /// Writes a PNG for each component, `STEM-1.png` and so on: one pixel per voxel, north up, 8 or 16
-/// bits of grey from -1 (black) to 1 (white). Layers of three variables are stacked, the first at
-/// the bottom.
+/// bits of grey from -1 (black) to 1 (white). Layers of three variables are stacked from the
+/// bottom.
 ///
 /// # Errors
 /// [`DrawError`].
@@ -49,7 +49,6 @@ pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>, DrawError> {
         for row in (0..rows).rev() {
             for column in 0..width {
                 let at = ((row * width + column) * components + component) * length;
-                // Offset binary in the upper bits.
                 if length == 1 {
                     let level = i16::from(nodes[at].cast_signed()) + (1 << (header.depth - 1));
                     grey.push((level << (8 - header.depth)) as u8);
@@ -85,8 +84,8 @@ const GAP: f64 = 34.0;
 const TOP: f64 = 62.0;
 const PIXELS: u32 = 360;
 
-/// A sheet with the values and the border, the first-order distance, and the M-images. Three
-/// variables show the layer nearest to `slice`, or the middle one for `None`.
+/// Draws values and border, first-order distance, and M-images. Of three variables, it shows the
+/// layer nearest to `slice`, by default the middle one.
 ///
 /// # Errors
 /// [`DrawError`].
@@ -118,7 +117,6 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
     Ok(Sheet { extent: [x, y], nodes: [nx, ny], fields: &fields, names: NAMES[1], node: &node }.draw(&title))
 }
 
-/// Title of a picture, and its value at a point.
 type Field<'a> = (&'a str, &'a dyn Fn(f64, f64) -> Option<f64>);
 
 struct Sheet<'a> {
@@ -183,8 +181,6 @@ fn show(canvas: &mut Canvas, area: [f64; 4], name: &str, pixels: Pixels) {
     canvas.rectangle([left, top, width, height], None, Some(Stroke::new(MUTED, 1.0)));
 }
 
-/// Orange where positive, blue where negative, with contour lines of width `line` in units of the
-/// value.
 fn contoured(value: f64, most: f64, line: f64) -> [u8; 4] {
     let colour = if value > 0.0 { PALETTE[1] } else { PALETTE[0] };
     let fill = WHITE.towards(colour, Scalar::min(value.abs() / most, 1.0) * 0.7 + 0.08);

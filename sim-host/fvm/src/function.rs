@@ -1,6 +1,6 @@
 //! Functions of two or three variables, and R-functions, which combine them like Boolean operations
-//! combine sets (V. L. Rvachev 1982, "Theory of R-functions and some applications of it"; in
-//! English V. Shapiro 2007, "Semi-analytic geometry with R-functions", Acta Numerica 16).
+//! combine sets (V. L. Rvachev 1982; in English V. Shapiro 2007, "Semi-analytic geometry with
+//! R-functions", Acta Numerica 16).
 //!
 //! A function stands for the set where it is positive; its zeros are the border. The sign of an
 //! R-function depends only on the signs of its arguments.
@@ -12,17 +12,14 @@ use std::sync::Arc;
 
 /// Rvachev's system R_alpha, which defines "and" and "or". "Not" is -x in all systems.
 ///
-/// x and y: (x + y - sqrt(x^2 + y^2 - 2 alpha x y)) / (1 + alpha); x or y: with + instead of -
-/// before the root; -1 < alpha <= 1.
+/// x and y: (x + y - sqrt(x^2 + y^2 - 2 alpha x y)) / (1 + alpha); x or y: with + before the root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum System {
-    /// R_0, alpha = 0: x + y -+ sqrt(x^2 + y^2). Smooth except where both arguments are 0, so
-    /// gradients exist on the whole border except in corners. Values are not distances.
+    /// alpha = 0. Smooth except where both arguments are 0; values are not distances.
     R0,
-    /// R_1, alpha = 1: minimum and maximum. Distances stay distances, but there is a kink where
-    /// both arguments are equal.
+    /// alpha = 1: minimum and maximum. Distances stay distances; kinks where arguments are equal.
     R1,
-    /// R_alpha for another alpha, -1 < alpha <= 1.
+    /// Another alpha, -1 < alpha <= 1.
     Alpha(f64),
 }
 
@@ -124,7 +121,6 @@ impl<const V: usize> Function<V> {
     }
 }
 
-/// Negation: positive where the function is negative.
 impl<const V: usize> Not for Function<V> {
     type Output = Self;
 

@@ -1,4 +1,4 @@
-//! The program `staya-voxel` with the commands `voxel` and `orca`.
+//! The program `staya-voxel`.
 
 fn main() -> std::process::ExitCode {
     staya_console::main(|command: &staya_fvm::cli::Command, global| command.run(global))

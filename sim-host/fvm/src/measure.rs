@@ -60,8 +60,8 @@ pub struct Measured {
 
 const PURPOSE: u32 = u32::from_be_bytes(*b"fvm\0");
 
-/// Compares a model with its function at random points of its extent. Equal seeds give equal
-/// points. `None` without points.
+/// Compares a model with its function at random points of its extent, a function of the seed.
+/// `None` without points.
 #[must_use]
 pub fn measure<const V: usize>(
     function: &Function<V>,
@@ -77,7 +77,6 @@ pub fn measure<const V: usize>(
         let mut rng = Rng::keyed(seed, PURPOSE, point, 0);
         let at = extent.map(|[low, high]| {
             let share = f64::from(rng.next_u32()) / f64::from(u32::MAX);
-            // Rounded to single precision, as the model receives it.
             (low + (high - low) * (1e-5 + (1.0 - 2e-5) * share)) as f32
         });
         let found = reading.local(model, at)?;
@@ -104,9 +103,8 @@ pub struct HalfPlaneErrors {
     pub change: Errors,
 }
 
-/// Compares half-planes of `source` with the formula on random pairs of robots: radii of 0.1 to 0.5
-/// m, up to 5 m apart, velocities up to 1.5 m/s along each axis, a horizon of 2 s. `None` without
-/// pairs.
+/// Compares half-planes of `source` with the formula on random pairs of robots: radii 0.1 to 0.5 m,
+/// up to 5 m apart, velocities up to 1.5 m/s along each axis, horizon 2 s. `None` without pairs.
 #[must_use]
 pub fn half_planes<P: HalfSpaces<f32, Velocity = Vec2<f32>>>(
     source: &P,

@@ -5,11 +5,11 @@ use serde::Deserialize;
 use staya_controller::geom::{Vec2, Vec3};
 use staya_controller::obstacle::Obstacle;
 
-/// A room, metres.
+/// A room with obstacles, read from TOML.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Room {
-    /// Corners of the outer wall.
+    /// Corners of the outer wall, metres.
     pub outline: Vec<[f64; 2]>,
     /// Round obstacles.
     #[serde(default, rename = "circle")]
@@ -56,7 +56,7 @@ pub enum RoomError {
 const CORNERS: &str = "give three corners or more, finite, no two in a row equal";
 
 impl Default for Room {
-    /// 8 m by 6 m with a niche, a round and a square pillar, as in the documentation.
+    /// The documentation's room: 8 m by 6 m with a niche, a round and a square pillar.
     fn default() -> Self {
         Self {
             outline: vec![[-4.0, -3.0], [4.0, -3.0], [4.0, 1.5], [2.5, 1.5], [2.5, 3.0], [-4.0, 3.0]],
@@ -98,7 +98,7 @@ impl Room {
         Ok(())
     }
 
-    /// A function that is positive outside of the outline and in obstacles.
+    /// Function that is positive outside the outline and in obstacles.
     #[must_use]
     pub fn function(&self, system: System) -> Function<2> {
         let walls = !shape::polygon(self.outline.clone());

@@ -30,7 +30,6 @@ pub fn polygon(corners: Vec<[f64; 2]>) -> Function<2> {
         let (mut nearest, mut is_inside) = (f64::INFINITY, false);
         for (from, to) in ends {
             nearest = nearest.min(to_segment(at, *from, *to));
-            // Whether a ray to the east crosses this edge.
             let is_between = (from[1] > at[1]) != (to[1] > at[1]);
             if is_between && at[0] < from[0] + (at[1] - from[1]) / (to[1] - from[1]) * (to[0] - from[0]) {
                 is_inside = !is_inside;

@@ -1,5 +1,4 @@
-//! Simulates robots that swap places in a room, with ORCA from formulas, from the table, or from
-//! functional voxel models.
+//! Robots that swap places in a room: ORCA from formulas, its table, or functional voxel models.
 
 use crate::Room;
 use serde::Serialize;
@@ -37,7 +36,7 @@ pub enum Source {
 pub struct Swap<'a> {
     /// The room.
     pub room: Room,
-    /// Number of robots on the circle, each with its goal on the opposite side.
+    /// Number of robots on the circle; the goal of each is opposite its start.
     pub robots: u32,
     /// Radius of the circle around the origin, metres.
     pub circle_m: f32,
@@ -67,11 +66,11 @@ pub struct Outcome {
     pub walls: Source,
     /// Number of robots that arrived.
     pub arrived: u32,
-    /// Time at which the last robot arrived, seconds; the limit if not all arrived.
+    /// Time of the last arrival, seconds; the limit if not all arrived.
     pub time_s: f32,
-    /// Smallest distance between the borders of two robots, metres.
+    /// Smallest gap between two robots, metres.
     pub gap_m: f32,
-    /// Smallest distance between a robot's border and a wall, metres, by the exact room.
+    /// Smallest gap between a robot and a wall of the exact room, metres.
     pub wall_gap_m: f32,
     /// Overlaps, summed over pairs and ticks.
     pub overlaps: u32,
@@ -117,7 +116,6 @@ impl Swap<'_> {
 
     fn go<P: HalfSpaces<f32, Velocity = Vec2<f32>> + Clone>(&self, by: P, walls: Source) -> Result<Outcome, FileError> {
         let model = Model::<f32, 2>::from_bytes(self.models.room)?;
-        // The exact room, for the results.
         let truth = self.room.function(crate::System::R1);
         let mut robots: Vec<Robot<P>> = (0..self.robots).map(|index| self.robot(index, by.clone())).collect();
         let mut outcome = Outcome {
@@ -190,7 +188,7 @@ impl Swap<'_> {
         nearby.sort_by(|one, other| one.offset_m.norm().total_cmp(&other.offset_m.norm()));
         nearby.truncate(16);
         let around: Vec<Obstacle<f32>> = match walls {
-            // Outside of the model the robot avoids neighbours only, which shows in the result.
+            // Outside the model the robot avoids neighbours only, which shows in the result.
             Source::Model => obstacles(model, at, RADIUS_M + 2.0 * SPEED_MPS * STEP_S)
                 .map(|found| found.iter().copied().collect())
                 .unwrap_or_default(),

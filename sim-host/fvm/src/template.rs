@@ -32,7 +32,6 @@ pub struct Pair {
 }
 
 impl Default for Pair {
-    /// The paper's worked example.
     fn default() -> Self {
         Self { places_m: [[2.0, -3.0], [-2.0, 3.0]], radii_m: [1.0, 1.0], horizon_s: 2.0 }
     }
@@ -43,8 +42,8 @@ impl Default for Pair {
 pub enum VelocityForm {
     /// Distance to the nearest border, as ORCA needs it.
     Distance,
-    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions, as in the paper. It has the same
-    /// border, but its gradient is not everywhere the shortest way out.
+    /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc by R-functions, as in the paper. The border is the
+    /// same, but the gradient is not everywhere the shortest way out.
     RFunction(System),
 }
 
@@ -76,8 +75,7 @@ pub enum Templated {
     Space(Function<3>, [[f64; 2]; 3]),
 }
 
-/// Along and across the axis to the neighbour, in disc radii; tangent of a quarter of the cone's
-/// angle.
+/// Along and across the axis to the neighbour, in disc radii; tan of a quarter of the cone's angle.
 const NEIGHBOR: [[f64; 2]; 3] = [[-2.0, 2.0], [0.0, 2.0], [0.0, 1.0]];
 
 impl Template {
@@ -145,20 +143,17 @@ impl Pair {
     }
 }
 
-/// The velocity obstacle, positive inside. The disc has its centre at the origin and radius 1, the
-/// neighbour is on the positive x axis, and the cone is given by sine and cosine of its half angle.
-/// `y >= 0`; the other half is the mirror image. (Differences at y = 0 need values slightly below,
-/// where the function continues smoothly.)
+/// The velocity obstacle in normal form, positive inside: disc of radius 1 at the origin, neighbour
+/// on the positive x axis, cone given by sine and cosine of its half angle. `y >= 0` up to
+/// differences at 0; the other half is the mirror image.
 #[must_use]
 pub fn velocity_obstacle(form: VelocityForm, x: f64, y: f64, [sine, cos]: [f64; 2]) -> f64 {
-    // Inside both legs, which touch the disc; beyond the perpendiculars on them through the disc's
-    // centre.
+    // Inside both legs, which touch the disc; beyond the perpendiculars on them through its centre.
     let (pr1, pr2) = (1.0 + sine * x - cos * y, 1.0 + sine * x + cos * y);
     let (pr3, pr4) = (cos * x + sine * y, cos * x - sine * y);
     let disc = 1.0 - libm::hypot(x, y);
     match form {
-        // Beyond the perpendicular on the nearer leg, and everywhere ahead, that leg is nearest;
-        // elsewhere the disc.
+        // Beyond the perpendicular and ahead, the nearer leg is nearest; elsewhere the disc.
         VelocityForm::Distance if pr3 > 0.0 || x > 0.0 => pr1,
         VelocityForm::Distance => disc,
         VelocityForm::RFunction(system) => {

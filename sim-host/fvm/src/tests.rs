@@ -21,14 +21,13 @@ fn space(template: &Template, nodes: [u16; 3], depth: u8) -> Vec<u8> {
 }
 
 proptest! {
-    /// The sign of an R-function equals the Boolean operation, even where rounding could change it.
+    /// The sign equals the Boolean operation even where rounding could change it.
     #[test]
     fn signs_of_r_functions_are_boolean(x in -1e3_f64..1e3, y in -1e3_f64..1e3, tiny in -1e-12_f64..1e-12, alpha in -0.99_f64..1.0) {
         for system in [System::R0, System::R1, System::Alpha(alpha)] {
             for (x, y) in [(x, y), (x, tiny), (tiny, y), (x, x), (x, -x)] {
                 prop_assert_eq!(system.and(x, y) > 0.0, x > 0.0 && y > 0.0, "{} {} {}", system, x, y);
                 prop_assert_eq!(system.or(x, y) > 0.0, x > 0.0 || y > 0.0, "{} {} {}", system, x, y);
-                // De Morgan's law, and symmetry.
                 prop_assert_eq!(-system.and(x, y), system.or(-x, -y));
                 prop_assert_eq!(system.and(x, y), system.and(y, x));
             }
@@ -43,14 +42,12 @@ proptest! {
         prop_assert_eq!(System::R1.or(x, y), if x > y { x } else { y });
     }
 
-    /// The template equals the controller's R-function (min and max), and the formula's distance.
     #[test]
     fn velocity_obstacle_agrees_with_the_controllers_formula(seed: u64) {
         let mut rng = Rng::new(seed);
         let mut number = |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX);
         let (x, y, sine) = (number(-2.0, 2.0), number(0.0, 2.0), number(0.01, 0.99));
-        // With radii and horizon of 1 the disc's radius is 1, and its centre is as far as the
-        // neighbour.
+        // With radii and horizon of 1 the disc has radius 1; its centre is as far as the neighbour.
         let offset = V::new(1.0 / sine, 0.0);
         let leg = [sine, libm::sqrt(1.0 - sine * sine)];
         let exact = VelocityObstacle::new(offset, 1.0, 1.0).unwrap().value(offset + V::new(x, y));
@@ -64,8 +61,7 @@ proptest! {
         prop_assert!((found - change).abs() < 1e-9, "{found} {change}");
     }
 
-    /// No half-plane permits a part of the velocity obstacle, whether the model is coarse, has few
-    /// bits, or has other gradients. Both robots of a pair get opposite half-planes.
+    /// Holds for coarse models, few bits and other gradients; both robots get opposite half-planes.
     #[test]
     fn every_half_plane_of_a_neighbor_model_forbids_the_whole_obstacle(seed: u64) {
         for (form, nodes, depth) in [
@@ -95,7 +91,6 @@ proptest! {
     }
 }
 
-/// Robots of 0.1 to 0.5 m within 5 m, with up to 1.5 m/s along each axis.
 fn pair(rng: &mut Rng) -> (V, MovingBall<V>) {
     let mut number = |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX);
     let radii_m = number(0.2, 1.0);
@@ -106,8 +101,7 @@ fn pair(rng: &mut Rng) -> (V, MovingBall<V>) {
     (own, MovingBall { offset_m: V::new(cos, sin) * distance, velocity_mps, radii_m, tie: V::ZERO })
 }
 
-/// FVM's worked example: relative velocity (-1.5, 2.5), the whole correction, half-plane through
-/// (1.707107, 0.792893).
+/// FVM: relative velocity (-1.5, 2.5), whole correction, half-plane through (1.707107, 0.792893).
 #[test]
 fn worked_example_of_the_paper() {
     let own = V::new(1.5, 1.0);
@@ -118,7 +112,6 @@ fn worked_example_of_the_paper() {
         let model = Model::<f64, 2>::from_bytes(&bytes).unwrap();
         let found = velocity_half_plane(&model, own, relative, 1.0).unwrap();
         assert!(off(found) < 0.007, "{form:?}: {}", off(found));
-        // Eq. 17.
         let cos = model.blend([relative.x, relative.y]).unwrap().direction().unwrap().x;
         assert!((cos + std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-3, "{cos}");
     }
@@ -131,7 +124,7 @@ fn worked_example_of_the_paper() {
     assert!(found.penetration(own) >= 0.292893 - 1e-6);
 }
 
-/// For a smooth function blended values and gradients converge with the square of the step,
+/// For a smooth function, blended values and gradients converge with the square of the step,
 /// gradients of the nearest node with the step. Finite differences are the reference.
 #[test]
 fn errors_fall_with_resolution_and_with_depth() {
@@ -204,7 +197,6 @@ fn invalid_templates_are_refused() {
     }
 }
 
-/// In a corner both walls give a half-plane, beside a pillar one does.
 #[test]
 fn obstacles_of_a_room_are_its_walls() {
     let room = Template::Room(Room::default(), System::R1);
@@ -250,7 +242,6 @@ fn pictures_contain_the_components() {
         assert_eq!(reader.info().width, u32::from(header.nodes[0]));
         let mut grey = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut grey).unwrap();
-        // The function's own component is negative everywhere, hence dark.
         assert!(grey.chunks(header.component_len()).all(|pixel| pixel[0] < 128));
         assert!(sheet(&bytes, "title", None).unwrap().shapes.len() > 8);
     }

@@ -1,5 +1,4 @@
-//! Scenarios of robots in the plane or in space that an experiment builds instead of reading a
-//! file.
+//! Scenarios that experiments build instead of reading a file.
 
 use staya_controller::agent::{GuidanceSetup, SafetyKind};
 use staya_controller::orca::AvoidParams;
@@ -9,7 +8,6 @@ use staya_sim::radio::RadioParams;
 use staya_sim::scenario::{PlaneSetup, RobotGroup, Scenario, Start, Target};
 use staya_sim::world::plane::{Abilities, Solid};
 
-/// Highest speed that a beacon can represent, metres per second.
 pub(super) const FASTEST_MPS: f64 = 32.0;
 
 #[derive(Clone, Debug)]
@@ -20,7 +18,6 @@ pub(super) struct Arena {
     pub seconds: f64,
     pub radius_m: f64,
     pub max_speed_mps: f64,
-    /// Range of the radio, metres.
     pub range_m: f64,
     pub loss: f64,
     pub sight_m: f64,
@@ -32,7 +29,6 @@ pub(super) struct Arena {
 }
 
 impl Arena {
-    /// Setup in the plane, with robots at these starts.
     pub fn setup(&self, starts: Vec<Start>) -> PlaneSetup {
         let abilities =
             Abilities { max_speed_mps: self.max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
@@ -44,7 +40,6 @@ impl Arena {
         PlaneSetup { solids: self.solids.clone(), ..PlaneSetup::new(group, starts) }
     }
 
-    /// Scenario of robots 1, 2, ... with this setup.
     pub fn scenario(&self, setup: PlaneSetup) -> Scenario {
         let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = ticks(self.seconds, self.step_s);
@@ -52,29 +47,24 @@ impl Arena {
     }
 }
 
-/// Number of steps in a time, rounded.
 pub(super) fn ticks(seconds: f64, step_s: f64) -> u32 {
     libm::round(seconds / step_s) as u32
 }
 
-/// Uniform random number in [low, high).
 pub(super) fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * ((rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64)
 }
 
-/// Normally distributed random number with mean 0 (Box and Muller).
+/// Mean 0 (Box and Muller).
 pub(super) fn normal(rng: &mut Rng, deviation: f64) -> f64 {
-    // 1 - u is never 0.
     let length = libm::sqrt(-2.0 * libm::log(1.0 - uniform(rng, 0.0, 1.0)));
     deviation * length * libm::cos(2.0 * std::f64::consts::PI * uniform(rng, 0.0, 1.0))
 }
 
-/// Draws of a place before the arena counts as full.
 const TRIES: u32 = 1000;
 
-/// Draws `count` starts that are at least `apart_m` from each other and have these `targets`.
-/// `draw` returns place and velocity of robot i from its own generator; it is repeated until the
-/// distance fits. `None` if there is no room.
+/// Starts at least `apart_m` from each other, or `None` without room. `draw` returns place and
+/// velocity of robot i from its own generator, and is repeated until the distance fits.
 pub(super) fn starts(
     count: u32,
     apart_m: f64,

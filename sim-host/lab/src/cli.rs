@@ -1,8 +1,5 @@
-//! The command line of `staya-lab`: `staya sweep`, and `staya experiment`, which repeats papers and
-//! benchmarks.
-//!
-//! If the options of an experiment are not simply the fields of its plan, a module here converts
-//! them.
+//! The commands `staya sweep` and `staya experiment`. A module converts options that are not simply
+//! the fields of a plan.
 
 mod crossing;
 mod flock;
@@ -54,31 +51,25 @@ pub struct ExperimentArgs {
 enum Experiment {
     /// Windowed routing against the global optimum on random land (Kuznetsov, figures 2 to 4).
     Route(Box<route::RouteArgs>),
-    /// What a map is worth on land that changes, with some of it blank or wrong.
+    /// Value of a map, partly blank or wrong, on changing land.
     Scouting(Box<scouting::Plan>),
-    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8,
-    /// figure 6).
+    /// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, figure 6).
     Formation(Box<formation::FormationArgs>),
-    /// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they
-    /// come.
+    /// Robots on a circle with opposite goals: arrivals, delays, gaps.
     Swap(crossing::SwapArgs),
     /// Two crowds pass one gap in opposite directions.
     Doorway(crossing::DoorwayArgs),
-    /// Fourteen ways to get in each other's way: crossings, doors, corridors, sizes, intruders,
-    /// dead ends, in space.
+    /// Fourteen scenes of conflicts: crossings, doors, corridors, intruders, dead ends, space.
     Crossing(Box<crossing::CrossingArgs>),
-    /// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
+    /// Queries of a Moving AI benchmark: arrivals, and lengths compared with the optimal ones.
     Movingai(movingai::MovingAiArgs),
-    /// Boids on a torus: what three ways to find neighbours cost, with equal flights (Starovoitova,
-    /// section 2.3).
+    /// Boids on a torus: cost of five neighbour searches (Starovoitova, section 2.3).
     Boids(Box<boids::Plan>),
     /// The five flocking simulations of Olfati-Saber 2006, and flocks driven at each other.
     Flock(Box<flock::FlockArgs>),
-    /// 225 robots travel to three goals: how much of a group they are, and gains tuned (Pavlovsky
-    /// and Pavlovsky).
+    /// Group order of 225 robots with three goals, and tuned gains (Pavlovsky and Pavlovsky).
     Goals(Box<goals::GoalsArgs>),
-    /// What a robot costs in time and memory, in swarms of a thousand to a million, on the grid and
-    /// in the plane.
+    /// Time and memory per robot in swarms of a thousand to a million.
     Scale(Box<scale::Plan>),
 }
 

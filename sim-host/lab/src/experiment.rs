@@ -1,8 +1,6 @@
-//! Common parts of all experiments: a checked plan, parallel runs until Ctrl-C, rows, a report,
-//! pictures.
+//! Common parts of all experiments: a checked plan, parallel runs, rows, a report, pictures.
 //!
-//! To add an experiment, implement [`Experiment`] for its plan in a new module and add a variant in
-//! [`cli`](crate::cli).
+//! A new experiment is a plan that implements [`Experiment`], and a variant in [`cli`](crate::cli).
 
 pub mod rows;
 
@@ -18,17 +16,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
 
-/// Most runs per point: some hundred megabytes of results.
+/// Some hundred megabytes of results.
 pub(crate) const MAX_RUNS: u32 = 1_000_000;
 
-/// Progress callback, called from any thread: takes the number of finished runs and returns whether
-/// to continue.
+/// Progress callback: takes the number of finished runs, on any thread; returns whether to
+/// continue.
 pub type GoesOn<'a> = dyn Fn(usize) -> bool + Sync + 'a;
 
-/// A plan of runs. Equal plans give equal reports on any number of threads.
-///
-/// A plan has `points()` points with `runs()` runs each. Each run has a row with its parameters,
-/// its seed and its figures.
+/// A plan of `points()` points with `runs()` runs each. Equal plans give equal reports on any
+/// number of threads.
 pub trait Experiment: Sized + Sync {
     /// Name of the experiment in rows.
     const NAME: &'static str;
@@ -55,24 +51,24 @@ pub trait Experiment: Sized + Sync {
     /// Runs per point.
     fn runs(&self) -> u32;
 
-    /// All parameters of a point, in a fixed order: everything that its runs depend on besides
-    /// their seeds. Two points must not have equal parameters.
+    /// All parameters of a point besides the seeds, in a fixed order; no two points have equal
+    /// ones. Destructure the plan, so that a new field cannot be forgotten.
     fn given(&self, point: usize) -> Vec<(&'static str, Value)>;
 
-    /// Seed of a run. Seed and parameters suffice to repeat the run.
+    /// Seed of a run; with the parameters, it suffices to repeat the run.
     fn seed(&self, point: usize, run: u32) -> u64;
 
-    /// A run without figures, into which a row is read.
+    /// A run without figures, to read a row into.
     fn blank(&self, point: usize, run: u32) -> Self::Run;
 
-    /// Makes the runs of a checked plan. Returns the runs of each point in order, without gaps,
-    /// from the first one. Most plans only call [`Jobs::each`].
+    /// Makes the runs of a checked plan, usually by [`Jobs::each`] only. Returns the runs of each
+    /// point from the first one, in order and without gaps.
     ///
     /// # Errors
     /// A run fails, or a row cannot be written.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Self::Run>>>;
 
-    /// Computes the report from the runs. Points without runs are left out.
+    /// Computes the report, without points that have no runs.
     fn report(&self, runs: &[Vec<Self::Run>]) -> Self::Report;
 
     /// Writes pictures or other files to `dir` and returns their paths.
@@ -84,7 +80,7 @@ pub trait Experiment: Sized + Sync {
         Ok(Vec::new())
     }
 
-    /// Turns a report that shows a defect into an error, after it has been printed.
+    /// Turns a report that shows a defect into an error after it was printed.
     ///
     /// # Errors
     /// The defect.
@@ -98,7 +94,7 @@ pub trait Experiment: Sized + Sync {
         self.points() * self.runs() as usize
     }
 
-    /// Checks the plan and makes its runs without writing rows; see [`Experiment::perform`].
+    /// Checks the plan and makes its runs without rows; see [`Experiment::perform`].
     ///
     /// # Errors
     /// A parameter is out of range, or a run fails.
@@ -116,7 +112,7 @@ pub trait Experiment: Sized + Sync {
     }
 
     /// Executes the experiment's command: makes the runs under a progress bar, writes rows and
-    /// pictures to a folder, and prints the report to standard output.
+    /// pictures to a folder, and prints the report.
     ///
     /// # Errors
     /// A parameter is out of range, existing rows must not be replaced, a file cannot be written,
@@ -126,7 +122,7 @@ pub trait Experiment: Sized + Sync {
         prepare_dir(out).context("results have no place")?;
         let since = Instant::now();
         let progress = Mutex::new((Progress::new(Self::UNIT, self.total() as u64, global), 0));
-        // Calls may arrive out of order from several threads.
+        // Calls of several threads may arrive out of order.
         let goes_on = |done| {
             if let Ok(mut progress) = progress.lock()
                 && done > progress.1
@@ -226,7 +222,6 @@ impl Course {
     }
 }
 
-/// Refuses a number of runs of 0 or above the limit.
 pub(crate) fn check_runs(runs: u32, what: &str) -> Result<()> {
     match runs {
         0 => bail!("0 runs; make 1 or more {what}"),
@@ -235,7 +230,7 @@ pub(crate) fn check_runs(runs: u32, what: &str) -> Result<()> {
     }
 }
 
-/// A value with a number of decimals, or `-` if it is missing. Supports padding.
+/// A value with a number of decimals, or `-`; supports padding.
 pub(crate) struct Maybe(pub Option<f64>, pub usize);
 
 impl Display for Maybe {

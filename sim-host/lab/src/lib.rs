@@ -1,4 +1,5 @@
-//! Experiments that repeat papers and benchmarks.
+//! Experiments that repeat papers and benchmarks. Each is a plan that implements
+//! [`experiment::Experiment`].
 //!
 //! | module | source | experiment |
 //! | --- | --- | --- |
@@ -6,14 +7,12 @@
 //! | [`scouting`] | KUZ, section 3 | routing on changing land with incomplete or wrong maps |
 //! | [`formation`] | KUZ, section 8 | six robots in formation |
 //! | [`movingai`] | N. Sturtevant 2012 | queries of the Moving AI benchmark |
-//! | [`crossing`] | van den Berg et al. 2011 (ORCA) | swaps over a circle, doorways |
+//! | [`crossing`] | van den Berg et al. 2011 (ORCA) | swaps, doorways, other conflicts |
 //! | [`flock`] | R. Olfati-Saber 2006 (OLF), section VIII | five flocking simulations |
 //! | [`goals`] | V. E. Pavlovsky, V. V. Pavlovsky (PAV) | a group on its way to three goals |
 //! | [`boids`] | V. A. Starovoitova 2018 (STA), section 2.3 | boids on a torus, neighbour search |
 //! | [`share`] | | effect of maps shared over the radio on routes |
 //! | [`scale`] | | cost per robot in swarms of a thousand to a million |
-//!
-//! Each experiment is a plan that implements [`experiment::Experiment`].
 
 mod arena;
 pub mod boids;

@@ -1,11 +1,10 @@
 //! The queries of a Moving AI benchmark (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding",
 //! IEEE TCIAIG 2012).
 //!
-//! With a window as large as the map, the controller must find the optimal lengths given by the
-//! benchmark. With a small window, the question is how many robots leave dead ends that they cannot
-//! see as a whole, and how late. They leave a dead end by learning travel costs, as far as their
-//! memory allows ([`Learning`]), and finally by following the wall. A map that is too large for the
-//! router's search is answered by the planner ([`optimal`]).
+//! With a window as large as the map, the controller must find the benchmark's optimal lengths.
+//! With a small window, the experiment counts the robots that leave dead ends larger than the
+//! window, by learned travel costs ([`Learning`]) and finally by following the wall. Maps too large
+//! for the router's search are answered by the planner ([`optimal`]).
 
 mod groups;
 mod report;
@@ -29,7 +28,7 @@ use staya_sim::terrain::movingai::{Query, parse_map, parse_scen};
 use staya_sim::terrain::{Terrain, read};
 use std::path::{Path, PathBuf};
 
-/// Cells of the largest search, border included: 255 x 255, the limit of 16-bit indices.
+/// Largest search with its border: 255 x 255, the limit of 16-bit indices.
 const CELLS: usize = 255 * 255;
 
 /// Range of sight.
@@ -41,7 +40,7 @@ pub enum Sight {
     Map,
 }
 
-/// How many cells the robot's visit memory holds: 6 bytes each on the robot.
+/// Capacity of the visit memory, 6 bytes per cell on the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 #[expect(missing_docs, reason = "the numbers say it")]
 pub enum Memory {
@@ -69,7 +68,7 @@ impl Memory {
     }
 }
 
-/// How many costs the robot learns: 8 bytes each on the robot.
+/// Number of learned costs, 8 bytes each on the robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 #[expect(missing_docs, reason = "the numbers say it")]
 pub enum Learning {
@@ -103,11 +102,10 @@ pub struct Robots {
     pub memory: Memory,
     /// Size of the memory of learned costs.
     pub learning: Learning,
-    /// Parameters of routing. Radius and moves are ignored: the radius is that of
-    /// [`Robots::sight`], and moves are those of the benchmark (diagonals are sqrt 2 long and cut
-    /// no corners).
+    /// Parameters of routing; radius and moves are ignored ([`Robots::sight`], the benchmark's
+    /// moves).
     pub params: RouteParams,
-    /// When the robots repeat their search.
+    /// Condition for a repeated search.
     pub replan: Replan,
 }
 
@@ -137,11 +135,10 @@ pub struct Benchmark {
 }
 
 impl Benchmark {
-    /// Reads a scenario and its map, by default the file named by the scenario in the same folder.
+    /// Reads a scenario and its map, by default the file that the scenario names, in its folder.
     ///
     /// # Errors
-    /// A file cannot be read, or the scenario has no queries or belongs to another map. Names file
-    /// and remedy.
+    /// A file cannot be read, or the scenario has no queries or belongs to another map.
     pub fn load(scen: &Path, map: Option<&Path>) -> Result<Self> {
         let at = scen.display();
         let queries = parse_scen(&read(scen)?, scen)?;
@@ -175,7 +172,7 @@ impl Benchmark {
     }
 }
 
-/// Parameters of the experiment: queries and robots.
+/// Queries, and robots that answer them.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Map and queries.
@@ -198,8 +195,6 @@ impl Plan {
         }
     }
 
-    /// Answers a query with a planner that sees the whole of a map too large for the router's
-    /// search.
     fn planned(&self, query: &Query) -> Answer {
         let RouteParams { norm, corner_cutting, .. } = self.params();
         let route = optimal::route(&self.benchmark.land, query.start, query.goal, norm, corner_cutting);
@@ -250,7 +245,7 @@ impl Experiment for Plan {
 
     fn check(&self) -> Result<()> {
         let land = &self.benchmark.land;
-        // A window that extends beyond the map contains no more than the map.
+        // A window beyond the map contains no more than the map.
         let sees_all = self.robots.sight != Sight::Map && self.params().radius > 126;
         ensure!(
             holds(CELLS, land) || !sees_all,
@@ -297,7 +292,6 @@ impl Experiment for Plan {
         given
     }
 
-    /// The experiment has no random numbers.
     fn seed(&self, _: usize, _: u32) -> u64 {
         0
     }

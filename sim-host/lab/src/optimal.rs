@@ -1,14 +1,14 @@
-//! The globally optimal route, as a robot with the whole map would find it.
+//! Globally optimal routes on the whole map.
 //!
 //! Dijkstra's algorithm with buckets as wide as the cheapest move (E. V. Denardo and B. L. Fox,
 //! "Shortest-route methods: 1. Reaching, pruning, and buckets", Operations Research 27, 1979). A
-//! cell cannot improve another one in its own bucket, so the order within a bucket does not matter
-//! and the result is exact.
+//! cell cannot improve another one in its own bucket, so the result is exact for any order within a
+//! bucket.
 
 use staya_controller::grid::{BLOCKED, Cell, DIAGONAL, Dir, Norm, UNIT};
 use staya_sim::terrain::Terrain;
 
-/// Buckets in the ring: more than the most expensive move spans (a diagonal into class 255).
+/// More buckets than the most expensive move spans (a diagonal into class 255).
 const RING: usize = 512;
 const _: () = assert!(RING > (DIAGONAL * 255 / UNIT) as usize + 1);
 
@@ -17,52 +17,47 @@ const UNKNOWN: u64 = u64::MAX;
 /// A route from cell to cell.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Route {
-    /// Travel time: sum over all moves of length times impassability of the entered cell, in
-    /// [`UNIT`]s per tick.
+    /// Travel time, [`UNIT`]ths of a tick: sum of length times impassability of the entered cell.
     pub cost: u64,
-    /// The cells, including start and goal.
+    /// Cells from start to goal, both included.
     pub cells: Vec<Cell>,
 }
 
 impl Route {
-    /// Length of the route in [`UNIT`]s per cell.
+    /// Length of the route, [`UNIT`]ths of a cell.
     #[must_use]
     pub fn length(&self, norm: Norm) -> u64 {
         length(&self.cells, norm)
     }
 }
 
-/// Length of a chain of adjacent cells in [`UNIT`]s per cell; repeated cells add nothing.
+/// Length of a chain of adjacent cells, [`UNIT`]ths of a cell; repeated cells add nothing.
 #[must_use]
 pub fn length(cells: &[Cell], norm: Norm) -> u64 {
     let moves = cells.windows(2).filter(|pair| pair[0] != pair[1]);
     moves.filter_map(|pair| Dir::between(pair[0], pair[1])).map(|dir| u64::from(dir.length(norm))).sum()
 }
 
-/// Finds the cheapest route; see [`Planner::route`]. Use a [`Planner`] for many routes.
+/// Finds the cheapest route; for many routes, use a [`Planner`].
 #[must_use]
 pub fn route(terrain: &Terrain, from: Cell, to: Cell, norm: Norm, corner_cutting: bool) -> Option<Route> {
     Planner::default().route(terrain, from, to, norm, corner_cutting)
 }
 
-/// Reusable scratch memory: 9 bytes per cell of the largest map so far, plus the buckets.
+/// Reusable memory for searches: 9 bytes per cell of the largest map, plus the buckets.
 #[derive(Debug, Default)]
 pub struct Planner {
-    /// Impassability, with a blocked border around the map.
+    /// With a blocked border around the map.
     land: Vec<u8>,
-    /// Cost from the start, indexed like `land`.
     cost: Vec<u64>,
-    /// Cells to visit, with the cost at which they were inserted.
     buckets: Vec<Vec<(u64, u32)>>,
     stride: usize,
 }
 
 impl Planner {
-    /// Finds the cheapest route. The result is exact and identical on every machine. `None` if
-    /// there is no route, or if an end is blocked or off the map.
-    ///
-    /// Without `corner_cutting`, a diagonal move needs both orthogonal neighbours passable.
-    /// O(size).
+    /// Finds the cheapest route, identical on every machine; `None` if there is none, or if an end
+    /// is blocked or off the map. Without `corner_cutting`, a diagonal move needs both orthogonal
+    /// neighbours passable. O(size).
     pub fn route(
         &mut self,
         terrain: &Terrain,
@@ -89,7 +84,7 @@ impl Planner {
         let (mut here, mut cell) = (goal, to);
         while here != start {
             let price = u64::from(self.land[here]);
-            // The move that led here, searched backwards; the corner rule is symmetric.
+            // Searches backwards for the move that led here; the corner rule is symmetric.
             let back = moves.iter().find(|step| {
                 let before = here.wrapping_add_signed(-step.offset);
                 self.cost[before] != UNKNOWN
@@ -139,13 +134,11 @@ impl Planner {
         })
     }
 
-    /// Whether a move cuts no corner.
     fn is_open(&self, at: usize, step: &Step) -> bool {
         step.beside
             .is_none_or(|beside| beside.iter().all(|offset| self.land[at.wrapping_add_signed(*offset)] != BLOCKED))
     }
 
-    /// Settles cells in the order of their costs until the goal is settled or no cell is left.
     fn spread(&mut self, goal: usize, moves: &[Step; 8], corner_cutting: bool) {
         let mut waiting = 1_usize;
         let mut number = 0_u64;
@@ -176,11 +169,9 @@ impl Planner {
     }
 }
 
-/// A unit move as index offsets.
 struct Step {
     dir: Dir,
     offset: isize,
-    /// The orthogonal neighbours that a diagonal move passes.
     beside: Option<[isize; 2]>,
     length: u64,
 }
@@ -190,7 +181,6 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Reference solution: relaxes all moves until nothing changes.
     fn by_definition(land: &Terrain, from: Cell, norm: Norm, corner_cutting: bool) -> Vec<u64> {
         let cells = || (0..land.height() as i16).flat_map(|y| (0..land.width() as i16).map(move |x| Cell::new(x, y)));
         let mut costs = vec![UNKNOWN; land.cells().len()];

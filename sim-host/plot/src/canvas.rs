@@ -1,33 +1,33 @@
-//! A picture as a list of shapes, drawn once and written both as SVG and as PNG.
+//! A picture as a list of shapes, written both as SVG and as PNG.
 //!
-//! Coordinates are in picture units (one pixel of the SVG at its natural size), x to the right,
-//! y down. Shapes cover those before them.
+//! Coordinates are in picture units (pixels of the SVG at its natural size), x to the right, y
+//! down. Later shapes cover earlier ones.
 
 use super::colour::Colour;
 use super::font;
 
-/// A point of the picture.
+/// A point of the picture, x and y.
 pub type Point = [f64; 2];
 
 /// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// Its colour.
+    /// Colour of the line.
     pub colour: Colour,
-    /// Its width.
+    /// Width in units.
     pub width: f64,
     /// Lengths of dash and gap; `None`: solid.
     pub dash: Option<[f64; 2]>,
 }
 
 impl Stroke {
-    /// A solid line.
+    /// Creates a solid line.
     #[must_use]
     pub const fn new(colour: Colour, width: f64) -> Self {
         Self { colour, width, dash: None }
     }
 
-    /// The same line with dashes.
+    /// Returns the line with dashes.
     #[must_use]
     pub const fn dashed(self, dash: f64, gap: f64) -> Self {
         Self { dash: Some([dash, gap]), ..self }
@@ -37,37 +37,37 @@ impl Stroke {
 /// Alignment of a text at its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// The text begins there.
+    /// The text begins at the point.
     Start,
-    /// Its middle is there.
+    /// The middle of the text is at the point.
     Middle,
-    /// It ends there.
+    /// The text ends at the point.
     End,
 }
 
 /// A line of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Where the baseline begins, has its middle, or ends: see [`Text::anchor`].
+    /// Point on the baseline: start, middle or end of the text, by [`Text::anchor`].
     pub at: Point,
-    /// Content.
+    /// The letters.
     pub text: String,
     /// Font size.
     pub size: f64,
     /// Bold letters.
     pub bold: bool,
-    /// Which part of the text is at [`Text::at`].
+    /// Part of the text that is at [`Text::at`].
     pub anchor: Anchor,
-    /// Its colour.
+    /// Colour of the letters.
     pub colour: Colour,
-    /// Reads upwards instead of to the right.
+    /// Whether the text reads upwards instead of to the right.
     pub upwards: bool,
-    /// A margin around the letters that keeps them readable on a picture.
+    /// Colour of a margin around the letters, which keeps them readable on a picture.
     pub halo: Option<Colour>,
 }
 
 impl Text {
-    /// Regular ink from left to right.
+    /// Creates a text in regular ink from left to right.
     #[must_use]
     pub fn new(at: Point, size: f64, anchor: Anchor, text: impl Into<String>) -> Self {
         Self {
@@ -82,7 +82,7 @@ impl Text {
         }
     }
 
-    /// The same text with its capitals centred on [`Text::at`] vertically.
+    /// Centres the capitals on [`Text::at`] vertically.
     #[must_use]
     pub fn centred(mut self) -> Self {
         let half = self.size * font::CAPITAL / 2.0;
@@ -91,56 +91,56 @@ impl Text {
     }
 }
 
-/// Pixels to place in a picture, row by row from the top.
+/// Pixels of an image inside a picture, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pixels {
-    /// Pixels per row.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
-    /// Red, green, blue and opacity (not multiplied) of each pixel.
+    /// Red, green, blue and opacity of each pixel; colours are not multiplied by the opacity.
     pub rgba: Vec<[u8; 4]>,
 }
 
-/// One thing in a picture.
+/// One shape of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// Lines through points, or areas when filled.
+    /// Lines through points, or filled areas.
     Path {
-        /// Each is drawn by itself; a single point with a stroke is a dot.
+        /// Separate lines; a single point with a stroke is a dot.
         lines: Vec<Vec<Point>>,
-        /// Whether ends meet.
+        /// Whether the last point is joined to the first one.
         closed: bool,
-        /// The outline.
+        /// Style of the outline.
         stroke: Option<Stroke>,
-        /// The inside.
+        /// Colour of the inside.
         fill: Option<Colour>,
     },
     /// A circle.
     Circle {
-        /// Its centre.
+        /// Centre of the circle.
         centre: Point,
-        /// Its radius.
+        /// Radius in units.
         radius: f64,
-        /// The outline.
+        /// Style of the outline.
         stroke: Option<Stroke>,
-        /// The inside.
+        /// Colour of the inside.
         fill: Option<Colour>,
     },
     /// A line of text.
     Text(Text),
-    /// A picture in the picture; its pixels stay sharp squares.
+    /// An image; its pixels stay sharp squares.
     Image {
         /// Left, top, width, height.
         area: [f64; 4],
-        /// Content.
+        /// Pixels of the image.
         pixels: Pixels,
     },
     /// Clips later shapes to left, top, width, height; `None` ends the clipping.
     Clip(Option<[f64; 4]>),
 }
 
-/// A picture as a list of shapes.
+/// A picture as a list of shapes, in units; written by [`Canvas::write`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Canvas {
     /// Width.
@@ -154,7 +154,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// An empty white picture.
+    /// Creates an empty white picture.
     #[must_use]
     pub fn new(width: f64, height: f64, title: impl Into<String>) -> Self {
         Self { width, height, title: title.into(), shapes: Vec::new() }

@@ -1,4 +1,4 @@
-//! The content of charts. The modules `layout` and `panels` arrange it.
+//! Content of charts.
 //!
 //! ```ignore
 //! use staya_plot::{Chart, Panels, Series};
@@ -17,12 +17,11 @@
 
 use super::colour::{Colour, MUTED};
 
-/// Values of a series. NaN and infinite values are skipped; lines have gaps there.
+/// Values of a series; those that are not finite are skipped and leave gaps in lines.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Data {
     /// x, y; joined in this order.
     Line(Vec<[f64; 2]>),
-    /// x, y.
     Points(Vec<[f64; 2]>),
     /// x, y, low, high.
     Intervals(Vec<[f64; 4]>),
@@ -46,7 +45,7 @@ impl Series {
         Self { name: name.into(), data, colour: None, dashed: false, joined: false, like_previous: false }
     }
 
-    /// A line through `[x, y]` in the given order. An empty name keeps it out of the legend.
+    /// A line through `[x, y]` in this order. An empty name keeps it out of the legend.
     #[must_use]
     pub fn line(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         Self::new(name, Data::Line(points.into_iter().collect()))
@@ -70,7 +69,7 @@ impl Series {
         Self::new(name, Data::Bars(bars.into_iter().collect()))
     }
 
-    /// A dashed grey line through `[x, y]`, for values from elsewhere or a goal.
+    /// A dashed grey line through `[x, y]`, for a goal or values from elsewhere.
     #[must_use]
     pub fn reference(name: impl Into<String>, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
         Self::line(name, points).dashed().colour(MUTED)
@@ -82,13 +81,13 @@ impl Series {
         Self { joined: true, ..self }
     }
 
-    /// Dashes the line.
+    /// Draws the line with dashes.
     #[must_use]
     pub fn dashed(self) -> Self {
         Self { dashed: true, ..self }
     }
 
-    /// Takes this colour instead of the palette's next.
+    /// Uses this colour instead of the next one of the palette.
     #[must_use]
     pub fn colour(self, colour: Colour) -> Self {
         Self { colour: Some(colour), ..self }
@@ -101,8 +100,7 @@ impl Series {
     }
 }
 
-/// A chart with linear axes and ticks at multiples of 1, 2 or 5 x 10^k; the legend is above the
-/// data.
+/// A chart with linear or logarithmic axes, ticks at multiples of 1, 2 or 5 x 10^k, and a legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     pub(super) title: String,
@@ -118,8 +116,7 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Creates a chart without data, 720 x 420 units (the PNG has twice as many pixels). Labels
-    /// include the unit.
+    /// Creates an empty chart of 720 x 420 units (two PNG pixels each). Labels include the unit.
     #[must_use]
     pub fn new(title: impl Into<String>, x_label: impl Into<String>, y_label: impl Into<String>) -> Self {
         Self {
@@ -143,13 +140,13 @@ impl Chart {
         self
     }
 
-    /// A small line of text under the title.
+    /// Sets a small line of text under the title.
     #[must_use]
     pub fn note(self, note: impl Into<String>) -> Self {
         Self { note: note.into(), ..self }
     }
 
-    /// Sets the range of y. By default it fits all data, and 0 where that costs little space.
+    /// Sets the range of y. By default it fits all data, and 0 if that takes little space.
     #[must_use]
     pub fn y_range(self, low: f64, high: f64) -> Self {
         Self { y_range: Some([low, high]), ..self }
@@ -173,7 +170,7 @@ impl Chart {
         Self { log_y: true, ..self }
     }
 
-    /// Width and height in units, at least 200 x 150 and at most 4000 x 4000.
+    /// Sets width and height in units, limited to 200 x 150 and 4000 x 4000.
     #[must_use]
     pub fn size(self, width: f64, height: f64) -> Self {
         let within = |side: f64, least: f64| {

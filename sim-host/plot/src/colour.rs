@@ -17,13 +17,13 @@ impl Colour {
         Self { rgb: [red, green, blue], alpha: 255 }
     }
 
-    /// The same colour with another opacity.
+    /// Returns the colour with another opacity.
     #[must_use]
     pub const fn with_alpha(self, alpha: u8) -> Self {
         Self { alpha, ..self }
     }
 
-    /// The colour at `share` (0 to 1) between this one and another.
+    /// Returns the colour at `share` (0 to 1) between this one and another.
     #[must_use]
     pub fn towards(self, other: Self, share: f64) -> Self {
         let mix = |a: u8, b: u8| {
@@ -34,7 +34,7 @@ impl Colour {
     }
 }
 
-/// Paper.
+/// Background of pictures.
 pub const WHITE: Colour = Colour::hex(0xff_ff_ff);
 /// Titles and labels.
 pub const INK: Colour = Colour::hex(0x22_22_22);
@@ -43,8 +43,7 @@ pub const MUTED: Colour = Colour::hex(0x5c_5c_5c);
 /// Grid lines.
 pub const GRID: Colour = Colour::hex(0xe6_e6_e6);
 
-/// The palette of Okabe and Ito ("Color universal design", 2008) without yellow, which is too pale
-/// on white. Neighbours differ in brightness too.
+/// Colours of Okabe and Ito ("Color universal design", 2008) without yellow, which is too pale.
 pub const PALETTE: [Colour; 7] = [
     Colour::hex(0x00_72_b2),
     Colour::hex(0xd5_5e_00),
@@ -58,7 +57,7 @@ pub const PALETTE: [Colour; 7] = [
 /// Number of distinct colours of [`nth`].
 pub const COUNT: usize = 3 * PALETTE.len();
 
-/// The colour of item `index`: the palette, then darker, then paler variants; then they repeat.
+/// Colour of item `index`: the palette, darker and paler variants, then from the start again.
 #[must_use]
 pub fn nth(index: usize) -> Colour {
     let colour = PALETTE[index % PALETTE.len()];

@@ -1,30 +1,27 @@
-//! Pictures of large swarms: the number of visits of each cell instead of a line per robot.
+//! Large swarms: the number of visits of each cell instead of a line per robot.
 
 use super::canvas::Pixels;
 use super::colour::Colour;
 use super::map::{Map, Raster};
 
-/// Colours for one visit, half of the most visits (on a logarithmic scale), and the most visits.
+/// Colours for one visit, half of the most visits (logarithmic scale), and the most visits.
 const RAMP: [Colour; 3] = [
     Colour::hex(0x7c_c4_ee).with_alpha(150),
     Colour::hex(0x00_72_b2).with_alpha(215),
     Colour::hex(0x08_1d_38).with_alpha(240),
 ];
 
-/// The colour of `share`, 0 (one visit) to 1 (the most visits).
 pub fn colour(share: f64) -> Colour {
     if share < 0.5 { RAMP[0].towards(RAMP[1], share * 2.0) } else { RAMP[1].towards(RAMP[2], share * 2.0 - 1.0) }
 }
 
-/// Number of visits of each square of a map.
 pub struct Density {
     raster: Raster,
     entered: Vec<u32>,
 }
 
 impl Density {
-    /// Counts visits along paths in metres. Between two positions a path is straight. O(squares +
-    /// visited squares).
+    /// Paths are straight between two positions, in metres. O(squares + visited squares).
     pub fn new<'a>(map: &Map<'_>, ways: impl Iterator<Item = &'a [[f64; 2]]>) -> Self {
         let raster = map.raster();
         let mut entered = vec![0_u32; raster.columns as usize * raster.rows as usize];
@@ -46,7 +43,6 @@ impl Density {
         self.entered.iter().copied().max().unwrap_or(0)
     }
 
-    /// The counts as a picture on a logarithmic scale; unvisited squares are transparent.
     pub fn pixels(&self) -> Pixels {
         let decades = libm::log10(f64::from(self.most().max(2)));
         let pixel = |count: &u32| match count {
@@ -68,7 +64,6 @@ fn enter(raster: &Raster, entered: &mut [u32], [x, y]: [i64; 2]) {
     }
 }
 
-/// The squares on the straight line after `from`, up to `to`.
 fn walk(from: [i64; 2], to: [i64; 2], mut visit: impl FnMut([i64; 2])) {
     let by = [to[0] - from[0], to[1] - from[1]];
     let steps = by[0].abs().max(by[1].abs());
@@ -109,7 +104,6 @@ mod tests {
         let image = density.pixels();
         assert_eq!(image.rgba[0], [0; 4]);
         assert!(image.rgba[5][0] < image.rgba[4][0], "more visits are darker");
-        // Extreme positions are far outside, not on some square.
         let wild = Density::new(&map, ways[2..3].iter().copied());
         assert!(wild.most() <= 1);
     }

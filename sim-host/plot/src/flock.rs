@@ -1,7 +1,7 @@
-//! Pictures of robots in the plane at one moment: positions, velocities, neighbours, obstacles.
+//! Robots in the plane at one moment: positions, velocities, neighbours, obstacles.
 //!
-//! A [`Snapshot`] is one moment, a [`Sheet`] has several side by side, as in figures 7 to 12 of R.
-//! Olfati-Saber 2006 (OLF). [`View`] projects three dimensions to two.
+//! A [`Snapshot`] is one moment, a [`Sheet`] has several side by side. [`View`] projects three
+//! dimensions to two.
 //!
 //! ```ignore
 //! use staya_plot::flock::{Obstacle, Sheet, Snapshot};
@@ -29,8 +29,7 @@ use frame::Frame;
 use staya_sim::terrain::Terrain;
 use std::sync::Arc;
 
-/// Largest number of robots with individual sizes; in larger swarms each is a dot or a dart of the
-/// smallest size.
+/// Larger swarms are drawn as dots or small darts.
 pub const MOST_DISCS: usize = 3000;
 
 /// An obstacle.
@@ -40,9 +39,9 @@ pub enum Obstacle {
     Polygon(Vec<[f64; 2]>),
     /// A disc.
     Disc {
-        /// Its centre, metres.
+        /// Centre, metres.
         centre_m: [f64; 2],
-        /// Its radius, metres.
+        /// Radius, metres.
         radius_m: f64,
     },
     /// A wall without thickness between two points, metres.
@@ -50,7 +49,6 @@ pub enum Obstacle {
 }
 
 impl Obstacle {
-    /// Corner points, metres.
     pub(crate) fn corners(&self) -> Vec<[f64; 2]> {
         match self {
             Self::Polygon(corners) => corners.clone(),
@@ -69,8 +67,7 @@ pub struct Snapshot {
     pub positions_m: Vec<[f64; 2]>,
     /// Velocities, m/s: one per robot, or none. Stationary robots have no arrow.
     pub velocities_mps: Vec<[f64; 2]>,
-    /// Speed of the longest arrow, m/s, so that several snapshots are comparable; the fastest
-    /// robot's speed if that is higher.
+    /// Speed of the longest arrow, m/s; at least that of the fastest robot.
     pub fastest_mps: f64,
     /// Radius of the bodies, metres. Bodies too small to see become darts.
     pub radius_m: f64,
@@ -84,7 +81,7 @@ pub struct Snapshot {
     pub obstacles: Vec<Obstacle>,
     /// Goals, metres.
     pub goals_m: Vec<[f64; 2]>,
-    /// Past paths of robots, metres, one line per robot.
+    /// Past paths, metres, one line per robot.
     pub trails_m: Vec<Vec<[f64; 2]>>,
     /// Map in the background.
     pub land: Option<Arc<Terrain>>,
@@ -129,7 +126,6 @@ impl Snapshot {
         canvas
     }
 
-    /// Draws the snapshot into left, top, width, height of a picture.
     fn draw_into(&self, canvas: &mut Canvas, area: [f64; 4]) {
         let frame = Frame::new(self, area);
         frame.draw(self, canvas);
@@ -142,7 +138,7 @@ impl Snapshot {
         self.size.map(|side| if side.is_nan() { 400.0 } else { side.clamp(160.0, 4000.0) })
     }
 
-    /// Smallest and largest x and y of all items; `None` if there are none.
+    /// Smallest and largest x and y of all items.
     fn extent(&self) -> Option<[[f64; 2]; 2]> {
         let disc = |[x, y]: [f64; 2], r: f64| [[x - r, y - r], [x + r, y + r]];
         let robots = self.positions_m.iter().flat_map(|&at| disc(at, self.radius_m.max(0.0)));
@@ -163,8 +159,13 @@ pub enum View {
     Plan,
     /// From the south: x and height.
     Elevation,
+<<<<<<< HEAD
     /// From the south-east and above: east to the right, north to the upper right at half its
     /// length, height up.
+=======
+    /// From the south-east and above: east right, north to the upper right (half length), height
+    /// up.
+>>>>>>> com5
     Oblique,
 }
 
@@ -182,7 +183,7 @@ impl View {
         }
     }
 
-    /// Labels of the axes in this projection.
+    /// Labels of the axes.
     #[must_use]
     pub fn labels(self) -> [String; 2] {
         match self {
@@ -203,7 +204,7 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Creates an empty sheet with `columns` (at least 1) per row. The title may be empty.
+    /// Creates an empty sheet with `columns` (at least 1) per row; the title may be empty.
     #[must_use]
     pub fn new(title: impl Into<String>, columns: usize) -> Self {
         Self { title: title.into(), columns: columns.max(1), has_legend: false, snapshots: Vec::new() }

@@ -1,10 +1,10 @@
-//! Text for computers without fonts: Noto Sans (SIL Open Font License) as outlines.
+//! Text on computers without fonts: outlines of Noto Sans (SIL Open Font License).
 
 use std::sync::LazyLock;
 use tiny_skia::{Path, PathBuilder};
 use ttf_parser::{Face, OutlineBuilder};
 
-/// Height of capital letters and digits as a share of the font size.
+/// Height of capitals and digits as a share of the font size.
 pub const CAPITAL: f64 = 0.714;
 
 static FACES: LazyLock<[Face<'static>; 2]> = LazyLock::new(|| {
@@ -12,7 +12,6 @@ static FACES: LazyLock<[Face<'static>; 2]> = LazyLock::new(|| {
         .map(|bytes| Face::parse(bytes, 0).expect("a font that is compiled in and tested"))
 });
 
-/// Width of a line of text in units of `size`'s unit.
 #[must_use]
 pub fn width(text: &str, size: f64, bold: bool) -> f64 {
     let face = &FACES[usize::from(bold)];
@@ -25,14 +24,13 @@ fn advance(face: &Face<'_>, letter: char) -> u16 {
     face.glyph_hor_advance(glyph).unwrap_or(0)
 }
 
-/// The outline of a line of text from the origin, y down, baseline at 0; `None` if nothing is
-/// visible.
+/// Outline of a line of text, y down, baseline at 0; `None` if nothing is visible.
 #[must_use]
 pub fn outline(text: &str, size: f64, bold: bool) -> Option<Path> {
     let face = &FACES[usize::from(bold)];
     let mut pen = Pen { path: PathBuilder::new(), scale: size as f32 / f32::from(face.units_per_em()), x: 0.0 };
     for letter in text.chars() {
-        // An unknown letter becomes the font's empty box (glyph 0).
+        // Unknown letters become the font's empty box (glyph 0).
         let glyph = face.glyph_index(letter).unwrap_or_default();
         face.outline_glyph(glyph, &mut pen);
         pen.x += f32::from(advance(face, letter)) * pen.scale;
@@ -40,7 +38,6 @@ pub fn outline(text: &str, size: f64, bold: bool) -> Option<Path> {
     pen.path.finish()
 }
 
-/// Moves a glyph from font units, y up, to its place in the line.
 struct Pen {
     path: PathBuilder,
     scale: f32,
@@ -79,8 +76,7 @@ impl OutlineBuilder for Pen {
     }
 }
 
-/// Shrinks a text (to at least 70 %), then shortens it, until it fits into `room`. Returns text and
-/// size.
+/// Shrinks a text to at least 70 %, then shortens it, until it fits. Returns text and size.
 #[must_use]
 pub fn fit(text: &str, size: f64, bold: bool, room: f64) -> (String, f64) {
     let full = width(text, size, bold);

@@ -1,4 +1,4 @@
-//! Heat maps: coloured squares over two axes, with a scale.
+//! Heat maps.
 
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::colour::{INK, MUTED, WHITE};
@@ -15,12 +15,12 @@ const BAR: f64 = 16.0;
 const SHADES: u32 = 64;
 const GAP: f64 = 18.0;
 
-/// A heat map.
+/// Coloured squares over two axes, with a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMap {
     /// Title.
     pub title: String,
-    /// A note below the title; may be empty.
+    /// Note below the title; may be empty.
     pub note: String,
     /// Label of the columns.
     pub x_label: String,
@@ -30,12 +30,12 @@ pub struct HeatMap {
     pub columns: Vec<String>,
     /// Value of each row, from bottom to top.
     pub rows: Vec<String>,
-    /// Value of each square, row by row from the bottom; `None` stays white.
+    /// Value of each square, row by row from the bottom; `None` is white.
     pub values: Vec<Option<f64>>,
 }
 
 impl HeatMap {
-    /// Draws the heat map, 720 x 480 units.
+    /// Draws the heat map with 720 x 480 units.
     #[must_use]
     pub fn draw(&self) -> Canvas {
         let [width, height] = [720.0, 480.0];
@@ -80,7 +80,6 @@ impl HeatMap {
         canvas
     }
 
-    /// The squares, each with its value where it fits.
     fn squares(&self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4], share: &dyn Fn(f64) -> f64) {
         let [across, up] = [width / self.columns.len() as f64, height / self.rows.len() as f64];
         for (index, value) in self.values.iter().enumerate() {
@@ -100,7 +99,7 @@ impl HeatMap {
         canvas.rectangle([left, top, width, height], None, Some(Stroke::new(INK, 1.0)));
     }
 
-    /// Labels of columns and rows; overlapping ones are skipped.
+    /// Overlapping labels are skipped.
     fn names(&self, canvas: &mut Canvas, [left, top, width, height]: [f64; 4], picture: f64) {
         let [across, up] = [width / self.columns.len() as f64, height / self.rows.len() as f64];
         let widest = self.columns.iter().map(|label| font::width(label, SMALL, false)).fold(0.0, f64::max);
@@ -123,7 +122,6 @@ impl HeatMap {
     }
 }
 
-/// Three digits, or all digits of a whole number.
 fn short(value: f64) -> String {
     let size = value.abs();
     if size >= 1e6 || (size < 1e-3 && size > 0.0) {
@@ -169,7 +167,6 @@ mod tests {
             assert!(said.contains(&figure), "{figure} {said:?}");
         }
         assert!(!said.contains(&"41"), "{said:?}");
-        // The first row is the lowest.
         let place = |figure: &str| {
             canvas.shapes.iter().find_map(|shape| match shape {
                 Shape::Text(text) if text.text == figure => Some(text.at[1]),

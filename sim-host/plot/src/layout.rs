@@ -15,7 +15,7 @@ const SMALL: f64 = 11.5;
 const PAD: f64 = 14.0;
 const ROW: f64 = 19.0;
 const SAMPLE: f64 = 24.0;
-/// SVG readers' sans-serif fonts are wider than the measured one by up to this factor.
+/// Largest ratio of the width of an SVG reader's sans-serif font to the measured one.
 pub const OTHER_FONTS: f64 = 1.15;
 
 pub fn headline_height(title: &str) -> f64 {
@@ -32,9 +32,8 @@ pub fn heading(canvas: &mut Canvas, title: &str, size: f64, at: [f64; 2], room: 
     canvas.text(Text { bold: true, ..Text::new(at, size, Anchor::Start, title) });
 }
 
-/// Left edge of a chart's plotting area.
 pub fn left_margin(chart: &Chart) -> f64 {
-    // Labels depend slightly on the height of the axis; all of it is assumed.
+    // Labels depend slightly on the height of the axis; the whole height is assumed.
     let axes = Axes::new(chart, &looks(chart), [chart.size[0], chart.size[1]]);
     PAD + label_room(&chart.y_label) + axes.y.widest_label(SMALL) * OTHER_FONTS + 10.0
 }
@@ -43,7 +42,7 @@ fn label_room(label: &str) -> f64 {
     if label.is_empty() { 0.0 } else { LABEL * 1.6 }
 }
 
-/// Draws a chart into left, top, width, height of a picture, with its plotting area at `left`.
+/// `area`: left, top, width, height of the chart; `left`: edge of its plotting area.
 pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     let [x, y, width, height] = area;
     let looks = looks(chart);
@@ -66,7 +65,6 @@ pub fn draw(chart: &Chart, canvas: &mut Canvas, area: [f64; 4], left: f64) {
     if !chart.x_label.is_empty() {
         bottom -= LABEL * 1.5;
     }
-    // The plotting area has a minimum size.
     let left = (x + left).min(right - 40.0);
     let plot = [left, top, right - left, (bottom - top).max(20.0)];
     let axes = Axes::new(chart, &looks, [plot[2], plot[3]]);
@@ -129,7 +127,7 @@ fn number(at: [f64; 2], anchor: Anchor, label: &str) -> Text {
     Text { colour: MUTED, ..Text::new(at, SMALL, anchor, label) }
 }
 
-/// Rows of samples and names from `at` to `right`. Returns their lower end.
+/// Returns the lower end of the legend.
 fn legend(looks: &[Look<'_>], canvas: &mut Canvas, at: [f64; 2], right: f64) -> f64 {
     let [left, mut top] = at;
     let mut x = left;
@@ -150,7 +148,6 @@ fn legend(looks: &[Look<'_>], canvas: &mut Canvas, at: [f64; 2], right: f64) -> 
     if x > left { top + ROW } else { top }
 }
 
-/// A sample of a series, `SAMPLE` wide, around `at`.
 fn sample(look: &Look<'_>, canvas: &mut Canvas, [x, y]: [f64; 2]) {
     let middle = [x + SAMPLE / 2.0, y];
     let ends = vec![[x + 1.0, y], [x + SAMPLE - 1.0, y]];

@@ -1,25 +1,21 @@
-//! Style of the data in a chart: colours, marks and lines.
+//! Style of series: colours, marks and lines.
 
 use super::canvas::{Canvas, Point, Stroke};
 use super::chart::{Chart, Data, Series};
 use super::colour::{self, Colour, WHITE};
 
-/// Half the width of a mark.
 const MARK: f64 = 3.4;
-/// Horizontal distance between series with intervals, so that error bars at the same x do not
-/// overlap.
+/// Horizontal offset between series with intervals, so that error bars do not overlap.
 const DODGE: f64 = 4.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
     pub series: &'a Series,
     pub colour: Colour,
-    /// Index of its mark: circle, square, triangle, diamond.
+    /// Circle, square, triangle or diamond.
     pub mark: usize,
-    /// Horizontal offset in the picture.
     pub shift: f64,
 }
 
-/// Styles of a chart's series: colours and marks in turn, unless chosen.
 pub fn looks(chart: &Chart) -> Vec<Look<'_>> {
     let is_interval = |series: &Series| matches!(series.data, Data::Intervals(_));
     let is_own = |series: &Series| is_interval(series) && !series.like_previous;
@@ -62,7 +58,7 @@ impl Look<'_> {
         Stroke::new(self.colour, 1.2)
     }
 
-    /// Fill of bars, transparent so that items behind stay visible.
+    /// Transparent, so that items behind stay visible.
     pub fn fill(&self) -> Colour {
         self.colour.with_alpha(90)
     }
@@ -90,7 +86,7 @@ impl Look<'_> {
 mod tests {
     use super::*;
 
-    /// Offsets of the marks of series; `true` means "like the previous one".
+    /// `true` means "like the previous one".
     fn shifts(series: &[bool]) -> Vec<f64> {
         let chart = series.iter().fold(Chart::new("", "", ""), |chart, &like| {
             let one = Series::intervals("", [[1.0, 2.0, 1.0, 3.0]]);

@@ -8,19 +8,16 @@ use crate::terrain::{self, shade};
 use staya_controller::grid::BLOCKED;
 use staya_sim::terrain::Terrain;
 
-/// Colour of walls, darker than the ground and of another hue.
 const WALL: Colour = Colour::hex(0x3a_3f_4a);
-/// Largest number of pixels along the longer side; larger maps are averaged.
+/// Pixels along the longer side; larger maps are averaged.
 const MAX_PIXELS: u32 = 1720;
-/// Largest width and height of the map in picture units.
 const ROOM: [f64; 2] = [860.0, 780.0];
-/// Largest size of a cell, so that small maps stay small.
+/// Largest size of a cell in units, so that small maps stay small.
 const MAX_CELL: f64 = 40.0;
 const SMALL: f64 = 11.5;
-/// Height of the strip below the map.
 pub const FOOTER: f64 = 40.0;
 
-/// Ground colour for a brightness of [`terrain::render`], paler so that lines stand out.
+/// Paler than the brightness of [`terrain::render`], so that lines stand out.
 fn land(brightness: u8) -> Colour {
     if brightness == shade(BLOCKED, 1) {
         return WALL;
@@ -45,7 +42,6 @@ impl Raster {
     }
 }
 
-/// Position of a map in a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Map<'a> {
     terrain: &'a Terrain,
@@ -56,29 +52,25 @@ pub struct Map<'a> {
 }
 
 impl<'a> Map<'a> {
-    /// Places a map with its top left corner at `corner`.
     pub fn new(terrain: &'a Terrain, [left, top]: Point) -> Self {
         let sides = [terrain.width(), terrain.height()].map(f64::from);
         let cell = (ROOM[0] / sides[0]).min(ROOM[1] / sides[1]).min(MAX_CELL);
-        // A map of one row and thousands of columns is still visible as a line.
+        // A very flat map is still visible as a line.
         let [width, height] = sides.map(|side| (side * cell).max(2.0));
         Self { terrain, area: [left, top, width, height], cell }
     }
 
-    /// Places a map with `cell` units per cell.
     pub fn of_scale(terrain: &'a Terrain, [left, top]: Point, cell: f64) -> Self {
         let [width, height] = [terrain.width(), terrain.height()].map(|side| f64::from(side) * cell);
         Self { terrain, area: [left, top, width, height], cell }
     }
 
-    /// Picture position of a point in metres; north is up.
     pub fn place(&self, position_m: [f64; 2]) -> Point {
         let cells: [f64; 2] =
             std::array::from_fn(|axis| (position_m[axis] - self.terrain.origin_m[axis]) / self.terrain.cell_m);
         self.place_cells(cells)
     }
 
-    /// Picture position of a point in cells from the south-west corner.
     pub fn place_cells(&self, [x, y]: [f64; 2]) -> Point {
         let [left, top, _, height] = self.area;
         [left + x * self.cell, top + height - y * self.cell]
@@ -88,17 +80,16 @@ impl<'a> Map<'a> {
         Raster::new(self.terrain)
     }
 
-    /// Column and row, from the north-west, of the pixel at a point in metres.
+    /// Column and row of a pixel from the north-west.
     pub fn square(&self, position_m: [f64; 2]) -> [i64; 2] {
         let [left, top, ..] = self.area;
         let [x, y] = self.place(position_m);
         let side = self.cell * f64::from(self.raster().cells);
-        // Limited to a map's side outside of the map, so that paths still enter at the right place.
+        // Limited outside the map, so that paths still enter at the right place.
         [x - left, y - top].map(|along| libm::floor(along / side).clamp(-1e5, 1e5) as i64)
     }
 
-    /// Draws pixels of the map's [`Raster`]. Those of the last column and row may extend beyond the
-    /// map.
+    /// Pixels of the last column and row may extend beyond the map.
     pub fn image(&self, canvas: &mut Canvas, pixels: Pixels) {
         let side = self.cell * f64::from(self.raster().cells);
         let [width, height] = [pixels.width, pixels.height].map(|count| f64::from(count) * side);
@@ -115,7 +106,7 @@ impl<'a> Map<'a> {
         canvas.rectangle(self.area, None, Some(Stroke::new(INK, 1.0)));
     }
 
-    /// Scale, legend of shades and north arrow below the map from `left` to `right`.
+    /// Scale, legend of shades and north arrow below the map.
     pub fn footer(&self, canvas: &mut Canvas, left: f64, right: f64) {
         let middle = self.area[1] + self.area[3] + FOOTER / 2.0 + 3.0;
         let from = self.scale_bar(canvas, [left, middle]);
@@ -133,7 +124,7 @@ impl<'a> Map<'a> {
         canvas.text(letter);
     }
 
-    /// A scale bar with a round length. Returns the end of its text.
+    /// Returns the right end of its text.
     fn scale_bar(&self, canvas: &mut Canvas, [left, y]: Point) -> f64 {
         let per_m = self.cell / self.terrain.cell_m;
         let [_, _, width, height] = self.area;
@@ -155,7 +146,6 @@ impl<'a> Map<'a> {
         at + font::width(&label, SMALL, false) * OTHER_FONTS
     }
 
-    /// Legend of white, grey and wall, if there is room and more than one of them.
     fn shades(&self, canvas: &mut Canvas, y: f64, from: f64, to: f64) {
         let classes = terrain::classes(self.terrain);
         let walls = self.terrain.cells().contains(&BLOCKED);
@@ -182,7 +172,7 @@ impl<'a> Map<'a> {
     }
 }
 
-/// The ground, one pixel per cell, or per square of cells on maps beyond [`MAX_PIXELS`].
+/// One pixel per cell, or per square of cells on maps beyond [`MAX_PIXELS`].
 pub fn pixels(terrain: &Terrain) -> Pixels {
     let (width, height, brightness) = terrain::render(terrain, 1);
     let Raster { columns, rows, cells: square } = Raster::new(terrain);

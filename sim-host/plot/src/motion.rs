@@ -1,4 +1,4 @@
-//! Pictures of a run in the plane.
+//! Pictures of runs in the plane.
 
 use super::flock::{Obstacle, Sheet, Snapshot};
 use super::run::packets;
@@ -13,17 +13,15 @@ use std::sync::Arc;
 const MOMENTS: usize = 4;
 const MOST_TRAILS: usize = 100;
 const TRAIL_POINTS: usize = 400;
-/// Obstacles larger than this multiple of the robots' extent are clipped.
+/// Obstacles larger than this multiple of the extent of the robots are clipped.
 const LARGE: f64 = 2.0;
 
 /// Draws the pictures of a run into `out_dir`, which is created if needed, each as SVG and PNG.
-/// Returns the paths.
+/// Returns the paths. O(samples of the history).
 ///
-/// - `motion`: positions with past paths at four moments from start to end, if the history has
-///   frames; seen from above, on the map if there is one;
-/// - `packets`: packets per second by result, over time.
-///
-/// O(samples of the history).
+/// - `motion`: positions with past paths at four moments, from above, on the map if there is one;
+///   only if the history has frames
+/// - `packets`: packets per second by result, over time
 ///
 /// # Errors
 /// The directory or a file cannot be written.
@@ -43,7 +41,7 @@ pub fn motion_pictures(
     Ok(files)
 }
 
-/// Four moments of a run side by side; the title may be empty.
+/// Draws four moments of a run side by side; the title may be empty.
 #[must_use]
 pub fn motion_sheet(title: &str, setup: &PlaneSetup, land: Option<&Terrain>, history: &History) -> Sheet {
     let frames = history.frames();
@@ -86,7 +84,7 @@ pub fn motion_sheet(title: &str, setup: &PlaneSetup, land: Option<&Terrain>, his
     sheet
 }
 
-/// Goals in a tick by the scenario: those of the start, or of the last order.
+/// By the scenario: goals of the start, or of the last order.
 fn goals(setup: &PlaneSetup, tick: u32) -> Vec<[f64; 2]> {
     let places = (0..setup.starts.len()).flat_map(|robot| {
         let step_s = setup.group(robot).abilities.step_s;
@@ -112,7 +110,6 @@ fn drawn(solid: &Solid) -> Option<Obstacle> {
     }
 }
 
-/// The extent of robots with goals and obstacles.
 fn view<'a>(
     frames: &[Frame],
     radius_m: f64,
@@ -155,13 +152,12 @@ fn velocities(frames: &[Frame], at: usize, space: &Space<f64, 3>) -> Vec<[f64; 2
         .collect()
 }
 
-/// The vector between two points, the shortest one on a torus.
 fn way([x, y]: [f64; 2], [to_x, to_y]: [f64; 2], space: &Space<f64, 3>) -> [f64; 2] {
     let [x, y, _] = space.offset([x, y, 0.0], [to_x, to_y, 0.0]);
     [x, y]
 }
 
-/// Paths of robots. A robot that crosses the seam of a torus leaves a gap in its path.
+/// A robot that crosses the seam of a torus leaves a gap in its path.
 fn trails(frames: &[Frame], robots: usize, space: &Space<f64, 3>) -> Vec<Vec<[f64; 2]>> {
     let every = frames.len().div_ceil(TRAIL_POINTS).max(1);
     let thinned = || frames.iter().step_by(every).chain(frames.last());

@@ -1,4 +1,4 @@
-//! A run as an animation (GIF): map, obstacles, and robots with past paths.
+//! Runs as animations (GIF): map, obstacles, and robots with past paths.
 
 mod frames;
 mod palette;
@@ -16,15 +16,15 @@ use staya_sim::terrain::Terrain;
 use staya_sim::world::plane::Solid;
 use std::path::Path;
 
-/// Largest frame rate; browsers do not show more.
+/// Browsers do not show more.
 const MOST_PER_SECOND: u32 = 20;
-/// Duration of the last frame, hundredths of a second.
+/// Hundredths of a second.
 const LAST: u16 = 200;
 const MOST_WAYS: usize = 60;
 const NAMED: usize = 12;
-/// Margin around all paths, as a fraction of the longer side.
+/// Fraction of the longer side of all paths.
 const MARGIN: f64 = 0.07;
-/// Smallest and largest ratio of height to width.
+/// Range of height / width.
 const SHAPE: [f64; 2] = [0.5, 1.2];
 const STONE: Colour = Colour::hex(0xc9_c4_bb);
 const STONE_EDGE: Colour = Colour::hex(0x4f_48_3c);
@@ -40,8 +40,8 @@ pub struct Look {
     pub seconds: u32,
 }
 
-/// Encodes a run as a GIF with at most 20 frames per second and one palette. Each frame contains
-/// only changed pixels. O(pixels of all frames).
+/// Encodes a run as a GIF of at most 20 frames per second with one palette. Frames contain only
+/// changed pixels. O(pixels of all frames).
 ///
 /// # Errors
 /// The frames would have no pixels or too many.
@@ -53,7 +53,7 @@ fn encode(scenario: &Scenario, history: &History, look: Look) -> std::io::Result
     let chosen = choose(history.frames(), look.seconds.saturating_mul(MOST_PER_SECOND));
     let view = View::new(scenario, history.frames(), look.width);
     let mut frames = Frames::new(raster::over(None, &view.ground(scenario, history))?);
-    // The palette comes from some sample frames; drawing these twice costs less than storing them.
+    // The palette comes from some sample frames: drawing these twice costs less than storing them.
     let mut samples = Vec::new();
     let every = chosen.len().div_ceil(6).max(1);
     let mut drawn = frames.clone();
@@ -96,7 +96,7 @@ fn encode(scenario: &Scenario, history: &History, look: Look) -> std::io::Result
     Ok(bytes)
 }
 
-/// At most `most` evenly spaced frames, with the first and the last one.
+/// Evenly spaced frames, with the first and the last one.
 fn choose(frames: &[Frame], most: u32) -> Vec<&Frame> {
     let last = frames.len().saturating_sub(1);
     let count = frames.len().min(most.max(2) as usize);
@@ -104,7 +104,7 @@ fn choose(frames: &[Frame], most: u32) -> Vec<&Frame> {
     (0..count).map(|number| &frames[at(number)]).collect()
 }
 
-/// Left, top, width, height of the changed part; at least one pixel.
+/// Left, top, width, height; at least one pixel.
 fn changed(before: Option<&[u8]>, now: &[u8], width: usize, height: usize) -> [usize; 4] {
     let Some(before) = before else {
         return [0, 0, width, height];
@@ -120,7 +120,7 @@ fn changed(before: Option<&[u8]>, now: &[u8], width: usize, height: usize) -> [u
     if low[0] == usize::MAX { [0, 0, 1, 1] } else { [low[0], low[1], high[0] - low[0] + 1, high[1] - low[1] + 1] }
 }
 
-/// The pixels of a part, transparent where unchanged.
+/// Unchanged pixels are transparent.
 fn cut(before: Option<&[u8]>, now: &[u8], width: usize, [left, top, wide, high]: [usize; 4]) -> Vec<u8> {
     let rows = (top..top + high).flat_map(|row| row * width + left..row * width + left + wide);
     rows.map(|at| match before {
@@ -136,7 +136,7 @@ struct View {
     /// Pixels per metre.
     scale: f64,
     size: [f64; 2],
-    /// Radius of each robot's body, pixels.
+    /// Radius of each robot, pixels.
     radii: Vec<f64>,
 }
 
@@ -179,7 +179,6 @@ impl View {
 
     fn at(&self, place_m: [f64; 2]) -> Point {
         let [x, y] = [0, 1].map(|axis| (place_m[axis] - self.low_m[axis]) * self.scale);
-        // Limits coordinates far outside for the renderer.
         [x.clamp(-1e5, 1e5), (self.size[1] - y).clamp(-1e5, 1e5)]
     }
 

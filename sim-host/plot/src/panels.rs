@@ -1,4 +1,4 @@
-//! Pictures of one chart, or of several in rows.
+//! Pictures of one or more charts.
 
 use super::canvas::Canvas;
 use super::chart::Chart;
@@ -41,14 +41,14 @@ impl Panels {
         Self { title: title.into(), columns: 1, charts: Vec::new() }
     }
 
-    /// Adds a chart with its own size; the axes of a column are aligned.
+    /// Adds a chart with its own size. Axes of a column are aligned.
     #[must_use]
     pub fn with(mut self, chart: Chart) -> Self {
         self.charts.push(chart);
         self
     }
 
-    /// Charts per row, 1 or more.
+    /// Sets the number of charts per row, at least 1.
     #[must_use]
     pub fn columns(self, columns: usize) -> Self {
         Self { columns: columns.max(1), ..self }

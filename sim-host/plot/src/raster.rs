@@ -1,4 +1,4 @@
-//! Renders pictures as anti-aliased pixels.
+//! Renders pictures as anti-aliased PNG.
 
 use super::canvas::{Anchor, Canvas, Pixels, Point, Shape, Stroke, Text};
 use super::colour::{Colour, WHITE};
@@ -12,23 +12,17 @@ use tiny_skia::{
 
 /// PNG pixels per picture unit.
 pub const SCALE: f64 = 2.0;
-/// Width of the stroke around letters that makes a halo, as a fraction of the font size.
+/// Width of the stroke that makes a halo, as a fraction of the font size.
 pub const HALO: f64 = 0.25;
 
-/// The PNG file of a picture on white.
-///
-/// # Errors
-/// The picture has no pixels or too many.
+/// Renders a picture on white; an error if it has no pixels or too many.
 pub fn png(canvas: &Canvas) -> io::Result<Vec<u8>> {
     let pixmap = draw(canvas, SCALE, Some(WHITE))?;
     let rgb: Vec<u8> = pixmap.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect();
     Ok(encode_png(pixmap.width(), pixmap.height(), png::ColorType::Rgb, &rgb)?)
 }
 
-/// The PNG file of an image inside a picture.
-///
-/// # Errors
-/// It has no pixels or too many.
+/// Encodes an image; an error if it has no pixels or too many.
 pub fn encode_rgba(pixels: &Pixels) -> io::Result<Vec<u8>> {
     let bytes: Vec<u8> = if pixels.rgba.iter().all(|[.., alpha]| *alpha == 255) {
         let opaque = pixels.rgba.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
@@ -40,10 +34,7 @@ pub fn encode_rgba(pixels: &Pixels) -> io::Result<Vec<u8>> {
     Ok(encode_png(pixels.width, pixels.height, colour, &bytes)?)
 }
 
-/// Renders a picture without background, as pixels for another picture; `scale` pixels per unit.
-///
-/// # Errors
-/// The picture has no pixels or too many.
+/// Renders a picture without background, `scale` pixels per unit.
 pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
     let pixmap = draw(canvas, scale, None)?;
     let rgba = pixmap
@@ -57,10 +48,7 @@ pub fn layer(canvas: &Canvas, scale: f64) -> io::Result<Pixels> {
     Ok(Pixels { width: pixmap.width(), height: pixmap.height(), rgba })
 }
 
-/// Renders a picture over existing pixels, or on an empty background; one pixel per unit.
-///
-/// # Errors
-/// The picture has no pixels or too many.
+/// Renders a picture over existing pixels or an empty background, one pixel per unit.
 pub fn over(ground: Option<Pixmap>, canvas: &Canvas) -> io::Result<Pixmap> {
     let pixmap = ground.map_or_else(|| empty(canvas, 1.0), Ok)?;
     Ok(onto(pixmap, canvas, 1.0))

@@ -1,4 +1,4 @@
-//! Pictures of a run.
+//! Pictures of runs on a map.
 
 use super::chart::{Chart, Series};
 use super::colour::{self, Colour, WHITE};
@@ -14,14 +14,12 @@ const NOISY: usize = 150;
 const MEANS: usize = 100;
 
 /// Draws the pictures of a run into `out_dir`, which is created if needed, each as SVG and PNG.
-/// Returns the paths.
+/// Returns the paths. O(cells + samples of the history).
 ///
 /// - `trajectories`: the map at the start, its changing cells (`changing`), the path of each robot,
-///   and the formation (`edges` between robot ids) over time, if the history has frames;
-/// - `formation`: formation error and graph distance over time, if the run has them;
-/// - `packets`: packets per second by result, over time.
-///
-/// O(cells + samples of the history).
+///   and the formation (`edges` between robot ids) over time; only if the history has frames
+/// - `formation`: formation error and graph distance over time, if the run has them
+/// - `packets`: packets per second by result, over time
 ///
 /// # Errors
 /// The directory or a file cannot be written.
@@ -46,7 +44,6 @@ pub fn run_pictures(
     Ok(files)
 }
 
-/// Formation error and graph distance over time; `None` without a formation.
 pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
     let clock = Clock::new(series);
     let curve = |title: &str, label: &str, colour, value: fn(&SeriesPoint) -> f64| {
@@ -65,7 +62,6 @@ pub(super) fn formation(series: &[SeriesPoint]) -> Option<Panels> {
     Some(charts.fold(Panels::new("Formation over time"), Panels::with))
 }
 
-/// A curve; a noisy one is pale, with its running mean on top.
 fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -> Chart {
     let chart = chart.size(760.0, 300.0);
     let colour = colour::nth(index);
@@ -81,8 +77,7 @@ fn with_mean(chart: Chart, points: Vec<[f64; 2]>, index: usize, clock: &Clock) -
         .with(Series::line(format!("mean over {width} {}", clock.unit), means).colour(colour))
 }
 
-/// Mean of the points that have a value. Points without one cause no gap here, only in the pale
-/// curve.
+/// Mean of the existing values, so that missing ones leave gaps only in the pale curve.
 fn mean(points: &[[f64; 2]]) -> Option<[f64; 2]> {
     let known: Vec<&[f64; 2]> = points.iter().filter(|[_, y]| y.is_finite()).collect();
     let count = known.len() as f64;
@@ -101,7 +96,7 @@ pub(super) fn packets(history: &History) -> Panels {
     };
     let per = format!("packets per {}", clock.one);
     let ends = [series.first(), series.last()].map(|point| point.map_or(0.0, |point| clock.at(point)));
-    // From the first tick, although the first mean is slightly later.
+    // Starts at the first tick, although the first mean is slightly later.
     let chart = |title| Chart::new(title, clock.label, &per).x_range(ends[0], ends[1]).size(760.0, 300.0);
     let all = history.totals();
     let n = ticks::grouped;
@@ -130,7 +125,6 @@ pub(super) fn packets(history: &History) -> Panels {
         )
 }
 
-/// Middle and length (in the clock's unit) and sum of some neighbouring points.
 fn bin(points: &[SeriesPoint], clock: &Clock) -> (f64, f64, PacketCounts) {
     let mut sum = PacketCounts::default();
     let mut ticks = 0;
@@ -140,14 +134,12 @@ fn bin(points: &[SeriesPoint], clock: &Clock) -> (f64, f64, PacketCounts) {
     }
     let length = f64::from(ticks.max(1)) * clock.per_tick;
     let start = points.first().map_or(0.0, |point| clock.at(point));
-    // A point represents the ticks from its first one.
     let middle = start + (length - clock.per_tick) / 2.0;
     (middle, length, sum)
 }
 
-/// Time axis in seconds; in ticks if the run is too short to know their length.
+/// Seconds, or ticks if the run is too short to know their length.
 struct Clock {
-    /// Length of a tick.
     per_tick: f64,
     in_ticks: bool,
     label: &'static str,

@@ -5,10 +5,9 @@ use super::font;
 use super::look::Look;
 use super::ticks::{self, Tick};
 
-/// Font size that determines the distance of ticks.
 const NUMBER: f64 = 11.5;
 
-/// Largest overhang of numbers at the ends of the x axis; less than the margins there.
+/// Overhang of numbers at the ends of the x axis, less than the margins there.
 const OVERHANG: f64 = 24.0;
 
 #[derive(Clone, Debug)]
@@ -19,7 +18,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Position of a value: 0 at the start, 1 at the end, beyond that outside.
+    /// 0 at the start of the axis, 1 at the end.
     pub fn share(&self, value: f64) -> f64 {
         let at = |value: f64| {
             if self.logarithmic { libm::log10(value) } else { value }
@@ -32,7 +31,6 @@ impl Axis {
         self.ticks.iter().map(|tick| font::width(&tick.label, size, false)).fold(0.0, f64::max)
     }
 
-    /// Whether all tick labels fit side by side on `length` units.
     fn labels_fit(&self, length: f64) -> bool {
         let span = |tick: &Tick| {
             let half = font::width(&tick.label, NUMBER, false) / 2.0;
@@ -87,7 +85,6 @@ impl Axes {
 struct Extent {
     x: Option<[f64; 2]>,
     y: Option<[f64; 2]>,
-    /// Whether some data are marks, which need space at the ends of the x axis.
     marks: bool,
     bars: bool,
 }
@@ -130,14 +127,13 @@ impl Extent {
             None => Some([value; 2]),
         };
         self.x = widen(self.x, x);
-        // Data outside of the chosen x range do not stretch y.
+        // Data outside the chosen x range do not stretch y.
         if chosen(chart.x_range).is_none_or(|[low, high]| (low..=high).contains(&x)) {
             self.y = widen(self.y, y);
         }
     }
 }
 
-/// The range that the caller chose, if it is valid.
 fn chosen(range: Option<[f64; 2]>) -> Option<[f64; 2]> {
     range.filter(|[low, high]| low < high && low.is_finite() && high.is_finite())
 }
@@ -157,7 +153,7 @@ fn x_range(chart: &Chart, extent: &Extent) -> [f64; 2] {
     [low - (high - low) * share, high + (high - low) * share]
 }
 
-/// A positive range, at least a factor of 2 around a single value, with a margin.
+/// At least a factor of 2 around a single value, with a margin.
 fn log_range([low, high]: [f64; 2], room: bool) -> [f64; 2] {
     let low = if low > 0.0 { low } else { f64::MIN_POSITIVE.max(high / 1e3) };
     let (low, high) = (low.clamp(1e-150, 1e150), high.clamp(1e-150, 1e150));

@@ -6,15 +6,14 @@ use super::look::Look;
 use super::scale::Axes;
 use std::collections::BTreeSet;
 
-/// Lines with more points per unit of width are thinned.
+/// Denser lines are thinned; points per unit of width.
 const POINTS_PER_UNIT: f64 = 4.0;
 
-/// The three lines of an error bar.
 pub fn whisker(x: f64, top: f64, bottom: f64) -> Vec<Vec<Point>> {
     vec![vec![[x, top], [x, bottom]], vec![[x - 3.0, top], [x + 3.0, top]], vec![[x - 3.0, bottom], [x + 3.0, bottom]]]
 }
 
-/// Draws all series into a plotting area: bars at the bottom, then lines, then marks.
+/// Bars are at the bottom, then lines, then marks.
 pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]) {
     let [left, top, width, height] = plot;
     let bottom = top + height;
@@ -66,7 +65,6 @@ pub fn draw(looks: &[Look<'_>], axes: &Axes, canvas: &mut Canvas, plot: [f64; 4]
             Data::Intervals(points) => points.iter().filter_map(|[x, y, ..]| place(look, *x, *y)).collect(),
             Data::Line(_) | Data::Bars(_) => continue,
         };
-        // Marks that overlap within half a unit are drawn once.
         let mut taken = BTreeSet::new();
         for point in points.into_iter().filter(inside) {
             if taken.insert(point.map(|value| (value * 2.0) as i32)) {
@@ -87,7 +85,7 @@ fn draw_bars(
         let (Some([x, y]), Some([right, zero])) = (place(*from, *value), place(*to, 0.0)) else {
             continue;
         };
-        // Without zero on the axis, bars start at its edge.
+        // If zero is not on the axis, bars start at its edge.
         let zero = zero.clamp(top, top + height);
         let (upper, lower) = (y.min(zero), y.max(zero));
         let width = (right - x).abs();
@@ -100,7 +98,6 @@ fn draw_bars(
     }
 }
 
-/// Runs of consecutive existing points.
 fn connected(points: impl Iterator<Item = Option<Point>>) -> Vec<Vec<Point>> {
     let mut lines = vec![Vec::new()];
     for point in points {
@@ -114,8 +111,7 @@ fn connected(points: impl Iterator<Item = Option<Point>>) -> Vec<Vec<Point>> {
     lines
 }
 
-/// Thins a line to about `most` points without visible change: the first, lowest, highest and last
-/// of each run.
+/// Keeps the first, lowest, highest and last point of each interval, without visible change.
 fn thin(line: Vec<Point>, most: usize) -> Vec<Point> {
     if line.len() <= most.max(4) {
         return line;

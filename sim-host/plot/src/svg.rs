@@ -1,4 +1,4 @@
-//! Writes pictures as SVG. Text stays text in the reader's sans-serif font.
+//! Pictures as SVG. Text stays text in the reader's sans-serif font.
 
 use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text};
 use super::colour::Colour;
@@ -8,10 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use std::fmt::{Display, Write as _};
 use std::io;
 
-/// The SVG file of a picture.
-///
-/// # Errors
-/// An image inside the picture has no pixels or too many.
+/// Writes a picture; an error if an image in it has no pixels or too many.
 pub fn text(canvas: &Canvas) -> io::Result<String> {
     let [width, height] = [canvas.width, canvas.height].map(Number);
     let mut out = format!(
@@ -143,7 +140,7 @@ fn colour(f: &mut std::fmt::Formatter<'_>, name: &str, colour: Colour) -> std::f
     Ok(())
 }
 
-/// A number with up to two decimals; NaN and infinity become 0, since SVG has neither.
+/// At most two decimals; NaN and infinity, which SVG does not have, become 0.
 struct Number(f64);
 
 impl Display for Number {
@@ -152,12 +149,12 @@ impl Display for Number {
         if hundredths == 0.0 || !hundredths.is_finite() {
             return f.write_str("0");
         }
-        // The shortest decimal that reads back as this double has at most two decimals.
+        // The shortest decimal that reads back as this number has at most two decimals.
         write!(f, "{}", hundredths / 100.0)
     }
 }
 
-/// Text with XML escapes, without characters that XML forbids.
+/// Escapes XML and removes characters that XML forbids.
 struct Escaped<'a>(&'a str);
 
 impl Display for Escaped<'_> {

@@ -1,5 +1,4 @@
-//! Pictures of terrain: darker is less passable (A. V. Kuznetsov 2017, KUZ, figure 7); walls are
-//! black.
+//! Pictures of terrain: darker is less passable (A. V. Kuznetsov 2017, figure 7), walls are black.
 
 use staya_controller::grid::BLOCKED;
 use staya_sim::terrain::{Terrain, TerrainError, parameter_error, rows::flip_row, write};
@@ -8,7 +7,6 @@ use std::path::Path;
 
 /// Largest side of a picture, pixels.
 pub const MAX_PIXELS: u32 = 16_384;
-/// Brightness of the least passable class; walls are darker.
 const DARKEST: u8 = 60;
 
 /// Brightness of an impassability from 1 to `classes`: 255 for 1, then linear; 0 for walls.
@@ -22,7 +20,7 @@ pub fn shade(impassability: u8, classes: u8) -> u8 {
     255 - (u32::from(impassability - 1).min(steps) * span / steps) as u8
 }
 
-/// The largest impassability of a terrain, at least 1.
+/// Largest impassability of a terrain, at least 1.
 #[must_use]
 pub fn classes(terrain: &Terrain) -> u8 {
     terrain.cells().iter().copied().max().unwrap_or(1).max(1)
@@ -35,10 +33,8 @@ pub fn scale_for(terrain: &Terrain, pixels: u32) -> u32 {
     (pixels / longest).max(1)
 }
 
-/// Renders terrain in grey with north up. Returns width and height in pixels, and the brightness of
-/// each pixel, row by row from the top.
-///
-/// Each cell is a square of `scale` pixels. O(pixels).
+/// Renders terrain in grey, north up, each cell as a square of `scale` pixels. Returns width,
+/// height, and the brightness of each pixel, row by row from the top. O(pixels).
 #[must_use]
 pub fn render(terrain: &Terrain, scale: u32) -> (u32, u32, Vec<u8>) {
     let (scale, classes) = (scale.max(1), classes(terrain));
@@ -54,7 +50,6 @@ pub fn render(terrain: &Terrain, scale: u32) -> (u32, u32, Vec<u8>) {
     (width, height, pixels)
 }
 
-/// The rows of cells from the north, counted from 0.
 fn file_rows(terrain: &Terrain) -> impl Iterator<Item = (u16, &[u8])> {
     let width = usize::from(terrain.width());
     (0..terrain.height()).map(move |file_row| {
@@ -96,7 +91,6 @@ fn png(terrain: &Terrain, scale: u32) -> Result<Vec<u8>, TerrainError> {
         .map_err(|error| parameter_error(error.to_string(), "choose a smaller scale"))
 }
 
-/// A PNG file of pixels with 8 bits per channel, row by row from the top.
 pub(crate) fn encode_png(
     width: u32,
     height: u32,
@@ -111,7 +105,6 @@ pub(crate) fn encode_png(
     Ok(bytes)
 }
 
-/// Cells as rectangles; equal neighbours are merged.
 fn svg(terrain: &Terrain, scale: u32) -> String {
     let classes = classes(terrain);
     let (columns, rows) = (terrain.width(), terrain.height());

@@ -3,16 +3,16 @@
 /// A tick of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Value.
+    /// Value on the axis.
     pub value: f64,
-    /// Label.
+    /// Number as shown.
     pub label: String,
 }
 
-/// A valid range of an axis: finite, rising, and wide enough for ticks.
+/// Returns a valid range of an axis: finite, rising, and wide enough for ticks.
 #[must_use]
 pub fn sound(low: f64, high: f64) -> [f64; 2] {
-    // Beyond this, differences and steps would overflow.
+    // Beyond this, differences would overflow.
     const MOST: f64 = 1e150;
     if low.is_nan() || high.is_nan() {
         return [0.0, 1.0];
@@ -23,12 +23,10 @@ pub fn sound(low: f64, high: f64) -> [f64; 2] {
     if high - low > 1e-9 * largest && high - low > 1e-150 {
         return [low, high];
     }
-    // A range of width 0 gets a margin around its value.
     let half = if largest == 0.0 { 0.5 } else { largest * 0.1 };
     [low - half, high + half]
 }
 
-/// Step of an axis: mantissa (1, 2 or 5) and power of ten.
 #[derive(Clone, Copy)]
 struct Step {
     mantissa: i64,
@@ -36,7 +34,6 @@ struct Step {
 }
 
 impl Step {
-    /// The smallest step that divides `span` into at most `most` parts.
     fn new(span: f64, most: usize) -> Self {
         let wanted = span / most.max(1) as f64 * (1.0 - 1e-12);
         let exponent = libm::floor(libm::log10(wanted)) as i32;
@@ -49,7 +46,7 @@ impl Step {
         Self { mantissa: 1, exponent: exponent + 1 }
     }
 
-    /// The double nearest to `count` steps, computed in decimals so that 3 x 0.1 is 0.3.
+    /// Nearest double, computed in decimals so that 3 x 0.1 is 0.3.
     fn times(self, count: i64) -> f64 {
         let digits = count * self.mantissa;
         format!("{digits}e{}", self.exponent).parse().unwrap_or(f64::NAN)
@@ -57,14 +54,14 @@ impl Step {
 
     fn index(self, value: f64, round: fn(f64) -> f64) -> i64 {
         let near = value / self.times(1);
-        // A value that is a multiple except for rounding counts as one.
+        // A multiple except for rounding counts as one.
         let whole = libm::round(near);
         let tolerance = 1e-9 + 4.0 * f64::EPSILON * whole.abs();
         (if (near - whole).abs() < tolerance { whole } else { round(near) }) as i64
     }
 }
 
-/// The range widened to whole steps, at most `most` of them before widening.
+/// Widens the range to whole steps, at most `most` of them before widening.
 #[must_use]
 pub fn enclosing(low: f64, high: f64, most: usize) -> [f64; 2] {
     let [low, high] = sound(low, high);
@@ -72,7 +69,7 @@ pub fn enclosing(low: f64, high: f64, most: usize) -> [f64; 2] {
     [step.times(step.index(low, libm::floor)).min(low), step.times(step.index(high, libm::ceil)).max(high)]
 }
 
-/// The largest 1, 2 or 5 x 10^k up to `value`; 1 if `value` is not a positive number.
+/// Largest 1, 2 or 5 x 10^k up to `value`; 1 if `value` is not a positive number.
 #[must_use]
 pub fn round_down(value: f64) -> f64 {
     if !value.is_finite() || value <= 0.0 {
@@ -101,7 +98,7 @@ pub fn linear(low: f64, high: f64, most: usize) -> Vec<Tick> {
         .collect()
 }
 
-/// A label with the decimals of the step; k, M, G, T from thousands on; else a power of ten.
+/// Decimals of the step; k, M, G, T for thousands and above; else a power of ten.
 fn label(value: f64, step: Step, largest: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -123,8 +120,7 @@ fn ten_to(power: i32) -> f64 {
     (0..power).fold(1.0, |product, _| product * 10.0)
 }
 
-/// Ticks of a logarithmic axis, `low` above 0: powers of ten, with their 2- and 5-fold where there
-/// is room.
+/// Ticks of a logarithmic axis, `low` above 0: powers of ten, and their 2- and 5-fold if they fit.
 #[must_use]
 pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     let most = most.max(2);
@@ -138,7 +134,7 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
                 let step = Step { mantissa, exponent };
                 let value = step.times(1);
                 let label = if (-4..6).contains(&exponent) {
-                    // Each label with its own decimals: 0.1, 1, 10.
+                    // Each label has its own decimals: 0.1, 1, 10.
                     label(value, step, value)
                 } else {
                     format!("{value:e}")
@@ -150,13 +146,12 @@ pub fn logarithmic(low: f64, high: f64, most: usize) -> Vec<Tick> {
     };
     let fine = [marks(&[1, 2, 5], 1), marks(&[1], 1)];
     if let Some(fits) = fine.into_iter().find(|ticks| ticks.len() <= most + 1) {
-        // Less than a decade may contain at most one power of ten.
         return if fits.len() >= 2 { fits } else { linear(low, high, most) };
     }
     (2..).map(|every| marks(&[1], every)).find(|ticks| ticks.len() <= most + 1).unwrap_or_default()
 }
 
-/// A whole number with commas between thousands.
+/// Formats a whole number with commas between thousands.
 #[must_use]
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();

@@ -1,4 +1,4 @@
-//! Trajectories of robots: the map, a line per robot, and the formation from early to late.
+//! Trajectories: the map, a line per robot, and the formation from early to late.
 
 use super::canvas::{Anchor, Canvas, Point, Shape, Stroke, Text};
 use super::colour::{self, Colour, INK, MUTED, WHITE};
@@ -14,14 +14,13 @@ use std::collections::BTreeMap;
 use std::io;
 
 const NAMED: usize = 12;
-/// Above this number of robots the picture shows the visits of each cell instead of paths and
-/// formation.
+/// Larger swarms show the visits of each cell instead of paths and formation.
 const CROWD: usize = 200;
-/// Above this number of robots starts and targets are omitted.
+/// Larger swarms show no starts and targets.
 const MAX_ENDS: usize = 2000;
-/// Above this number of points, paths are pixels in the SVG too, which bounds its size.
+/// With more points, paths are pixels in the SVG too, which bounds its size.
 const MAX_POINTS: usize = 60_000;
-/// Largest side of a map, in cells, that is always shown completely.
+/// Side of a map that is always shown completely, cells.
 const SMALL_MAP: f64 = 100.0;
 const MOMENTS: usize = 8;
 const PAD: f64 = 16.0;
@@ -29,20 +28,17 @@ const MIN_WIDTH: f64 = 460.0;
 const SMALL: f64 = 11.5;
 const ROW: f64 = 19.0;
 
-/// Points closer to the previous one (in units) are skipped.
+/// Points closer to the previous one are skipped; units.
 const NEAR: f64 = 0.25;
 
-/// A robot's path in metres, and the centre of its last target cell if that is on the map.
+/// Path in metres, and centre of the last target cell if it is on the map.
 #[derive(Debug, Default)]
 struct Way {
     positions_m: Vec<[f64; 2]>,
     target_m: Option<[f64; 2]>,
 }
 
-/// Draws the picture; `changing` are the sorted cells that differ from `terrain` at some time.
-///
-/// # Errors
-/// The picture would have too many pixels.
+/// `changing`: sorted cells that differ from `terrain` at some time.
 pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u32, u32)]) -> io::Result<Canvas> {
     let ways = ways(terrain, history.frames());
     let view = view(terrain, &ways);
@@ -74,7 +70,6 @@ pub fn draw(terrain: &Terrain, changing: &[Cell], history: &History, edges: &[(u
     canvas.height = top + map.area[3] + map::FOOTER + 6.0;
     canvas.clip(Some(map.area));
     map.ground(&mut canvas);
-    // Cells are sorted by column: one rectangle for each vertical run.
     for cells in changing.chunk_by(|below, cell| below.x == cell.x && below.y + 1 == cell.y) {
         let ([left, bottom], high) = (map.place(corner_m(terrain, cells[0])), map.cell * cells.len() as f64);
         canvas.rectangle([left, bottom - high, map.cell, high], Some(CHANGING), None);
@@ -126,7 +121,6 @@ fn note(terrain: &Terrain, view: &Terrain, robots: usize) -> String {
     size + &part + lanes
 }
 
-/// The path of each robot by id. Invalid positions are skipped.
 fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
     let mut ways: BTreeMap<u32, Way> = BTreeMap::new();
     for frame in frames {
@@ -141,7 +135,6 @@ fn ways(terrain: &Terrain, frames: &[Frame]) -> BTreeMap<u32, Way> {
     ways
 }
 
-/// The map, or the part around all paths and targets if they cover little of it.
 fn view<'a>(terrain: &'a Terrain, ways: &BTreeMap<u32, Way>) -> Cow<'a, Terrain> {
     let sides = [terrain.width(), terrain.height()].map(f64::from);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -179,7 +172,6 @@ fn middle_m(terrain: &Terrain, cell: Cell) -> Option<[f64; 2]> {
     Some([x + (f64::from(cell.x) + 0.5) * terrain.cell_m, y + (f64::from(cell.y) + 0.5) * terrain.cell_m])
 }
 
-/// Colour and dashes of robot `index` of `robots`.
 fn look(index: usize, robots: usize) -> Stroke {
     let width = match robots {
         0..=NAMED => 1.9,
@@ -219,9 +211,9 @@ fn draw_ways(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) -> i
     Ok(())
 }
 
-/// Distance by which paths are shifted apart to the south-east, so that paths through the same
-/// cells run side by side: two thirds of a cell for all paths together, or a line's width each,
-/// whichever is more. Dots, starts and targets are not shifted.
+/// Offset of paths to the south-east, so that paths through the same cells run side by side: two
+/// thirds of a cell for all paths together, or a line's width each if that is more. Dots, starts
+/// and targets are not shifted.
 fn lane_width(map: &Map<'_>, robots: usize) -> f64 {
     match robots {
         2..=NAMED => (map.cell * 0.67 / robots as f64).clamp(1.3, 2.2),
@@ -229,14 +221,12 @@ fn lane_width(map: &Map<'_>, robots: usize) -> f64 {
     }
 }
 
-/// A path in picture units without invisible detail.
 fn line(map: &Map<'_>, way: &Way) -> Vec<Point> {
     let mut line: Vec<Point> = Vec::new();
     for position in &way.positions_m {
         let point = map.place(*position);
         match line[..] {
             [.., last] if close(last, point) => continue,
-            // The previous point is on the line.
             [.., before, last] if straight(before, last, point) => {
                 line.pop();
             }
@@ -258,8 +248,7 @@ fn straight(a: Point, b: Point, c: Point) -> bool {
     along > 0.0 && cross.abs() <= 1e-6 * along
 }
 
-/// Lines in their colours, at most as wide as their lane, on a pale outline that separates them
-/// from dark ground.
+/// A pale outline separates the lines from dark ground.
 fn draw_lines(canvas: &mut Canvas, lines: Vec<Vec<Point>>, lane: f64) {
     let robots = lines.len();
     if robots <= NAMED {
@@ -287,7 +276,6 @@ fn draw_crowd_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>
 
 const CROWD_ENDS: [(Colour, &str); 2] = [(colour::PALETTE[2], "starts"), (colour::PALETTE[1], "targets")];
 
-/// Starts as rings, targets as crosses.
 fn draw_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
     let size = if ways.len() <= NAMED { 5.0 } else { (map.cell * 0.45).clamp(1.2, 4.0) };
     for (index, way) in ways.values().enumerate() {
@@ -302,7 +290,7 @@ fn draw_ends(canvas: &mut Canvas, map: &Map<'_>, ways: &BTreeMap<u32, Way>) {
 }
 
 fn ring(canvas: &mut Canvas, at: Point, radius: f64, colour: Colour) {
-    // Filled, so that the path starts at the ring.
+    // Filled, because the path starts below the ring.
     canvas.circle(at, radius * 1.4, Some(WHITE), None);
     canvas.circle(at, radius, None, Some(Stroke::new(colour, radius * 0.4)));
 }
@@ -314,12 +302,10 @@ fn cross(canvas: &mut Canvas, [x, y]: Point, size: f64, colour: Colour) {
     canvas.lines(lines, Stroke::new(colour, size * 0.4));
 }
 
-/// The colour of the formation at a moment, 0 (first) to 1 (last), from light to dark.
 fn moment_colour(share: f64) -> Colour {
     Colour::hex(0xb0_8c_f0).towards(Colour::hex(0x1f_06_4a), share)
 }
 
-/// Frames at about equal intervals, with their relative time from 0 to 1.
 fn moments(frames: &[Frame]) -> Vec<(&Frame, f64)> {
     let (Some(first), Some(last)) = (frames.first(), frames.last()) else {
         return Vec::new();
@@ -409,7 +395,6 @@ fn crowd_keys(density: &Density, robots: usize) -> Vec<(Key, String)> {
     keys
 }
 
-/// Rows of samples and names below `top`. Returns their lower end.
 fn legend(canvas: &mut Canvas, keys: &[(Key, String)], top: f64, right: f64) -> f64 {
     let (mut x, mut top) = (PAD, top);
     for (key, name) in keys {

@@ -1,4 +1,4 @@
-//! Writes pictures as files.
+//! Pictures as files.
 
 use super::canvas::Canvas;
 use super::{raster, svg};

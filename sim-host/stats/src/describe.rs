@@ -1,9 +1,9 @@
-//! Mean, quantiles, the interval of the mean, histograms.
+//! Summaries, quantiles, histograms.
 
 use super::special::student_t_quantile;
 use libm::{ceil, floor, sqrt};
 
-/// What is reported of a sample.
+/// Summary of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Summary {
     /// Number of values.
@@ -14,9 +14,9 @@ pub struct Summary {
     pub median: f64,
     /// Standard deviation of the sample (divisor count - 1); 0 for one value.
     pub deviation: f64,
-    /// Least value.
+    /// Smallest value.
     pub min: f64,
-    /// Greatest value.
+    /// Largest value.
     pub max: f64,
     /// Half the width of the 95 % interval of the mean by Student's t; `None` for one value.
     pub mean_error95: Option<f64>,
@@ -44,8 +44,13 @@ impl Summary {
         })
     }
 
+<<<<<<< HEAD
     /// The 95 % interval of the mean by Student's t: exact for normal values, and for others as
     /// good as the normality of their mean. Both ends are the mean when there is one value.
+=======
+    /// The 95 % interval of the mean by Student's t: exact for normal values, else approximate. For
+    /// one value, both ends are the mean.
+>>>>>>> com5
     #[must_use]
     pub fn mean_interval95(&self) -> [f64; 2] {
         let error = self.mean_error95.unwrap_or(0.0);
@@ -63,7 +68,7 @@ pub fn mean(values: &[f64]) -> Option<f64> {
 /// The value below which a share `p` of the values lies, linear between the order statistics
 /// (Hyndman and Fan's type 7, the default of R and NumPy).
 ///
-/// `None` if there are no values, one is not finite, or `p` lies outside 0..=1. O(n log n).
+/// `None` if there are no values, one is not finite, or `p` is outside 0..=1. O(n log n).
 #[must_use]
 pub fn quantile(values: &[f64], p: f64) -> Option<f64> {
     let sorted = sorted(values)?;
@@ -77,7 +82,6 @@ fn quantile_sorted(sorted: &[f64], p: f64) -> f64 {
     a + (b - a) * (at - low)
 }
 
-/// The values in ascending order; `None` if there are none or one is not finite.
 pub(super) fn sorted(values: &[f64]) -> Option<Vec<f64>> {
     let usable = !values.is_empty() && values.iter().all(|x| x.is_finite());
     usable.then(|| {
@@ -99,12 +103,18 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Counts the values in at most `max_bins` bins between the least and the greatest.
+    /// Counts the values in at most `max_bins` bins between the smallest and the largest. Bins of
+    /// whole numbers have whole widths and edges halfway between numbers, so that each has equally
+    /// many.
     ///
+<<<<<<< HEAD
     /// Whole numbers get bins of whole width with edges halfway between them, so that no bin
     /// catches more of the lattice than its neighbour. `None` if there are no values, one is not
     /// finite, or
     /// `max_bins` is 0.
+=======
+    /// `None` if there are no values, one is not finite, or `max_bins` is 0.
+>>>>>>> com5
     #[must_use]
     pub fn new(values: &[f64], max_bins: usize) -> Option<Self> {
         let sorted = sorted(values)?;
@@ -118,7 +128,6 @@ impl Histogram {
         } else {
             (min, (max - min) / max_bins as f64)
         };
-        // All values equal, or so close that the width is lost in rounding: one bin around them.
         if low + width == low {
             let half = (libm::fabs(min) * 1e-9).max(0.5);
             return Some(Self { low: min - half, width: 2.0 * half, counts: vec![sorted.len() as u64] });
@@ -167,7 +176,6 @@ mod tests {
 
     #[test]
     fn interval_is_that_of_the_t_table() {
-        // Mean 3, deviation sqrt(2.5), t(0.975, 4) = 2.776445: half width 1.963243.
         let five = Summary::of(&[5.0, 1.0, 4.0, 2.0, 3.0]).unwrap();
         assert!((five.mean_error95.unwrap() - 1.963_243).abs() < 1e-6);
         assert_eq!((five.mean, five.median), (3.0, 3.0));

@@ -1,25 +1,30 @@
 //! The Norton-Rice law of arrival times (KUZ section 5), its fit and its test.
+<<<<<<< HEAD
 //!
 //! p(x) = (alpha m / beta^2) (x / alpha)^m exp(-m (alpha^2 + x^2) / (2 beta^2))
 //! I_{m-1}(m x alpha / beta^2) for x > 0: with sigma^2 = beta^2 / m, (X / sigma)^2 is a noncentral
 //! chi-square with 2m degrees of freedom and noncentrality (alpha / sigma)^2. m = 1 is Rice's law,
 //! alpha -> 0 Nakagami's.
+=======
+>>>>>>> com5
 
 use super::describe::sorted;
 use super::optimize::minimize;
 use super::special::{gamma_q, ln_bessel_i_scaled};
 use libm::{ceil, exp, log, pow, sqrt};
 
-/// Parameters that the fit chooses.
 const PARAMETERS: usize = 3;
-/// Fewest samples that can be fitted.
 const MIN_SAMPLES: usize = 10;
-/// Samples that a bin of the test should at least expect.
+/// Expected samples in a bin of the test, at least.
 const MIN_EXPECTED: f64 = 8.0;
 /// Evaluations per start; a fit needs 100 to 300.
 const MAX_EVALS: usize = 2000;
 
-/// A Norton-Rice law. alpha and beta have the unit of x.
+/// A Norton-Rice law; alpha and beta have the unit of x.
+///
+/// With s = beta^2 / m, p(x) = (alpha / s) (x / alpha)^m exp(-(alpha^2 + x^2) / 2s) I_{m-1}(x alpha
+/// / s) for x > 0. X^2 / s is a noncentral chi-square with 2m degrees of freedom and noncentrality
+/// alpha^2 / s. m = 1 is Rice's law, alpha -> 0 Nakagami's.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct NortonRice {
     m: f64,
@@ -33,12 +38,12 @@ pub enum FitError {
     /// Fewer than 10 samples.
     #[error("a Norton-Rice law needs at least {MIN_SAMPLES} samples, got {0}: make more runs")]
     TooFew(usize),
-    /// A sample that the law cannot produce.
+    /// A sample that is not finite or not above 0.
     #[error("sample {index} is {value}: a Norton-Rice law has finite values above 0 only")]
     NotPositive {
-        /// Its index.
+        /// Index of the sample.
         index: usize,
-        /// Its value.
+        /// Value of the sample.
         value: f64,
     },
     /// All samples are equal (to about 1e-6 relative).
@@ -49,7 +54,7 @@ pub enum FitError {
 /// Result of the chi-square test.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Goodness {
-    /// Least chi-square that a law of the family reaches.
+    /// Smallest chi-square that a law of the family reaches.
     pub chi2: f64,
     /// Degrees of freedom: bins - 1 - 3.
     pub freedom: usize,
@@ -58,7 +63,7 @@ pub struct Goodness {
 }
 
 impl NortonRice {
-    /// The law with these parameters; `None` unless all are finite and more than 0.
+    /// Creates a law; `None` unless all parameters are finite and above 0.
     #[must_use]
     pub fn new(m: f64, alpha: f64, beta: f64) -> Option<Self> {
         let usable = [m, alpha, beta].iter().all(|p| p.is_finite() && *p > 0.0);
@@ -91,18 +96,18 @@ impl NortonRice {
         }
         let Self { m, alpha, beta } = *self;
         let scale = m / (beta * beta);
-        // The Bessel function's e^z went into the square.
+        // The Bessel function's e^z is part of the square.
         log(alpha * scale) + m * log(x / alpha) - scale * (x - alpha) * (x - alpha) / 2.0
             + ln_bessel_i_scaled(m - 1.0, scale * alpha * x)
     }
 
-    /// The density, per unit of x.
+    /// Density, per unit of x.
     #[must_use]
     pub fn pdf(&self, x: f64) -> f64 {
         exp(self.ln_pdf(x))
     }
 
-    /// The probability of a value of at most `x`, to about 1e-7; NaN for NaN.
+    /// Probability of a value of at most `x`, to about 1e-7; NaN for NaN.
     #[must_use]
     pub fn cdf(&self, x: f64) -> f64 {
         if x.is_nan() {
@@ -111,9 +116,15 @@ impl NortonRice {
         self.mass(0.0, x).min(1.0)
     }
 
+<<<<<<< HEAD
     /// The probability of a value between `a` and `b`, by Gauss-Legendre quadrature over panels
     /// half a sigma wide. At most about 40 panels of 8 points: X is the length of a normal vector,
     /// so all but 1e-17 of its probability lies within 10 sigma of the root of the mean square.
+=======
+    /// Probability of a value between `a` and `b`, by Gauss-Legendre quadrature over panels half a
+    /// sigma wide. At most about 40 panels of 8 points: X is the length of a normal vector, so all
+    /// but 1e-17 of its probability lies within 10 sigma of the root of the mean square.
+>>>>>>> com5
     fn mass(&self, a: f64, b: f64) -> f64 {
         let sigma = self.beta / sqrt(self.m);
         let center = sqrt(self.mean_square());
@@ -128,7 +139,7 @@ impl NortonRice {
     }
 
     fn panel(&self, a: f64, b: f64) -> f64 {
-        // Near 0 the density goes like x^(2m - 1): t = x^(2m) takes the edge out of it.
+        // Near 0 the density grows like x^(2m - 1); the substitution t = x^(2m) removes the edge.
         let power = if self.m < 1.0 { 2.0 * self.m } else { 1.0 };
         let (a, b) = (pow(a, power), pow(b, power));
         let (middle, half) = ((a + b) / 2.0, (b - a) / 2.0);
@@ -146,11 +157,16 @@ impl NortonRice {
         self.alpha * self.alpha + 2.0 * self.beta * self.beta
     }
 
+<<<<<<< HEAD
     /// Coordinates in which the likelihood is round: ln of mean and variance of X^2, and the logit
     /// of r = alpha^2 / mean square, which goes from Nakagami (0) to ever smaller m (1).
+=======
+    /// Coordinates in which the likelihood is round: ln of mean A and variance V of X^2, and the
+    /// logit of r = alpha^2 / mean square, from Nakagami (0) to ever smaller m (1).
+>>>>>>> com5
     ///
-    /// With A the mean and V the variance of X^2: alpha^2 = A r, beta^2 = A (1 - r) / 2,
-    /// m = (1 - r^2) A^2 / V. Any real coordinates are a law, so the search needs no bounds.
+    /// alpha^2 = A r, beta^2 = A (1 - r) / 2, m = (1 - r^2) A^2 / V. Any real coordinates are a
+    /// law, so the search needs no bounds.
     fn coordinates(&self) -> [f64; PARAMETERS] {
         let a = self.mean_square();
         let r = self.alpha * self.alpha / a;
@@ -159,20 +175,26 @@ impl NortonRice {
     }
 
     fn from_coordinates([ln_a, ln_v, logit]: [f64; PARAMETERS]) -> Option<Self> {
-        // Beyond +-30 the law no longer changes, only the numbers get lost.
+        // Beyond +-30 the law does not change, and digits are lost.
         let odds = exp(logit.clamp(-30.0, 30.0));
         let (r, rest) = (odds / (1.0 + odds), 1.0 / (1.0 + odds));
         let a = exp(ln_a);
         Self::new(rest * (1.0 + r) * exp(2.0 * ln_a - ln_v), sqrt(a * r), sqrt(a * rest / 2.0))
     }
 
-    /// The law that makes the samples likeliest.
+    /// Maximum-likelihood fit: Nelder-Mead from the sample's moments and three shapes. O(n), some
+    /// hundred passes.
     ///
+<<<<<<< HEAD
     /// Nelder-Mead over `Self::coordinates` from the sample's moments and three shapes; the samples
     /// are scaled to a mean square of 1 first. O(n), some hundred passes.
     ///
     /// For samples whose deviation is small against their mean the law is nearly normal and m
     /// hardly shows in it: then the density is well determined, m alone is not.
+=======
+    /// If the deviation is small compared with the mean, the law is nearly normal: the density is
+    /// well determined, m alone is not.
+>>>>>>> com5
     ///
     /// # Errors
     /// See [`FitError`].
@@ -198,7 +220,6 @@ impl NortonRice {
             Self::from_coordinates(at)
                 .map_or(f64::INFINITY, |law: Self| -scaled.iter().map(|&x| law.ln_pdf(x)).sum::<f64>())
         };
-        // Shapes to start from: near Nakagami, between, and Rice (m = 1) if the moments allow it.
         let rice = sqrt((1.0 - variance).max(0.25));
         let (best, _) = [0.1, 0.5, rice]
             .map(|r| {
@@ -212,17 +233,26 @@ impl NortonRice {
         Self::new(law.m, law.alpha * scale, law.beta * scale).ok_or(FitError::Constant)
     }
 
-    /// Pearson's chi-square test of the family, honest after fitting.
+    /// Pearson's chi-square test of the family, valid after a fit. `self` is the fitted law.
     ///
+<<<<<<< HEAD
     /// The bins have about equal expected counts under `self`, the fitted law: 2 n^(2/5) of them,
     /// but at least 8 expected samples in each. Their edges lie halfway between neighbouring
     /// samples, so that whole ticks cannot fall on an edge. A fit to the single samples does not
     /// minimise chi-square, and its chi-square follows no chi-square law (Chernoff and Lehmann
     /// 1954). So chi-square is minimised over the three parameters from `self` on, which makes bins
     /// - 1 - 3 the right degrees of freedom (Fisher 1924).
+=======
+    /// The bins have about equal expected counts under `self`: 2 n^(2/5) bins, with at least 8
+    /// expected samples each. Their edges lie halfway between neighbouring samples, so that whole
+    /// ticks are never on an edge. A maximum-likelihood fit does not minimise chi-square, which
+    /// therefore has no chi-square law (Chernoff and Lehmann 1954). This test minimises it over the
+    /// three parameters, starting at `self`, which gives bins - 1 - 3 degrees of freedom (Fisher
+    /// 1924).
+>>>>>>> com5
     ///
-    /// `None` when the samples fill fewer than 5 bins (fewer than 40 samples or very few different
-    /// values) or one is not finite.
+    /// `None` if a sample is not finite, or if the samples fill fewer than 5 bins (fewer than 40
+    /// samples, or very few different values).
     #[must_use]
     pub fn goodness(&self, samples: &[f64]) -> Option<Goodness> {
         let sorted = sorted(samples)?;
@@ -250,7 +280,7 @@ impl NortonRice {
         Some(Goodness { chi2, freedom, p_value: gamma_q(freedom as f64 / 2.0, chi2 / 2.0) })
     }
 
-    /// Edges (from 0 to infinity) and counts of the test's bins.
+    /// Edges (from 0 to infinity) and counts of the bins.
     fn bins(&self, sorted: &[f64]) -> (Vec<f64>, Vec<usize>) {
         let n = sorted.len() as f64;
         let wanted = (2.0 * pow(n, 0.4)).min(n / MIN_EXPECTED);
@@ -264,7 +294,6 @@ impl NortonRice {
             let edge = pair[0] + (pair[1] - pair[0]) / 2.0;
             below += self.mass(at, edge);
             at = edge;
-            // The last bin must get its share too.
             let share = 1.0 / wanted;
             if below - last_edge_below >= share * 0.999 && 1.0 - below >= share * 0.999 {
                 edges.push(edge);

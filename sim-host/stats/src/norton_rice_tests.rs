@@ -3,7 +3,7 @@ use crate::{Summary, quantile};
 use libm::{cos, fabs};
 use std::f64::consts::TAU;
 
-/// Seeded uniform and normal numbers (SplitMix64, Box-Muller).
+/// SplitMix64, Box-Muller.
 struct Random(u64);
 
 impl Random {
@@ -112,7 +112,6 @@ fn fit_finds_the_parameters_that_made_the_samples() {
 
 #[test]
 fn fit_of_narrow_samples_finds_the_density_if_not_m() {
-    // Arrival times: deviation 7 % of the mean.
     let truth = law(1.0, 300.0, 20.0);
     let samples = Random(4).lengths(1000, &truth);
     let fit = NortonRice::fit(&samples).unwrap();

@@ -1,15 +1,20 @@
-//! Downhill simplex minimisation (Nelder and Mead 1965), for a handful of parameters.
+//! Downhill simplex minimisation (Nelder and Mead 1965) for a few parameters.
 
 use std::cell::Cell;
 
-/// A point and the value there.
 type Vertex<const N: usize> = ([f64; N], f64);
 
-/// The point where `f` is least, and its value there.
+/// Returns the point where `f` is smallest, and its value there.
 ///
+<<<<<<< HEAD
 /// Starts from a simplex around `start` with the edge lengths `step`; ends when the values of the
 /// simplex differ by at most `tolerance` and a fresh simplex around the answer finds nothing
 /// better, or after about `max_evals` evaluations. NaN counts as infinitely bad.
+=======
+/// Starts from a simplex around `start` with edges `step`. Ends if the values of the simplex differ
+/// by at most `tolerance` and a fresh simplex around the answer finds no better one, or after about
+/// `max_evals` evaluations. NaN counts as infinitely bad.
+>>>>>>> com5
 #[must_use]
 pub fn minimize<const N: usize>(
     mut f: impl FnMut([f64; N]) -> f64,
@@ -29,7 +34,7 @@ pub fn minimize<const N: usize>(
     loop {
         let before = best.1;
         best = descend(&mut value, &may_go_on, best, step, tolerance);
-        // A collapsed simplex can stop on a slope; a fresh one finds out.
+        // A collapsed simplex can stop on a slope, which a fresh one detects.
         if !may_go_on() || before - best.1 <= tolerance || before == best.1 {
             return best;
         }
@@ -59,7 +64,6 @@ fn descend<const N: usize>(
         for (x, _) in &simplex[..N] {
             (0..N).for_each(|axis| center[axis] += x[axis] / N as f64);
         }
-        // A point on the line from the worst vertex through the centre of the others.
         let mut at = |factor: f64| {
             let mut x = center;
             (0..N).for_each(|axis| x[axis] += factor * (center[axis] - worst.0[axis]));

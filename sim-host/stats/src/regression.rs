@@ -1,17 +1,16 @@
-//! The curve of KUZ figure 6: error against the number of obstacles.
+//! The curve of KUZ figure 6.
 
 use super::mean;
 use libm::log1p;
 
-/// y = a ln(N + 1) + b.
+/// Curve y = a ln(N + 1) + b over the number of obstacles N.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct LogFit {
     /// Slope over ln(N + 1).
     pub a: f64,
     /// Value at N = 0.
     pub b: f64,
-    /// Coefficient of determination: the share of y's variance that the curve explains. 1 when the
-    /// curve meets every point, also when all y are equal.
+    /// Coefficient of determination; 1 if the curve meets every point, also if all y are equal.
     pub r2: f64,
 }
 
@@ -19,9 +18,7 @@ impl LogFit {
     /// The paper's curve for six agents on natural terrain (KUZ section 8).
     pub const PAPER: Self = Self { a: 0.901_073, b: -0.673_763, r2: 0.992_729 };
 
-    /// Least squares over points (N, y).
-    ///
-    /// `None` unless there are two different N, all N > -1, and all numbers are finite.
+    /// Least squares over points (N, y); `None` unless all are finite, N > -1, and two N differ.
     #[must_use]
     pub fn of(points: &[[f64; 2]]) -> Option<Self> {
         let x: Vec<f64> = points.iter().map(|p| log1p(p[0])).collect();
@@ -39,7 +36,7 @@ impl LogFit {
         Some(Self { a, b: mean_y - a * mean_x, r2: if yy > 0.0 { 1.0 - rest / yy } else { 1.0 } })
     }
 
-    /// The curve's value at `n` obstacles.
+    /// Value of the curve at `n` obstacles.
     #[must_use]
     pub fn at(&self, n: f64) -> f64 {
         self.a * log1p(n) + self.b
@@ -61,7 +58,6 @@ mod tests {
 
     #[test]
     fn r2_is_the_explained_share() {
-        // x = 0, ln 2, 2 ln 2 and y = 0, 1, 0: the slope is 0 and explains nothing.
         let fit = LogFit::of(&[[0.0, 0.0], [1.0, 1.0], [3.0, 0.0]]).unwrap();
         assert!(fit.a.abs() < 1e-12 && fit.r2.abs() < 1e-12, "{fit:?}");
         assert!((fit.b - 1.0 / 3.0).abs() < 1e-12);

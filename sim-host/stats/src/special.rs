@@ -1,22 +1,20 @@
-//! Special functions: incomplete gamma and beta, Student's t, the modified Bessel function.
-//!
-//! By hand: on `libm` alone they give the same bits on every machine, which crates on std's float
-//! functions do not.
+//! Special functions: incomplete gamma and beta, Student's t, the modified Bessel function. They
+//! use `libm` alone, so they have the same bits on every machine.
 
 use libm::{exp, fabs, lgamma, log, log1p, sqrt};
 use std::f64::consts::TAU;
 
-/// Relative size of a term that no longer counts.
+/// Relative size of a negligible term.
 const EPS: f64 = 1e-16;
 /// Keeps Lentz's continued fractions away from a division by zero.
 const TINY: f64 = 1e-300;
-/// Terms after which a series or fraction is cut off; the arguments in use need far fewer.
+/// Terms after which a series or fraction is cut off; the arguments used here need far fewer.
 const MAX_TERMS: u32 = 100_000;
 
 /// Q(a, x) = Gamma(a, x) / Gamma(a), the upper regularised incomplete gamma function.
 ///
-/// With a = k/2 and x = c/2 this is the p-value of a chi-square c with k degrees of freedom. NaN
-/// unless `a > 0` and `x >= 0`. O(sqrt(a)) terms.
+/// The p-value of a chi-square c with k degrees of freedom is Q(k/2, c/2). NaN unless `a > 0` and
+/// `x >= 0`. O(sqrt(a)) terms.
 #[must_use]
 pub fn gamma_q(a: f64, x: f64) -> f64 {
     // The series converges fast below the law's mean, the fraction above.
@@ -46,7 +44,7 @@ fn gamma_p_series(a: f64, x: f64) -> f64 {
     sum * exp(ln_gamma_step(a, x))
 }
 
-/// Lentz's evaluation of the continued fraction (DLMF 8.9.2).
+/// Lentz's algorithm (DLMF 8.9.2).
 fn gamma_q_fraction(a: f64, x: f64) -> f64 {
     if !(a > 0.0 && x >= 0.0) {
         return f64::NAN;
@@ -69,7 +67,6 @@ fn gamma_q_fraction(a: f64, x: f64) -> f64 {
             break;
         }
     }
-    // x^a e^-x / Gamma(a) = a x^a e^-x / Gamma(a + 1)
     product * a * exp(ln_gamma_step(a, x))
 }
 
@@ -77,9 +74,8 @@ fn away_from_zero(x: f64) -> f64 {
     if fabs(x) < TINY { TINY } else { x }
 }
 
-/// I_x(a, b), the regularised incomplete beta function (DLMF 8.17.22).
-///
-/// NaN unless `a > 0`, `b > 0` and `0 <= x <= 1`.
+/// I_x(a, b), the regularised incomplete beta function (DLMF 8.17.22). NaN unless `a > 0`, `b > 0`
+/// and `0 <= x <= 1`.
 #[must_use]
 pub fn beta_regularized(x: f64, a: f64, b: f64) -> f64 {
     if !(a > 0.0 && b > 0.0 && (0.0..=1.0).contains(&x)) {
@@ -88,7 +84,7 @@ pub fn beta_regularized(x: f64, a: f64, b: f64) -> f64 {
     if x == 0.0 || x == 1.0 {
         return x;
     }
-    // The fraction converges fast below the mean only; the other side by symmetry.
+    // The fraction converges fast below the mean only; the other side follows by symmetry.
     if x > (a + 1.0) / (a + b + 2.0) {
         return 1.0 - beta_regularized(1.0 - x, b, a);
     }
@@ -112,10 +108,10 @@ pub fn beta_regularized(x: f64, a: f64, b: f64) -> f64 {
     exp(front) * product / a
 }
 
-/// The value that Student's t with `freedom` degrees stays below with probability `p`.
+/// Quantile of Student's t with `freedom` degrees at probability `p`.
 ///
-/// By bisection over the incomplete beta function, to about 1e-12 relative. NaN unless
-/// `0 < p < 1` and `freedom > 0`.
+/// Bisection over the incomplete beta function, to about 1e-12 relative. NaN unless `0 < p < 1` and
+/// `freedom > 0`.
 #[must_use]
 pub fn student_t_quantile(p: f64, freedom: f64) -> f64 {
     if !(p > 0.0 && p < 1.0 && freedom > 0.0) {
@@ -138,13 +134,12 @@ pub fn student_t_quantile(p: f64, freedom: f64) -> f64 {
     sqrt(freedom * (1.0 - high) / high)
 }
 
-/// ln(e^-z I_nu(z)), the modified Bessel function of the first kind, scaled so that no argument
-/// overflows.
+/// ln(e^-z I_nu(z)), the modified Bessel function of the first kind, scaled against overflow.
 ///
-/// `nu > -1`, `z >= 0`, else NaN. Below |(nu, z)| = 60 the ascending series (DLMF 10.25.2, all
-/// terms positive, at most about 100), above it the uniform expansion for large order (DLMF
-/// 10.41.3) up to the fourth term; written in powers of 1/sqrt(nu^2 + z^2) it holds for small
-/// orders too. Relative error of I_nu below 1e-9.
+/// NaN unless `nu > -1` and `z >= 0`. Below |(nu, z)| = 60 the ascending series (DLMF 10.25.2, at
+/// most about 100 terms, all positive), above it the uniform expansion for large order (DLMF
+/// 10.41.3) up to the fourth term; in powers of 1/sqrt(nu^2 + z^2) it is valid for small orders
+/// too. Relative error of I_nu below 1e-9.
 #[must_use]
 pub fn ln_bessel_i_scaled(nu: f64, z: f64) -> f64 {
     if !(nu > -1.0 && z >= 0.0) || z.is_infinite() {
@@ -176,7 +171,7 @@ pub fn ln_bessel_i_scaled(nu: f64, z: f64) -> f64 {
         + (4_465_125.0 + q * (-94_121_676.0 + q * (349_922_430.0 + q * (-446_185_740.0 + q * 185_910_725.0))))
             / 39_813_120.0
             / (s * s * s * s);
-    // s - z without cancellation.
+    // This form of s - z has no cancellation.
     let excess = nu * nu / (s + z);
     let order = if nu == 0.0 { 0.0 } else { nu * log(z / (nu + s)) };
     excess + order - 0.5 * log(TAU * s) + log(series)
@@ -190,8 +185,6 @@ mod tests {
         let off = fabs(got - want);
         assert!(off <= relative * fabs(want), "{got} is not {want}");
     }
-
-    // Wanted values: mpmath 1.3 with 30 digits.
 
     #[test]
     fn bessel_has_its_known_logarithms_on_both_sides_of_the_switch() {

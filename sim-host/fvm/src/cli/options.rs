@@ -17,8 +17,7 @@ pub enum Kind {
     Room,
     /// Relative velocities that lead two robots to a collision (--place-a and so on, --form).
     VelocityObstacle,
-    /// As velocity-obstacle, for every pair of robots, three variables (--form): half-planes for
-    /// ORCA.
+    /// As velocity-obstacle, for any pair: three variables, half-planes for ORCA (--form).
     Neighbor,
 }
 
@@ -51,11 +50,10 @@ pub struct TemplateArgs {
     )]
     corners: String,
     /// A room as TOML: `outline = [[x, y], ...]`, `[[circle]]` with `center` and `radius`,
-    /// `[[polygon]]` with `corners` [default: the room of the documentation].
+    /// `[[polygon]]` with `corners` [default: the documentation's].
     #[arg(long, value_name = "FILE")]
     room: Option<PathBuf>,
-    /// R-functions of rooms and of `--form r-function`: r0, r1 (minimum and maximum), or alpha of
-    /// R_alpha.
+    /// R-functions for rooms and `--form r-function`: r0, r1 (minimum and maximum), or an alpha.
     #[arg(long, default_value = "r1", value_parser = |text: &str| text.parse::<System>())]
     system: System,
     /// Function that represents a velocity obstacle.
@@ -98,7 +96,6 @@ impl TemplateArgs {
         })
     }
 
-    /// Whether the template gives half-planes for ORCA.
     pub fn is_neighbor(&self) -> bool {
         self.template == Kind::Neighbor
     }
@@ -130,7 +127,6 @@ impl TemplateArgs {
     }
 }
 
-/// The room in a file, or the one of the documentation.
 pub fn room(file: Option<&Path>) -> Result<Room> {
     let Some(file) = file else {
         return Ok(Room::default());
@@ -139,7 +135,6 @@ pub fn room(file: Option<&Path>) -> Result<Room> {
     Room::read(&text).with_context(|| file.display().to_string())
 }
 
-/// Parses numbers separated by commas.
 pub fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let number = |word: &str| match word.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -153,8 +148,7 @@ fn fixed<const V: usize>(option: &str, text: &str) -> Result<[f64; V]> {
     found.try_into().map_err(|_| anyhow!("{option}: `{text}`: give {V} numbers with commas"))
 }
 
-/// A grid with `resolution` nodes along the longest axis and equal steps along the others, at least
-/// two nodes each.
+/// Equal steps along all axes, `resolution` nodes along the longest, at least two along others.
 pub fn grid<const V: usize>(extent: [[f64; 2]; V], resolution: u16) -> Result<Grid<V>> {
     let sides = extent.map(|[low, high]| high - low);
     let longest = sides.iter().copied().fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! `staya orca table | draw`: tables of ORCA, and drawings of forbidden velocities.
+//! `staya orca`: ORCA's tables, and drawings of forbidden velocities.
 
 use crate::orca::Sample;
 use crate::orca::pictures::{Drawing, Scene};
@@ -10,7 +10,6 @@ use staya_sim::record::prepare_dir;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// Draw the velocities that ORCA forbids two robots, and measure its lookup tables.
 #[derive(Args, Clone, Debug)]
 pub struct OrcaArgs {
     #[command(subcommand)]
@@ -21,8 +20,8 @@ pub struct OrcaArgs {
 enum Action {
     /// Measure the errors of half-planes from voxel templates, by template size.
     Table(TableArgs),
-    /// Draw the velocity obstacle of two robots, the half-plane, the R-function, M-images and the
-    /// template (default: the worked example of the functional voxel paper).
+    /// Draw a velocity obstacle of two robots, its half-plane, R-function, M-images and template
+    /// (default: the worked example of the functional voxel paper).
     Draw(Box<DrawArgs>),
 }
 
@@ -75,10 +74,6 @@ fn vector(text: &str) -> Result<[f64; 2]> {
 }
 
 impl OrcaArgs {
-    /// Runs the command.
-    ///
-    /// # Errors
-    /// An invalid scene, or a picture that cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.action {
             Action::Table(args) => args.run(global)?,
@@ -101,8 +96,7 @@ impl TableArgs {
 
 #[derive(Debug, Serialize)]
 struct Drawn {
-    /// Smallest change of the relative velocity that avoids a collision, m/s; negative if it is
-    /// already free.
+    /// Smallest change of the relative velocity, m/s; negative if it is already free.
     change_mps: f64,
     point_mps: [f64; 2],
     normal: [f64; 2],

@@ -1,5 +1,10 @@
+<<<<<<< HEAD
 //! The velocity obstacle of two robots (Tolok et al., FVM): how far half-planes from the voxel
 //! template are off the exact ones, and [`pictures`] of what the paper draws.
+=======
+//! The velocity obstacle of two robots (Tolok et al., FVM): errors of half-planes from the voxel
+//! template, and [`pictures`] of the paper's figures.
+>>>>>>> com5
 
 pub mod pictures;
 mod view;
@@ -12,9 +17,8 @@ use staya_stats::{mean, quantile};
 use std::f64::consts::TAU;
 use std::fmt;
 
-/// Random pairs of robots: radii of 0.1 to 0.5 m, centres within 5 m without overlap, speeds up to
-/// 1.5 m/s (all uniform, positions and velocities in discs), a horizon of 2 s, the whole
-/// correction.
+/// Random pairs of robots: radii 0.1 to 0.5 m, centres within 5 m without overlap, speeds up to 1.5
+/// m/s, horizon 2 s, the whole correction. Positions and velocities are uniform in discs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample {
     /// Number of pairs.
@@ -34,12 +38,12 @@ pub struct Errors {
     pub max: f64,
 }
 
-/// How far the template is off the analytic form.
+/// Errors of the template against the analytic form.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// Pairs compared.
     pub pairs: u32,
-    /// Their seed.
+    /// Seed of the pairs.
     pub seed: u64,
     /// Bytes of the template in flash.
     pub bytes: usize,
@@ -51,7 +55,6 @@ pub struct Report {
     pub distance: Errors,
 }
 
-/// A vector in the plane.
 type V = Vec2<f64>;
 
 const PAIRS: u32 = 0x0045_0201;
@@ -59,7 +62,6 @@ const PAIRS: u32 = 0x0045_0201;
 const PARAMS: Params<f64> = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
 
 impl Sample {
-    /// Own velocity and neighbour of each pair.
     fn draw(&self) -> Vec<(Vec2<f64>, MovingBall<V>)> {
         (0..self.pairs)
             .map(|pair| {
@@ -107,7 +109,6 @@ impl Sample {
 }
 
 impl Errors {
-    /// All zero without values.
     fn of(values: &[f64]) -> Self {
         Self {
             mean: mean(values).unwrap_or(0.0),

@@ -1,5 +1,4 @@
-//! Pictures of the functional voxel paper: velocity obstacle and half-plane (figures 3 to 5), the
-//! R-function, its M-images (figure 6), and the voxel template.
+//! Pictures of the functional voxel paper: figures 3 to 6, the R-function, and the voxel template.
 
 use super::V;
 use super::view::{
@@ -13,28 +12,26 @@ use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 use staya_sim::record::Error;
 use std::path::{Path, PathBuf};
 
-/// Colours: forbidden by the cone beyond the perpendiculars, forbidden by the disc, permitted by
-/// the half-plane.
+/// Forbidden by the cone beyond the perpendiculars, forbidden by the disc, permitted.
 const CONE: Colour = PALETTE[1];
 const DISC: Colour = PALETTE[4];
 const ALLOWED: Colour = PALETTE[2];
 
-/// Two robots as in the paper's section "analytic representation"; metres, m/s and seconds.
+/// Two robots as in the paper's section "analytic representation".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scene {
-    /// Positions of robot A, which decides, and of robot B.
+    /// Positions of robot A, which decides, and of robot B, metres.
     pub places_m: [[f64; 2]; 2],
-    /// Velocities of A and B.
+    /// Velocities of A and B, m/s.
     pub velocities_mps: [[f64; 2]; 2],
-    /// Radii of A and B.
+    /// Radii of A and B, metres.
     pub radii_m: [f64; 2],
-    /// tau, the time horizon.
+    /// Time horizon tau, seconds.
     pub horizon_s: f64,
     /// A's share of the correction, 0 to 1.
     pub share: f64,
 }
 
-/// The paper's worked example, in which A takes the whole correction.
 impl Default for Scene {
     fn default() -> Self {
         Self {
@@ -57,8 +54,7 @@ pub struct Drawing {
     params: Params<f64>,
     /// Velocities permitted to A.
     pub plane: HalfPlane<f64>,
-    /// Smallest change of the relative velocity along the half-plane's normal, m/s; negative if it
-    /// is already free.
+    /// Smallest change of the relative velocity along the normal, m/s; negative if it is free.
     pub change_mps: f64,
 }
 
@@ -66,8 +62,7 @@ impl Scene {
     /// Validates the scene and computes the derived values.
     ///
     /// # Errors
-    /// A number that is not finite, a radius or horizon that is not above 0, or robots that
-    /// overlap.
+    /// A number is not finite, a radius or horizon is not above 0, or the robots overlap.
     pub fn drawing(&self) -> anyhow::Result<Drawing> {
         let vector = |[x, y]: [f64; 2]| V::new(x, y);
         let [place, other_place] = self.places_m.map(vector);
@@ -189,7 +184,6 @@ impl Drawing {
         let ends = [point - border, point + border].map(|end| view.place(end));
         canvas.line(ends.to_vec(), Stroke::new(ALLOWED, 2.2));
         let of_b = self.neighbor.velocity_mps;
-        // Labels are on the side away from the change.
         let aside = self.plane.normal * -self.change_mps;
         for (name, to, away, colour) in
             [("v_B", of_b, of_b, MUTED), ("v_A", self.own, aside, PALETTE[0]), ("v_A - v_B", self.relative, aside, INK)]
@@ -233,7 +227,6 @@ impl Drawing {
         }
     }
 
-    /// The R-function beside the distance to the nearest border.
     fn fields(&self) -> Canvas {
         let mut canvas = canvas("The velocity obstacle as one function", 2, SMALL_SIDE, 0.0);
         let unit = self.obstacle.disc().1;
@@ -255,7 +248,6 @@ impl Drawing {
         canvas
     }
 
-    /// Change to the nearest border (positive inside) and its normal, for a relative velocity.
     fn nearest(&self, relative: V) -> Option<(f64, V)> {
         let whole = Params { share: 1.0, ..self.params };
         let own = relative + self.neighbor.velocity_mps;
@@ -263,7 +255,7 @@ impl Drawing {
         Some((plane.penetration(own), plane.normal))
     }
 
-    /// FVM figure 6: the components of the normal (eq. 16) to the R-function's graph at each point.
+    /// Components of the normal (eq. 16) to the R-function's graph, as in FVM figure 6.
     fn m_images(&self) -> Canvas {
         let mut canvas = canvas("M-images of the R-function", 4, SMALL_SIDE, 0.0);
         let names = ["cos alpha4", "cos beta4", "cos gamma4", "cos delta4"];
@@ -281,8 +273,6 @@ impl Drawing {
         canvas
     }
 
-    /// The plane through the function's values at a point and its neighbours to the right and
-    /// above, normalised.
     fn local_equation(&self, at: V, step: f64) -> [f64; 4] {
         let value = |at: V| self.obstacle.value(at);
         let here = value(at);
@@ -293,7 +283,6 @@ impl Drawing {
         equation.map(|c| c / libm::sqrt(squares))
     }
 
-    /// The voxel template, which stores the normal to the nearest border, and its errors.
     fn template(&self) -> Canvas {
         let mut canvas = canvas("The normal to the nearest border, as the template has it", 3, SMALL_SIDE, 0.0);
         let look_up = |at: V| {
@@ -357,11 +346,9 @@ mod tests {
 
     #[test]
     fn the_local_equation_has_the_half_planes_angle() {
-        // Eq. 17, where the disc is nearest.
         let drawing = Scene::default().drawing().unwrap();
         let [a, b, _, _] = drawing.local_equation(drawing.relative, 1e-6);
         let cos = a / libm::sqrt(a * a + b * b);
-        // The R-function grows inwards.
         assert!((cos + drawing.plane.normal.x).abs() < 1e-5, "{cos}");
     }
 

@@ -4,25 +4,21 @@ use super::V;
 use staya_plot::canvas::{Anchor, Canvas, Pixels, Point, Shape, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
 
-/// Left and top edge of the first picture in a row.
 pub const LEFT: f64 = 48.0;
 pub const TOP: f64 = 74.0;
-/// Side of a picture with axes, in picture units.
 pub const SIDE: f64 = 520.0;
-/// Side of one of several pictures.
 pub const SMALL_SIDE: f64 = 300.0;
-/// Pixels along the side of a picture.
 pub const PIXELS: u32 = 400;
 pub const GAP: f64 = 58.0;
 pub const NUMBER: f64 = 11.5;
 
-/// A square region of velocities and its position in a picture.
+/// A square region of velocities (m/s) and its position in a picture.
 #[derive(Clone, Copy)]
 pub struct View {
-    /// South-west corner and side, m/s.
+    /// South-west corner.
     pub corner: V,
     pub side: f64,
-    /// Left, top and side in picture units.
+    /// Left, top and side, picture units.
     pub area: [f64; 3],
 }
 
@@ -38,7 +34,6 @@ impl View {
         [x, y, side, side]
     }
 
-    /// Colours each pixel by the velocity at its centre, from the top row.
     pub fn pixels(&self, mut colour: impl FnMut(V) -> [u8; 4]) -> Pixels {
         let step = self.side / f64::from(PIXELS);
         let at = |i: u32| (f64::from(i) + 0.5) * step;
@@ -51,7 +46,6 @@ impl View {
         Pixels { width: PIXELS, height: PIXELS, rgba }
     }
 
-    /// Tick labels on both axes, and the axes through zero.
     pub fn axes(&self, canvas: &mut Canvas) {
         let step = step(self.side);
         let [left, top, side] = self.area;
@@ -86,17 +80,14 @@ impl View {
     }
 }
 
-/// A round step for about six ticks.
 pub fn step(side: f64) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(side / 6.0)));
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * decade);
     steps.into_iter().find(|step| side / step <= 8.0).unwrap_or(decade)
 }
 
-/// An empty canvas for a row of square pictures.
 pub fn canvas(title: &str, pictures: usize, side: f64, more: f64) -> Canvas {
     let width = LEFT + (side + GAP) * pictures as f64 + more;
-    // Several pictures have a note below.
     let below = if pictures > 1 { 72.0 } else { 50.0 };
     let mut canvas = Canvas::new(width, TOP + side + below, title);
     canvas.text(Text { bold: true, ..Text::new([16.0, 30.0], 17.0, Anchor::Start, title) });
@@ -122,7 +113,6 @@ pub fn picture(canvas: &mut Canvas, view: &View, title: &str, pixels: Pixels) {
     view.axes(canvas);
 }
 
-/// Fills a view and clips later shapes to it.
 pub fn image(canvas: &mut Canvas, view: &View, pixels: Pixels) {
     let area = view.frame();
     canvas.shapes.push(Shape::Image { area, pixels });
@@ -134,13 +124,11 @@ pub fn opaque(colour: Colour) -> [u8; 4] {
     [red, green, blue, 255]
 }
 
-/// Grey from -1 (black) to 1 (white).
 pub fn grey(component: f64) -> [u8; 4] {
     let shade = (127.5 + 127.5 * component.clamp(-1.0, 1.0)) as u8;
     [shade, shade, shade, 255]
 }
 
-/// Colour of a signed field with contour lines.
 pub fn contoured(value: f64) -> [u8; 4] {
     let colour = if value > 0.0 { PALETTE[1] } else { PALETTE[0] };
     let share = (value.abs() / 2.0).min(1.0) * 0.75 + 0.08;
@@ -155,7 +143,6 @@ pub fn contoured(value: f64) -> [u8; 4] {
     }
 }
 
-/// A label next to a velocity, on the side given by `away`.
 pub fn label(canvas: &mut Canvas, view: &View, at: V, away: V, name: &str, colour: Colour) {
     let away = away.normalized().unwrap_or(V::new(0.0, 1.0));
     let [x, y] = view.place(at);

@@ -12,9 +12,9 @@ pub enum Method {
     MutualPairs,
     /// Lattice cells.
     Cells,
-    /// The k-d tree of a library.
+    /// The k-d tree of the crate `kiddo`.
     Tree,
-    /// A k-d tree by the sliding midpoint rule, as the paper describes.
+    /// A k-d tree by the sliding midpoint rule, as in the paper.
     MidpointTree,
 }
 
@@ -38,7 +38,7 @@ impl Method {
         match self {
             Self::AllPairs => AnySearch::AllPairs(AllPairs::new(space)),
             Self::MutualPairs => AnySearch::MutualPairs(MutualPairs::new(space, radius)),
-            // Queries find up to 150 neighbours, where cells as large as the radius are fastest.
+            // For up to 150 neighbours, cells as large as the radius are fastest.
             Self::Cells => AnySearch::Cells(Cells::new(space, radius)),
             Self::Tree => AnySearch::Tree(Tree::new(space)),
             Self::MidpointTree => AnySearch::MidpointTree(MidpointTree::new(space)),

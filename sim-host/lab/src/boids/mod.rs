@@ -1,9 +1,9 @@
 //! Boids on a torus, and the cost of neighbour search (V. A. Starovoitova 2018, STA, section 2.3).
 //!
-//! The controller's boids ([`staya_controller::flock::boids`]) run directly on the host, without
-//! radio and packets: each knows the exact places and headings of its neighbours. For each number
-//! of boids, one run per search of [`nearby`](staya_sim::nearby) has the same start. Trajectories
-//! must be bitwise equal. Their time is measured on one thread.
+//! The controller's boids ([`staya_controller::flock::boids`]) run on the host without radio and
+//! packets: each knows the exact places and headings of its neighbours. All searches of
+//! [`nearby`](staya_sim::nearby) and [`searches`] have the same start, must give bitwise equal
+//! trajectories, and are timed on one thread.
 
 mod method;
 mod pictures;
@@ -36,20 +36,16 @@ const STARTS: u32 = 0x0045_0301;
 
 const PIECE: usize = 256;
 
-/// Default limit of boids for searches over all pairs: 10,000 take about a second per step, 100,000
-/// would take a hundred.
+/// Default limit of boids for searches over all pairs: about a second per step.
 pub const MOST_BY_ALL_PAIRS: u32 = 10_000;
 
-/// What to do: boids on a torus, five ways to find neighbours, equal flights, and what they cost
-/// (Starovoitova, section 2.3).
-///
-/// Lengths, turns and area are the paper's unless told otherwise.
+/// Boids on a torus: trajectories and cost of five neighbour searches (Starovoitova, section 2.3).
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Numbers of boids, one line of the table each.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "100,300,1000,3000,10000,30000,100000")]
     pub boids: Vec<u32>,
-    /// Steps to time for each search and number of boids. The hash is that of the last.
+    /// Timed steps for each search and number of boids; the hash is that of the last step.
     #[arg(long, default_value_t = 20)]
     pub steps: u32,
     /// Skip the search of all pairs for more boids than this.
@@ -61,25 +57,25 @@ pub struct Plan {
     /// Steps until the last picture.
     #[arg(long, value_name = "STEPS", default_value_t = 2000)]
     pub picture_steps: u32,
-    /// Area per boid: the paper's torus of 800 x 600 has 20 boids, and larger ones are like it.
+    /// Area per boid; the paper has 20 boids on a torus of 800 x 600.
     #[arg(long, value_name = "AREA", default_value_t = 24_000.0)]
     pub area_per_boid: f32,
-    /// Way of a boid in a step.
+    /// Distance of a boid's step.
     #[arg(long, value_name = "LENGTH", default_value_t = 2.0)]
     pub speed: f32,
-    /// Nearer than this, a boid turns away.
+    /// Distance below which a boid turns away.
     #[arg(long, value_name = "LENGTH", default_value_t = 30.0)]
     pub crowded: f32,
-    /// Up to this far, a neighbour counts.
+    /// Largest distance of a neighbour.
     #[arg(long, value_name = "LENGTH", default_value_t = 150.0)]
     pub closest: f32,
-    /// Largest turn to heading or middle, radians.
+    /// Largest turn to the heading or the middle of neighbours, radians.
     #[arg(long, value_name = "RADIANS", default_value_t = 0.05)]
     pub max_turn: f32,
     /// Largest turn away, radians.
     #[arg(long, value_name = "RADIANS", default_value_t = 0.02)]
     pub max_turn_away: f32,
-    /// Equal seeds give equal flights.
+    /// Seed; equal seeds give equal trajectories.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Folder for rows and pictures.
@@ -107,8 +103,8 @@ pub struct Flock {
 }
 
 impl Plan {
-    /// Creates `boids` boids whose places and headings are uniform over the torus; a function of
-    /// the seed and the boid's number. The sides of the torus have the paper's ratio of 4 to 3.
+    /// Creates `boids` boids whose places and headings are uniform over the torus, functions of the
+    /// seed and the boid's number. The sides of the torus have the ratio 4 to 3 of the paper.
     #[must_use]
     pub fn flock(&self, boids: u32) -> Flock {
         let width = (boids as f32 * self.area_per_boid * 4.0 / 3.0).sqrt();
@@ -145,7 +141,7 @@ impl Plan {
         !matches!(method, Method::AllPairs | Method::MutualPairs) || boids <= self.most_by_all_pairs
     }
 
-    /// One row of the table; `None` if it was stopped, because an incomplete row compares nothing.
+    /// `None` if it was stopped, because an incomplete row compares nothing.
     fn row(&self, boids: u32, goes_on: &dyn Fn() -> bool) -> Option<Row> {
         let mut row = Row::new(boids, self.steps);
         for method in Method::ALL {
@@ -187,8 +183,6 @@ impl Plan {
         self.seconds_a_step(|| flock.step_in_parallel(&mut cells)) * 1e6 / f64::from(boids)
     }
 
-    /// Makes the plan's steps and returns the median of their times, which is robust against other
-    /// load.
     fn seconds_a_step(&self, mut step: impl FnMut()) -> f64 {
         let timed = |_| {
             let begun = Instant::now();
@@ -200,7 +194,7 @@ impl Plan {
         times[times.len() / 2]
     }
 
-    /// The pictured flock at its start, after a tenth of its steps, and at its end.
+    /// The flock at its start, after a tenth of the steps, and at its end.
     fn picture(&self) -> Vec<(u32, Flock)> {
         let mut flock = self.flock(self.picture_boids);
         let mut cells = Cells::new(flock.space, self.closest);
@@ -253,7 +247,6 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // Destructured, so that a new field cannot be forgotten.
         let Self {
             boids,
             steps,
@@ -299,7 +292,6 @@ impl Experiment for Plan {
     fn report(&self, rows: &[Vec<Row>]) -> Report {
         let mut rows = rows.concat();
         rows.iter_mut().for_each(Row::tell_hashes);
-        // After a stop, no picture is computed.
         let is_complete = rows.len() == self.boids.len();
         let picture = if is_complete { self.picture() } else { Vec::new() };
         Report::new(self, rows, picture)
@@ -344,7 +336,7 @@ impl Flock {
         }
     }
 
-    /// Turns all boids at once, then moves them. One thread.
+    /// Turns all boids at once, then moves them. Runs on one thread.
     pub fn step(&mut self, search: &mut impl Search<f32, 2>) {
         search.rebuild(&self.places);
         let mut scratch = Scratch::default();
@@ -356,8 +348,7 @@ impl Flock {
         self.advance();
     }
 
-    /// Like [`Flock::step`], in the order of the cells, which keeps neighbours in the cache; equal
-    /// results.
+    /// Like [`Flock::step`] with equal results, in the order of the cells: better for the cache.
     pub fn step_by_cells(&mut self, cells: &mut Cells<f32, 2>) {
         cells.rebuild(&self.places);
         let mut scratch = Scratch::default();
@@ -369,7 +360,7 @@ impl Flock {
         self.advance();
     }
 
-    /// Like [`Flock::step`], on all threads; equal results.
+    /// Like [`Flock::step`] with equal results, on all threads.
     pub fn step_in_parallel(&mut self, cells: &mut Cells<f32, 2>) {
         cells.rebuild(&self.places);
         let (order, this) = (cells.order(), &*self);
@@ -419,7 +410,6 @@ impl Flock {
         }
     }
 
-    /// Number of neighbours of all boids; each pair counts twice.
     fn neighbours(&self, search: &impl Search<f32, 2>) -> u64 {
         let mut found = Vec::new();
         let mut count = 0;

@@ -1,4 +1,4 @@
-//! Pictures of the boids experiment: the flock at three moments, and the cost by number of boids.
+//! Pictures of the boids experiment.
 
 use super::{Method, Report};
 use staya_plot::flock::{Sheet, Snapshot};
@@ -7,7 +7,8 @@ use staya_sim::record::Error;
 use std::path::{Path, PathBuf};
 
 impl Report {
-    /// Draws `flock` and `cost` into `dir`, each as SVG and PNG, and returns the files.
+    /// Draws the flock at three moments (`flock`) and the cost by number of boids (`cost`) into
+    /// `dir`, each as SVG and PNG, and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.

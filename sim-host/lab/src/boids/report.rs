@@ -1,4 +1,4 @@
-//! Results of the boids experiment, for tables and plots.
+//! Results of the boids experiment.
 
 use super::{Flock, Method, Plan};
 use crate::experiment::Maybe;
@@ -12,7 +12,7 @@ use std::fmt::{self, Display, Formatter};
 pub struct Timing {
     /// Name of the search.
     pub method: &'static str,
-    /// Wall time per boid and step on one thread, index included, microseconds: the median step.
+    /// Wall time of the median step per boid, on one thread, index included, microseconds.
     pub us_per_boid: f64,
     /// Wall time of the median step, milliseconds.
     pub ms_per_step: f64,
@@ -87,8 +87,6 @@ impl Row {
         self.hash = first.unwrap_or_default();
     }
 
-    /// Restores the hashes after reading a row, which contains only the first one and whether all
-    /// are equal.
     pub(super) fn tell_hashes(&mut self) {
         let (hash, is_equal) = (format!("{:016x}", self.hash), self.is_equal);
         for (index, timing) in self.timings.iter_mut().enumerate().filter(|(_, timing)| timing.hash.is_empty()) {
@@ -110,10 +108,8 @@ impl Row {
     }
 }
 
-/// The pictured flock at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Moment {
-    /// Steps made.
     pub step: u32,
     /// Length of the mean heading, 0 to 1.
     pub polarisation: f64,
@@ -128,7 +124,7 @@ pub struct Report {
     pub most_by_all_pairs: u32,
     /// Area per boid.
     pub area_per_boid: f32,
-    /// Range of sight.
+    /// Distance up to which boids see neighbours.
     pub closest: f32,
     /// Threads of the parallel column.
     pub threads: usize,

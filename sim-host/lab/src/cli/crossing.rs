@@ -6,25 +6,24 @@ use staya_console::options;
 use staya_controller::agent::SafetyKind;
 use std::path::{Path, PathBuf};
 
-/// What all of them understand.
 #[derive(Args, Clone, Debug)]
 struct Runs {
     /// The first seed.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Time from one decision to the next, seconds.
+    /// Time between two decisions, seconds.
     #[arg(long, value_name = "S", default_value_t = 0.05)]
     step: f64,
     /// Highest speed, m/s.
     #[arg(long, value_name = "M/S", default_value_t = 0.5)]
     speed: f64,
-    /// How far the radio reaches, metres [default: 3 for swap, else 6].
+    /// Range of the radio, metres [default: 3 for swap, else 6].
     #[arg(long, value_name = "M")]
     range: Option<f64>,
     /// Share of packets lost, 0 to 1.
     #[arg(long, value_name = "P", default_value_t = 0.0)]
     loss: f64,
-    /// What keeps robots apart; on a sphere it is always ORCA in space.
+    /// Safety layer; on a sphere it is always ORCA in space.
     #[arg(long, default_value = "orca", value_parser = options::crossing_safety())]
     safety: SafetyKind,
 }
@@ -41,10 +40,9 @@ impl Runs {
     }
 }
 
-/// What swap and doorway understand.
 #[derive(Args, Clone, Debug)]
 struct Common {
-    /// Move each start at random by up to this along both axes, metres.
+    /// Largest random displacement of each start along both axes, metres.
     #[arg(long, value_name = "M", default_value_t = 0.0)]
     noise: f64,
     /// Runs per point, with consecutive seeds.
@@ -64,7 +62,6 @@ impl Common {
     }
 }
 
-/// Robots on a circle, each bound for the opposite side: who arrives, how late, how near they come.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct SwapArgs {
@@ -74,14 +71,13 @@ pub struct SwapArgs {
     /// Radius of the circle, metres [default: 0.1 per robot, at least 2].
     #[arg(long, value_name = "M")]
     circle: Option<f64>,
-    /// End a run after this many times the free time.
+    /// Time limit of a run in multiples of the free time.
     #[arg(long, value_name = "N", default_value_t = 6.0)]
     patience: f64,
     #[command(flatten)]
     common: Common,
 }
 
-/// Two crowds pass one gap in opposite directions: who passes, in what order, how near they come.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct DoorwayArgs {
@@ -91,40 +87,32 @@ pub struct DoorwayArgs {
     /// Robots on each side; their radius is 0.3 m.
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
     robots: u32,
-    /// End a run after this many seconds.
+    /// Time limit of a run, seconds.
     #[arg(long, value_name = "S", default_value_t = 900.0)]
     longest: f64,
     #[command(flatten)]
     common: Common,
 }
 
-/// Fourteen ways to get in each other's way: who arrives, how late, who overlaps.
-///
-/// blocks, four_ways, tee, door, doors and corridor: groups among walls. parked_door: a crowd that
-/// goes through a door to places among others that stand behind it. parked: a goal behind a row of
-/// robots that stand. mixed: five sizes and three speeds. intruder: a vehicle that gives way to
-/// nobody. dead_end: a bag of walls, by routing. sphere: in space. blackout: the radio is dead
-/// while they meet. flock: an alpha flock between two balls.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct CrossingArgs {
-    /// Which cases [default: all].
+    /// Cases to run [default: all].
     #[arg(long = "case", value_enum, value_delimiter = ',')]
     cases: Vec<cases::Case>,
-    /// Robots of a group, or of all where there are none [default: each case's own].
+    /// Robots per group, or of all in cases without groups [default: each case's own].
     #[arg(long, value_name = "N")]
     robots: Option<u32>,
-    /// End a run after this many seconds.
+    /// Time limit of a run, seconds.
     #[arg(long, value_name = "S", default_value_t = 900.0)]
     longest: f64,
-    /// How long the radio is dead in the case "blackout", seconds.
+    /// Duration of the radio failure in the case "blackout", seconds.
     #[arg(long, value_name = "S", default_value_t = 1.0)]
     blackout: f64,
-    /// Everything so many times as large: bodies, ways, walls, speeds, noise and how far the radio
-    /// reaches.
+    /// Scale factor of bodies, routes, walls, speeds, noise and radio range.
     #[arg(long, value_name = "N", default_value_t = 1.0)]
     size: f64,
-    /// Move each start at random by up to this along both axes, metres.
+    /// Largest random displacement of each start along both axes, metres.
     #[arg(long, value_name = "M", default_value_t = 0.02)]
     noise: f64,
     /// Runs of each case, with consecutive seeds.
@@ -138,7 +126,6 @@ pub struct CrossingArgs {
 }
 
 impl CrossingArgs {
-    /// Converts the options to a plan.
     pub fn plan(&self) -> cases::Plan {
         cases::Plan {
             cases: if self.cases.is_empty() { cases::Case::ALL.to_vec() } else { self.cases.clone() },
@@ -154,7 +141,6 @@ impl CrossingArgs {
     }
 }
 
-/// Numbers of robots.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Numbers(Vec<u32>);
 
@@ -183,7 +169,6 @@ fn numbers(text: &str) -> Result<Numbers, String> {
 }
 
 impl SwapArgs {
-    /// Converts the options to a plan.
     pub fn plan(&self) -> swap::Plan {
         swap::Plan {
             robots: self.robots.0.clone(),
@@ -196,14 +181,12 @@ impl SwapArgs {
         }
     }
 
-    /// Folder for rows and pictures.
     pub fn out(&self) -> PathBuf {
         self.common.out("swap")
     }
 }
 
 impl DoorwayArgs {
-    /// Converts the options to a plan.
     pub fn plan(&self) -> doorway::Plan {
         doorway::Plan {
             widths_m: self.widths.clone(),
@@ -216,7 +199,6 @@ impl DoorwayArgs {
         }
     }
 
-    /// Folder for rows and pictures.
     pub fn out(&self) -> PathBuf {
         self.common.out("doorway")
     }

@@ -4,20 +4,11 @@ use crate::flock::Plan;
 use crate::flock::closing::Closing;
 use clap::Args;
 
-/// The five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an agent that
-/// hears packets only.
-///
-/// Two cases are not the paper's: "gap" and "forest" (`--case gap,forest --reference resting`). The
-/// paper gives no gains: c1 of alpha- and gamma-agents (c2 = 2 sqrt c1) and the reference's speed
-/// are what worked best. A: 50 and 1. C: 10 and 0.2. D, E: 10, 200 (beta) and 2, with a reference
-/// that moves at 3/7 d per second. B has no gains. Any spacing gives the same figures, lengths and
-/// speeds in proportion.
 #[derive(Args, Clone, Debug)]
 pub struct FlockArgs {
     #[command(flatten)]
     pub plan: Plan,
-    /// Instead, drive flocks at each other, bare and with ORCA: overlaps and least distances by
-    /// speed.
+    /// Instead, drive flocks at each other, without and with ORCA: overlaps and gaps by speed.
     #[arg(
         long,
         conflicts_with_all = ["cases", "robots", "safety", "horizon_s", "seconds", "c_alpha", "c_beta", "c_gamma", "c2_alpha", "c2_gamma", "obstacle_ratio", "references", "rest", "takes_turns", "gap", "ideal", "loss"]
@@ -29,7 +20,6 @@ pub struct FlockArgs {
 }
 
 impl FlockArgs {
-    /// Plan for flocks driven at each other, if requested.
     pub fn closing(&self) -> Option<Closing> {
         self.closing.then(|| Closing {
             speeds: self.speeds.clone(),

@@ -11,8 +11,6 @@ use staya_controller::shuffle::Sharpness;
 use staya_sim::terrain::generate::Hills;
 use std::path::PathBuf;
 
-/// Six robots in formation on natural land: error, arrivals, travel time (Kuznetsov, section 8,
-/// figure 6).
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct FormationArgs {
@@ -22,19 +20,19 @@ pub struct FormationArgs {
     /// Landscapes per point.
     #[arg(long, default_value_t = 100)]
     runs: u32,
-    /// How far from its place a neighbour may be and still count as found, cells.
+    /// Distance from its place up to which a neighbour counts as found, cells.
     #[arg(long, default_value_t = FormationParams::default().eps)]
     eps: u8,
     /// Loss of packets, 0 to 1.
     #[arg(long, default_value_t = 0.0)]
     loss: f64,
-    /// Other values of eps to try on the same landscapes.
+    /// Further values of eps on the same landscapes.
     #[arg(long, value_name = "CELLS,...", value_delimiter = ',', default_value = "1,2,3,5")]
     other_eps: Vec<u8>,
-    /// Other losses to try on the same landscapes.
+    /// Further losses on the same landscapes.
     #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0.1,0.3,0.6")]
     other_losses: Vec<f64>,
-    /// Other laws to try on the same landscapes, at each loss.
+    /// Further laws on the same landscapes, at each loss.
     #[arg(
         long,
         value_name = "LAW,...",
@@ -43,26 +41,25 @@ pub struct FormationArgs {
         value_enum
     )]
     other_laws: Vec<Law>,
-    /// Sum of deviations from all neighbours found that the paper's law takes for too far (much
-    /// more than r0), cells.
+    /// Sum of deviations from found neighbours at which the paper's law waits, cells.
     #[arg(long, value_name = "CELLS")]
     paper_halt: Option<f64>,
-    /// Sum that it takes for near enough again (about r0), cells.
+    /// Sum at which the paper's law moves again (about r0), cells.
     #[arg(long, value_name = "CELLS")]
     paper_resume: Option<f64>,
-    /// How robots foresee each other under the paper's law.
+    /// How robots predict each other under the paper's law.
     #[arg(long, default_value = "reflexive", value_parser = options::prediction())]
     paper_prediction: Prediction,
-    /// Geodesic radius of templates under the paper's law: 1 gives the leaders of figure 5.
+    /// Geodesic radius of templates under the paper's law; 1 gives the leaders of figure 5.
     #[arg(long, default_value_t = Published::default().rho)]
     paper_rho: u8,
-    /// Do not try other values, nor other laws.
+    /// Omit other values and laws.
     #[arg(long, conflicts_with_all = ["other_eps", "other_losses", "other_laws"])]
     only: bool,
-    /// How many cells ahead of the top leader's the others aim.
+    /// Distance that followers aim ahead of the top leader's cell, cells.
     #[arg(long, value_name = "CELLS", default_value_t = FormationParams::default().lead)]
     lead: u8,
-    /// Share of the land under the others' places in what a cell costs the top leader, sixteenths.
+    /// Weight of the land under other robots' places in the top leader's cell costs, sixteenths.
     #[arg(long, value_name = "SIXTEENTHS", default_value_t = FormationParams::default().footprint, value_parser = clap::value_parser!(u8).range(0..=16))]
     footprint: u8,
     /// Lag at which the top leader waits (r0), cells.
@@ -71,16 +68,16 @@ pub struct FormationArgs {
     /// Cells from one robot to the next.
     #[arg(long, default_value_t = 3)]
     spacing: u8,
-    /// Geodesic radius of what each robot knows of the formation's graph.
+    /// Geodesic radius of a robot's template in the formation's graph.
     #[arg(long, default_value_t = 3)]
     rho: u8,
-    /// Radius of the robots' windows in cells.
+    /// Radius of the robots' windows, cells.
     #[arg(long, default_value_t = RouteParams::default().radius)]
     radius: u8,
-    /// How robots foresee each other.
+    /// How robots predict each other.
     #[arg(long, default_value = "constant", value_parser = options::prediction())]
     prediction: Prediction,
-    /// What the top leader does while somebody is too far behind.
+    /// Reaction of the top leader to robots that are too far behind.
     #[arg(long, default_value = "wait", value_parser = options::recovery())]
     recovery: Recovery,
     /// Cells along each side of the landscape.
@@ -89,20 +86,19 @@ pub struct FormationArgs {
     /// Classes of impassability.
     #[arg(long, default_value_t = 9)]
     classes: u8,
-    /// What natural land is taken to mean; the paper says it in one sentence (docs/limits.md).
+    /// Interpretation of natural land, which the paper defines in one sentence (docs/limits.md).
     #[arg(long, default_value = "even", value_parser = options::hills())]
     hills: Hills,
-    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half
-    /// as often; 0 never draws.
+    /// Draw the order of moves: this additional cost halves a move's chance; 0 never draws.
     #[arg(long, value_name = "TICKS", default_value = "0", value_parser = options::shuffle)]
     shuffle: Sharpness,
-    /// How the distance to an obstacle is measured.
+    /// Norm of the distance to an obstacle.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]
     hill_norm: Norm,
-    /// Give up a run after this many ticks.
+    /// Time limit of a run, ticks.
     #[arg(long, default_value_t = 10_000)]
     ticks: u32,
-    /// Equal seeds give equal results; parameters were chosen on seed 1.
+    /// Seed; equal seeds give equal results. Parameters were tuned on seed 1.
     #[arg(long, default_value_t = 2)]
     seed: u64,
     /// Folder for rows and pictures.
@@ -111,10 +107,6 @@ pub struct FormationArgs {
 }
 
 impl FormationArgs {
-    /// Converts the options to a plan.
-    ///
-    /// # Errors
-    /// A lag is out of range.
     pub fn plan(&self) -> Result<Plan> {
         let mut formation = FormationParams {
             eps: self.eps,

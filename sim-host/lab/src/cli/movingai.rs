@@ -6,34 +6,29 @@ use clap::Args;
 use staya_console::options::RouteOptions;
 use std::path::PathBuf;
 
-/// The queries of a Moving AI benchmark: how many robots arrive, and how much longer they take.
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct MovingAiArgs {
-    /// The scenario (.scen); its map is looked for beside it.
+    /// Scenario (.scen); its map is expected in the same folder.
     scen: PathBuf,
-    /// The map, if it is not beside the scenario under the name that the scenario gives.
+    /// Map, if it is elsewhere or has another name than in the scenario.
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
-    /// Radius of the robot's window in cells, or "map": the robot sees everything, and the lengths
-    /// that it finds are compared with the benchmark's optimal ones.
+    /// Radius of the robot's window in cells, or "map" for the whole map.
     #[arg(long, value_name = "CELLS|map", default_value = "5", value_parser = sight)]
     radius: Sight,
-    /// How many visited cells the robot remembers, which gets it out of dead ends larger than its
-    /// window.
+    /// Visited cells that the robot remembers, to leave dead ends larger than its window.
     #[arg(long, value_name = "CELLS", default_value = "64", value_enum)]
     visits: Memory,
-    /// For how many cells the robot learns what the way costs at least, while it comes no nearer to
-    /// its goal; 0 leaves it the walls to follow.
+    /// Cells with learned travel costs, used while the robot comes no nearer; 0: walls only.
     #[arg(long, value_name = "CELLS", default_value = "256", value_enum)]
     learned: Learning,
     #[command(flatten)]
     route: RouteOptions,
-    /// Send groups of robots, each with a query of its own, through the whole simulator, with maps
-    /// shared over the radio and without; results go to the folder's `share`.
+    /// Instead, run groups with and without shared maps; results go to the folder's `share`.
     #[arg(long, conflicts_with_all = ["visits", "learned", "replan", "exit"])]
     share: bool,
-    /// Robots of a group.
+    /// Robots per group.
     #[arg(long, value_name = "ROBOTS,...", value_delimiter = ',', default_value = "6,20", requires = "share")]
     group: Vec<u32>,
     /// Losses of packets, 0 to 1.
@@ -42,8 +37,7 @@ pub struct MovingAiArgs {
     /// Groups of each size.
     #[arg(long, default_value_t = 50, requires = "share")]
     runs: u32,
-    /// Equal seeds give equal results; what robots make of maps was chosen on seed 1 of natural
-    /// land.
+    /// Seed; equal seeds give equal results. Shared maps were developed on seed 1.
     #[arg(long, default_value_t = 3, requires = "share")]
     seed: u64,
     /// Folder for the rows.
@@ -62,10 +56,6 @@ fn sight(word: &str) -> Result<Sight, String> {
 }
 
 impl MovingAiArgs {
-    /// Plan for groups of robots, if requested.
-    ///
-    /// # Errors
-    /// Those of [`Self::plan`].
     pub fn share(&self) -> Result<Option<GroupPlan>> {
         if !self.share {
             return Ok(None);
@@ -74,10 +64,6 @@ impl MovingAiArgs {
         Ok(Some(GroupPlan { robots: self.plan()?, groups, losses, runs: self.runs, seed: self.seed }))
     }
 
-    /// Converts the options to a plan.
-    ///
-    /// # Errors
-    /// A file cannot be read, or the scenario belongs to another map.
     pub fn plan(&self) -> Result<Plan> {
         Ok(Plan {
             benchmark: Benchmark::load(&self.scen, self.map.as_deref())?,
@@ -85,7 +71,6 @@ impl MovingAiArgs {
                 sight: self.radius,
                 memory: self.visits,
                 learning: self.learned,
-                // The sight determines the radius.
                 params: self.route.params(1),
                 replan: self.route.replan,
             },

@@ -11,31 +11,28 @@ use staya_controller::shuffle::Sharpness;
 use staya_sim::terrain::generate::Hills;
 use std::path::PathBuf;
 
-/// A kind of landscapes as a word.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum LandArg {
-    /// Hills of mud around the obstacles.
+    /// Hills of mud around obstacles.
     Natural,
-    /// Cells without any order: one point per number of obstacles with the cells of such natural
-    /// land shuffled (equal entropy), and a last one with every cell of any class.
+    /// Cells in random order: for each number of obstacles with the classes of that natural land
+    /// (equal entropy), and one point with every class equally likely.
     Uniform,
 }
 
-/// A coefficient as a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum CoefficientArg {
     /// Weight of travel time.
     A0,
-    /// Price of a cell with another robot.
+    /// Cost of a cell with another robot.
     A1,
-    /// Price of an earlier visit.
+    /// Cost of an earlier visit.
     A2,
-    /// Price of the distance between exit and target.
+    /// Cost of the distance between exit and target.
     A3,
 }
 
 impl CoefficientArg {
-    /// The coefficient and its default values in a sweep, sixteenths.
     const fn with_values(self) -> (Coefficient, &'static [u16]) {
         match self {
             Self::A0 => (Coefficient::A0, &[0, 4, 8, 12, 16, 24, 32, 64]),
@@ -46,8 +43,6 @@ impl CoefficientArg {
     }
 }
 
-/// Windowed routing against the global optimum on random land (Kuznetsov, section 5, figures 2 to
-/// 4).
 #[derive(Args, Clone, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct RouteArgs {
@@ -66,7 +61,7 @@ pub struct RouteArgs {
     /// Landscapes per point.
     #[arg(long, default_value_t = 1000, default_value_if("share", "true", "50"))]
     runs: u32,
-    /// Radius of the robot's window in cells.
+    /// Radius of the robot's window, cells.
     #[arg(long, default_value_t = RouteParams::default().radius, value_parser = clap::value_parser!(u8).range(1..=i64::from(MAX_RADIUS)))]
     radius: u8,
     #[command(flatten)]
@@ -74,7 +69,7 @@ pub struct RouteArgs {
     /// Length of a diagonal move.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]
     norm: Norm,
-    /// Let diagonal moves pass blocked orthogonal neighbours.
+    /// Permit diagonal moves past blocked orthogonal neighbours.
     #[arg(long)]
     corner_cutting: bool,
     /// Cells along each side of the landscape.
@@ -83,39 +78,36 @@ pub struct RouteArgs {
     /// Classes of impassability.
     #[arg(long, default_value_t = 9)]
     classes: u8,
-    /// What natural land is taken to mean; the paper says it in one sentence (docs/limits.md).
+    /// Interpretation of natural land, which the paper defines in one sentence (docs/limits.md).
     #[arg(long, default_value = "even", value_parser = options::hills())]
     hills: Hills,
-    /// Draw the order of moves (weighted shuffle): what costs so many ticks more comes first half
-    /// as often; 0 never draws.
+    /// Draw the order of moves: this additional cost halves a move's chance; 0 never draws.
     #[arg(long, value_name = "TICKS", default_value = "0", value_parser = options::shuffle)]
     shuffle: Sharpness,
-    /// How the distance to an obstacle is measured.
+    /// Norm of the distance to an obstacle.
     #[arg(long, default_value = "euclidean", value_parser = options::norm())]
     hill_norm: Norm,
-    /// Other robots that stand in random cells of each landscape; a1 says how they are avoided.
+    /// Stationary robots in random cells of each landscape, avoided with weight a1.
     #[arg(long, value_name = "ROBOTS", default_value_t = 0)]
     parked: u32,
-    /// Equal seeds give equal results; parameters were chosen on seed 1.
+    /// Seed; equal seeds give equal results. Parameters were tuned on seed 1.
     #[arg(long, default_value_t = 2, default_value_if("share", "true", "3"))]
     seed: u64,
-    /// Repeat everything for other values of these coefficients, one at a time, on the same
-    /// landscapes.
+    /// Coefficients to vary, one at a time, on the same landscapes.
     #[arg(long, value_enum, value_name = "a0,a1,a2,a3", value_delimiter = ',')]
     sweep: Vec<CoefficientArg>,
-    /// The values to sweep over [default: a selection for each coefficient].
+    /// Values of the varied coefficients [default: a selection for each].
     #[arg(long, value_name = "V,V,...", value_delimiter = ',', value_parser = gain, requires = "sweep")]
     values: Vec<Gain>,
-    /// Send groups of robots that share maps over the radio, through the whole simulator; results
-    /// go to the folder's `share`. 50 landscapes per point, obstacles 70,100,130,160 and seed 3
-    /// unless given; nothing else of the above but radius, size, classes, hills and coefficients
-    /// counts.
+    /// Instead, run groups of robots that share maps over the radio; results go to the folder's
+    /// `share`. Defaults: 50 landscapes per point, 70,100,130,160 obstacles, seed 3. Only radius,
+    /// size, classes, hills and coefficients apply.
     #[arg(long, conflicts_with_all = ["sweep", "parked", "terrain", "shuffle", "replan", "exit"])]
     share: bool,
-    /// Robots of a group.
+    /// Robots per group.
     #[arg(long, value_name = "ROBOTS,...", value_delimiter = ',', default_value = "6,20", requires = "share")]
     group: Vec<u32>,
-    /// Where they start.
+    /// Arrangements of starts and goals.
     #[arg(
         long,
         value_name = "WORD,...",
@@ -128,7 +120,7 @@ pub struct RouteArgs {
     /// Losses of packets, 0 to 1.
     #[arg(long, value_name = "LOSS,...", value_delimiter = ',', default_value = "0,0.3,0.6", requires = "share")]
     losses: Vec<f64>,
-    /// Ticks between two robots that set out in turn.
+    /// Ticks between two departures with `in-turn`.
     #[arg(long, value_name = "TICKS", default_value_t = 100, requires = "share")]
     interval: u32,
     /// Folder for rows and pictures.
@@ -137,7 +129,6 @@ pub struct RouteArgs {
 }
 
 impl RouteArgs {
-    /// Plan for shared maps, if requested.
     pub fn share(&self) -> Option<share::Plan> {
         let route =
             RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };
@@ -157,7 +148,6 @@ impl RouteArgs {
         })
     }
 
-    /// Converts the options to a plan.
     pub fn plan(&self) -> Plan {
         let params =
             RouteParams { norm: self.norm, corner_cutting: self.corner_cutting, ..self.route.params(self.radius) };

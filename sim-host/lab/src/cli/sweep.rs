@@ -1,4 +1,4 @@
-//! `staya sweep PLAN`: thousands of runs of a scenario, on this machine or on many.
+//! `staya sweep PLAN`.
 
 use crate::sweep::aggregate::{self, Point};
 use crate::sweep::merge::Merged;
@@ -21,12 +21,9 @@ use std::time::Instant;
 const ROWS: &str = "rows.csv";
 const AGGREGATES: &str = "aggregates.csv";
 const SCHEMA: &str = "rows.schema.json";
-/// Most points in the table on standard output.
 const SHOWN: usize = 40;
-/// Most figures in that table.
 const FIGURES: usize = 4;
 
-/// Run a scenario thousands of times, with other values in its fields.
 #[derive(Args, Clone, Debug)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct SweepArgs {
@@ -34,54 +31,50 @@ pub struct SweepArgs {
     command: Option<SweepCommand>,
     #[command(flatten)]
     target: TargetArgs,
-    /// Show how many runs there are, how long they will take and how much they will write; tries
-    /// three of them.
+    /// Show number, duration and size of the runs, and try three of them.
     #[arg(long)]
     dry_run: bool,
-    /// Do one of N equal parts only, as in 3/8; `staya sweep merge` puts the parts together.
+    /// Make one of N equal parts only, as in 3/8; `staya sweep merge` merges the parts.
     #[arg(long, value_name = "I/N", default_value_t = Shard::default())]
     shard: Shard,
-    /// Do the runs that are not there yet.
+    /// Make the missing runs.
     #[arg(long)]
     resume: bool,
-    /// Forget the rows that are there.
+    /// Replace existing rows.
     #[arg(long, conflicts_with = "resume")]
     restart: bool,
 }
 
-/// The plan and its results.
 #[derive(Args, Clone, Debug)]
 struct TargetArgs {
-    /// The plan, a .toml file; docs/sweeps.md lists all fields.
+    /// Plan, a .toml file; docs/sweeps.md lists all fields.
     #[arg(required = true)]
     plan: Option<PathBuf>,
-    /// Folder for the results [default: out/ and the plan's name].
+    /// Folder of the results [default: out/ and the plan's name].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 #[derive(Subcommand, Clone, Debug)]
 enum SweepCommand {
-    /// Put the rows of all shards together, with means, intervals and pictures.
+    /// Merge the rows of all shards, with means, intervals and pictures.
     Merge(MergeArgs),
-    /// Draw a figure over one axis or two, of merged rows.
+    /// Draw a figure of merged rows over one axis or two.
     Plot(PlotArgs),
-    /// Print a job for Slurm: an array with one core a task.
+    /// Print a Slurm job: an array with one core per task.
     Slurm(SlurmArgs),
-    /// Print a script for GNU parallel, on this machine or on many.
+    /// Print a script for GNU parallel, for one machine or several.
     Parallel(ParallelArgs),
 }
 
-/// `staya sweep merge`.
 #[derive(Args, Clone, Debug)]
 struct MergeArgs {
     #[command(flatten)]
     target: TargetArgs,
-    /// Files of rows from elsewhere, instead of those in the folder.
+    /// Files of rows, instead of those in the folder.
     files: Vec<PathBuf>,
 }
 
-/// `staya sweep plot`.
 #[derive(Args, Clone, Debug)]
 struct PlotArgs {
     #[command(flatten)]
@@ -97,23 +90,21 @@ struct PlotArgs {
     and: Option<String>,
 }
 
-/// What scripts have in common.
 #[derive(Args, Clone, Debug)]
 struct ScriptArgs {
     #[command(flatten)]
     target: TargetArgs,
-    /// How many parts.
+    /// Number of parts.
     #[arg(long, value_name = "N", default_value_t = 20)]
     tasks: u32,
-    /// At most so many at once [default: as many as there are cores].
+    /// Most parallel tasks [default: the number of cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     at_once: Option<u32>,
-    /// The program, as the hosts find it [default: this one].
+    /// Path of the program on the hosts [default: this one].
     #[arg(long, value_name = "FILE")]
     program: Option<String>,
 }
 
-/// `staya sweep slurm`.
 #[derive(Args, Clone, Debug)]
 struct SlurmArgs {
     #[command(flatten)]
@@ -123,20 +114,17 @@ struct SlurmArgs {
     minutes: Option<u32>,
 }
 
-/// `staya sweep parallel`.
 #[derive(Args, Clone, Debug)]
 struct ParallelArgs {
     #[command(flatten)]
     script: ScriptArgs,
-    /// A host that ssh reaches, as GNU parallel has it (8/name: eight at once; `:` is this
-    /// machine); may be repeated.
+    /// Host reachable by ssh, as for GNU parallel (8/name: eight tasks; `:`: here); repeatable.
     #[arg(long = "host", value_name = "HOST")]
     hosts: Vec<String>,
 }
 
 impl TargetArgs {
     fn load(&self) -> Result<(Plan, PathBuf)> {
-        // Clap guarantees a plan.
         let plan = Plan::load(self.plan.as_deref().unwrap_or(Path::new("")))?;
         let out = self.out.clone().unwrap_or_else(|| Path::new("out").join(&plan.name));
         Ok((plan, out))
@@ -290,7 +278,6 @@ impl PlotArgs {
 impl ScriptArgs {
     fn with(&self, make: impl FnOnce(&Plan, &Job<'_>) -> Result<String, SweepError>) -> Result<String> {
         let (plan, out) = self.target.load()?;
-        // Jobs start in other folders.
         let absolute = |path: &Path| std::path::absolute(path);
         let program = match &self.program {
             Some(program) => program.clone(),
@@ -306,11 +293,10 @@ impl ScriptArgs {
 struct Report<'a> {
     plan: &'a str,
     fingerprint: String,
-    /// Runs of the plan or of the shard.
     runs: u64,
     done_before: u64,
     done_now: u64,
-    /// Rows found in two files, identically.
+    /// Rows in two files, identically.
     doubles: u64,
     interrupted: bool,
     wall_seconds: Option<f64>,
@@ -404,7 +390,6 @@ impl<'a> Report<'a> {
         Ok(text)
     }
 
-    /// Table of the first figures of each point: mean, and half the width of its 95 % interval.
     fn points_table(&self, text: &mut String) -> std::fmt::Result {
         let plan = self.source;
         let measures = &plan.measures()[..plan.measures().len().min(FIGURES)];

@@ -1,7 +1,5 @@
-//! Fourteen scenes in which robots obstruct each other, and their common table: [`Case`].
-//!
-//! If a similar scene is known from the RVO2 library (plain ORCA with perfect state), the report
-//! gives its outcome there. Sizes and walls are only approximately equal.
+//! Fourteen scenes in which robots obstruct each other: [`Case`]. For similar scenes of the RVO2
+//! library (plain ORCA with perfect state), the report gives the outcome there.
 
 mod scene;
 
@@ -18,39 +16,38 @@ use staya_sim::nearby::Space;
 use staya_sim::scenario::Scenario;
 use std::fmt::{Display, Formatter};
 
-/// What is in whose way.
+/// A scene of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
 pub enum Case {
-    /// Four groups in the corners go between four blocks to the opposite ones.
+    /// Four groups in the corners cross between four blocks.
     Blocks,
     /// Four groups meet where two roads cross.
     FourWays,
     /// Three groups meet where a road ends in another one.
     Tee,
-    /// Two crowds at a door in which one robot fits.
+    /// Two crowds at a door for one robot.
     Door,
-    /// Two crowds at a wall with two such doors.
+    /// Two crowds at a wall with two doors for one robot each.
     Doors,
-    /// A crowd that goes through a door to places among and beyond robots that are parked behind
-    /// it.
+    /// A crowd passes a door to places among and beyond parked robots.
     ParkedDoor,
-    /// Two groups in a corridor in which two robots pass each other.
+    /// Two groups in a corridor that is two robots wide.
     Corridor,
-    /// A robot whose goal is behind a row of others that stand at theirs.
+    /// A robot whose goal is behind a row of robots that have arrived.
     Parked,
     /// Robots of five sizes and three speeds on a circle.
     Mixed,
-    /// Robots on a circle, and a vehicle that gives way to nobody and says where it is.
+    /// Robots on a circle, and a vehicle that sends its position and does not give way.
     Intruder,
-    /// Robots in a bag of walls deeper than they see, by routing.
+    /// Robots in a bag of walls deeper than their window, by routing.
     DeadEnd,
-    /// Robots on a sphere, each bound for the opposite point.
+    /// Robots on a sphere with opposite goals.
     Sphere,
-    /// Robots on a circle whose radio is dead while they meet.
+    /// Robots on a circle whose radio fails while they meet.
     Blackout,
-    /// A flock that goes between two balls.
+    /// An alpha flock that passes between two balls.
     Flock,
 }
 
@@ -94,7 +91,7 @@ impl Case {
         }
     }
 
-    /// Default number of robots per group, or of all robots in cases without groups.
+    /// Default number of robots per group, or of all in cases without groups.
     #[must_use]
     pub const fn robots(self) -> u32 {
         match self {
@@ -172,11 +169,9 @@ pub struct Crossing {
     pub robots: usize,
     /// Robots at their goals at the end; in a flock, robots past the balls.
     pub arrived: usize,
-    /// Seconds until the last robot arrived; `None` if not all did, or for a flock, which does not
-    /// stop.
+    /// Seconds until the last robot arrived; `None` if not all did, and for a flock.
     pub last_s: Option<f64>,
-    /// Largest ratio of a robot's travel time to its free time (distance / speed), over robots with
-    /// a distance to travel.
+    /// Largest ratio of travel time to free time (distance / speed) of a robot.
     pub time_ratio: Option<f64>,
     /// Overlaps between bodies and with walls, summed over ticks.
     pub overlaps: u64,
@@ -218,7 +213,7 @@ pub struct Report {
     pub conditions: Conditions,
     /// Noise of the starts, metres.
     pub noise_m: f64,
-    /// Scale factor, which applies to the speed and the noise above too.
+    /// Scale factor, already applied to speed and noise.
     pub size: f64,
     /// All runs, by case and seed.
     pub runs: Vec<Crossing>,
@@ -247,7 +242,6 @@ impl Plan {
             Case::Flock => {
                 let range_m = 1.2 * scene::SPACING_M;
                 let measure = FlockMeter::<3>::new(scene::SPACING_M, range_m, Space::OPEN).look(&places, &velocities);
-                // A robot is past the balls if it is one ball radius behind their centres.
                 (places.iter().filter(|[x, ..]| *x > 7.0).count(), measure.map(|measure| measure.components))
             }
             _ => (times.iter().flatten().count(), None),
@@ -273,8 +267,7 @@ fn has_goal(scenario: &Scenario) -> impl Iterator<Item = bool> {
     scenario.plane.iter().flat_map(|plane| plane.starts.iter().map(|start| !start.places.is_empty()))
 }
 
-/// Time that each robot with a goal would need without obstacles and other robots, seconds; 0 for a
-/// robot that starts at its goal.
+/// Without obstacles and other robots; 0 for a robot that starts at its goal.
 fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
     let plane = scenario.plane.iter();
     plane.flat_map(|plane| {
@@ -285,7 +278,6 @@ fn free_s(scenario: &Scenario) -> impl Iterator<Item = f64> {
                 way_m += crate::arena::distance_m(from, target.position_m);
                 from = target.position_m;
             }
-            // A robot displaced by the noise alone has no distance to travel.
             if way_m > 0.1 { way_m / plane.group(index).cruise_mps } else { 0.0 }
         })
     })
@@ -305,7 +297,7 @@ impl Experiment for Plan {
         ensure!(safety != SafetyKind::PushOut, "--safety push-out keeps no distance from walls; give another one");
         let robots = self.robots.unwrap_or(1);
         ensure!((1..=1000).contains(&robots), "--robots {robots} is out of range: give 1 to 1000");
-        // More robots do not fit the bag of the dead end and the row of parked robots.
+        // More robots do not fit into the bag and the row of parked robots.
         let is_full = |case: &Case| matches!(case, Case::DeadEnd | Case::Parked) && robots > 30;
         ensure!(!self.cases.iter().any(is_full), "--robots {robots} find no room in dead_end or parked: give 1 to 30");
         ensure!((0.1..=10.0).contains(&self.size), "--size {} is out of range: give 0.1 to 10", self.size);

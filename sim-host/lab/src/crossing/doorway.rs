@@ -1,4 +1,4 @@
-//! Two crowds that pass one gap in a wall in opposite directions.
+//! Two crowds that pass a gap in a wall in opposite directions.
 
 use super::{Conditions, gap, picture, run};
 use crate::experiment::rows::{Each, Jobs, Record};
@@ -15,13 +15,12 @@ use std::path::{Path, PathBuf};
 
 /// Radius of a robot, metres.
 pub const RADIUS_M: f64 = 0.3;
-/// Distance between the robots of a crowd at the start and at their goals, along and across,
-/// metres: another robot can pass between robots that have arrived.
+/// Along and across the crowd: another robot can pass between robots that have arrived.
 const SPACING_M: [f64; 2] = [1.2, 1.6];
-/// Distance of the first column from the wall, metres: robots at their goals do not block the door.
+/// From the wall to the first column, so that robots at their goals do not block the door.
 const FRONT_M: f64 = 2.5;
 const ROW: u32 = 4;
-/// Half the wall's length, metres: too long to go around.
+/// Half the length: too long to go around.
 const WALL_M: f64 = 50.0;
 
 const NOISE: u32 = 0x0045_0001;
@@ -66,17 +65,17 @@ pub struct Passage {
     pub width_m: f64,
     /// Seed of noise and losses.
     pub seed: u64,
-    /// Robots on both sides together.
+    /// Robots of both crowds.
     pub robots: usize,
     /// Robots at their goals at the end.
     pub arrived: usize,
-    /// Robots past the wall at the end or at their goals, from the west and from the east.
+    /// Robots past the wall or at their goals at the end, from the west and from the east.
     pub through: [usize; 2],
     /// Seconds until the last robot arrived; `None` if not all did.
     pub last_s: Option<f64>,
-    /// Time of the last arrival divided by the longest free time (distance / speed).
+    /// Last arrival divided by the longest free time (distance / speed).
     pub time_ratio: Option<f64>,
-    /// Changes of direction in the gap: 1 if one crowd passes after the other.
+    /// Changes of direction in the gap; 1 if one crowd passes after the other.
     pub turns: u32,
     /// Smallest gap between two bodies, metres.
     pub least_gap_m: Option<f64>,
@@ -121,7 +120,7 @@ pub struct Report {
 }
 
 impl Plan {
-    /// Builds the scenario of one run. Odd robot ids start in the west, even ones in the east.
+    /// Builds the scenario of one run: odd robot ids start in the west, even ones in the east.
     #[must_use]
     pub fn scenario(&self, width_m: f64, seed: u64) -> Scenario {
         let starts = (0..2 * self.robots)
@@ -134,7 +133,7 @@ impl Plan {
                     [x, row * SPACING_M[1]]
                 };
                 let [x, y] = place(number);
-                // The front robot gets the rearmost goal, so that it does not block those behind.
+                // The front robot has the rearmost goal, so that it does not block others.
                 let [goal_x, goal_y] = place(self.robots - 1 - number);
                 let mut rng = Rng::keyed(seed, NOISE, index, 0);
                 let mut noise = || (f64::from(rng.below(20_001)) / 1e4 - 1.0) * self.noise_m;
@@ -184,7 +183,7 @@ impl Plan {
         })
     }
 
-    /// Four moments of the first run with this width.
+    /// Draws four moments of the first run with this width.
     #[must_use]
     pub fn picture(&self, width_m: f64) -> Sheet {
         let title = format!("{0} and {0} robots, a door of {width_m} m, seed {1}", self.robots, self.seed);
@@ -246,7 +245,6 @@ impl Experiment for Plan {
     }
 
     fn draw(&self, _: &[Vec<Passage>], report: &Report, dir: &Path) -> Result<Vec<PathBuf>> {
-        // After a stop, no further runs are made for pictures.
         let widths_m = if report.runs.len() == self.total() { &self.widths_m[..] } else { &[] };
         let mut pictures = Vec::new();
         for &width_m in widths_m {
@@ -256,12 +254,9 @@ impl Experiment for Plan {
     }
 }
 
-/// Order of the robots that pass the gap.
 struct Flow {
     sides: Vec<f64>,
-    /// Whether each robot has crossed the wall's line.
     crossed: Vec<bool>,
-    /// Starting side of the last robot that crossed.
     last: f64,
     turns: u32,
 }
@@ -276,7 +271,7 @@ impl Flow {
         for (robot, row) in robots.enumerate() {
             let x = row.motion.position_m[0];
             let side = self.sides[robot];
-            // By a whole radius, so that a robot pushed back and forth in the gap counts once.
+            // Beyond the line by a radius, so that a robot pushed back and forth counts once.
             let is_over = x * side < -RADIUS_M;
             if is_over && !self.crossed[robot] {
                 self.crossed[robot] = true;

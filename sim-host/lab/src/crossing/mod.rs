@@ -1,9 +1,8 @@
 //! Scenes in which robots obstruct each other: [`swap`] over a circle, [`doorway`] through a gap,
 //! and fourteen other [`cases`].
 //!
-//! Every robot is a complete controller with ORCA. It knows other robots only from received
-//! beacons: positions rounded to a millimetre, one tick old. Plain ORCA deadlocks in all of these
-//! scenes.
+//! Every robot is a complete controller with ORCA that knows others only from beacons: positions
+//! rounded to a millimetre, one tick old. Plain ORCA deadlocks in all of these scenes.
 
 pub mod cases;
 pub mod doorway;
@@ -34,8 +33,7 @@ pub struct Conditions {
     pub step_s: f64,
     /// Highest speed, m/s.
     pub speed_mps: f64,
-    /// Range of the radio, metres. Robots on collision course must receive each other at least one
-    /// horizon before they meet.
+    /// Range of the radio, metres; at least the distance of robots one horizon before they meet.
     pub range_m: f64,
     /// Share of packets lost.
     pub loss: f64,
@@ -75,26 +73,22 @@ impl Conditions {
         ]
     }
 
-    /// Robots of this radius that go to places and count as arrived within the tolerance; metres.
     fn group(&self, radius_m: f64, tolerance_m: f64) -> RobotGroup {
         self.group_at(self.speed_mps, radius_m, tolerance_m)
     }
 
-    /// Like `group`, with another highest speed, m/s.
     fn group_at(&self, max_speed_mps: f64, radius_m: f64, tolerance_m: f64) -> RobotGroup {
         let abilities = Abilities { max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
         let group = RobotGroup::new(abilities, radius_m).to_places(tolerance_m);
         group.behind(self.safety, AvoidParams::default(), PushOutParams::new(1.0))
     }
 
-    /// Scenario of one run with a time limit.
     fn scenario(&self, name: &str, seed: u64, longest_s: f64, setup: PlaneSetup) -> Scenario {
         let radio = RadioParams { range_m: self.range_m, loss: self.loss, ..RadioParams::default() };
         let ticks = libm::ceil(longest_s / self.step_s) as u32;
         Scenario::in_plane(name, seed, ticks.max(1), radio, setup)
     }
 
-    /// Time at which each robot had arrived for good, seconds.
     fn arrivals_s(&self, outcome: &Outcome) -> Vec<Option<f64>> {
         let seconds = |units: u64| units as f64 / f64::from(UNIT) * self.step_s;
         let times = outcome.arrival_times.iter();
@@ -102,8 +96,8 @@ impl Conditions {
     }
 }
 
-/// Runs a scenario until all robots with a goal have arrived. `see` is called with the robots
-/// before the first tick and after each. `None` if `goes_on` stops the run.
+/// Runs until all robots with a goal have arrived; `None` if `goes_on` stops the run. `see` is
+/// called before the first tick and after each.
 fn run(
     scenario: &Scenario,
     goes_on: &dyn Fn() -> bool,
@@ -140,7 +134,6 @@ fn picture(title: &str, scenario: &Scenario) -> Sheet {
     motion_sheet(title, setup, None, &history)
 }
 
-/// Smallest gap of a run, metres; `None` if no two bodies were near.
 fn gap(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }

@@ -1,4 +1,4 @@
-//! Tables of the swap and doorway experiments.
+//! Tables of swap and doorway.
 
 use super::{Conditions, doorway, swap};
 use crate::experiment::Maybe;

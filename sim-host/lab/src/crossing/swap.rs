@@ -1,5 +1,4 @@
-//! Robots evenly on a circle, each with the opposite point as its goal: all routes cross in one
-//! point at one time.
+//! Robots evenly on a circle with opposite goals: all routes cross in one point at one time.
 
 use super::{Conditions, gap, picture, run};
 use crate::experiment::rows::{Each, Jobs, Record};
@@ -26,8 +25,7 @@ pub struct Plan {
     pub circle_m: Option<f64>,
     /// Largest random displacement of a start along both axes, metres; 0 for the exact circle.
     pub noise_m: f64,
-    /// Runs of each number of robots, with seeds `seed`, `seed` + 1, ... They differ only with
-    /// noise or packet loss.
+    /// Runs of each number of robots, with consecutive seeds; equal without noise and packet loss.
     pub seeds: u32,
     /// The first seed.
     pub seed: u64,
@@ -51,7 +49,7 @@ impl Default for Plan {
     }
 }
 
-/// Radius of a circle with enough space for `robots` robots: max(2 m, 0.1 m per robot).
+/// Radius of a circle with enough space for the robots: max(2 m, 0.1 m per robot).
 #[must_use]
 pub fn circle_m(robots: u32) -> f64 {
     (0.1 * f64::from(robots)).max(2.0)
@@ -68,10 +66,9 @@ pub struct Swap {
     pub seed: u64,
     /// Robots at their goals at the end.
     pub arrived: usize,
-    /// Time of the last arrival divided by the free time (diameter / speed); `None` if not all
-    /// arrived.
+    /// Last arrival divided by the free time (diameter / speed); `None` if not all arrived.
     pub time_ratio: Option<f64>,
-    /// Mean ratio of arrival time to free time, over the robots that arrived.
+    /// Mean ratio of arrival time to free time, over arrived robots.
     pub mean_time_ratio: Option<f64>,
     /// Smallest gap between two bodies, metres; `None` if no two bodies were near.
     pub least_gap_m: Option<f64>,
@@ -107,9 +104,9 @@ pub struct Row {
     pub runs: usize,
     /// Runs in which all robots arrived without overlaps.
     pub clean: usize,
-    /// Arrived robots of all runs.
+    /// Arrived robots in all runs.
     pub arrived: usize,
-    /// The largest [`Swap::time_ratio`]; `None` if not all robots arrived in some run.
+    /// Largest [`Swap::time_ratio`]; `None` if a robot did not arrive.
     pub worst_time_ratio: Option<f64>,
     /// Smallest gap of all runs, metres.
     pub least_gap_m: Option<f64>,
@@ -166,7 +163,7 @@ impl Plan {
         })
     }
 
-    /// Four moments of the first run with this number of robots.
+    /// Draws four moments of the first run with this number of robots.
     #[must_use]
     pub fn picture(&self, robots: u32) -> Sheet {
         let title = format!("{robots} robots change places, seed {}", self.seed);
@@ -238,8 +235,7 @@ impl Experiment for Plan {
         if report.rows.len() > 1 {
             pictures.extend(report.chart().write(&dir.join("times"))?);
         }
-        // The largest number of robots that is recognisable in a picture. After a stop, no further
-        // run is made.
+        // The largest number of robots that is recognisable. After a stop, no further run is made.
         let is_complete = report.runs.len() == self.total();
         let drawn = report.rows.iter().rev().find(|row| is_complete && row.robots <= 100);
         if let Some(row) = drawn {
@@ -268,7 +264,7 @@ fn row(robots: u32, mine: &[Swap]) -> Option<Row> {
 }
 
 impl Report {
-    /// Chart of the time ratio by number of robots.
+    /// Chart of the time ratio over the number of robots.
     #[must_use]
     pub fn chart(&self) -> Chart {
         let points = self.rows.iter().filter_map(|row| Some([f64::from(row.robots), row.worst_time_ratio?]));

@@ -12,7 +12,6 @@ fn few_robots_swap_without_contact_and_are_measured() {
         assert_eq!(row.arrived, row.robots as usize);
         let ratio = row.worst_time_ratio.expect("all arrived");
         assert!((1.0..=1.5).contains(&ratio), "{row:?}");
-        // They keep their distance without a wide detour.
         let gap = row.least_gap_m.expect("all pass near the middle");
         assert!((0.0..0.3).contains(&gap), "{row:?}");
     }
@@ -90,7 +89,6 @@ fn robots_without_a_radio_collide_and_the_depth_is_reported() {
     let run = &plan.measure().expect("a sound plan").runs[0];
     assert!(run.overlaps > 0 && run.deepest_m > 0.1, "{run:?}");
     let ratio = run.time_ratio.expect("nothing stops them");
-    // Slightly less than 1 because of the goal's tolerance.
     assert!((0.98..1.1).contains(&ratio), "{run:?}");
 }
 

@@ -1,4 +1,4 @@
-//! Rows of experiments, written by the same code as those of sweeps ([`crate::sweep::row`]).
+//! Rows of experiments, written by the code of sweeps ([`crate::sweep::row`]).
 
 use super::{Experiment, GoesOn};
 use crate::sweep::design::Design;
@@ -17,10 +17,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// File name of the merged rows, written when all runs are done.
+/// Written when all runs are done.
 const ROWS: &str = "rows.csv";
 const AGGREGATES: &str = "aggregates.csv";
-/// To be increased when equal plans give other rows.
+/// Increase when equal plans give other rows.
 const FORMAT: u64 = 1;
 
 /// Visitor of figures: name, meaning and value.
@@ -28,10 +28,10 @@ pub type Each<'a> = dyn FnMut(&'static str, &'static str, &mut dyn Cell) + 'a;
 
 /// Result of a run that can be written as a row.
 pub trait Record: Send {
-    /// Visits all figures in a fixed order. Values that the visitor sets are stored.
+    /// Visits all figures in a fixed order and stores values that the visitor sets.
     fn figures(&mut self, each: &mut Each<'_>);
 
-    /// Trace hash of the run; `None` if the run did not use the engine.
+    /// Trace hash; `None` if the run did not use the engine.
     fn trace_hash(&mut self) -> Option<&mut u64> {
         None
     }
@@ -45,7 +45,6 @@ pub trait Cell {
     fn set(&mut self, value: Option<f64>) -> bool;
 }
 
-/// Doubles represent every whole number up to this one exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 macro_rules! whole_cells {
@@ -100,23 +99,23 @@ impl<T: Cell + Default> Cell for Option<T> {
     }
 }
 
-/// What to do about rows: the options of all experiments.
+/// Treatment of rows, an option of every experiment.
 #[derive(Args, Clone, Debug, Default)]
 pub struct RowRetention {
-    /// Do the runs that are not there yet.
+    /// Make the missing runs.
     #[arg(long, global = true)]
     pub resume: bool,
-    /// Forget the rows that are there.
+    /// Replace existing rows.
     #[arg(long, global = true, conflicts_with = "resume")]
     pub restart: bool,
-    /// Do one of N equal parts only, as in 3/8; with all parts in the folder, --resume reports.
+    /// Make one of N equal parts only, as in 3/8; when all are there, --resume writes the report.
     #[arg(long, global = true, value_name = "I/N", default_value_t = Shard::default())]
     pub shard: Shard,
 }
 
 impl RowRetention {
-    /// Treatment of existing rows. Rows of a completed sweep are replaced, like any results. Rows
-    /// of an interrupted sweep may be hours of work, so they are kept.
+    /// Rows of a completed sweep are replaced like any results. Rows of an interrupted sweep may be
+    /// hours of work, so they are kept.
     fn existing(&self, out: &Path) -> Existing {
         let is_whole = || self.shard.is_whole() && out.join(ROWS).is_file();
         match (self.resume, self.restart) {
@@ -128,7 +127,6 @@ impl RowRetention {
     }
 }
 
-/// Adapts an experiment to [`Design`].
 pub(crate) struct Sheet<'a, E> {
     plan: &'a E,
     fingerprint: u64,
@@ -137,7 +135,6 @@ pub(crate) struct Sheet<'a, E> {
 }
 
 impl<'a, E: Experiment> Sheet<'a, E> {
-    /// Requires a checked plan.
     pub fn new(plan: &'a E) -> Self {
         let (mut figures, mut parameters) = (Vec::new(), Vec::new());
         if plan.points() > 0 {
@@ -155,7 +152,6 @@ impl<'a, E: Experiment> Sheet<'a, E> {
         Self { plan, fingerprint, parameters, figures }
     }
 
-    /// Point of a run, and its number within the point.
     fn place(&self, run: u64) -> (usize, u32) {
         let runs = self.runs_per_point();
         ((run / runs) as usize, (run % runs) as u32)
@@ -168,7 +164,6 @@ impl<'a, E: Experiment> Sheet<'a, E> {
         Row { run: number, outcome: Outcome::Done, figures, trace_hash }
     }
 
-    /// Copies a row into a run; `false` if no run gives such a row.
     fn read(&self, row: &Row, run: &mut E::Run) -> bool {
         let (mut cells, mut fits) = (row.figures.iter(), true);
         run.figures(&mut |_, _, cell| fits &= cells.next().is_some_and(|figure| cell.set(figure.0)));
@@ -225,30 +220,28 @@ impl<E: Experiment> Design for Sheet<'_, E> {
         if E::ALONE { 1 } else { usize::MAX }
     }
 
-    /// Alternates between the points, so that an early end leaves about equally many runs of each.
+    /// Alternates between points, so that an early end leaves about equally many runs of each.
     fn turn(&self, run: u64) -> u64 {
         let (point, run) = self.place(run);
         u64::from(run) * self.plan.points() as u64 + point as u64
     }
 }
 
-/// The runs of an experiment, and the folder of their rows.
+/// Runs of an experiment, and the folder of their rows.
 pub struct Jobs<'a, E> {
     sheet: Sheet<'a, E>,
     goes_on: &'a GoesOn<'a>,
-    /// Folder and options; `None` if rows are not stored.
     place: Option<(&'a Path, &'a RowRetention)>,
     course: Mutex<Option<Course>>,
 }
 
 impl<'a, E: Experiment> Jobs<'a, E> {
-    /// Requires a checked plan. `goes_on` is called from any thread with the number of finished
-    /// runs.
+    /// `plan` is checked. `place`: folder and options; `None` if rows are not stored.
     pub(crate) fn new(plan: &'a E, goes_on: &'a GoesOn<'a>, place: Option<(&'a Path, &'a RowRetention)>) -> Self {
         Self { sheet: Sheet::new(plan), goes_on, place, course: Mutex::new(None) }
     }
 
-    /// Folder of the results, for further files; `None` if nothing is stored.
+    /// Folder of the results; `None` if nothing is stored.
     #[must_use]
     pub fn folder(&self) -> Option<&Path> {
         self.place.map(|(out, _)| out)
@@ -260,15 +253,14 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         (self.goes_on)(0)
     }
 
-    /// Makes the missing runs. `job` receives the point and the number of the run within it; `None`
-    /// ends the experiment. Returns the available runs of each point in order, up to the first
+    /// Makes the missing runs. Returns the available runs of each point in order, up to the first
     /// missing one.
     ///
-    /// The result of a job must not depend on the contents of its scratch memory.
+    /// `job` receives the point and the number of the run within it; `None` ends the experiment.
+    /// The contents of its scratch memory must not affect its result.
     ///
     /// # Errors
-    /// The error of the first job that fails; rows of another plan; or a row that cannot be
-    /// written.
+    /// The first error of a job, rows of another plan, or a row that cannot be written.
     pub fn each<S: Default>(
         &self,
         job: impl Fn(&mut S, usize, u32) -> Result<Option<E::Run>> + Sync,
@@ -290,7 +282,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
                 }
                 Err(error) => {
                     let mut wrong = wrong.lock().unwrap_or_else(PoisonError::into_inner);
-                    // Reports the error of the first job, whichever thread was first.
+                    // The error of the first job, whichever thread was first.
                     if wrong.as_ref().is_none_or(|(before, _)| sheet.turn(number) < *before) {
                         *wrong = Some((sheet.turn(number), error));
                     }
@@ -315,7 +307,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         for row in rows {
             let (point, number) = sheet.place(row.run);
             let mut run = made.remove(&row.run).unwrap_or_else(|| sheet.plan.blank(point, number));
-            // Figures come from the rows, no matter which process made them.
+            // Figures come from the rows, whichever process made them.
             ensure!(sheet.read(&row, &mut run), "run {} has a row that no run gives; begin --restart", row.run);
             if by_point[point].len() == number as usize {
                 by_point[point].push(run);
@@ -328,10 +320,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         self.course.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Removes the files that mark the results as complete, before they become incomplete.
-    ///
-    /// # Errors
-    /// A file cannot be removed.
+    /// Removes the files that mark the results as complete.
     pub(crate) fn clear(&self) -> Result<(), Error> {
         let Some((out, keeping)) = self.place else {
             return Ok(());
@@ -339,8 +328,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         if keeping.existing(out) != Existing::Forget || !keeping.shard.is_whole() {
             return Ok(());
         }
-        // The marker of completeness is removed last: if the process is killed here, the rest still
-        // counts as complete results, which may be replaced.
+        // Removed last: after a kill here, the rest still counts as complete and may be replaced.
         for file in files(out)?.into_iter().chain([AGGREGATES, ROWS].map(|name| out.join(name))) {
             if file.exists() {
                 std::fs::remove_file(&file).map_err(Error::new("remove", &file))?;
@@ -349,17 +337,12 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         Ok(())
     }
 
-    /// Writes all rows in order, their schema and their means, and returns the files.
-    ///
-    /// # Errors
-    /// A file cannot be read or written.
     pub(crate) fn write(&self) -> Result<Vec<PathBuf>> {
         let Some((out, _)) = self.place else {
             return Ok(Vec::new());
         };
         let merged = Merged::read(&self.sheet, &files(out)?)?;
         let mut texts = vec![("rows.schema.json", schema(&self.sheet)), (ROWS, merged.text(&self.sheet))];
-        // With one run per point, means would repeat the rows.
         if self.sheet.runs_per_point() > 1 {
             let points = aggregate::points(&self.sheet, &merged);
             texts.insert(0, (AGGREGATES, aggregate::text(&self.sheet, &points)));
@@ -373,7 +356,6 @@ impl<'a, E: Experiment> Jobs<'a, E> {
     }
 }
 
-/// Makes all runs without files and returns the rows in order.
 fn in_memory<S: Default>(
     sheet: &dyn Design,
     goes_on: &GoesOn<'_>,

@@ -1,4 +1,4 @@
-//! The five simulations of the paper, and two others, as scenarios.
+//! Scenarios of the paper's five simulations and of two others.
 
 use super::{Plan, Point, Reference};
 use crate::arena::{Arena, FASTEST_MPS, distance_m, normal, starts, uniform};
@@ -15,10 +15,10 @@ use staya_sim::world::plane::Solid;
 
 const STARTS: u32 = 0x0046_0101;
 const TREES: u32 = 0x0046_0102;
-/// The paper's d in its units, which positions and speeds below use.
+/// The paper's d, in its units, which positions and speeds below have.
 const UNITS: f64 = 7.0;
 
-/// Which of the paper's simulations (OLF section VIII), or of two of our own.
+/// A simulation of the paper (OLF section VIII), or one of two others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 #[value(rename_all = "lower")]
@@ -33,10 +33,9 @@ pub enum Case {
     Split,
     /// E: 150 robots through a gap, algorithm 3 (figure 11).
     Squeeze,
-    /// Not in the paper: as E, through a gap that one robot fits through, 8/7 d between balls of
-    /// 30/7 d unless a plan says otherwise.
+    /// Like E, through a gap for one robot (by default 8/7 d); not in the paper.
     Gap,
-    /// Not in the paper: as E, through 30 balls at random places, 8/7 d apart at least.
+    /// Like E, through 30 balls at random places, at least 8/7 d apart; not in the paper.
     Forest,
 }
 
@@ -70,7 +69,6 @@ impl Case {
         }
     }
 
-    /// Balls in the way of a run: x, y, radius; `gap` is in spacings.
     fn balls(self, gap: f64, seed: u64, run: u32) -> Vec<[f64; 3]> {
         match self {
             Self::Free | Self::Fragment | Self::Rendezvous3d => Vec::new(),
@@ -95,7 +93,7 @@ impl Case {
         !matches!(self, Self::Free | Self::Fragment | Self::Rendezvous3d)
     }
 
-    /// The paper's setting; where the paper gives none, the one that worked best.
+    /// The paper's setting; unspecified values are the best of those tried.
     pub(super) fn setting(self) -> Setting {
         let flat = |x: f64, y: f64, vx: f64, vy: f64| ([x, y, 0.0], [vx, vy, 0.0]);
         match self {
@@ -162,8 +160,7 @@ impl Case {
         let at_rest = [0.0; 3];
         match self {
             Self::Free | Self::Fragment => {
-                // The paper does not give the width of B. With this one, about as many parts form
-                // as in figure 8.
+                // The paper gives no width for B; this one gives about as many parts as figure 8.
                 let wide = if self == Self::Free { 50.0 } else { 20.0 };
                 let at = [normal(rng, wide), normal(rng, wide), 0.0];
                 let mut speed = || uniform(rng, -2.0, -1.0);
@@ -194,8 +191,6 @@ impl Case {
     }
 }
 
-/// Thirty balls between the robots and their goal, each drawn again until it is 8 units from the
-/// others.
 fn forest(rng: &mut Rng) -> Vec<[f64; 3]> {
     let mut trees: Vec<[f64; 3]> = Vec::new();
     while trees.len() < 30 {
@@ -208,7 +203,7 @@ fn forest(rng: &mut Rng) -> Vec<[f64; 3]> {
     trees
 }
 
-/// Properties of a case, in the paper's units.
+/// Lengths are in the paper's units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Setting {
     pub robots: u32,
@@ -216,18 +211,18 @@ pub(super) struct Setting {
     pub algorithm: Algorithm,
     /// c1 of alpha-, beta- and gamma-agents.
     pub gains: [f64; 3],
-    /// Initial place and velocity of a moving reference.
+    /// Initial place and velocity.
     pub moving: Option<([f64; 3], [f64; 3])>,
-    /// Place and velocity of the paper's static reference.
+    /// Place and velocity.
     pub fixed: Option<([f64; 3], [f64; 3])>,
     /// d' / d.
     pub obstacle_ratio: f64,
-    /// Moments of pictures, as shares of the run time.
+    /// Shares of the run time.
     pub moments: [f64; 6],
 }
 
 impl Plan {
-    /// Radius of a body: a fourteenth of the spacing, or half of the paper's unit.
+    /// Radius of a body, metres: a fourteenth of the spacing, or half of the paper's unit.
     #[must_use]
     pub fn radius_m(&self) -> f64 {
         self.spacing_m / 14.0
@@ -268,7 +263,6 @@ impl Plan {
             Some(c2) => Gain { position: c1 as f32, velocity: c2 as f32 },
             None => gain(c1),
         };
-        // The paper gives no gains for algorithm 1.
         let c2_alpha = self.c2_alpha.or((setting.algorithm == Algorithm::One).then_some(alpha));
         let params = LatticeParams {
             algorithm: match setting.algorithm {
@@ -289,18 +283,16 @@ impl Plan {
             seconds: self.seconds.unwrap_or(setting.seconds),
             radius_m,
             max_speed_mps: match case {
-                // The safety layer for space avoids every robot that the body could reach at its
-                // highest speed.
+                // The safety layer for space avoids all robots within reach at the highest speed.
                 Case::Rendezvous3d => FASTEST_MPS.min(12.0 * unit_m),
                 _ => FASTEST_MPS,
             },
-            // The law ignores robots beyond 1.2 d, but ORCA looks farther ahead.
+            // ORCA looks beyond the 1.2 d of the law.
             range_m: 3.0 * self.spacing_m,
             loss: self.loss,
             sight_m: 3.0 * self.spacing_m,
             guidance: GuidanceSetup::Lattice { params, motion },
             safety: match (self.safety, case) {
-                // Only the safety layer for space considers heights.
                 (SafetyKind::Orca, Case::Rendezvous3d) => SafetyKind::Fly,
                 (safety, _) => safety,
             },

@@ -1,9 +1,9 @@
 //! Flocks driven at each other, without a safety layer and with ORCA.
 //!
-//! A flock's repulsion is bounded, so that robots pass through each other above some closing speed.
-//! Here, two robots (slightly off their common line) or two groups of three by three meet head on.
-//! The closing speed is in spacings d per second; each side has half of it. The goal of each side
-//! is where the other one starts. The results are overlaps of bodies and the smallest distance.
+//! A flock's repulsion is bounded, so robots pass through each other above some closing speed.
+//! Here, two robots (slightly off their common line) or two groups of three by three meet head on;
+//! the goal of each side is the start of the other. The closing speed is in spacings d per second,
+//! half of it for each side.
 
 use super::check_spacing_and_step;
 use crate::arena::{Arena, FASTEST_MPS, uniform};
@@ -27,7 +27,6 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
 const OFFSETS: u32 = 0x0046_0201;
-/// Distance of the two sides at the start, in d.
 const GAP: f64 = 4.0;
 
 /// The flocking law.
@@ -68,7 +67,6 @@ pub struct Closing {
 }
 
 impl Default for Closing {
-    /// 1, 2, 4, 8 d/s at d = 7 m; beacons cannot represent much more than 8 d/s.
     fn default() -> Self {
         Self { speeds: vec![1.0, 2.0, 4.0, 8.0], runs: 10, spacing_m: 7.0, step_s: 0.03, seed: 1 }
     }
@@ -81,7 +79,7 @@ pub struct Meeting {
     pub runs_with_overlap: usize,
     /// Overlapping pairs, summed over ticks and runs.
     pub overlaps: usize,
-    /// Smallest distance of two centres, in d. Bodies touch at 1 / 7.
+    /// Smallest distance of two centres, in d; bodies touch at 1 / 7.
     pub least_pair_over_d: f64,
 }
 
@@ -122,7 +120,7 @@ pub struct ClosingReport {
 pub struct Met {
     /// Overlapping pairs, summed over ticks.
     pub overlaps: usize,
-    /// Smallest distance of two centres, metres; very large if no two robots came within d.
+    /// Smallest distance of two centres, metres; very large if all were beyond d.
     pub least_m: f64,
     /// Trace hash.
     pub hash: u64,
@@ -139,7 +137,6 @@ impl Record for Met {
     }
 }
 
-/// Without a safety layer, and with ORCA.
 const WAYS: [SafetyKind; 2] = [SafetyKind::None, SafetyKind::Orca];
 
 impl Closing {
@@ -159,8 +156,6 @@ impl Closing {
         lines
     }
 
-    /// Builds a run with both sides a gap apart and in motion. At the end, they have passed each
-    /// other and moved twice as far.
     fn scenario(&self, flock: Flock, sides: Sides, speed: f64, safety: SafetyKind, run: u32) -> Scenario {
         let d = self.spacing_m;
         let side_mps = speed * d / 2.0;
@@ -175,7 +170,6 @@ impl Closing {
                 arrival_m: d as f32,
                 seed,
             },
-            // Crowded below d, visible up to 4 d.
             Flock::Boids => GuidanceSetup::Boids {
                 params: BoidsSetup { crowded_m: d as f32, closest_m: (4.0 * d) as f32, ..BoidsSetup::PAPER },
                 speed_mps: side_mps as f32,
@@ -193,7 +187,7 @@ impl Closing {
             sight_m: d,
             guidance,
             safety,
-            // Beacons are one step old; at these speeds, a robot moves by its radius in a step.
+            // Beacons are one step old, in which a robot moves by its radius.
             orca: AvoidParams { margin_m: (d / 100.0) as f32, ..AvoidParams::default() },
             push_out: PushOutParams::new(1.0),
             solids: Vec::new(),
@@ -209,12 +203,10 @@ impl Closing {
             Sides::Groups => 3_u32,
         };
         let mut rng = Rng::keyed(self.seed, OFFSETS, run, 0);
-        // Random offset of the eastern side to the north, small enough for bodies to meet.
         let off_m = uniform(&mut rng, -1.0, 1.0) * self.radius_m();
         let mut starts = Vec::new();
         for (way, off_m) in [(1.0, 0.0), (-1.0, off_m)] {
             let target = match flock {
-                // The reference moves straight through the other side.
                 Flock::Alpha => {
                     Target { position_m: [-way * GAP * d / 2.0, off_m, 0.0], velocity_mps: [way * side_mps, 0.0, 0.0] }
                 }

@@ -1,6 +1,5 @@
-//! The law alone, as in the paper: particles with perfect knowledge of all others, in doubles,
-//! without a speed limit unless the plan sets one. Differences from a swarm of agents are effects
-//! of the radio or of the bodies.
+//! The law alone, as in the paper: particles with perfect knowledge, in doubles, without a speed
+//! limit by default. Differences from agents are effects of radio or bodies.
 
 use super::Plan;
 use anyhow::{Context as _, Result};
@@ -15,9 +14,8 @@ use staya_sim::nearby::{Cells, Query, Search as _, Space};
 use staya_sim::scenario::{Scenario, Target};
 use staya_sim::world::plane::Solid;
 
-/// Simulates a scenario with particles and passes each moment to the caller, including the start.
-/// Returns a hash of all moments. As in the engine, velocities change before places. O(n + edges)
-/// per tick.
+/// Passes each moment to the caller, including the start, and returns their hash. As in the engine,
+/// velocities change before places. O(n + edges) per tick.
 pub(super) fn simulate(
     plan: &Plan,
     scenario: &Scenario,

@@ -1,27 +1,24 @@
-//! The five simulations of R. Olfati-Saber 2006 ("Flocking for multi-agent dynamic systems", IEEE
-//! TAC 51(3), section VIII), two additional ones, and flocks driven at each other ([`closing`]).
+//! The five simulations of R. Olfati-Saber 2006 (OLF, "Flocking for multi-agent dynamic systems",
+//! IEEE TAC 51(3), section VIII), two others, and flocks driven at each other ([`closing`]).
 //!
-//! Every robot is an agent that knows others only from beacons of the previous tick, received over
-//! the simulated radio. The paper's particles have perfect knowledge. The spacing is d metres, so a
-//! unit of the paper is d / 7. Other spacings give proportional results, except for two limits of
-//! beacons: positions are rounded to millimetres, and speeds end at 32 m/s. At the paper's own
-//! size, case A reaches this limit: robots that start 150 units away would come in faster.
+//! Every robot is an agent that knows others only from beacons of the previous tick; the paper's
+//! particles have perfect knowledge. With a spacing of d metres, the paper's unit is d / 7. Results
+//! are proportional to the spacing within two limits of beacons: positions are rounded to
+//! millimetres, and speeds end at 32 m/s. At the paper's size, case A reaches this limit: robots
+//! that start 150 units away would come in faster.
 //!
-//! **Parameters.** The paper gives no gains. The defaults are the best of those tried ([`Plan`]
-//! accepts others):
+//! **Parameters.** The paper gives no gains; the defaults are the best of those tried:
 //!
-//! - (c_alpha, c_gamma) = (50, 1) in A and (10, 0.2) in C.
-//! - (10, 200, 2) with obstacles, in D and E. The reference moves at 3 units/s. As an alternative,
-//!   the paper's static reference has a fixed place and a velocity of 5 or 6; with it, the parts of
-//!   a split flock stay apart. `--reference resting` is a static reference whose velocity fades
-//!   behind it.
-//! - c2 = 2 sqrt(c1).
-//! - `--takes-turns`: a robot does not push towards robots nearer to the reference. Its two
-//!   constants, d and 0.8 d, were tuned on other starts.
+//! - (c_alpha, c_gamma) = (50, 1) in A and (10, 0.2) in C, with c2 = 2 sqrt(c1).
+//! - (10, 200, 2) with obstacles, in D and E, and a reference that moves at 3 units/s. With the
+//!   paper's static reference (a fixed place, a velocity of 5 or 6), the parts of a split flock
+//!   stay apart. `--reference resting` is a static reference whose velocity fades behind it.
+//! - `--takes-turns`: a robot does not push towards robots nearer to the reference; its constants,
+//!   d and 0.8 d, were tuned on other starts.
 //!
-//! Starts follow the paper's distributions (for B, where the paper gives none, a deviation of 20
-//! units). They are drawn again if two bodies overlap. In space, the attitude of a robot is that of
-//! its velocity, as in the paper (`metrics::flock::attitude`).
+//! Starts follow the paper's distributions (for B, which has none, a deviation of 20 units),
+//! without overlaps. In space, a robot's attitude is that of its velocity, as in the paper
+//! (`metrics::flock::attitude`).
 
 mod case;
 pub mod closing;
@@ -47,17 +44,15 @@ use staya_sim::engine::simulate;
 use std::path::{Path, PathBuf};
 use watch::Watch;
 
-/// ORCA's horizon behind a flock, seconds: bodies without inertia need only some steps.
+/// Bodies without inertia need only some steps.
 const HORIZON_S: f64 = 0.3;
 
-/// Width of a gap for one robot, spacings.
 const GAP: f64 = 8.0 / 7.0;
 
-/// What to do: the five flocking simulations of Olfati-Saber 2006 (section VIII), each robot an
-/// agent that hears packets only.
+/// The five flocking simulations of Olfati-Saber 2006 (section VIII), with agents.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Which simulations [default: the paper's five].
+    /// Cases [default: the paper's five].
     #[arg(
         long = "case",
         value_enum,
@@ -75,12 +70,12 @@ pub struct Plan {
     /// Safety layer behind the flock; in space "orca" means "fly".
     #[arg(long, default_value = "none", value_parser = options::safety())]
     pub safety: SafetyKind,
-    // A long horizon keeps a flock from closing up: its robots approach others at distance d faster
-    // than ORCA permits, and swerve.
-    /// How far ahead ORCA looks.
+    // A long horizon keeps a flock from closing up: robots approach at distance d faster than ORCA
+    // permits.
+    /// Horizon of ORCA.
     #[arg(long = "horizon", value_name = "SECONDS", default_value_t = HORIZON_S)]
     pub horizon_s: f64,
-    /// Distance of neighbours in the lattice (d); bodies have a fourteenth of it as radius.
+    /// Distance of neighbours in the lattice (d); the radius of bodies is d / 14.
     #[arg(long = "spacing", value_name = "METRES", default_value_t = 7.0)]
     pub spacing_m: f64,
     /// Length of a tick.
@@ -104,36 +99,34 @@ pub struct Plan {
     /// Gain c2 on the reference's velocity, instead of 2 sqrt(c1).
     #[arg(long, value_name = "C2")]
     pub c2_gamma: Option<f64>,
-    /// Distance kept from obstacles over spacing (d' / d), instead of the case's own.
+    /// Distance from obstacles over spacing (d' / d), instead of the case's own.
     #[arg(long, value_name = "RATIO")]
     pub obstacle_ratio: Option<f64>,
-    /// Where the reference of cases with obstacles is: each is a line of the table.
+    /// References of cases with obstacles, one line of the table each.
     #[arg(long = "reference", value_enum, value_delimiter = ',', default_value = "moving,static")]
     pub references: Vec<Reference>,
-    /// Over which way behind a resting reference its velocity fades, spacings.
+    /// Distance behind a resting reference over which its velocity fades.
     #[arg(long, value_name = "SPACINGS", default_value_t = 10.0)]
     pub rest: f64,
-    /// Robots press on nobody who is nearer to the reference (algorithm 3 only; not in the paper):
-    /// so they pass gaps one after the other.
+    /// Do not push towards robots nearer to the reference (algorithm 3 only; not in the paper).
     #[arg(long)]
     pub takes_turns: bool,
-    /// How wide the gap of case "gap" is.
+    /// Width of the gap in case "gap".
     #[arg(long = "gap", value_name = "SPACINGS", default_value_t = GAP)]
     pub gap: f64,
-    /// The paper's particles instead of agents: all know everything at once, in doubles, with no
-    /// limit of speed.
+    /// Particles as in the paper instead of agents: perfect knowledge, doubles, no speed limit.
     #[arg(long, conflicts_with_all = ["safety", "horizon_s", "loss"])]
     pub ideal: bool,
-    /// Of the ideal ones, how many nearest ones each knows.
+    /// Number of nearest particles that each ideal particle knows.
     #[arg(long, value_name = "N", requires = "ideal")]
     pub nearest: Option<usize>,
-    /// Of the ideal ones, how fast they go at most, in the paper's units.
+    /// Speed limit of ideal particles, in the paper's units.
     #[arg(long, value_name = "SPEED", requires = "ideal")]
     pub fastest: Option<f64>,
     /// Loss of packets, 0 to 1.
     #[arg(long, default_value_t = 0.0)]
     pub loss: f64,
-    /// Equal seeds give equal results.
+    /// Seed; equal seeds give equal results.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Folder for rows and pictures.
@@ -147,15 +140,15 @@ impl Default for Plan {
     }
 }
 
-/// Where the reference of cases with obstacles is.
+/// Reference of cases with obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Reference {
-    /// It goes ahead of the flock.
+    /// Moves ahead of the flock.
     Moving,
-    /// It stands behind the obstacles, and has a velocity all the same (the paper's).
+    /// Stands behind the obstacles and has a velocity nevertheless, as in the paper.
     Static,
-    /// The same, but its velocity fades behind it: the flock comes to rest.
+    /// Stands behind the obstacles; its velocity fades behind it, so that the flock comes to rest.
     Resting,
 }
 
@@ -171,7 +164,6 @@ impl Reference {
     }
 }
 
-/// One row of the table: a case and, if it has obstacles, its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Point {
     case: Case,
@@ -217,15 +209,13 @@ impl Plan {
     }
 }
 
-/// Checks that beacons can represent positions and speeds at this spacing, and that the flock is
-/// stable with this step.
+/// Beacons must represent positions and speeds; the flock must be stable with this step.
 fn check_spacing_and_step(spacing_m: f64, step_s: f64) -> Result<()> {
     ensure!((0.1..=50.0).contains(&spacing_m), "a spacing of {spacing_m} m; it must be 0.1 to 50");
     ensure!((0.001..=0.1).contains(&step_s), "a step of {step_s} s; it must be 0.001 to 0.1");
     Ok(())
 }
 
-/// Folder of the runs' time series, next to the rows.
 const COURSES: &str = "courses";
 
 impl Experiment for Plan {
@@ -274,7 +264,6 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // Destructured, so that a new field cannot be forgotten.
         let Self {
             cases: _,
             runs: _,
@@ -331,8 +320,7 @@ impl Experiment for Plan {
         ]
     }
 
-    /// Seed of the robots and the radio. Starts are a function of the first seed and the run's
-    /// number.
+    /// Seed of robots and radio; starts are a function of the first seed and the run's number.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.run_seed(self.lines()[point].case, run)
     }
@@ -341,8 +329,8 @@ impl Experiment for Plan {
         Run::default()
     }
 
-    /// Rows do not contain the time series for pictures, so each run stores its own next to the
-    /// rows. A run known from its row is repeated only if its time series is missing.
+    /// Rows do not contain time series for pictures, so each run stores its own next to the rows; a
+    /// run known from its row is repeated only if that file is missing.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Run>>> {
         let lines = self.lines();
         let file = |point: usize, run: usize| {

@@ -1,4 +1,4 @@
-//! Pictures of the flocks: OLF figures 7 to 12, and their data as a file.
+//! Pictures of flocks: OLF figures 7 to 12.
 
 use super::watch::Frame;
 use super::{Case, CaseReport, Point, Reference, Report};
@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 const POINTS: usize = 400;
 
 impl Report {
-    /// Draws the first run of each case and the time series of its measures over all runs into
-    /// `dir` (SVG and PNG), writes the measures as CSV, and returns the files.
+    /// Draws the first run of each case, and the measures over time of all runs, into `dir` (SVG
+    /// and PNG), writes the measures as CSV, and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -33,7 +33,6 @@ impl Report {
         Ok(files)
     }
 
-    /// Moments of the first run; in space, three from above and three from the south.
     fn sheet(&self, case: &CaseReport) -> Sheet {
         let title = format!("{}: {} robots, d = {} m, {}", title(case), case.robots, self.spacing_m, self.who());
         let moments = case.case.setting().moments;
@@ -63,7 +62,6 @@ impl Report {
             view_m: around(&positions_m, self.spacing_m),
             positions_m,
             velocities_mps: seen(&frame.velocities_mps),
-            // In space, robots are drawn as darts.
             radius_m: if is_flat { self.radius_m } else { 0.0 },
             edges_within_m: is_flat.then_some(range_m),
             trails_m: if is_flat { Vec::new() } else { edges(&frame.places_m, range_m, view) },
@@ -74,12 +72,11 @@ impl Report {
         }
     }
 
-    /// C, R, E~ and K~ over iterations (figure 12).
+    /// C, R, E~ and K~ (figure 12).
     fn measures(&self, case: &CaseReport) -> Panels {
         let unit_m = self.spacing_m / 7.0;
         let still = libm::log10(0.001 * unit_m * unit_m);
         let ends = |level: f64| [[0.0, level], [case.ticks as f64, level]];
-        // The logarithm of 0 is infinite, which the chart omits.
         let log = |value: f64| libm::log10(value);
         let chart = |title: &str, label: &str, value: &dyn Fn(&FlockMeasure) -> f64| {
             let mut chart = Chart::new(title, format!("iteration ({} s)", self.step_s), label).size(560.0, 300.0);
@@ -108,7 +105,6 @@ impl Report {
             .with(hamiltonian)
     }
 
-    /// H per robot over iterations.
     fn hamiltonian(&self, case: &CaseReport) -> Chart {
         let label = format!("iteration ({} s)", self.step_s);
         let mut chart = Chart::new("Structural Hamiltonian", label, "log10 H / n").size(560.0, 300.0);
@@ -129,7 +125,6 @@ impl Report {
         for (run, trace) in case.traces.iter().enumerate() {
             for (iteration, moment) in thinned(trace) {
                 let Some(m) = moment else { continue };
-                // Writing to a string cannot fail.
                 let _ = writeln!(
                     text,
                     "{run},{iteration},{:.3},{:.6},{},{:.4},{:.8},{:.8},{:.6},{:.6}",
@@ -157,7 +152,6 @@ fn title(case: &CaseReport) -> String {
     }
 }
 
-/// Evenly selected moments, including the first and the last.
 fn thinned<T>(trace: &[T]) -> impl Iterator<Item = (usize, &T)> {
     let every = trace.len().div_ceil(POINTS).max(1);
     let last = trace.len().saturating_sub(1);
@@ -165,7 +159,6 @@ fn thinned<T>(trace: &[T]) -> impl Iterator<Item = (usize, &T)> {
     all.filter(move |(at, _)| at % every == 0 || *at == last)
 }
 
-/// A measure in the first run and, with several runs, its smallest and largest value over all runs.
 fn curves(case: &CaseReport, value: &dyn Fn(&FlockMeasure) -> f64) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let first: Vec<[f64; 2]> =
         thinned(&case.traces[0]).filter_map(|(at, moment)| Some([at as f64, value(moment.as_ref()?)])).collect();
@@ -183,7 +176,7 @@ fn curves(case: &CaseReport, value: &dyn Fn(&FlockMeasure) -> f64) -> Vec<(&'sta
     vec![("first run", first), ("least and greatest of all runs", over(f64::min)), ("", over(f64::max))]
 }
 
-/// Lines between robots in range in space, because a picture does not show their distances.
+/// In space, a picture does not show the distances of robots.
 fn edges(places_m: &[[f64; 3]], range_m: f64, view: View) -> Vec<Vec<[f64; 2]>> {
     let mut lines = Vec::new();
     for (number, &a) in places_m.iter().enumerate() {
@@ -194,7 +187,6 @@ fn edges(places_m: &[[f64; 3]], range_m: f64, view: View) -> Vec<Vec<[f64; 2]>> 
     lines
 }
 
-/// Section of the picture: all robots with a margin of two spacings.
 fn around(places_m: &[[f64; 2]], spacing_m: f64) -> Option<[[f64; 2]; 2]> {
     let along = |axis: usize| {
         let values = || places_m.iter().map(|place| place[axis]);

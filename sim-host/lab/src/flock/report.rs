@@ -20,15 +20,13 @@ pub struct RunReport {
     pub end: Option<FlockMeasure>,
     /// Largest number of components at any time.
     pub most_parts: usize,
-    /// Smallest distance of two centres from the third second on, in d; `null` if none were within
-    /// d.
+    /// Smallest distance of two centres after two seconds, in d; `null` if all were beyond d.
     pub least_pair_over_d: Option<f64>,
-    /// Pairs of overlapping bodies (radius d / 14), summed over ticks.
+    /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Smallest distance of a centre from an obstacle's border, in d, negative inside; `null`
-    /// without obstacles.
+    /// Smallest clearance from obstacles, in d, negative inside; `null` without obstacles.
     pub least_clearance_over_d: Option<f64>,
-    /// Robots whose centre was inside an obstacle at any time.
+    /// Robots whose centre was ever inside an obstacle.
     pub inside: usize,
     /// Robots past all obstacles at the end; `null` without obstacles.
     pub past: Option<usize>,
@@ -53,12 +51,11 @@ pub struct CaseReport {
     pub runs: usize,
     /// Runs with alpha-flocking at their end.
     pub alpha_flocking: usize,
-    /// Median over those runs of the iteration from which it holds.
+    /// Median iteration from which alpha-flocking holds, over those runs.
     pub alpha_from_median: Option<f64>,
-    /// Latest such iteration.
+    /// Latest iteration from which alpha-flocking holds, over those runs.
     pub alpha_from_latest: Option<usize>,
-    /// Latest iteration of any run from which all robots are connected; `null` if they are not at
-    /// the end of a run.
+    /// Latest iteration from which all robots are connected; `null` if some run ends disconnected.
     pub connected_from_latest: Option<usize>,
     /// Mean C at the end.
     pub connectivity: f64,
@@ -82,7 +79,7 @@ pub struct CaseReport {
     pub past: Option<usize>,
     /// Mean H per robot at the end, in the paper's units.
     pub hamiltonian: f64,
-    /// Largest rise of H in a tick of any run divided by its total loss.
+    /// Largest rise of H in a tick divided by its total loss, over all runs.
     pub hamiltonian_rise: f64,
     /// Results of each run.
     pub each: Vec<RunReport>,
@@ -117,13 +114,13 @@ pub struct Report {
     pub takes_turns: bool,
     /// Width of the gap of case "gap", spacings.
     pub gap: f64,
-    /// Whether the robots are the paper's particles with perfect knowledge.
+    /// Whether the robots are particles with perfect knowledge.
     pub ideal: bool,
-    /// Number of nearest particles that each one knows, if not all.
+    /// Number of nearest particles that each particle knows, if not all.
     pub nearest: Option<usize>,
     /// Speed limit of the particles, in the paper's units.
     pub fastest: Option<f64>,
-    /// Summaries by case, without those that have no runs.
+    /// Summaries by case, without cases that have no runs.
     pub cases: Vec<CaseReport>,
 }
 
@@ -196,14 +193,12 @@ impl CaseReport {
     }
 }
 
-/// The iteration from which all robots are connected until the end.
 fn connected_from(trace: &[Option<FlockMeasure>]) -> Option<usize> {
     let is_apart = |moment: &Option<FlockMeasure>| moment.is_none_or(|m| m.components > 1);
     let from = trace.iter().rposition(is_apart).map_or(0, |last| last + 1);
     (from < trace.len()).then_some(from)
 }
 
-/// Results for a row, from a run's time series.
 pub(super) fn verdict(plan: &Plan, case: Case, run: &Run) -> Verdict {
     let robots = run.trace.iter().flatten().next().map_or(0, |moment| moment.robots);
     let report = RunReport::of(plan, case, 0, robots, run);
@@ -223,7 +218,6 @@ pub(super) fn verdict(plan: &Plan, case: Case, run: &Run) -> Verdict {
     }
 }
 
-/// Largest rise in a tick divided by the total loss; 0 if it never rises.
 fn rise(energies: &[f64]) -> f64 {
     let rise = energies.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     let lost = energies.first().zip(energies.last()).map_or(0.0, |(first, last)| first - last);
@@ -235,7 +229,7 @@ impl RunReport {
         let over_d = |metres: f64| metres.is_finite().then(|| metres / plan.spacing_m);
         let unit_m = plan.spacing_m / 7.0;
         let mut limits = AlphaLimits::paper(2.0 * lattice_radius_m(plan, case, robots));
-        // K is in (m/s)^2, computed from the paper's units.
+        // In (m/s)^2, from the paper's units.
         limits.velocity_mismatch *= unit_m * unit_m;
         Self {
             run: number,
@@ -252,15 +246,12 @@ impl RunReport {
     }
 }
 
-/// Radius of the disc (in space: the ball) that a perfect lattice fills; a cohesive flock is within
-/// twice this radius.
+/// Radius of a perfect lattice's disc or ball; a cohesive flock is within twice this radius.
 fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
     let (n, d) = (robots as f64, plan.spacing_m);
     if case == Case::Rendezvous3d {
-        // Volume per robot: d^3 / sqrt 2.
         d * libm::cbrt(3.0 * n / (4.0 * std::f64::consts::PI * std::f64::consts::SQRT_2))
     } else {
-        // Area per robot: d^2 sqrt 3 / 2.
         d * libm::sqrt(n * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI))
     }
 }

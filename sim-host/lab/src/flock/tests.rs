@@ -207,7 +207,6 @@ fn finished_runs_are_not_repeated_for_their_pictures() {
     let perform =
         |keeping: &RowRetention| plan.perform(&Jobs::new(&plan, &|_| true, Some((dir.path(), keeping)))).unwrap();
     let made = perform(&RowRetention::default());
-    // A time series that differs from that of any run must come from the file.
     let file = dir.path().join("courses/0-1.postcard");
     let mut other = Run::kept(&file, made[0][1].hash).unwrap();
     assert_eq!(other, made[0][1]);

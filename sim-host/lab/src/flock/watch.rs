@@ -13,7 +13,7 @@ use staya_sim::world::plane::Solid;
 use std::fs::create_dir_all;
 use std::path::Path;
 
-/// Time from which distances of pairs count, seconds: random starts may nearly coincide.
+/// From then on distances of pairs count: random starts may nearly coincide.
 const SETTLED_S: f64 = 2.0;
 
 /// Measurements of one run.
@@ -21,16 +21,15 @@ const SETTLED_S: f64 = 2.0;
 pub struct Run {
     /// The flock before the first tick and after each.
     pub trace: Vec<Option<FlockMeasure>>,
-    /// The structural Hamiltonian at the same moments, per robot, in the paper's units.
+    /// Structural Hamiltonian at the same moments, per robot, in the paper's units.
     pub energies: Vec<f64>,
-    /// Smallest distance of two centres after `SETTLED_S`, metres; infinite if none were within d.
+    /// Smallest distance of two centres after 2 s, metres; infinite if all were beyond d.
     pub least_pair_m: f64,
     /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
-    /// Smallest distance of a centre from an obstacle's border, metres, negative inside; infinite
-    /// without obstacles.
+    /// Smallest clearance from obstacles, metres, negative inside; infinite without obstacles.
     pub least_clearance_m: f64,
-    /// Robots whose centre was inside an obstacle at any time.
+    /// Robots whose centre was ever inside an obstacle.
     pub inside: usize,
     /// Robots past all obstacles at the end.
     pub past: usize,
@@ -42,26 +41,20 @@ pub struct Run {
     pub hash: u64,
 }
 
-/// Time of flocking, and state of the flock at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Iteration from which the conditions of alpha-flocking hold until the end.
     pub alpha_from: Option<usize>,
-    /// Iteration from which all robots are connected until the end.
     pub connected_from: Option<usize>,
     pub most_parts: usize,
     pub parts: usize,
-    /// C at the end.
     pub connectivity: f64,
-    /// R at the end, metres.
+    /// Metres.
     pub radius_m: f64,
-    /// E~ at the end.
     pub deviation_energy: f64,
-    /// K~ at the end, (m/s)^2.
+    /// (m/s)^2.
     pub velocity_mismatch: f64,
-    /// H per robot at the start and at the end, in the paper's units.
+    /// Per robot at start and end, in the paper's units.
     pub hamiltonian: [f64; 2],
-    /// Largest rise of H in a tick divided by its total loss.
     pub hamiltonian_rise: f64,
 }
 
@@ -105,8 +98,7 @@ impl Run {
         Ok(write_atomically(file, &bytes)?)
     }
 
-    /// Reads a run written by [`Run::keep`]; `None` if the file is missing or has another trace
-    /// hash.
+    /// `None` if the file is missing or has another trace hash.
     pub fn kept(file: &Path, hash: u64) -> Option<Self> {
         let run: Self = postcard::from_bytes(&std::fs::read(file).ok()?).ok()?;
         (run.hash == hash && !run.trace.is_empty()).then_some(run)
@@ -120,7 +112,6 @@ pub struct Frame {
     pub velocities_mps: Vec<[f64; 3]>,
 }
 
-/// The x beyond which a robot is past all obstacles, metres.
 fn behind_m(solids: &[Solid]) -> Option<f64> {
     let end = |solid: &Solid| match *solid {
         Solid::Ball { center_m, radius_m } => Some(center_m[0] + radius_m),
@@ -145,7 +136,6 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Creates the measurement; `draws` stores moments for pictures.
     pub fn new(plan: &Plan, case: Case, scenario: &Scenario, draws: bool) -> Self {
         let spacing_m = plan.spacing_m;
         let moments = case.setting().moments;
@@ -202,7 +192,6 @@ impl Watch {
                 *was_inside |= distance_m < 0.0;
             }
         }
-        // The last tick may be drawn twice.
         if self.wanted.contains(&tick) {
             self.run.frames.push(Frame {
                 tick,

@@ -1,5 +1,4 @@
-//! Other laws on the same landscapes: Staya's law with lookahead, with shared maps, or without
-//! waiting, and the paper's law.
+//! Other laws on the same landscapes.
 
 use super::Plan;
 use anyhow::Result;
@@ -13,21 +12,21 @@ use staya_controller::land::MapParams;
 use staya_controller::shuffle::Sharpness;
 use staya_sim::scenario::Scenario;
 
-/// A law by which the six keep their formation.
+/// A law by which robots keep their formation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Law {
-    /// Staya's as planned
+    /// Staya's law as planned
     Staya,
-    /// Staya's, with followers who plan their way to where their places will be
+    /// Staya's law; followers plan to the future places of their cells
     Lookahead,
-    /// The same, with a leader who waits from 12 cells on
+    /// Like lookahead; the leader waits from a lag of 12 cells
     Loose,
-    /// Staya's, with maps shared over the radio
+    /// Staya's law, with maps shared over the radio
     Shared,
-    /// Staya's, but nobody waits for those behind
+    /// Staya's law; no robot waits for others
     Unwaiting,
-    /// The paper's: each robot weighs its own way against all neighbours that it finds
+    /// The paper's law: each robot weighs its own route against all neighbours that it finds
     Paper,
 }
 
@@ -44,18 +43,16 @@ impl Law {
     }
 }
 
-/// Sharpness of the paper's shuffle: half as likely for each half tick of additional cost.
+/// Half as likely for each half tick of additional cost.
 const SHUFFLE: Sharpness = Sharpness::HalvedPer(Gain::from_sixteenths(8));
 
-/// Lag at which a leader waits in the "loose" law, which permits a formation as loose as the
-/// paper's, [`UNIT`]s; tuned on seed 1.
+/// Makes the formation about as loose as the paper's; tuned on seed 1.
 const LOOSE: u16 = 12 * UNIT as u16;
 
 impl Law {
     pub(super) const ALL: [Self; 6] =
         [Self::Staya, Self::Lookahead, Self::Loose, Self::Shared, Self::Unwaiting, Self::Paper];
 
-    /// Distance from its place within which a neighbour counts as found, cells.
     pub(super) const fn eps(self, plan: &Plan) -> u8 {
         match self {
             Self::Paper => plan.published.params.eps,
@@ -73,10 +70,6 @@ impl Law {
         }
     }
 
-    /// Changes the planned scenario `together` to this law.
-    ///
-    /// # Errors
-    /// There is no template with radius rho.
     pub(super) fn on(self, plan: &Plan, together: &Scenario, loss: f64) -> Result<Scenario> {
         let mut scenario = together.clone();
         scenario.formation_params = self.params(plan);

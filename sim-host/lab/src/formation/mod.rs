@@ -1,9 +1,8 @@
 //! Quality and cost of a formation of six robots (A. V. Kuznetsov 2017, KUZ, section 8, figure 6).
 //!
-//! Each run creates one natural landscape, which the six robots of figure 5 cross several times:
-//! without formation, in formation with the plan's parameters, and with other values of eps and
-//! packet loss. The complete simulator runs: the controller's agents, packets over the radio, and
-//! bodies that block each other.
+//! Each run creates one natural landscape, which the six robots of figure 5 cross without
+//! formation, in formation, and with other values of eps, packet loss and law. The complete
+//! simulator runs: agents, packets over the radio, and bodies that block each other.
 
 mod laws;
 mod pictures;
@@ -39,14 +38,13 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 const LANDSCAPES: u32 = 0x0045_0101;
-/// Random number stream for the seeds for robots and radio.
+/// For robots and radio.
 const RUNS: u32 = 0x0045_0102;
 
 /// Robots in the formation of figure 5.
 pub const ROBOTS: usize = 6;
-/// Edges of its graph: rows 1 2 3 and 4 5 6.
 const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
-/// Microseconds per tick; only beacons and requests depend on it.
+/// Only beacons and requests depend on it.
 const TICK_US: u32 = 1_000_000;
 
 /// Parameters of the experiment.
@@ -72,27 +70,25 @@ pub struct Plan {
     pub route: RouteParams,
     /// Parameters of the formation.
     pub formation: FormationParams,
-    /// Strictness with which the order of moves follows their costs.
+    /// Effect of the costs on the order of moves.
     pub sharpness: Sharpness,
     /// Loss of packets, 0 to 1.
     pub loss: f64,
-    /// Other values of eps to try.
+    /// Further values of eps.
     pub other_eps: Vec<u8>,
-    /// Other losses to try, 0 to 1.
+    /// Further losses, 0 to 1.
     pub other_losses: Vec<f64>,
-    /// Other laws to try, with all these losses.
+    /// Further laws, each with all losses.
     pub other_laws: Vec<Law>,
     /// The paper's law among them.
     pub published: Published,
     /// Time limit of a run, ticks.
     pub ticks: u32,
-    /// Equal seeds give equal results. The default differs from seed 1, on which parameters were
-    /// tuned.
+    /// Seed; equal seeds give equal results. Parameters were tuned on seed 1.
     pub seed: u64,
 }
 
 impl Default for Plan {
-    /// KUZ section 8: 100 x 100 cells, nine classes.
     fn default() -> Self {
         Self {
             obstacles: vec![0, 10, 20, 40, 70, 100, 130],
@@ -117,14 +113,13 @@ impl Default for Plan {
     }
 }
 
-/// Mode in which the six robots cross a landscape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
-    /// Without formation, over a perfect radio.
+    /// Over a perfect radio.
     Alone,
     /// In formation.
     Together { eps: u8, loss: f64 },
-    /// In formation under another law.
+    /// Under another law.
     Under { law: Law, loss: f64 },
 }
 
@@ -137,14 +132,13 @@ pub struct Crossing {
     pub arrived: usize,
     /// Arrival of the last robot, ticks; `None` if not all arrived.
     pub time_ticks: Option<f64>,
-    /// Formation error per robot, cells: mean over robots and ticks, with the graph placed on the
-    /// top leader.
+    /// Mean formation error per robot, cells, with the graph on the top leader.
     pub error: f64,
-    /// Formation error with the graph placed by the best-fitting translation, cells.
+    /// Formation error with the graph at its best-fitting translation, cells.
     pub best_fit_error: f64,
     /// Mean graph distance.
     pub graph_distance: f64,
-    /// Largest formation error per robot in any tick, which reveals a robot that strays.
+    /// Largest formation error per robot in a tick, cells; large if a robot strays.
     pub worst_error: f64,
     /// Robots inside walls or each other, summed over ticks.
     pub collisions: u64,
@@ -173,23 +167,14 @@ impl Record for Crossing {
     }
 }
 
-/// Results of one landscape: the crossings in the order of `Plan::ways`.
+/// Crossings of one landscape: without formation, as planned, other eps, other losses, other laws.
 pub type Run = Vec<Crossing>;
 
 impl Plan {
-    /// The formation of figure 5 with the plan's spacing and robot 1 in front: rows run west,
-    /// columns south.
-    ///
-    /// # Errors
-    /// There is no template with radius rho.
     fn graph(&self) -> Result<Formation> {
         self.graph_within(self.rho)
     }
 
-    /// Like `graph`, with templates of radius `rho`.
-    ///
-    /// # Errors
-    /// There is no template with radius rho.
     fn graph_within(&self, rho: u8) -> Result<Formation> {
         let spacing = i16::from(self.spacing);
         let places: Vec<Cell> =
@@ -213,8 +198,6 @@ impl Plan {
         2 * u16::from(self.spacing) + 4
     }
 
-    /// The crossings of each landscape: without formation, as planned, with other eps, with other
-    /// losses, with other laws.
     fn ways(&self) -> impl Iterator<Item = Way> + '_ {
         let (own_eps, own_loss) = (self.formation.eps, self.loss);
         let own = Way::Together { eps: own_eps, loss: own_loss };
@@ -230,7 +213,6 @@ impl Plan {
         (self.obstacles[point / ways.len()], ways[point % ways.len()])
     }
 
-    /// Seed of a landscape, a function of seed, obstacles and number of the run.
     fn landscape_seed(&self, obstacles: u32, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, obstacles, run).next_u64()
     }
@@ -241,8 +223,8 @@ impl Plan {
         natural_by(&plan, obstacles, self.hill_norm, self.hills)
     }
 
-    /// The six robots on a landscape. The rearmost one starts one cell from the south-west corner;
-    /// the goal of robot 1 is one cell from the north-east corner.
+    /// The rearmost robot starts one cell from the south-west corner; the goal of robot 1 is one
+    /// cell from the north-east corner.
     fn scenario(&self, terrain: Terrain, graph: Option<Formation>, places: &[Cell], seed: u64) -> Scenario {
         let spacing = i16::from(self.spacing);
         let start = Cell::new(2 * spacing + 1, spacing + 1);
@@ -301,7 +283,6 @@ impl Plan {
         Ok(Crossing { entropy, ..cross(&scenario)? })
     }
 
-    /// Groups runs by number of obstacles and landscape, without incomplete landscapes.
     fn by_landscape(&self, runs: &[Vec<Crossing>]) -> Vec<Vec<Run>> {
         let all_ways = |ways: &[Vec<Crossing>]| {
             let least = ways.iter().map(Vec::len).min().unwrap_or(0);
@@ -351,7 +332,6 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // Destructured, so that a new field cannot be forgotten.
         let Self {
             obstacles: _,
             runs: _,
@@ -430,8 +410,7 @@ impl Experiment for Plan {
         ]
     }
 
-    /// Seed of the landscape, as accepted by `staya terrain`. The seed of robots and radio is a
-    /// function of the first seed.
+    /// Seed of the landscape, for `staya terrain`; robots and radio depend on the first seed.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.landscape_seed(self.point(point).0, run)
     }

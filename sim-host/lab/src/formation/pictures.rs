@@ -1,4 +1,4 @@
-//! Pictures of the formation experiment: KUZ figure 6, and the effects of eps and the radio.
+//! Pictures of the formation experiment.
 
 use super::{Journey, Point, Report, Variants};
 use staya_plot::{Chart, Panels, Series};
@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 const STEPS: u32 = 100;
 
 impl Report {
-    /// Draws all pictures into `dir`, each as SVG and PNG, and returns the files.
+    /// Draws KUZ figure 6 and the effects of eps, loss and laws into `dir`, each as SVG and PNG,
+    /// and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -66,7 +67,6 @@ impl Report {
         Panels::new("Six robots in formation on natural land").with(error).with(time)
     }
 
-    /// Error and travel time over N, with one curve per value.
     fn variants(&self, kind: Variants) -> Panels {
         let (title, name): (_, fn(&Journey) -> String) = match kind {
             Variants::Eps => ("What eps does", |j| format!("eps = {} cells", j.eps)),

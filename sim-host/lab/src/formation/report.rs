@@ -1,4 +1,4 @@
-//! Results of the formation experiment, for tables and plots.
+//! Results of the formation experiment.
 
 mod laws;
 
@@ -13,11 +13,10 @@ use staya_sim::terrain::metrics::obstacles_of_entropy;
 use staya_stats::{LogFit, Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
-/// Smallest number of obstacles for which the paper's curve is used: a fit is not valid outside its
-/// range, and this one becomes negative towards 0.
+/// The fit is not valid outside its range; towards 0 it becomes negative.
 const LEAST_OF_PAPER: f64 = 10.0;
 
-/// Results of one crossing mode over all landscapes of a point.
+/// Results of one kind of crossing over all landscapes of a point.
 #[derive(Clone, Debug, Serialize)]
 pub struct Journey {
     /// eps, cells.
@@ -26,22 +25,21 @@ pub struct Journey {
     pub loss: f64,
     /// Landscapes that all robots crossed.
     pub arrived: usize,
-    /// dPhi per robot over all landscapes, cells, with the graph placed on the top leader.
+    /// dPhi per robot over all landscapes, cells, with the graph on the top leader.
     pub error_per_agent: Summary,
-    /// The 95 % interval of its mean.
+    /// The 95 % interval of the mean of `error_per_agent`.
     pub error_interval95: [f64; 2],
-    /// Mean dPhi per robot, cells, with the graph placed by the best-fitting translation.
+    /// Mean dPhi per robot, cells, with the graph at its best-fitting translation.
     pub best_fit_error_per_agent: f64,
     /// Mean graph distance.
     pub graph_distance: f64,
-    /// Largest error per robot in any tick of any landscape, cells.
+    /// Largest error per robot in any tick, cells.
     pub worst_error: f64,
-    /// Mean time until the last robot arrived, ticks, over landscapes that all robots crossed with
-    /// and without formation.
+    /// Mean arrival time of the last robot, ticks, if all arrived with and without formation.
     pub time_ticks: Option<f64>,
-    /// Ratio of this time to that without formation.
+    /// Ratio of `time_ticks` to the time without formation.
     pub time_ratio: Option<f64>,
-    /// Robots inside walls or each other, summed.
+    /// Robots inside walls or each other, summed over ticks.
     pub collisions: u64,
 }
 
@@ -54,30 +52,27 @@ pub struct Point {
     pub runs: usize,
     /// Landscapes that all robots crossed without formation.
     pub alone_arrived: usize,
-    /// Mean time until the last of them arrived, ticks.
+    /// Mean arrival time of the last robot without formation, ticks.
     pub alone_time_ticks: Option<f64>,
-    /// In formation as planned.
+    /// Crossings in formation as planned.
     pub formation: Journey,
     /// Mean configuration entropy S of the landscapes.
     pub entropy: f64,
-    /// dPhi / 6 of the paper's curve at this number of obstacles; `null` below 10, where the curve
-    /// is not valid.
+    /// dPhi / 6 of the paper's curve at N obstacles; `null` below 10, where the curve is not valid.
     pub paper_error_per_agent: Option<f64>,
-    /// Ratio of our error to the paper's at equal N.
+    /// Ratio of our error to the paper's at this N.
     pub error_over_paper: Option<f64>,
-    /// Number of obstacles at which the paper's terrain has this entropy: N(S) with its constant
-    /// corrected.
+    /// Obstacles at which the paper's terrain has this entropy: N(S) with its constant corrected.
     pub obstacles_of_entropy: f64,
-    /// dPhi / 6 of the paper's curve at that number. Below N = 70, terrain of equal entropy is
-    /// smoother here than in the paper.
+    /// dPhi / 6 of the paper's curve at that number; rougher terrain than ours below N = 70.
     pub paper_error_at_entropy: Option<f64>,
-    /// Ratio of our error to the paper's at equal S.
+    /// Ratio of our error to the paper's at this entropy.
     pub error_over_paper_at_entropy: Option<f64>,
-    /// With other values of eps.
+    /// Crossings with other values of eps.
     pub other_eps: Vec<Journey>,
-    /// With other losses.
+    /// Crossings with other losses.
     pub other_losses: Vec<Journey>,
-    /// With other laws, each at the planned loss and the others.
+    /// Crossings under other laws, each at all losses.
     pub other_laws: Vec<LawJourney>,
 }
 
@@ -91,7 +86,7 @@ pub enum Variants {
 }
 
 impl Point {
-    /// Results for all values of a parameter, the planned one included, in ascending order.
+    /// All values of a parameter with the planned one, in ascending order.
     #[must_use]
     pub fn variants(&self, kind: Variants) -> Vec<&Journey> {
         let others = match kind {
@@ -122,7 +117,7 @@ pub struct Report {
     pub classes: u8,
     /// Interpretation of natural terrain.
     pub hills: String,
-    /// Additional ticks that halve the priority of a move; 0: the cheapest move always comes first.
+    /// Additional cost of a move that halves its chance, ticks; 0: the cheapest is first.
     pub shuffle_ticks: f64,
     /// Distance of adjacent robots, cells.
     pub spacing: u8,
@@ -132,11 +127,11 @@ pub struct Report {
     pub radius: u8,
     /// Lag at which the top leader waits, cells.
     pub halt_cells: f64,
-    /// Least-squares fit of dPhi / 6 = a ln(N + 1) + b over the points.
+    /// Least-squares fit of dPhi / 6 = a ln(N + 1) + b.
     pub fit: Option<LogFit>,
     /// The paper's fit.
     pub paper: LogFit,
-    /// The points in ascending order of obstacles.
+    /// Points in ascending order of obstacles.
     pub points: Vec<Point>,
 }
 

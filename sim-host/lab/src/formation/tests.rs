@@ -41,7 +41,6 @@ fn formation_is_kept_and_all_robots_arrive() {
 
 #[test]
 fn formation_parameters_reduce_the_error() {
-    // Without gain, waiting and common pricing the robots still follow; with them they are nearer.
     let loose = Plan {
         formation: FormationParams { halt_lag: u16::MAX, gain: Gain::ZERO, ..FormationParams::default() },
         ..small()
@@ -97,7 +96,6 @@ fn threads_and_early_ends_change_nothing() {
     };
     let all = on(1);
     assert_eq!(all, on(4));
-    // Eight landscapes: without formation, in formation, with another eps, with another loss.
     assert_eq!(all.concat().len(), 8 * 4);
     let none = plan.carry_out(|_| false).unwrap();
     assert!(plan.report(&none).points.is_empty());

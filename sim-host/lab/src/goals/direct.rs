@@ -1,8 +1,6 @@
-//! The law alone, without agents, radio and packets.
-//!
-//! Every robot has perfect knowledge of the robots within R_nbh, and all move at once, as in the
-//! paper's program (sections 2 and 3). A tick consists of the flock's wish, push-out of the
-//! resulting step, and the step.
+//! The law alone, without agents, radio and packets: every robot has perfect knowledge of the
+//! robots within R_nbh, and all move at once (PAV, sections 2 and 3). A tick is the flock's wish,
+//! push-out, and the step.
 
 use super::Plan;
 use super::scene::Scene;
@@ -35,9 +33,7 @@ struct Crowd<'a> {
     cells: Cells<f64, 2>,
 }
 
-/// Makes a run and returns a hash of all places in all ticks.
-///
-/// O(ticks n k), where k is the number of robots within R_nbh.
+/// Returns a hash of all places in all ticks. O(ticks n k) with k robots within R_nbh.
 pub(super) fn run(plan: &Plan, setting: &Setting, scene: &Scene, seed: u64, watch: &mut Watch<'_>) -> Result<u64> {
     let mut crowd = Crowd::new(plan, setting, scene, seed)?;
     let mut hash = 0;
@@ -84,7 +80,6 @@ impl<'a> Crowd<'a> {
         })
     }
 
-    /// Lets all robots decide from their current places, then moves all.
     fn step(&mut self, tick: u32) -> Result<()> {
         let places_m: Vec<[f64; 2]> = self.places.iter().map(|&place| metres(place)).collect();
         self.cells.rebuild(&places_m);
@@ -108,7 +103,6 @@ impl<'a> Crowd<'a> {
         Ok(())
     }
 
-    /// Finds the neighbours that a robot knows, nearest first.
     fn look_around(
         &self,
         robot: usize,
@@ -133,7 +127,7 @@ impl<'a> Crowd<'a> {
 
     fn decide(&mut self, robot: usize, nearby: &[Nearby<f32>]) -> Vec3<f32> {
         let (own, id) = (self.places[robot], number(robot));
-        // The paper's robots are points, which R_MinDist keeps apart.
+        // The paper's robots are points, kept apart by R_MinDist.
         let body = Body {
             id,
             velocity_mps: self.velocities[robot],
@@ -148,7 +142,7 @@ impl<'a> Crowd<'a> {
         let Some(params) = &self.push_out else {
             return wished;
         };
-        // Robots farther away than the smallest distance plus two steps have no effect.
+        // Robots beyond the smallest distance plus two steps have no effect.
         let reach_m = params.min_distance_m + 2.0 * body.max_speed_mps * body.step_s;
         let near = nearby.iter().take_while(|other| other.offset_m.norm() <= reach_m).count();
         let seen = self.scene.solids.iter().filter_map(|solid| match solid {

@@ -2,15 +2,15 @@
 //! homogeneous flock of robots", PAV): 225 robots, three goals, and group order over K1 / K2 and
 //! R_nbh.
 //!
-//! Robots start at random in a square and move to the middle of the goals together. There, each
-//! draws one of the goals. As in the paper, each robot knows all robots within R_nbh
-//! ([`Knowledge::All`]), and push-out keeps them apart. With `--knows packets` they are agents with
-//! sixteen neighbours each, behind any safety layer. The paper varies K1 from 0 to 150 at R_MinDist
-//! = 10 and R_nbh = 40. It gives neither K2 and K3 nor distances: here K2 = 50 and K3 = 100, goals
-//! are 614 to 950 m away, and robots move at 10 m/s.
+//! Robots start at random in a square, move to the middle of the goals, and draw one of the goals
+//! there. As in the paper, each robot knows all robots within R_nbh ([`Knowledge::All`]), and
+//! push-out keeps them apart. With `--knows packets` they are agents with sixteen neighbours each,
+//! behind any safety layer. The paper varies K1 from 0 to 150 at R_MinDist = 10 and R_nbh = 40, but
+//! gives neither K2, K3 nor distances: here K2 = 50, K3 = 100, goals are 614 to 950 m away, and
+//! robots move at 10 m/s.
 //!
-//! **Measures of group order.** All are averaged over the way to the middle, until a tenth of the
-//! robots were there, because robots part from then on:
+//! **Measures of group order** are averaged over the way to the middle, until a tenth of the robots
+//! were there, because robots part from then on:
 //!
 //! - company: number of other robots within four R_MinDist of a robot
 //! - share of the robots in the largest group (linked within two R_MinDist)
@@ -20,15 +20,14 @@
 //! A robot has gathered once its distance to the middle was at most 1.5 times the radius of the
 //! lattice of the robots that go to one goal.
 //!
-//! **Reference.** With K2 = 0, robots are independent, except that they do not touch. Their company
-//! is an effect of the start and of the common goal, not of K2. Each point is therefore compared
-//! with the one with K2 = 0 and all else equal, K1 / K3 included. In this comparison, company rises
-//! with K2 and with R_nbh and vanishes if K1 far exceeds K2, as the paper states. This holds for
-//! any knowledge of the robots and for any safety layer.
+//! **Reference.** Robots with K2 = 0 are independent, and their company is an effect of the start
+//! and of the common goal. Each point is therefore compared with the one with K2 = 0 and all else
+//! equal. The difference in company rises with K2 and R_nbh and vanishes if K1 far exceeds K2, as
+//! the paper states, for any knowledge and any safety layer.
 //!
-//! **Unsuitable measure.** The share of the largest group from a dense start (`--start-side 2`)
-//! does not show the effect. Without any K2, such robots are already one group, with a share of
-//! 0.99. There, K2 draws them together locally into clumps, so that a larger K2 splits the group.
+//! **Unsuitable measure.** From a dense start (`--start-side 2`) robots are one group without any
+//! K2 (share of the largest group: 0.99). There, K2 draws them into local clumps, so a larger K2
+//! splits the group.
 
 mod direct;
 mod pictures;
@@ -62,30 +61,27 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use watch::Watch;
 
-/// First random number stream, for the starts. The following ones are for draws of goals,
-/// obstacles, and places of goals.
+/// First random number stream: starts, then draws of goals, obstacles, and places of goals.
 const STARTS: u32 = 0x0047_0101;
 
-/// What to do: the goal flock of Pavlovsky and Pavlovsky, 225 robots and three goals, group order
-/// over K1 / K2 and R_nbh.
-///
-/// All lists are crossed with each other.
+/// The goal flock of Pavlovsky and Pavlovsky: group order over K1 / K2 and R_nbh. All lists are
+/// crossed with each other.
 #[derive(Args, Clone, Debug, PartialEq)]
 #[command(allow_negative_numbers = true)]
 pub struct Plan {
-    /// Gains of the pull to the goal.
+    /// Gains of the attraction to the goal.
     #[arg(long, value_name = "K1,...", value_delimiter = ',', default_value = "0,5,15,30,50,100,150")]
     pub k1: Vec<f64>,
-    /// Gains of the pull to the middle of the neighbours; 0: independent robots, to compare with.
+    /// Gains of the attraction to the middle of the neighbours; 0: independent robots.
     #[arg(long, value_name = "K2,...", value_delimiter = ',', default_value = "0,50")]
     pub k2: Vec<f64>,
-    /// Gains of the push away from robots that are too near.
+    /// Gains of the repulsion from robots that are too near.
     #[arg(long, value_name = "K3,...", value_delimiter = ',', default_value = "100")]
     pub k3: Vec<f64>,
-    /// How far neighbours are seen (R_nbh), two least distances or more.
+    /// Range of sight (R_nbh), at least two smallest distances.
     #[arg(long = "neighborhood", value_name = "METRES,...", value_delimiter = ',', default_value = "20,40,80")]
     pub neighborhoods_m: Vec<f64>,
-    /// Least distance of robots (R_MinDist); bodies have 0.3 of it as radius.
+    /// Smallest distance of robots (R_MinDist); the radius of bodies is 0.3 R_MinDist.
     #[arg(long = "min-distance", value_name = "METRES", default_value_t = 10.0)]
     pub min_distance_m: f64,
     /// Numbers of robots.
@@ -94,23 +90,22 @@ pub struct Plan {
     /// Numbers of goals, 1 to 4.
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "3")]
     pub goals: Vec<u32>,
-    /// Places of the goals are drawn, other ones in each run.
+    /// Draw other places of the goals in each run.
     #[arg(long)]
     pub random_goals: bool,
     /// Speeds of all goals, to the north.
     #[arg(long = "goal-speed", value_name = "MPS,...", value_delimiter = ',', default_value = "0")]
     pub goal_speeds_mps: Vec<f64>,
-    /// The operator moves the first goal after a quarter of the time.
+    /// Move the first goal after a quarter of the time, by an operator's order.
     #[arg(long = "move-goal")]
     pub moves_goal: bool,
-    /// Sides of the square in which robots start at random, in R_MinDist and per root of their
-    /// number. At 2 they are one group from the start.
+    /// Sides of the square of the starts, in R_MinDist per root of the robots; 2: one group.
     #[arg(long = "start-side", value_name = "SIDE,...", value_delimiter = ',', default_value = "4")]
     pub start_sides: Vec<f64>,
-    /// Numbers of round obstacles at random between the start and the goals.
+    /// Numbers of round obstacles, at random between the start and the goals.
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "0")]
     pub obstacles: Vec<u32>,
-    /// What robots know of each other.
+    /// Knowledge of the robots about each other.
     #[arg(
         long,
         value_name = "WORD,...",
@@ -119,7 +114,7 @@ pub struct Plan {
         value_parser = setting::knowledge()
     )]
     pub knows: Vec<Knowledge>,
-    /// Safety layers behind the flock; with none, robots overlap where they crowd around the goals.
+    /// Safety layers behind the flock; without one, robots overlap around the goals.
     #[arg(
         long = "safety",
         value_name = "WORD,...",
@@ -128,7 +123,7 @@ pub struct Plan {
         value_parser = options::safety()
     )]
     pub safeties: Vec<SafetyKind>,
-    /// What push-out makes of a step.
+    /// Models of push-out.
     #[arg(
         long = "model",
         value_name = "WORD,...",
@@ -137,7 +132,7 @@ pub struct Plan {
         value_parser = options::model()
     )]
     pub models: Vec<Model>,
-    /// How many robots push-out evades at once.
+    /// Number of robots that push-out evades at once.
     #[arg(
         long = "evasion",
         value_name = "WORD,...",
@@ -155,8 +150,7 @@ pub struct Plan {
     /// Length of a tick.
     #[arg(long = "step", value_name = "SECONDS", default_value_t = 0.1)]
     pub step_s: f64,
-    /// Equal seeds give equal results. What is chosen here (start, gains, measures) was chosen on
-    /// seed 1.
+    /// Seed; equal seeds give equal results. Start, gains and measures were chosen on seed 1.
     #[arg(long, default_value_t = 11)]
     pub seed: u64,
     /// Folder for rows and pictures.
@@ -177,7 +171,7 @@ impl Plan {
         0.3 * self.min_distance_m
     }
 
-    /// Speed of the robots, m/s: one R_MinDist per second.
+    /// One R_MinDist per second.
     fn speed_mps(&self) -> f64 {
         self.min_distance_m
     }
@@ -201,7 +195,6 @@ impl Plan {
             sight_m: 2.0 * unit,
             guidance: GuidanceSetup::GoalFlock { params, arrival_m: (setting.arrival() * unit) as f32, seed },
             safety: setting.safety,
-            // Beacons are one step old.
             orca: AvoidParams { margin_m: (unit / 50.0) as f32, ..AvoidParams::default() },
             push_out: PushOutParams {
                 model: setting.model,
@@ -216,7 +209,6 @@ impl Plan {
         arena.scenario(setup)
     }
 
-    /// Makes run `number` of a setting; `draws` stores moments for pictures.
     fn run(&self, setting: &Setting, number: u32, draws: bool) -> Result<Run> {
         let scene = Scene::new(self, setting, number)?;
         let mut watch = Watch::new(self, setting, &scene, draws);
@@ -271,7 +263,7 @@ impl Experiment for Plan {
         given
     }
 
-    /// Seed of the robots' draws. Starts are a function of the first seed and the run's number.
+    /// Seed of the robots' draws; starts are a function of the first seed and the run's number.
     fn seed(&self, _: usize, run: u32) -> u64 {
         self.run_seed(run)
     }
@@ -317,10 +309,9 @@ impl Plan {
 }
 
 impl Setting {
-    /// Parameters as in rows and reports.
+    /// Parameters for rows and reports.
     #[must_use]
     pub fn given(&self) -> Vec<(&'static str, Value)> {
-        // Destructured, so that a new field cannot be forgotten.
         let Self {
             k1,
             k2,

@@ -1,4 +1,4 @@
-//! Pictures of the goal flock: group order over K1 / K2 and R_nbh, and the paths of some runs.
+//! Pictures of the goal flock.
 
 use super::Report;
 use super::report::Point;
@@ -11,8 +11,7 @@ use std::path::{Path, PathBuf};
 
 const CURVES: usize = 10;
 
-/// The points whose first runs are drawn: smallest, middle and largest K1 above 0 of the last
-/// curve.
+/// First runs to draw: smallest, middle and largest K1 above 0 of the last curve.
 pub(super) fn drawn(settings: &[Setting]) -> Vec<usize> {
     let Some(last) = settings.last() else {
         return Vec::new();
@@ -26,8 +25,8 @@ pub(super) fn drawn(settings: &[Setting]) -> Vec<usize> {
 }
 
 impl Report {
-    /// Draws the charts, and the first runs of the last curve's smallest, middle and largest K1,
-    /// into `dir` (SVG and PNG), and returns the files.
+    /// Draws the charts, and the paths of three runs of the last curve (smallest, middle and
+    /// largest K1), into `dir` (SVG and PNG), and returns the files.
     ///
     /// # Errors
     /// A file cannot be written.
@@ -44,7 +43,6 @@ impl Report {
         Ok(files)
     }
 
-    /// The common setting of each curve over K1 / K2.
     fn curves(&self) -> Vec<Setting> {
         let mut curves: Vec<Setting> = Vec::new();
         for point in &self.points {
@@ -73,7 +71,6 @@ impl Report {
                 let name = if words.is_empty() { "measured".to_owned() } else { words.join(", ") };
                 let ends = values.first().zip(values.last()).map(|(first, last)| [first[0], last[0]]);
                 chart = chart.with(Series::points(name.clone(), values).joined());
-                // Independent robots, next to the robots compared with them.
                 let alone = own().filter_map(|point| {
                     let with = own().find(|other| other.setting.k1 == point.setting.k1 && other.k1_over_k2.is_some());
                     if point.setting.k2 == 0.0 { Some([with?.k1_over_k2?, value(point)?]) } else { None }
@@ -105,7 +102,6 @@ impl Report {
             .with(chart("Time until half were at the middle", "s", |p| p.half_gathered_s))
     }
 
-    /// Company over K1 / K2 and R_nbh, if both vary and nothing else does.
     fn heat(&self, curves: &[Setting]) -> Option<HeatMap> {
         let first = curves.first()?;
         let is_alike = |s: &Setting| Setting { neighborhood_m: first.neighborhood_m, ..*s } == *first;

@@ -26,8 +26,7 @@ pub struct Point {
     pub together: Option<f64>,
     /// Robots within four R_MinDist of a robot on the way.
     pub company: Option<f64>,
-    /// Difference of `together` to independent robots, in the same setting with K2 = 0; `null`
-    /// without such a point.
+    /// Difference of `together` to the point with K2 = 0 and all else equal, if there is one.
     pub together_gain: Option<f64>,
     /// Difference of `company` to independent robots.
     pub company_gain: Option<f64>,
@@ -35,18 +34,17 @@ pub struct Point {
     pub spread: Option<f64>,
     /// Share of the robots that reached the middle.
     pub gathered: f64,
-    /// Time until half of the robots had gathered, seconds: mean over the runs in which they did.
+    /// Mean time until half of the robots had gathered, seconds.
     pub half_gathered_s: Option<f64>,
     /// Share of the robots at a goal at the end.
     pub arrived: f64,
-    /// Shares of the goals among these robots.
+    /// Share of each goal among these robots.
     pub goal_shares: Vec<f64>,
-    /// Smallest distance of two centres in any run, divided by R_MinDist; `null` if all were
-    /// farther apart.
+    /// Smallest distance of two centres / R_MinDist; `null` if all were farther apart.
     pub least_pair_over_min_distance: Option<f64>,
     /// Pairs of overlapping bodies (radius 0.3 R_MinDist), summed over ticks and runs.
     pub overlaps: usize,
-    /// Exclusive or of the trace hashes.
+    /// Exclusive or of the runs' trace hashes.
     pub trace_hash: String,
     #[serde(skip)]
     pub(super) frames: Vec<Frame>,
@@ -82,9 +80,9 @@ pub struct Report {
     pub random_goals: bool,
     /// Whether the first goal was moved.
     pub moves_goal: bool,
-    /// Points in the order of the lists, K1 innermost, without those that have no runs.
+    /// Points in the order of the lists, K1 innermost, without points that have no runs.
     pub points: Vec<Point>,
-    /// Threshold of K1 / K2 for each curve.
+    /// Threshold of K1 / K2 of each curve.
     pub thresholds: Vec<Threshold>,
     #[serde(skip)]
     pub(super) plan: Plan,

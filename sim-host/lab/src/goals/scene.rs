@@ -1,4 +1,4 @@
-//! Initial scene of a run: random places of robots, goals and obstacles, a function of its number.
+//! Random places of robots, goals and obstacles, a function of the run's number, in R_MinDist.
 
 use super::setting::Setting;
 use super::{Plan, STARTS};
@@ -8,40 +8,27 @@ use staya_controller::rand::Rng;
 use staya_sim::scenario::{Start, Target};
 use staya_sim::world::plane::Solid;
 
-/// Middle of the goals, in R_MinDist.
 const MIDDLE: [f64; 2] = [70.0, 0.0];
-/// Distance of the goals from the middle, in R_MinDist.
 const AROUND: f64 = 25.0;
-/// Largest distance of random goals from the middle, and their smallest distance from each other.
+/// Largest distance from the middle, and smallest distance from each other.
 const GOAL_FIELD: [f64; 2] = [40.0, 25.0];
-/// New place of the first goal when it moves.
 const MOVED: [f64; 2] = [90.0, 20.0];
-/// Largest x of obstacles, well before the goals.
 const LAST: f64 = 50.0;
-/// Smallest gap between the start and obstacles, and between obstacles.
 const ROOM: f64 = 3.0;
-/// Smallest and largest radius of obstacles.
 const RADII: [f64; 2] = [1.0, 3.0];
-/// Draws of a place before the area counts as full.
 const TRIES: u32 = 1000;
 
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Robots with their goals.
     pub starts: Vec<Start>,
     pub solids: Vec<Solid>,
     goals_m: Vec<[f64; 3]>,
     velocity_mps: [f64; 3],
-    /// Tick in which the first goal moves, if it does, and its new place.
     moves: Option<(u32, [f64; 3])>,
     step_s: f64,
 }
 
 impl Scene {
-    /// Creates the scene of a run.
-    ///
-    /// # Errors
-    /// Robots, goals or obstacles do not fit.
     pub fn new(plan: &Plan, setting: &Setting, run: u32) -> Result<Self> {
         let unit = plan.min_distance_m;
         let goals_m = goals(plan, setting, run)?;
@@ -84,15 +71,15 @@ impl Scene {
         goals_m
     }
 
-    /// The operator's order that moves the first goal: its tick, and the new goal.
+    /// The tick of the operator's order, and the new goal.
     #[must_use]
     pub fn order(&self) -> Option<(u32, Target)> {
         self.moves.map(|(tick, position_m)| (tick, Target { position_m, velocity_mps: self.velocity_mps }))
     }
 }
 
-/// Distance that robots travel straight until they have gathered, in R_MinDist: from the middle of
-/// the start to the edge of the goals' middle. Random goals are about as far away.
+/// Straight distance from the middle of the start to the edge of the goals' middle, in R_MinDist.
+/// Random goals are about as far away.
 pub fn way(setting: &Setting) -> f64 {
     MIDDLE[0] - setting.arrival()
 }
@@ -102,7 +89,6 @@ pub fn middle_m(goals_m: &[[f64; 3]]) -> [f64; 3] {
     [mean(0), mean(1), 0.0]
 }
 
-/// The goals: evenly around their middle (a single one there), or random.
 fn goals(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<[f64; 3]>> {
     let unit = plan.min_distance_m;
     let place_m = |x: f64, y: f64| [(MIDDLE[0] + x) * unit, (MIDDLE[1] + y) * unit, 0.0];
@@ -129,8 +115,7 @@ fn goals(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<[f64; 3]>> {
     Ok(goals_m)
 }
 
-/// Discs between the start and the goals, with gaps between them, which the crowd has to go around.
-/// The paper's scenes have some, but it does not describe them.
+/// Discs with gaps between the start and the goals. The paper has some without description.
 fn solids(plan: &Plan, setting: &Setting, run: u32) -> Result<Vec<Solid>> {
     let unit = plan.min_distance_m;
     let half = setting.start_half();

@@ -1,4 +1,4 @@
-//! Settings: one value of each list of a plan.
+//! One value of each list of a plan.
 
 use super::Plan;
 use anyhow::{Result, bail, ensure};
@@ -9,11 +9,10 @@ use staya_controller::flock::goal::GoalParams;
 use staya_controller::names::Named;
 use staya_controller::push_out::{Evasion, Model};
 
-/// Knowledge of the robots about each other, which also determines how a run is made.
+/// Knowledge of the robots about each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Knowledge {
-    /// Perfect knowledge of all robots within R_nbh, as in the paper. No radio and no agents: the
-    /// law and push-out, step by step.
+    /// All robots within R_nbh, as in the paper. Without radio and agents: the law and push-out.
     All,
     /// Like [`Knowledge::All`], for the sixteen nearest robots only.
     Nearest,
@@ -51,7 +50,7 @@ pub struct Setting {
     pub k2: f64,
     /// Gain of the repulsion from robots that are too near.
     pub k3: f64,
-    /// R_nbh, metres.
+    /// Range of sight R_nbh, metres.
     pub neighborhood_m: f64,
     /// Number of robots.
     pub robots: u32,
@@ -61,32 +60,32 @@ pub struct Setting {
     pub goal_speed_mps: f64,
     /// Number of obstacles.
     pub obstacles: u32,
-    /// Side of the square of the starts, in R_MinDist and per root of the robots' number.
+    /// Side of the square of the starts, in R_MinDist per root of the number of robots.
     pub start_side: f64,
     /// Knowledge of the robots about each other.
     pub knows: Knowledge,
     /// Safety layer behind the flock.
     pub safety: SafetyKind,
-    /// Treatment of a step by push-out.
+    /// Model of push-out.
     pub model: Model,
     /// Number of robots that push-out evades at once.
     pub evasion: Evasion,
 }
 
 impl Setting {
-    /// K1 / K2; `None` if K2 is 0, for independent robots.
+    /// K1 / K2; `None` for independent robots (K2 = 0).
     #[must_use]
     pub fn ratio(&self) -> Option<f64> {
         (self.k2 != 0.0).then(|| self.k1 / self.k2)
     }
 
-    /// The setting without K1 and K2, common to a curve over their ratio.
+    /// The setting without K1 and K2.
     #[must_use]
     pub fn without_gains(&self) -> Self {
         Self { k1: 0.0, k2: 0.0, ..*self }
     }
 
-    /// The setting without all tuned parameters.
+    /// The setting without tuned parameters.
     #[must_use]
     pub fn scene(&self) -> Self {
         Self { k3: 0.0, neighborhood_m: 0.0, ..self.without_gains() }
@@ -102,15 +101,13 @@ impl Setting {
         }
     }
 
-    /// Distance at which a robot has arrived at the middle or at a goal, in R_MinDist: 1.5 times
-    /// the radius of the lattice of the robots that go to one goal.
+    /// In R_MinDist: 1.5 times the radius of the lattice of the robots that go to one goal.
     pub(super) fn arrival(&self) -> f64 {
         let each = f64::from(self.robots) / f64::from(self.goals);
         let lattice = libm::sqrt(each * libm::sqrt(3.0) / (2.0 * std::f64::consts::PI));
         1.5 * lattice.max(2.0)
     }
 
-    /// Half the side of the square of the starts, in R_MinDist.
     pub(super) fn start_half(&self) -> f64 {
         self.start_side * libm::sqrt(f64::from(self.robots)) / 2.0
     }
@@ -154,7 +151,6 @@ pub(super) fn short(name: &'static str) -> &'static str {
     }
 }
 
-/// Indices of the parameters that differ between settings, and of K1.
 pub(super) fn varying(settings: &[Setting]) -> Vec<usize> {
     let given: Vec<_> = settings.iter().map(Setting::given).collect();
     let Some(first) = given.first() else {
@@ -164,7 +160,6 @@ pub(super) fn varying(settings: &[Setting]) -> Vec<usize> {
     (0..first.len()).filter(differs).collect()
 }
 
-/// Cross product of settings and values; the values change first.
 fn cross<T: Copy>(settings: &[Setting], values: &[T], set: impl Fn(&mut Setting, T)) -> Vec<Setting> {
     let with = |setting: &Setting, value: T| {
         let mut setting = *setting;
@@ -175,8 +170,7 @@ fn cross<T: Copy>(settings: &[Setting], values: &[T], set: impl Fn(&mut Setting,
 }
 
 impl Plan {
-    /// All settings, with K1 innermost. Model and evasion belong to push-out; with another safety
-    /// layer, only the first value of each is used.
+    /// All settings, K1 innermost. Model and evasion vary only for push-out.
     #[must_use]
     pub fn settings(&self) -> Vec<Setting> {
         let blank = Setting {

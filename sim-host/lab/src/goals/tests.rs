@@ -21,8 +21,7 @@ fn report(plan: &Plan) -> Report {
     plan.measure().unwrap()
 }
 
-/// The paper's statement about K2. It does not show from a dense start, which is one group already:
-/// the largest group has nearly all robots for any K2, and K2 far above K1 can only split it.
+/// A dense start is one group already, which K2 far above K1 can only split.
 #[test]
 fn attraction_to_neighbours_forms_the_group_and_shows_from_a_scattered_start() {
     let scattered = report(&small());
@@ -31,7 +30,6 @@ fn attraction_to_neighbours_forms_the_group_and_shows_from_a_scattered_start() {
     assert_eq!(scattered.points[0].company_gain, None, "independent robots are what others are compared with");
     let [alone, .., last] = &scattered.points[..] else { panic!() };
     assert!(alone.together.unwrap() < 0.5 && last.together.unwrap() > alone.together.unwrap());
-    // A start that is one group shows nothing about K2.
     let dense = report(&Plan { start_sides: vec![2.0], k2: vec![0.0, 50.0], ..small() });
     assert!(dense.points[0].together.unwrap() > 0.8, "{:?}", dense.points[0].together);
 }
@@ -66,7 +64,6 @@ fn moving_goals_are_reached_at_their_current_place() {
         let moved = &report(&Plan { moves_goal: true, ..plan.clone() }).points[0];
         assert!(moved.arrived >= 0.9 && moved.goal_shares[0] > 0.1, "{} {:?}", moved.arrived, moved.goal_shares);
         let drifting = &report(&Plan { goal_speeds_mps: vec![2.0], ..plan }).points[0];
-        // The goals are 400 m to the north by then, with some of the crowd behind them.
         assert!(drifting.arrived >= 0.5, "{}", drifting.arrived);
     }
 }
@@ -80,15 +77,14 @@ fn safety_layers_prevent_overlaps() {
         models: vec![Model::Radial, Model::Tangential],
         evasions: vec![Evasion::Single, Evasion::Multiple],
         obstacles: vec![4],
-        // Two moving robots may come two steps nearer than permitted: at this step, the bodies
-        // still fit.
+        // Two moving robots may come two steps nearer than permitted.
         step_s: 0.1,
         ..plan
     };
     let pushed = report(&both(plan.clone()));
     assert_eq!(pushed.points.len(), 4);
     for point in &pushed.points {
-        // A robot that evades one robot only may be led into another one.
+        // A robot that evades one robot may meet another one.
         let most = if point.setting.evasion == Evasion::Multiple { 0 } else { bare.overlaps / 10 };
         assert!(point.overlaps <= most, "{:?}", point.setting);
     }
@@ -165,7 +161,6 @@ fn pictures_are_written() {
         Plan { k1: vec![0.0, 50.0, 150.0], neighborhoods_m: vec![20.0, 40.0], seconds: 10.0, runs: 1, ..small() };
     let runs = plan.carry_out(|_| true).unwrap();
     let files = plan.report(&runs).draw(dir.path()).unwrap();
-    // The order; company over both; K1 = 50 and 150.
     assert_eq!(files.len(), 8);
     for file in &files {
         assert!(file.metadata().unwrap().len() > 1000, "{}", file.display());

@@ -1,18 +1,15 @@
-//! Threshold evaluation (PAV, conclusion): the K1 / K2 above which a crowd is a set of separate
-//! robots instead of a group.
+//! Thresholds (PAV, conclusion): the K1 / K2 above which a crowd is separate robots instead of a
+//! group. The paper's program chooses such thresholds, but neither method nor values are given.
 //!
-//! The paper's program "evaluates and chooses thresholds" of its constants between the two cases,
-//! but gives neither the method nor values. Here, the order of a group is its excess over
-//! independent robots: share of the largest group and company, minus those of the same runs with K2
-//! = 0 and all else equal. Over K1 / K2, this curve has a peak. The threshold is the first crossing
-//! of half the peak behind it, interpolated geometrically between two points.
+//! Here, group order is the excess over independent robots (K2 = 0, all else equal) of the share of
+//! the largest group, and of company. The threshold is the first crossing of half the peak behind
+//! the peak over K1 / K2, interpolated geometrically.
 
 use super::setting::{Setting, short, varying};
 use crate::experiment::Maybe;
 use serde::Serialize;
 use std::fmt::{self, Formatter};
 
-/// Excess of a point over independent robots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gain {
     pub setting: Setting,
@@ -23,34 +20,30 @@ pub(super) struct Gain {
 /// Threshold of one curve over K1 / K2.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Threshold {
-    /// Common setting of the curve's points; its K1 and K2 are 0.
+    /// Common setting of the points; K1 and K2 are 0.
     #[serde(skip)]
     pub setting: Setting,
-    /// The parameters in which curves differ, as text.
+    /// Parameters in which curves differ, as text.
     pub curve: String,
     /// Threshold of the share of the largest group.
     pub together: Crossing,
-    /// Threshold of the number of robots around a robot.
+    /// Threshold of company.
     pub company: Crossing,
 }
 
-/// Peak of a curve, and its crossing of half the peak.
+/// Peak, and crossing of half the peak.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Crossing {
-    /// Largest excess over independent robots.
+    /// Excess over independent robots.
     pub peak: Option<f64>,
-    /// K1 / K2 of the peak.
     pub peak_k1_over_k2: Option<f64>,
-    /// K1 / K2 above which less than half of the peak remains; `null` if no point is that low or no
-    /// peak is above 0.
+    /// `null` if no point is below half the peak, or no peak is above 0.
     pub k1_over_k2: Option<f64>,
 }
 
 impl Crossing {
-    /// Evaluates points (K1 / K2, value) in ascending order.
     #[must_use]
     pub fn of(curve: &[[f64; 2]]) -> Self {
-        // The first of equal values.
         let mut best: Option<usize> = None;
         for (index, [_, value]) in curve.iter().enumerate() {
             if best.is_none_or(|best| *value > curve[best][1]) {
@@ -67,14 +60,12 @@ impl Crossing {
         let crossed = step.map(|step| {
             let [[x, y], [next_x, next_y]] = [step[0], step[1]];
             let part = (y - half) / (y - next_y);
-            // Geometric interpolation is impossible from 0.
             if x > 0.0 { x * libm::pow(next_x / x, part) } else { next_x * part }
         });
         Self { peak: Some(peak), peak_k1_over_k2: Some(ratio), k1_over_k2: crossed }
     }
 }
 
-/// Thresholds of all curves with at least three points.
 pub(super) fn of(points: &[Gain]) -> Vec<Threshold> {
     let mut curves: Vec<Setting> = Vec::new();
     for point in points {
@@ -140,7 +131,6 @@ mod tests {
         let curve = [[0.0, 0.2], [0.25, 0.8], [1.0, 0.6], [4.0, 0.2], [16.0, 0.1]];
         let crossing = Crossing::of(&curve);
         assert_eq!((crossing.peak, crossing.peak_k1_over_k2), (Some(0.8), Some(0.25)));
-        // 0.4 is halfway from 0.6 at 1 to 0.2 at 4.
         let at = crossing.k1_over_k2.unwrap();
         assert!((at - 2.0).abs() < 1e-9, "{at}");
     }

@@ -1,13 +1,12 @@
-//! Auto-tuning of the goal flock: K2 / K1, K3 / K1 and R_nbh for a scene (PAV mentions this in its
-//! conclusion without describing it).
+//! Auto-tuning of the goal flock: K2 / K1, K3 / K1 and R_nbh for a scene, which PAV mentions
+//! without a description.
 //!
-//! Particle swarm optimisation (`argmin`) searches for the gains with the lowest cost. The cost of
-//! a run is
+//! Particle swarm optimisation (`argmin`) searches for the gains with the lowest cost per run:
 //!
 //! (1 - together) + (1 - arrived) + (time until half were at the middle / time straight there - 1).
 //!
-//! A cost of one means no group at all, or no arrivals, or twice the time. The result is validated
-//! on runs that the search has not used, next to the default gains of the experiment.
+//! A cost of one means no group, or no arrivals, or twice the time. The result is validated on runs
+//! that the search has not used, next to the experiment's default gains.
 
 use super::setting::{Setting, short, varying};
 use super::{Plan, Run};
@@ -23,25 +22,22 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 
-/// K1 of all runs: only the ratios of gains matter, as long as the sum of the terms is longer than
-/// 1.
+/// Only ratios of gains matter, as long as the sum of the terms is longer than 1.
 const K1: f64 = 50.0;
-/// Gains for comparison, the experiment's defaults: K2 / K1, K3 / K1, and R_nbh in R_MinDist.
+/// The experiment's defaults: K2 / K1, K3 / K1, R_nbh in R_MinDist.
 const UNTUNED: [f64; 3] = [1.0, 2.0, 4.0];
-/// Bounds of the search: log2 of K2 / K1, log2 of K3 / K1, R_nbh in R_MinDist.
+/// Bounds of log2 of K2 / K1, log2 of K3 / K1, R_nbh in R_MinDist.
 const BOUNDS: [[f64; 3]; 2] = [[-5.0, -3.0, 2.0], [3.0, 4.0, 12.0]];
-/// First run number for validation; those of the search start at 0.
 const JUDGED_FROM: u32 = 1_000_000_000;
-/// Inertia, and attraction to the best place of the particle and of all particles (Standard PSO
-/// 2011): 1 / (2 ln 2) and 1/2 + ln 2. Literals, so that every machine has the same bits.
+/// Standard PSO 2011: inertia 1 / (2 ln 2), attraction 1/2 + ln 2. Literals have the same bits on
+/// every machine.
 const INERTIA: f64 = 0.721_347_520_444_481_7;
 const PULL: f64 = 1.193_147_180_559_945_3;
 
 /// A search for gains, one for each scene of the plan's lists.
 #[derive(Clone, Debug)]
 pub struct Tuning {
-    /// Scenes and runs; its gains and neighbourhoods are ignored. Each cost is the mean of `runs`
-    /// runs.
+    /// Scenes and runs; gains and neighbourhoods are ignored. A cost is the mean of `runs` runs.
     pub plan: Plan,
     /// Number of particles.
     pub particles: u32,
@@ -60,8 +56,7 @@ pub struct Verdict {
     pub together: f64,
     /// Mean share of robots at a goal at the end.
     pub arrived: f64,
-    /// Mean of the time until half were at the middle, divided by the time straight there; a run in
-    /// which they never were counts with its length.
+    /// Mean time until half were at the middle / time straight there; at most that of the run.
     pub time_ratio: f64,
 }
 
@@ -71,11 +66,8 @@ pub struct Tuned {
     /// K2 / K1, K3 / K1, R_nbh in R_MinDist.
     gains: [f64; 3],
     evaluations: u64,
-    /// Figures of the best gains on the runs of the search.
     found: Verdict,
-    /// Figures of the best gains on the validation runs.
     judged: Verdict,
-    /// Figures of the default gains on the validation runs.
     untuned: Verdict,
     hash: u64,
 }
@@ -121,8 +113,8 @@ impl Tuning {
         Setting { k1: K1, k2: K1 * k2, k3: K1 * k3, neighborhood_m: neighborhood * self.plan.min_distance_m, ..*scene }
     }
 
-    /// Mean figures of `count` runs of a setting from number `first` on, and the exclusive or of
-    /// their trace hashes. Runs are parallel and summed in order.
+    /// Means of runs `first..first + count`, and the exclusive or of their trace hashes. Runs are
+    /// parallel and summed in order.
     fn judge(&self, setting: &Setting, first: u32, count: u32) -> Result<(Verdict, u64)> {
         let runs = (first..first + count).into_par_iter().map(|number| self.plan.run(setting, number, false));
         let runs: Vec<Run> = runs.collect::<Result<_>>()?;
@@ -146,7 +138,6 @@ impl Tuning {
     }
 
     fn verdict(&self, setting: &Setting, run: &Run) -> Verdict {
-        // From the middle of the start to the edge of the goals' middle.
         let straight_s = super::scene::way(setting) * self.plan.min_distance_m / self.plan.speed_mps();
         let together = run.way.map_or(0.0, |way| way.together);
         let arrived = run.at_goals.iter().sum::<usize>() as f64 / f64::from(setting.robots);
@@ -154,7 +145,6 @@ impl Tuning {
         Verdict { cost: (1.0 - together) + (1.0 - arrived) + (time_ratio - 1.0), together, arrived, time_ratio }
     }
 
-    /// Searches one scene; `None` if it was stopped.
     fn tune(&self, scene: &Setting, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Option<Tuned>> {
         let bounds = BOUNDS.map(|bound| bound.to_vec());
         let [low, high] = bounds;
@@ -188,7 +178,6 @@ impl Tuning {
     }
 }
 
-/// Gains at a place of the search.
 fn gains(place: &[f64]) -> [f64; 3] {
     let at = |axis: usize| place.get(axis).copied().unwrap_or_default();
     [libm::exp2(at(0)), libm::exp2(at(1)), at(2)]
@@ -289,10 +278,10 @@ impl Experiment for Tuning {
     }
 }
 
-/// Result of one search.
+/// Result for one scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
-    /// The parameters in which the scene differs from others.
+    /// Parameters in which the scene differs from others.
     pub scene: String,
     /// Best K2 / K1.
     pub k2_over_k1: f64,
@@ -300,11 +289,11 @@ pub struct Line {
     pub k3_over_k1: f64,
     /// Best R_nbh / R_MinDist.
     pub neighborhood_over_min_distance: f64,
-    /// Figures on the runs of the search.
+    /// Mean figures on the runs of the search.
     pub found: Verdict,
-    /// Figures on the validation runs.
+    /// Mean figures on the validation runs.
     pub judged: Verdict,
-    /// Figures of the default gains on the validation runs.
+    /// Mean figures of the default gains on the validation runs.
     pub untuned: Verdict,
 }
 
@@ -313,11 +302,11 @@ pub struct Line {
 pub struct Report {
     /// Seed of the tuning.
     pub seed: u64,
-    /// Runs averaged by each cost evaluation.
+    /// Runs per cost evaluation.
     pub tuning_runs: u32,
     /// Validation runs.
     pub judged_runs: u32,
-    /// Cost evaluations of each search.
+    /// Cost evaluations per search.
     pub evaluations: u32,
     /// One result per scene.
     pub scenes: Vec<Line>,

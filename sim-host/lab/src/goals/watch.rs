@@ -7,18 +7,15 @@ use crate::experiment::rows::{Each, Record};
 use staya_sim::metrics::flock::{FlockMeter, gaps, polarisation};
 use staya_sim::nearby::Space;
 
-/// Time before which nothing is measured, because robots start at rest, seconds.
+/// Robots start at rest, so nothing is measured before.
 const WARM_UP_S: f64 = 5.0;
-/// Share of gathered robots at which the way ends. From then on robots draw goals, part, and crowd
-/// around the middle, so that measures show nothing about the group.
+/// From this share of gathered robots on, robots part and crowd around the middle.
 const WAY_ENDS: f64 = 0.1;
-/// Distance within which two robots belong to one group, in R_MinDist: the repulsion's range.
+/// Largest distance in a group, in R_MinDist: the repulsion's range.
 const LINK: f64 = 2.0;
-/// Distance within which robots count as company, in R_MinDist: the paper's R_nbh. It is
-/// independent of the run's R_nbh, so that runs are comparable.
+/// In R_MinDist: the paper's R_nbh, independent of the run's, so that runs are comparable.
 const COMPANY: f64 = 4.0;
 
-/// Moments of pictures of the first run, as shares of the run time.
 pub(super) const MOMENTS: [f64; 6] = [0.0, 0.125, 0.25, 0.375, 0.5, 1.0];
 
 /// Measurements of one run.
@@ -28,11 +25,11 @@ pub struct Run {
     pub way: Option<Way>,
     /// Robots that reached the middle.
     pub gathered: usize,
-    /// Time until half of the robots did, seconds.
+    /// Time until half of the robots had gathered, seconds.
     pub half_gathered_s: Option<f64>,
     /// Robots at each goal at the end.
     pub at_goals: [usize; 4],
-    /// Smallest distance of two centres, metres; infinite if none were within R_MinDist.
+    /// Smallest distance of two centres, metres; infinite if all were beyond R_MinDist.
     pub least_pair_m: f64,
     /// Pairs of overlapping bodies, summed over ticks.
     pub overlaps: usize,
@@ -44,7 +41,6 @@ pub struct Run {
 
 impl Record for Run {
     fn figures(&mut self, each: &mut Each<'_>) {
-        // Either all of them or none.
         let way = self.way;
         let part = |value: fn(&Way) -> f64| way.as_ref().map(value);
         let [mut polarisation, mut together, mut company, mut spread] =
@@ -75,14 +71,13 @@ impl Record for Run {
     }
 }
 
-/// Measures of the crowd on its way, means over ticks.
+/// Means over ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Way {
-    /// Length of the mean direction of the robots that have not gathered yet.
+    /// Of the robots that have not gathered yet.
     pub polarisation: f64,
-    /// Share of all robots in the largest group.
     pub together: f64,
-    /// Mean number of robots within four R_MinDist of a robot.
+    /// Robots within four R_MinDist of a robot.
     pub company: f64,
     /// Root mean square distance from the centroid, divided by that at the start.
     pub spread: f64,
@@ -115,7 +110,6 @@ pub struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// Creates the measurement; `draws` stores moments for pictures.
     pub fn new(plan: &Plan, setting: &Setting, scene: &'a Scene, draws: bool) -> Self {
         let ticks = crate::arena::ticks(plan.seconds, plan.step_s);
         let at = |share: f64| libm::round(share * f64::from(ticks)) as u32;
@@ -149,7 +143,6 @@ impl<'a> Watch<'a> {
             let off_m = |place_m: [f64; 3]| libm::hypot(x - place_m[0], y - place_m[1]);
             *has_gathered |= off_m(middle_m) <= self.arrival_m;
             let nearest = (0..).zip(&goals_m).map(|(goal, &at)| (off_m(at), goal)).min_by(|a, b| a.0.total_cmp(&b.0));
-            // Tolerates the rounding of the robot itself.
             if let Some((_, goal)) = nearest.filter(|(off, _): &(f64, usize)| *off <= self.arrival_m + 0.01) {
                 self.run.at_goals[goal] += usize::from(*has_gathered);
             }

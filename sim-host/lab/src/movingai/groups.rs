@@ -1,10 +1,9 @@
 //! Effect of maps shared over the radio among walls.
 //!
-//! Each run draws queries of a benchmark, one per robot, and starts all robots at once: without
-//! sharing, and with maps shared over the radio ([`staya_controller::land`]) at each packet loss.
-//! The complete simulator runs, so robots also block each other: a robot whose goal is in a narrow
-//! door stays there. The loss of a robot is its travel time compared with the benchmark's optimal
-//! length, as if it were alone.
+//! Each run draws one query of a benchmark per robot and starts all robots at once: without
+//! sharing, and with shared maps ([`staya_controller::land`]) at each packet loss. The complete
+//! simulator runs, so robots also block each other. The loss of a robot is its travel time compared
+//! with the optimal length, as if it were alone.
 
 use super::{Benchmark, Plan};
 use crate::experiment::rows::Jobs;
@@ -27,13 +26,13 @@ use std::fmt::{self, Display, Formatter};
 use std::ops::ControlFlow;
 
 const QUERIES: u32 = 0x0045_0204;
-/// Random number stream for the seeds for robots and radio.
+/// For robots and radio.
 const RUNS: u32 = 0x0045_0205;
 
 /// Parameters of the experiment.
 #[derive(Clone, Debug)]
 pub struct GroupPlan {
-    /// Queries, and properties of the robots, whose memories have the controller's default sizes.
+    /// Queries and robots; their memories have the controller's default sizes.
     pub robots: Plan,
     /// Robots per group, 1 to 100.
     pub groups: Vec<u32>,
@@ -41,19 +40,18 @@ pub struct GroupPlan {
     pub losses: Vec<f64>,
     /// Groups of each size, at least 1.
     pub runs: u32,
-    /// Equal seeds give equal results. The default differs from seed 1, which was used to develop
-    /// shared maps.
+    /// Seed; equal seeds give equal results. Shared maps were developed on seed 1.
     pub seed: u64,
 }
 
-/// Results of groups of one size.
+/// Results for one group size.
 #[derive(Clone, Debug, Serialize)]
 pub struct GroupPoint {
     /// Robots per group.
     pub robots: u32,
     /// Number of groups.
     pub runs: usize,
-    /// Without sharing, then with shared maps at each loss.
+    /// Results without sharing, then with shared maps at each loss.
     pub outlooks: Vec<Outlook>,
 }
 
@@ -79,13 +77,11 @@ impl GroupPlan {
         self.robots.params()
     }
 
-    /// Group size and loss of each point, ordered by group, without sharing first.
     fn cases(&self) -> Vec<(u32, Option<f64>)> {
         let shared = || [None].into_iter().chain(self.losses.iter().copied().map(Some));
         self.groups.iter().flat_map(|&group| shared().map(move |shared| (group, shared))).collect()
     }
 
-    /// The queries of a run, with different starts and goals; all queries if there are fewer.
     fn queries(&self, group: u32, run: u32) -> Vec<&Query> {
         let mut rng = Rng::keyed(self.seed, QUERIES, group, run);
         let mut left: Vec<&Query> = self.benchmark().queries.iter().filter(|query| query.start != query.goal).collect();
@@ -106,7 +102,6 @@ impl GroupPlan {
         let seed = Rng::keyed(self.seed, RUNS, group, run).next_u64();
         let scenario = scenario(self.benchmark().land.clone(), robots.collect(), self.route(), shared, seed);
         let outcome = simulate(&scenario, |_, _| ControlFlow::Continue(()))?;
-        // All open terrain takes one tick per cell.
         let fastest: Vec<(u32, f64)> = queries.iter().map(|q| (0, q.optimal_length * f64::from(UNIT))).collect();
         Ok(Trip::of(&outcome, &fastest))
     }
@@ -233,7 +228,6 @@ mod tests {
     use staya_controller::grid::{BLOCKED, Cell};
     use staya_sim::terrain::Terrain;
 
-    /// A pocket open to the west between starts in the west and goals in the east.
     fn pocket(robots: i16) -> Benchmark {
         let mut land = Terrain::flat(60, 40);
         (10..=30).for_each(|y| land.set(Cell::new(40, y), BLOCKED));

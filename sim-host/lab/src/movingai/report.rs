@@ -14,10 +14,9 @@ pub struct Answer {
     pub optimal_cells: f64,
     /// Whether the robot reached the goal.
     pub arrived: bool,
-    /// Length of the robot's path, cells; if it did not arrive, until it gave up.
+    /// Length of the path, cells; until the robot gave up if it did not arrive.
     pub length_cells: f64,
-    /// Length of the shortest route at the start as computed by the router with the whole map in
-    /// its window, cells; `None` if it found none or sees only a part.
+    /// Shortest route by the router with the whole map in its window, cells, if there is one.
     pub priced_cells: Option<f64>,
 }
 
@@ -30,14 +29,13 @@ impl Record for Answer {
 }
 
 impl Answer {
-    /// Excess of the path over the optimal length, in percent.
+    /// Excess of the path over the optimal length, percent.
     #[must_use]
     pub fn loss_percent(&self) -> f64 {
         percent(self.length_cells, self.optimal_cells)
     }
 
-    /// Deviation of the router's computed length from the optimal one, in percent; `None` if there
-    /// is none.
+    /// Deviation of `priced_cells` from the optimal length, percent.
     #[must_use]
     pub fn price_error_percent(&self) -> Option<f64> {
         Some(percent(self.priced_cells?, self.optimal_cells))
@@ -74,10 +72,9 @@ pub struct Report {
     pub answered: usize,
     /// Robots that reached their goal.
     pub arrived: usize,
-    /// Excess over the optimal length in percent, over the robots that arrived.
+    /// Excess of paths over the optimal length, percent, over arrived robots.
     pub loss_percent: Option<Summary>,
-    /// With the whole map in the window: largest absolute deviation of the router's computed length
-    /// from the optimal one, in percent.
+    /// Largest absolute deviation of `priced_cells` from the optimal length, percent.
     pub worst_price_error_percent: Option<f64>,
     /// With the whole map in the window: queries for which the router finds no route.
     pub without_price: Option<usize>,

@@ -3,7 +3,6 @@ use staya_controller::grid::{BLOCKED, Cell};
 
 const MAP: &str = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n...S\n";
 
-/// Writes map and scenario; `rows` are queries without bucket and map.
 fn files(rows: &[&str]) -> (tempfile::TempDir, PathBuf) {
     let dir = tempfile::tempdir().unwrap();
     let scen = dir.path().join("a.map.scen");
@@ -22,8 +21,7 @@ fn report(rows: &[&str], sight: Sight) -> Report {
 
 #[test]
 fn right_lengths_are_found_and_wrong_ones_are_reported() {
-    // Around the wall without cutting its corners; over swamp at the cost of ground; an empty
-    // route.
+    // Around the wall without cutting its corners; over swamp at the cost of ground; no move.
     let right = ["4 3 0 0 3 2 5", "4 3 0 2 3 2 3", "4 3 2 2 2 2 0"];
     let good = report(&right, Sight::Map);
     assert_eq!((good.answered, good.arrived, good.without_price), (3, 3, Some(0)));
@@ -58,11 +56,9 @@ fn mismatched_files_are_named() {
 
 #[test]
 fn map_too_large_for_the_search_is_planned_optimally() {
-    // A wall with a gap at its eastern end, far from the straight line.
     let mut land = Terrain::flat(300, 260);
     (0..299).for_each(|x| land.set(Cell::new(x, 100), BLOCKED));
     let [start, goal] = [Cell::new(298, 0), Cell::new(298, 200)];
-    // Diagonally before and behind the gap, without cutting a corner.
     let optimal_length = 198.0 + 2.0 * std::f64::consts::SQRT_2;
     let query = Query { bucket: 0, map: "a.map".into(), width: 300, height: 260, start, goal, optimal_length };
     let benchmark = Benchmark { map: "a.map".into(), land, queries: vec![query] };

@@ -1,4 +1,4 @@
-//! The coefficients of the route cost that a sweep varies.
+//! Coefficients of the route cost.
 
 use serde::Serialize;
 use staya_controller::cost::Gain;

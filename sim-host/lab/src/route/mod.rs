@@ -1,10 +1,8 @@
-//! Quality of routes that use a limited window (A. V. Kuznetsov 2017, KUZ, section 5, figures 2 to
-//! 4).
+//! Quality of routes with a limited window (A. V. Kuznetsov 2017, KUZ, section 5, figures 2 to 4).
 //!
-//! Each run creates one landscape and sends one robot from (1, 1) to the opposite corner, (size -
-//! 2, size - 2), with the controller's [`Router`](staya_controller::route::Router). Its travel time
-//! (eqs. 6 and 7) and the length of its path are compared with those of the globally fastest route,
-//! without other robots.
+//! Each run creates one landscape and sends one robot from (1, 1) to (size - 2, size - 2) with the
+//! controller's [`Router`](staya_controller::route::Router). Its travel time (eqs. 6 and 7) and the
+//! length of its path are compared with those of the globally fastest route.
 //!
 //! Effect of the coefficients on time loss dT and length loss dL, on natural terrain of 40 to 160
 //! obstacles with r = 5 (`--sweep a0,a1,a2,a3`):
@@ -12,8 +10,8 @@
 //! - a0 and a3 act by their ratio, because a2 hardly matters. The best a3 is 3 a0, near the time
 //!   that a cell takes on a good route: dT 16..26 %, dL 3..6 %. At 2 a0, dT is 0..6 and dL 1..5
 //!   points higher. At a0, robots wander (dT 70 % and more; up to 8 % never arrive), and without a3
-//!   hardly any arrives. Larger values do less harm: at 6 a0, dT is 2..9 points higher, and only at
-//!   12 a0 does the robot move nearly straight (dT 37..58 %, dL 5..13 %).
+//!   hardly any arrives. At 6 a0, dT is 2..9 points higher, and only at 12 a0 does the robot move
+//!   nearly straight (dT 37..58 %, dL 5..13 %).
 //! - a1 has no effect on a single robot. Among 500 parked robots (`--parked`), a1 = 2 lowers dT by
 //!   about 0.5 points compared with 0, and larger values gain nothing; dL does not change.
 //! - a2 has no effect on dT and dL, but without it 6 to 20 % of the robots circle forever; 1/2
@@ -48,34 +46,32 @@ const ORDER: u32 = 0x0045_0002;
 const MOVES: u32 = 0x0045_0004;
 const PARKED: u32 = 0x0045_0003;
 
-/// Number of obstacles whose arrival times KUZ shows in figure 4.
+/// Obstacles of KUZ figure 4.
 const SHOWN: u32 = 130;
 
-/// Largest window radius of the experiment.
+/// Largest window radius, cells.
 pub const MAX_RADIUS: u8 = 31;
-/// Cells of the largest window with its border.
+/// Largest window with its border.
 pub(crate) const CELLS: usize = {
     let side = 2 * MAX_RADIUS as usize + 3;
     side * side
 };
-/// Permitted sides of a landscape: start and target must be different cells inside it.
+/// Permitted sides of a landscape, cells: start and target are different cells inside it.
 pub const SIZES: std::ops::RangeInclusive<u16> = 4..=2000;
 
 /// A family of random landscapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Land {
-    /// Hills of mud around this number of cells of the worst class (KUZ figures 7a and 7b; results
-    /// in figure 3).
+    /// Hills of mud around this number of cells of the worst class (KUZ figures 3, 7a and 7b).
     Natural(u32),
-    /// The cells of a natural landscape with this number of obstacles in random order. The classes
-    /// have equal shares and hence equal entropy S, but there are no hills.
+    /// The cells of a natural landscape with this number of obstacles in random order: equal
+    /// entropy S, but no hills, so it is comparable with natural terrain point by point.
     ///
-    /// KUZ figure 2 plots its "uniformly random" landscapes over N(S), the number of obstacles by
-    /// entropy. Their classes therefore do not have equal shares (figure 7c: S = 1.85; equal shares
-    /// have ln 9 = 2.20). The paper does not say how the shares are chosen. These landscapes are
-    /// comparable with natural terrain point by point.
+    /// KUZ figure 2 plots "uniformly random" landscapes over N(S), the number of obstacles by
+    /// entropy. Their classes do not have equal shares (figure 7c: S = 1.85; equal shares have ln 9
+    /// = 2.20), and the paper does not give the shares.
     Shuffled(u32),
-    /// Each cell has any class with equal probability, which has the highest entropy.
+    /// Any class in each cell with equal probability: the highest entropy.
     Uniform,
 }
 
@@ -115,25 +111,21 @@ pub struct Plan {
     pub hills: Hills,
     /// Norm of the distance to an obstacle in natural terrain.
     pub hill_norm: Norm,
-    /// Stationary robots in random cells of each landscape. The paper has none; without them, a1
-    /// has no effect.
+    /// Stationary robots in random cells, which only a1 affects; 0 in the paper.
     pub parked: u32,
-    /// Equal seeds give equal results. The default differs from seed 1, on which parameters were
-    /// tuned.
+    /// Seed; equal seeds give equal results. Parameters were tuned on seed 1.
     pub seed: u64,
     /// Parameters of routing.
     pub params: RouteParams,
-    /// When the robot repeats its search.
+    /// Condition for a repeated search.
     pub replan: Replan,
-    /// Strictness with which the order of moves follows their costs. The paper draws the order at
-    /// random.
+    /// Effect of the costs on the order of moves; the paper draws the order at random.
     pub sharpness: Sharpness,
-    /// Other values of coefficients to try on the same landscapes, one at a time.
+    /// Other values of coefficients on the same landscapes, one at a time.
     pub sweep: Vec<(Coefficient, Gain)>,
 }
 
 impl Default for Plan {
-    /// KUZ section 5 on natural land.
     fn default() -> Self {
         Self {
             lands: [10, 40, 70, 100, 130, 160].map(Land::Natural).to_vec(),
@@ -163,7 +155,7 @@ pub struct Run {
     pub optimal_cost: u64,
     /// Length of the fastest route, [`UNIT`]ths of a cell.
     pub optimal_length: u64,
-    /// Paths with the plan's parameters, then with each of the sweep's.
+    /// Paths with the plan's parameters, then with each value of the sweep.
     pub walks: Vec<Walk>,
 }
 
@@ -182,7 +174,7 @@ impl Record for Run {
     }
 }
 
-/// One landscape with both paths across it, for a picture.
+/// One landscape with both paths across it.
 #[derive(Clone, Debug)]
 pub struct Example {
     /// Family of the landscape.
@@ -191,11 +183,11 @@ pub struct Example {
     pub radius: u8,
     /// The terrain.
     pub land: Terrain,
-    /// Path of the robot.
+    /// Cells of the robot's path.
     pub way: Vec<Cell>,
-    /// The fastest route.
+    /// Cells of the fastest route.
     pub optimal: Vec<Cell>,
-    /// Places of parked robots.
+    /// Cells of parked robots.
     pub parked: Vec<Cell>,
     /// Results of the run.
     pub run: Run,
@@ -231,7 +223,6 @@ impl Plan {
         (self.lands[point / variants.len()], variants[point % variants.len()])
     }
 
-    /// Groups runs by land and landscape, without incomplete landscapes.
     fn by_land(&self, runs: &[Vec<Run>]) -> Vec<Vec<Run>> {
         let all_walks = |variants: &[Vec<Run>]| {
             let least = variants.iter().map(Vec::len).min().unwrap_or(0);
@@ -244,7 +235,6 @@ impl Plan {
         runs.chunks(self.variants().count()).map(all_walks).collect()
     }
 
-    /// Seed of a landscape, a function of seed, obstacles and number of the run.
     fn landscape_seed(&self, land: Land, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, land.obstacles().unwrap_or(u32::MAX), run).next_u64()
     }
@@ -267,7 +257,6 @@ impl Plan {
             Land::Shuffled(obstacles) => {
                 let mut cells = natural_by(&plan, obstacles, self.hill_norm, self.hills)?.cells().to_vec();
                 let mut rng = Rng::keyed(self.seed, ORDER, key, run);
-                // Fisher-Yates shuffle: each order is equally likely.
                 for last in (1..cells.len()).rev() {
                     cells.swap(last, rng.below(last as u32 + 1) as usize);
                 }
@@ -276,7 +265,6 @@ impl Plan {
         }
     }
 
-    /// Places of the parked robots of a run, in ascending order, without start and target.
     fn parked(&self, land: Land, run: u32) -> Vec<Cell> {
         let key = land.obstacles().unwrap_or(u32::MAX);
         let mut rng = Rng::keyed(self.seed, PARKED, key, run);
@@ -312,7 +300,7 @@ impl Plan {
         let (from, to) = (self.start(), self.target());
         let RouteParams { norm, corner_cutting, .. } = *params;
         let metrics = Metrics::of(land);
-        // Random land has no walls, so there is always a route.
+        // Random land has no walls.
         let optimal = planner.route(land, from, to, norm, corner_cutting);
         let (optimal_cost, optimal_length, cells) =
             optimal.map_or((0, 0, Vec::new()), |route| (route.cost, route.length(norm), route.cells));
@@ -333,8 +321,8 @@ impl Plan {
         (run, cells)
     }
 
-    /// Repeats the run with the median time loss on the land whose number of obstacles is nearest
-    /// to that in the paper's figure (130); `None` without runs.
+    /// Repeats the run with the median time loss on the land nearest to 130 obstacles, as in the
+    /// paper's figure; `None` without runs.
     ///
     /// # Errors
     /// A landscape cannot be created.
@@ -386,7 +374,7 @@ impl Experiment for Plan {
         ensure!((1..=MAX_RADIUS).contains(&radius), "a window of radius {radius}; it must be 1..={MAX_RADIUS}");
         let (parked, cells) = (self.parked, u32::from(size) * u32::from(size));
         ensure!(parked <= cells / 2, "{parked} parked robots on {cells} cells; at most half of the cells can be taken");
-        // The first landscape of each family shows whether the family can be created.
+        // The first landscape shows whether the family can be created.
         for land in &self.lands {
             self.landscape(*land, 0)?;
         }
@@ -402,7 +390,6 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // Destructured, so that a new field cannot be forgotten.
         let Self {
             lands: _,
             runs: _,
@@ -440,8 +427,7 @@ impl Experiment for Plan {
         ]
     }
 
-    /// Seed of the landscape, as accepted by `staya terrain`. Other random numbers are functions of
-    /// the first seed.
+    /// Seed of the landscape, for `staya terrain`; other random numbers depend on the first seed.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.landscape_seed(self.point(point).0, run)
     }
@@ -454,7 +440,6 @@ impl Experiment for Plan {
         jobs.each(|scratch, point, run| Ok(Some(self.run_one(scratch, self.point(point), run)?)))
     }
 
-    /// Fits take up to a second per point and run in parallel.
     fn report(&self, runs: &[Vec<Run>]) -> Report {
         Report::of(self, &self.by_land(runs))
     }

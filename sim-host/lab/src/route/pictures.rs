@@ -1,5 +1,4 @@
-//! Pictures of the route experiment: KUZ figures 2 (shuffled land), 3 (natural land) and 4 (arrival
-//! times), an example, and the effects of other coefficients.
+//! Pictures of the route experiment: KUZ figures 2 to 4, an example, and other coefficients.
 
 use super::{Arrivals, Coefficient, Example, Land, Loss, Means, Point, Report, SHOWN, ticks};
 use libm::log;
@@ -40,8 +39,6 @@ impl Report {
         self.points.iter().all(|point| point.land == "natural")
     }
 
-    /// dT and dL, and properties of the landscapes, over the number of obstacles (KUZ figures 2 and
-    /// 3).
     fn losses(&self) -> Panels {
         let (title, label) = if self.is_natural() {
             ("Routes by window on natural land", "obstacles N")
@@ -95,8 +92,6 @@ impl Report {
         Panels::new(title).with(loss).with(entropy).with(edges)
     }
 
-    /// The points in the order of the axis: those with a number of obstacles, or the one with equal
-    /// classes.
     fn ordered(&self, equal: bool) -> Vec<&Point> {
         let wanted = |point: &&Point| point.obstacles.is_none() == equal;
         let mut points: Vec<&Point> = self.points.iter().filter(wanted).collect();
@@ -108,13 +103,10 @@ impl Report {
         let places = || self.points.iter().map(place);
         let (low, high) =
             places().fold((f64::INFINITY, 1.0), |(low, high), x| (low.min(x.max(1.0)), f64::max(high, x)));
-        // 0.0160518 is N(0).
         let zero = staya_sim::terrain::metrics::obstacles_of_entropy(0.0);
         (0..=60).map(|i| low + (high - low) * f64::from(i) / 60.0).map(|n| [n, log(n / zero) / 4.227_69]).collect()
     }
 
-    /// Arrival times of the fastest route and of the robot, at the number of obstacles nearest to
-    /// the paper's.
     fn arrivals(&self) -> Option<Panels> {
         let off = |point: &&Point| point.obstacles.map_or(u32::MAX, |n| n.abs_diff(SHOWN));
         let point = self.points.iter().min_by_key(off)?;
@@ -130,13 +122,12 @@ impl Report {
         Some(panels)
     }
 
-    /// dT and dL over the values of one coefficient; `None` unless it was varied.
     fn answers(&self, coefficient: Coefficient) -> Option<Panels> {
         let answers: Vec<_> = self.sweep.iter().filter(|answer| answer.coefficient == coefficient).collect();
         if answers.is_empty() {
             return None;
         }
-        // The plan's value. The axis includes all values, even if losses exceed the chart.
+        // The axis includes all values, even if losses exceed the chart.
         let own = match coefficient {
             Coefficient::A0 => self.a0,
             Coefficient::A1 => self.a1,
@@ -177,7 +168,6 @@ impl Report {
     }
 }
 
-/// Place of a point on the axis of obstacles; uniform land is placed by its entropy.
 fn place(point: &Point) -> f64 {
     point.obstacles.map_or(point.obstacles_of_entropy, f64::from)
 }
@@ -233,7 +223,7 @@ fn map(example: &Example) -> Canvas {
         [LEFT + x * cell, TOP + SIDE - y * cell]
     };
 
-    // The robot's path is thinner, so that both are visible where they coincide.
+    // Thinner, so that both paths are visible where they coincide.
     let (thick, thin) = (Stroke::new(PALETTE[0], 6.0), Stroke::new(PALETTE[1], 2.0));
     for (way, stroke) in [(&example.optimal, thick), (&example.way, thin)] {
         let points: Vec<[f64; 2]> = way.iter().map(centre).collect();

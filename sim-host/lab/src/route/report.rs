@@ -1,4 +1,4 @@
-//! Results of the route experiment, for tables and plots.
+//! Results of the route experiment.
 
 use super::{Coefficient, Land, Plan, Run, ticks};
 use crate::experiment::Maybe;
@@ -14,13 +14,13 @@ use std::fmt::{self, Display, Formatter};
 
 const BINS: usize = 30;
 
-/// Loss compared with the fastest route, in percent, over the robots that arrived.
+/// Loss compared with the fastest route, percent, over arrived robots.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Loss {
     /// Mean, median and spread.
     #[serde(flatten)]
     pub summary: Summary,
-    /// The 95 % interval of the mean.
+    /// 95 % interval of the mean.
     pub interval95: [f64; 2],
 }
 
@@ -31,8 +31,7 @@ impl Loss {
     }
 }
 
-/// Arrival times of robots: histogram, Norton-Rice distribution and its goodness of fit (KUZ figure
-/// 4).
+/// Arrival times: histogram, Norton-Rice distribution and its goodness of fit (KUZ figure 4).
 #[derive(Clone, Debug, Serialize)]
 pub struct Arrivals {
     /// Mean travel time, ticks.
@@ -43,7 +42,7 @@ pub struct Arrivals {
     pub bin_ticks: f64,
     /// Arrivals in each bin.
     pub counts: Vec<u64>,
-    /// Maximum-likelihood distribution; `None` for fewer than 10 arrivals or if all are equal.
+    /// Maximum-likelihood distribution; `None` for fewer than 10 or equal arrivals.
     pub norton_rice: Option<NortonRice>,
     /// Chi-square test of the distribution; `None` for fewer than about 40 arrivals.
     pub goodness: Option<Goodness>,
@@ -75,13 +74,11 @@ pub struct Point {
     pub runs: usize,
     /// Robots that reached their target.
     pub arrived: usize,
-    /// dT: excess of the travel time over that of the fastest route, in percent.
+    /// dT: excess of the travel time over that of the fastest route, percent.
     pub time_loss_percent: Option<Loss>,
-    /// dL as KUZ defines it: absolute difference of the path's length to that of the fastest route,
-    /// in percent.
+    /// dL (KUZ): absolute difference of the path's length to that of the fastest route, percent.
     pub length_loss_percent: Option<Loss>,
-    /// Mean signed difference of the lengths, in percent. Negative if robots move straight over bad
-    /// ground, because the fastest route is not the shortest.
+    /// Mean signed difference of the lengths, percent; negative if robots cross bad ground.
     pub length_excess_percent: Option<f64>,
     /// Mean configuration entropy S.
     pub entropy: f64,
@@ -89,26 +86,26 @@ pub struct Point {
     pub total_edge: f64,
     /// Mean total edge density TED.
     pub total_edge_density: f64,
-    /// N(S) of the mean entropy by KUZ's formula, with its constant corrected.
+    /// N(S) of the mean entropy by KUZ's formula with its constant corrected.
     pub obstacles_of_entropy: f64,
     /// Arrival times of the robots.
     pub arrivals: Option<Arrivals>,
-    /// Arrival times of the fastest routes, over all landscapes.
+    /// Arrival times of the fastest routes on all landscapes.
     pub optimal_arrivals: Option<Arrivals>,
 }
 
-/// Effect of another value of one coefficient, on the same landscapes.
+/// Effect of another value of a coefficient on the same landscapes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Response {
     /// The coefficient.
     pub coefficient: Coefficient,
-    /// Its value.
+    /// Value of the coefficient.
     pub value: f64,
-    /// One entry per point, in the order of the points.
+    /// Mean losses, in the order of the points.
     pub points: Vec<Means>,
 }
 
-/// Mean losses.
+/// Mean losses of one point.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Means {
     /// Robots that reached their target.
@@ -132,7 +129,7 @@ pub struct Report {
     pub classes: u8,
     /// Interpretation of natural terrain.
     pub hills: String,
-    /// Additional ticks that halve the priority of a move; 0: the cheapest move always comes first.
+    /// Additional cost of a move that halves its chance, ticks; 0: the cheapest is first.
     pub shuffle_ticks: f64,
     /// Norm of the distance to an obstacle.
     pub hill_norm: Norm,
@@ -158,7 +155,7 @@ pub struct Report {
     pub a2: f64,
     /// Ticks per cell of distance between exit and target.
     pub a3: f64,
-    /// The points of the figures in the order of the plan, without those that have no runs.
+    /// Points in the order of the plan, without points that have no runs.
     pub points: Vec<Point>,
     /// Effects of other coefficients.
     pub sweep: Vec<Response>,
@@ -166,7 +163,7 @@ pub struct Report {
     pub(super) params: RouteParams,
 }
 
-/// Converts a coefficient to a number.
+/// Converts a coefficient to a number, sixteenths to units.
 #[must_use]
 pub fn decimal(gain: Gain) -> f64 {
     f64::from(gain.sixteenths()) / f64::from(Gain::ONE.sixteenths())
@@ -189,7 +186,7 @@ impl Report {
             points: filled
                 .iter()
                 .map(|(_, runs)| {
-                    // Path 0 is that of the plan's own parameters.
+                    // Path 0 has the plan's own parameters.
                     let [time, length] = losses(runs, index + 1);
                     let size = |percent: f64| libm::fabs(percent);
                     let length: Vec<f64> = length.into_iter().map(size).collect();
@@ -223,8 +220,7 @@ impl Report {
     }
 }
 
-/// Excess of time and (signed) length of path `variant` over the fastest route, in percent, over
-/// the robots that arrived.
+/// Excess of time and (signed) length of path `variant`, percent, over arrived robots.
 fn losses(runs: &[Run], variant: usize) -> [Vec<f64>; 2] {
     let percent = |ours: u64, best: u64| 100.0 * (ours as f64 - best as f64) / best as f64;
     let arrived = runs.iter().map(|run| (run, &run.walks[variant])).filter(|(_, walk)| walk.arrived);
@@ -341,7 +337,6 @@ impl Display for Report {
     }
 }
 
-/// Formats about three digits; `-` for a missing value.
 fn digits(value: Option<f64>) -> String {
     match value {
         Some(x) if x < 0.01 => format!("{x:.0e}"),

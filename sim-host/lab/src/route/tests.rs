@@ -5,7 +5,6 @@ use staya_controller::robot::RobotId;
 use staya_controller::route::{CostField, ExitRule, Router};
 use staya_sim::world::{MoveRules, World};
 
-/// A small, fast plan that is independent of the controller's defaults.
 fn plan() -> Plan {
     Plan {
         lands: vec![Land::Natural(6), Land::Natural(20)],
@@ -85,7 +84,7 @@ fn no_robot_is_faster_than_the_optimum_though_some_paths_are_shorter() {
         assert!(walk.length >= shortest && run.optimal_length >= shortest);
     }
     assert!(runs().any(|run| run.walks[0].cost > run.optimal_cost));
-    // The optimum goes around terrain that the robot crosses, so dL may be negative.
+    // The optimum goes around terrain that the robot crosses.
     assert!(runs().any(|run| run.walks[0].length < run.optimal_length));
 }
 
@@ -122,7 +121,6 @@ fn early_end_keeps_the_first_runs_of_every_point() {
     for (some, full) in some.iter().zip(&full) {
         assert_eq!(some[..], full[..some.len()]);
     }
-    // Runs in progress at the stop are completed.
     let made: usize = some.iter().map(Vec::len).sum();
     assert!((100..plan.total()).contains(&made), "{made}");
     let none = plan.carry_out(|_| false).unwrap();
@@ -201,7 +199,6 @@ fn robot_without_a_free_move_stays() {
 
 #[test]
 fn robot_that_cannot_arrive_gives_up() {
-    // The target is enclosed by walls; the robot explores the cells that it can reach.
     let mut cells = vec![1; 64];
     for at in [54, 55, 62] {
         cells[at] = BLOCKED;

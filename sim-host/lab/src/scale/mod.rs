@@ -1,10 +1,9 @@
-//! Cost per robot by swarm size: time and memory of swarms with equal density, from a thousand to a
-//! million robots.
+//! Time and memory per robot in swarms of equal density, from a thousand to a million robots.
 //!
-//! On the grid these are the swarms of `scenarios/scale.toml` and `million.toml`: terrain of nine
-//! classes, goals up to ten cells away, and about nine receivers of each beacon. In the plane,
-//! boids with ORCA have the same area per robot. Every beacon is encoded, transmitted, and decoded
-//! by each receiver. The runs are identical on any machine; only their cost differs.
+//! On the grid these are the swarms of `scenarios/scale.toml` and `million.toml`: nine classes of
+//! terrain, goals up to ten cells away, about nine receivers of each beacon. In the plane, boids
+//! with ORCA have the same area per robot. Every beacon is encoded, transmitted, and decoded by
+//! each receiver. Runs are identical on any machine; only their cost differs.
 
 mod process;
 mod report;
@@ -26,34 +25,34 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Area per robot, square metres, as in `scale.toml`.
+/// As in `scale.toml`.
 const AREA_M2: f64 = 22.5;
-/// Robot-ticks needed for a reliable time; smaller swarms run several times.
+/// Robot-ticks for a reliable time; smaller swarms run several times.
 const WORTH: u64 = 1_000_000;
 
-/// Where robots are.
+/// Space in which robots move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum Ground {
-    /// Cell by cell, each to its goal.
+    /// From cell to cell, each to its goal.
     Grid,
-    /// Boids behind ORCA.
+    /// Boids with ORCA.
     Plane,
 }
 
-/// What to do: swarms of equal density and rising size.
+/// Swarms of equal density and rising size.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// Numbers of robots, rising; a million needs some gigabytes of memory.
+    /// Numbers of robots, rising; a million robots need some gigabytes of memory.
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "1000,10000,100000")]
     pub robots: Vec<u32>,
-    /// Where they are.
+    /// Spaces in which robots move.
     #[arg(long, value_delimiter = ',', default_value = "grid,plane")]
     pub ground: Vec<Ground>,
-    /// Ticks that are timed, after two that are not.
+    /// Timed ticks, after two untimed ones.
     #[arg(long, default_value_t = 20)]
     pub ticks: u32,
-    /// Equal seeds give equal runs.
+    /// Seed; equal seeds give equal runs.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Folder for the rows.
@@ -61,7 +60,7 @@ pub struct Plan {
     pub out: PathBuf,
 }
 
-/// Untimed ticks at the start, in which tables fill and memory is allocated.
+/// Ticks in which tables fill and memory is allocated.
 const WARM_UP: u32 = 2;
 
 impl Default for Plan {
@@ -105,7 +104,6 @@ impl Plan {
         (self.ground[point % self.ground.len()], self.robots[point / self.ground.len()])
     }
 
-    /// Runs the swarm until its time is reliable; `None` if it was stopped.
     fn row(&self, ground: Ground, robots: u32, goes_on: &dyn Fn() -> bool) -> Result<Option<Row>> {
         let scenario = Scenario::parse(&self.text(ground, robots), Path::new("scale.toml"), &Overrides::default())?;
         let runs = WORTH.div_ceil(u64::from(robots) * u64::from(self.ticks)).max(1);
@@ -118,7 +116,6 @@ impl Plan {
         Ok(Some(row))
     }
 
-    /// Makes one run; `false` if it was stopped.
     fn run(&self, scenario: &Scenario, row: &mut Row, goes_on: &dyn Fn() -> bool) -> Result<bool> {
         let mut begun = None;
         let mut is_whole = true;
@@ -177,8 +174,7 @@ impl Experiment for Plan {
             ("ground", Value::Word(report::word(ground).into())),
             ("robots", Value::Number(f64::from(robots))),
             ("ticks", Value::Number(f64::from(self.ticks))),
-            // Time and memory depend on the number of threads, so rows with another number belong
-            // to another plan.
+            // Time and memory depend on the number of threads, which is therefore part of the plan.
             ("threads", Value::from(rayon::current_num_threads() as u32)),
         ]
     }
@@ -192,7 +188,7 @@ impl Experiment for Plan {
         Row::new(ground, robots)
     }
 
-    /// Makes one run at a time, because a timed run needs the machine for itself.
+    /// A timed run needs the machine for itself.
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Row>>> {
         let before = process::memory_bytes();
         jobs.each(|(): &mut (), point, _| {

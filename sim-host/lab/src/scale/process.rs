@@ -1,11 +1,10 @@
-//! Resource usage of this process, if the system reports it (Linux: `/proc`, see proc(5)).
+//! Resource usage of this process (Linux: `/proc`, see proc(5)).
 
 use std::fs;
 
-/// Rate of the clock in which Linux reports processor time, hertz.
 const CLOCK_HZ: f64 = 100.0;
 
-/// Processor time of all threads so far; `None` if the system does not report it.
+/// Processor time of all threads; `None` if the system does not report it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Usage(Option<f64>);
 
@@ -20,8 +19,7 @@ impl Usage {
     }
 }
 
-/// User and system time, fields 14 and 15. The name in field 2 may contain anything and ends with
-/// the last bracket.
+/// Fields 14 and 15. The name in field 2 may contain anything and ends with the last bracket.
 fn processor_s(stat: &str) -> Option<f64> {
     let (_, fields) = stat.rsplit_once(')')?;
     let mut times = fields.split_whitespace().skip(11).map_while(|field| field.parse::<u64>().ok());

@@ -1,4 +1,4 @@
-//! Results: cost by number of robots.
+//! Results of the scale experiment.
 
 use super::{Ground, Plan};
 use crate::experiment::Maybe;
@@ -8,23 +8,22 @@ use staya_sim::record::{Error, write_atomically};
 use std::fmt::{self, Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
-/// Tick of real-time operation: 10 Hz, seconds.
 const TICK_S: f64 = 0.1;
 
 /// Measurements of one swarm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Grid or plane.
+    /// Space in which robots moved.
     pub ground: Ground,
     /// Number of robots.
     pub robots: u32,
     /// Timed ticks of all runs.
     pub ticks: u64,
-    /// Their wall time, seconds.
+    /// Wall time of these ticks, seconds.
     pub wall_s: f64,
     /// Processor time of all threads, seconds; `None` if unknown.
     pub processor_s: Option<f64>,
-    /// Resident memory beyond that of the program before the first swarm; `None` if unknown.
+    /// Resident memory beyond that before the first swarm; `None` if unknown.
     pub memory_bytes: Option<u64>,
     /// Packets decoded in a run.
     pub packets_heard: u64,
@@ -53,31 +52,22 @@ impl Row {
     }
 }
 
-/// One row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
-    /// Grid or plane.
     pub ground: Ground,
-    /// Number of robots.
     pub robots: u32,
-    /// Timed ticks of all runs.
     pub ticks: u64,
-    /// Wall time per robot and tick, microseconds.
     pub wall_us: f64,
-    /// Processor time of all threads per robot and tick, microseconds; null if unknown.
+    /// Processor time of all threads per robot and tick, microseconds; `null` if unknown.
     pub processor_us: Option<f64>,
-    /// Ratio of the processor time (wall time if unknown) to that of the smallest swarm.
+    /// Ratio to the smallest swarm of processor time (wall time if unknown).
     pub ratio: f64,
-    /// Wall time of a tick, seconds.
     pub tick_s: f64,
-    /// Whether this is real time at 10 Hz.
+    /// Whether a tick takes at most 0.1 s.
     pub is_real_time: bool,
-    /// Resident memory per robot, bytes; null if unknown. In small swarms it is mostly that of the
-    /// program.
+    /// Resident memory per robot, bytes; mostly the program's in small swarms.
     pub bytes: Option<f64>,
-    /// Packets decoded per robot and tick.
     pub heard: f64,
-    /// Trace hash, 16 hex digits.
     pub trace_hash: String,
 }
 

@@ -1,10 +1,9 @@
-//! The smallest possible travel time on changing land, with perfect knowledge of all changes.
+//! The smallest travel time on changing land, with perfect knowledge of all changes.
 //!
-//! Dijkstra's algorithm over arrival times. A cell is crossed at the pace that it has when it is
-//! entered, so waiting before it may pay off. With waiting, an earlier arrival is never worse, and
-//! the search is exact (S. E. Dreyfus, "An appraisal of some shortest-path algorithms", Operations
-//! Research 17, 1969). Here, a wait may end at any time, whereas robots decide at ticks: the result
-//! is a lower bound for robots.
+//! Dijkstra's algorithm over arrival times. A cell is crossed at its pace on entry, so waiting may
+//! pay off. With waiting, an earlier arrival is never worse, and the search is exact (S. E.
+//! Dreyfus, "An appraisal of some shortest-path algorithms", Operations Research 17, 1969). Here, a
+//! wait may end between two ticks, so the result is a lower bound for robots.
 
 use super::walk::Changing;
 use staya_controller::grid::{BLOCKED, Cell, Dir, Norm, UNIT};
@@ -15,16 +14,14 @@ use std::collections::BinaryHeap;
 
 #[derive(Default)]
 pub(super) struct Foresight {
-    /// Classes of each cell, with the ticks from which they hold.
     classes: Vec<Vec<(u32, u8)>>,
     arrival: Vec<u64>,
     queue: BinaryHeap<Reverse<(u64, u32)>>,
 }
 
 impl Foresight {
-    /// Smallest travel time, [`UNIT`]ths of a tick; `None` if no route takes at most `most`. Routes
-    /// may wait for temporarily closed cells and cut corners of closed cells. O((cells + changes)
-    /// log cells).
+    /// Smallest travel time, [`UNIT`]ths of a tick; `None` above `most`. Routes may wait for closed
+    /// cells and cut their corners. O((cells + changes) log cells).
     pub fn least_cost(
         &mut self,
         (land, changes, seed): Changing<'_>,
@@ -60,7 +57,6 @@ impl Foresight {
         None
     }
 
-    /// Earliest time at which a cell is crossed from a neighbour at `now`.
     fn crossed(&self, cell: usize, now: u64, length: u64) -> u64 {
         let classes = &self.classes[cell];
         let tick = now.div_ceil(u64::from(UNIT));
@@ -79,7 +75,6 @@ impl Foresight {
         best
     }
 
-    /// Records the classes of all cells up to a tick.
     fn foresee(&mut self, (land, changes, seed): Changing<'_>, last: u32) {
         let mut land = land.clone();
         self.classes.resize_with(land.cells().len(), Vec::new);
@@ -92,7 +87,7 @@ impl Foresight {
             let classes = &mut self.classes;
             change(&mut land, changes, seed, tick, |cell, class| {
                 let classes = &mut classes[cell.y as usize * width + cell.x as usize];
-                // Of several changes in one tick, the last one holds.
+                // The last change in a tick holds.
                 classes.pop_if(|(since, _)| *since == tick);
                 classes.push((tick, class));
             });

@@ -1,15 +1,12 @@
 //! Value of a map on changing land. KUZ section 3 defines u(t, .) and land that is "not fully
 //! scouted", but gives no results for either.
 //!
-//! Each run creates one natural landscape (KUZ section 5) that drifts: in each tick, some of its
-//! cells become slower or faster to cross by one tick. One robot moves from (1, 1) to the opposite
-//! corner with the controller's [`Router`](staya_controller::route::Router). Its range of sight is
-//! that of `staya experiment route`. It plans either on its sight alone or on a wider window of a
-//! map. The map was made before the run, is partly blank or wrong, and is updated with everything
-//! that the robot has seen ([`LandMemory`](staya_controller::route::LandMemory)).
-//!
-//! Its travel time is compared with the lower bound for perfect knowledge of all future changes
-//! (`foresight`).
+//! Each run creates one natural landscape (KUZ section 5) on which the crossing time of some cells
+//! changes by one tick in each tick. One robot moves from (1, 1) to the opposite corner with the
+//! controller's [`Router`](staya_controller::route::Router). It plans on its sight alone or on a
+//! wider window of a map, which is partly blank or wrong and is updated with everything seen
+//! ([`LandMemory`](staya_controller::route::LandMemory)). Its travel time is compared with the
+//! lower bound for perfect knowledge of all future changes.
 
 mod foresight;
 mod report;
@@ -39,7 +36,7 @@ use walk::{Knowledge, Scout};
 const LANDSCAPES: u32 = 0x0045_0011;
 const CLASSES: u8 = 9;
 
-/// What to do: what a map is worth on land that changes, with some of it blank or wrong.
+/// Value of a map, partly blank or wrong, on changing land.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Obstacles of the natural landscapes.
@@ -51,29 +48,28 @@ pub struct Plan {
     /// Cells along each side of a landscape.
     #[arg(long, default_value_t = 100)]
     pub size: u16,
-    /// How far the robot sees, cells in each direction.
+    /// Range of sight, cells in each direction.
     #[arg(long, value_name = "CELLS", default_value_t = RouteParams::default().radius, value_parser = clap::value_parser!(u8).range(1..=i64::from(MAX_RADIUS)))]
     pub sight: u8,
-    /// How far it plans on a map, cells in each direction; not less than it sees.
+    /// Planning radius on a map, cells in each direction; at least the range of sight.
     #[arg(long, value_name = "CELLS", default_value_t = 16, value_parser = clap::value_parser!(u8).range(1..=i64::from(MAX_RADIUS)))]
     pub map_radius: u8,
-    /// Shares of the cells that become a tick slower or faster to cross in each tick, 0 to 1.
+    /// Shares of the cells whose crossing time changes by a tick in each tick, 0 to 1.
     #[arg(long = "drift", value_name = "SHARE,...", value_delimiter = ',', default_value = "0,0.001,0.01")]
     pub drifts: Vec<f64>,
-    /// Shares of the map that are blank, 0 to 1: a row each.
+    /// Blank shares of the map, 0 to 1, one row each.
     #[arg(long = "unknown", value_name = "SHARE,...", value_delimiter = ',', default_value = "0,0.3,0.6,1")]
     pub unknown: Vec<f64>,
-    /// Shares of the map that show what is elsewhere, 0 to 1: a row each.
+    /// Shares of the map that show other places, 0 to 1, one row each.
     #[arg(long = "wrong", value_name = "SHARE,...", value_delimiter = ',', default_value = "0.3,0.6")]
     pub wrong: Vec<f64>,
-    /// Cells along each side of what is blank or wrong.
+    /// Cells along each side of blank or wrong areas.
     #[arg(long, value_name = "CELLS", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub patch_cells: u16,
-    /// When the robot searches its way anew.
+    /// Condition for a repeated search.
     #[arg(long, default_value = "each-cell", value_parser = options::replan())]
     pub replan: Replan,
-    /// Equal seeds give equal results. The route's parameters were chosen on seed 1; nothing was on
-    /// this one.
+    /// Seed; equal seeds give equal results. The route's parameters were tuned on seed 1.
     #[arg(long, default_value_t = 2)]
     pub seed: u64,
     /// Folder for rows.
@@ -92,7 +88,7 @@ impl Default for Plan {
 pub enum Known {
     /// Only the cells in sight.
     Sight,
-    /// A partly blank or wrong map, updated by everything seen since.
+    /// A partly blank or wrong map, updated by everything seen.
     Map {
         /// Blank share.
         unknown: f64,
@@ -127,16 +123,15 @@ impl Known {
 /// Result of one landscape.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Run {
-    /// Smallest travel time with perfect knowledge, [`UNIT`](staya_controller::grid::UNIT)ths of a
-    /// tick.
+    /// Smallest travel time, [`UNIT`](staya_controller::grid::UNIT)ths of a tick.
     pub least_cost: u64,
     /// Whether the robot reached its target.
     pub arrived: bool,
-    /// Its travel time, in the same unit.
+    /// Travel time of the robot, in the same unit.
     pub cost: u64,
-    /// Number of its moves.
+    /// Number of moves.
     pub moves: u32,
-    /// Cells that at the end it remembered differently from its map.
+    /// Cells that the robot finally remembered differently from its map.
     pub remembered: u32,
 }
 
@@ -173,7 +168,6 @@ impl Plan {
         (self.known()[point / self.drifts.len()], self.drifts[point % self.drifts.len()])
     }
 
-    /// All kinds of knowledge have the same landscapes with the same drift.
     fn landscape_seed(&self, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, self.obstacles, run).next_u64()
     }
@@ -195,13 +189,12 @@ impl Plan {
         let sight = if known == Known::Far { self.map_radius } else { self.sight };
         let knowledge = Knowledge { map: map.as_ref(), sight };
         let walk = scout.walk((&land, &changes, seed), ends, &knowledge, &params, self.replan);
-        // With perfect knowledge, the travel time is at most that of the robot.
+        // The smallest travel time is at most that of the robot.
         let least = foresight.least_cost((&land, &changes, seed), ends, params.norm, walk.cost);
         Ok(Run { least_cost: least.unwrap_or(walk.cost), ..walk })
     }
 }
 
-/// Changes by which this share of cells becomes slower or faster in each tick.
 fn drifting(land: &Terrain, share: f64) -> Vec<LandChange> {
     let draws = libm::round(share * land.cells().len() as f64) as u32;
     let kind = ChangeKind::Drift { cells: None, draws, step: 1, classes: CLASSES };
@@ -242,7 +235,6 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // Destructured, so that a new field cannot be forgotten.
         let Self {
             obstacles,
             runs: _,
@@ -274,8 +266,7 @@ impl Experiment for Plan {
         ]
     }
 
-    /// Seed of the landscape (as accepted by `staya terrain`), of its changes and of the map's
-    /// errors.
+    /// Seed of the landscape (for `staya terrain`), of its changes and of the map's errors.
     fn seed(&self, _: usize, run: u32) -> u64 {
         self.landscape_seed(run)
     }

@@ -1,4 +1,4 @@
-//! Results of the experiment, as a table.
+//! Results of the scouting experiment.
 
 use super::{Known, Plan, Run};
 use crate::experiment::Maybe;
@@ -15,15 +15,15 @@ pub struct Point {
     pub unknown: Option<f64>,
     /// Share of the map that shows other places.
     pub wrong: Option<f64>,
-    /// Share of the cells that change by one tick of crossing time in each tick.
+    /// Share of the cells whose crossing time changes by a tick in each tick.
     pub drift_per_tick: f64,
     /// Number of landscapes.
     pub runs: usize,
     /// Robots that reached their target.
     pub arrived: usize,
-    /// dT: mean excess of the travel time over the minimum with perfect knowledge, in percent.
+    /// dT: mean excess of the travel time over that with perfect knowledge, percent.
     pub time_loss_percent: Option<f64>,
-    /// Half the 95 % interval of that mean.
+    /// Half the 95 % interval of the mean of dT.
     pub error95_percent: Option<f64>,
     /// Mean number of cells remembered at the end.
     pub remembered: Option<f64>,
@@ -48,7 +48,7 @@ pub struct Report {
     pub patch_cells: u16,
     /// Seed of the experiment.
     pub seed: u64,
-    /// The points by knowledge, without those that have no runs.
+    /// Points by knowledge, without points that have no runs.
     pub points: Vec<Point>,
 }
 

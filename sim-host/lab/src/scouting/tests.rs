@@ -47,17 +47,15 @@ fn correct_map_equals_sight_of_the_same_radius() {
 
 #[test]
 fn foresight_waits_for_a_gate() {
-    // A road of five cells: the third is slow until tick 3, then closed until tick 20.
+    // The third cell is slow until tick 3, then closed until tick 20.
     let road = Terrain::from_cells(5, 1, vec![1, 1, 9, 1, 1]).expect("fits");
     let kind =
         |class, lasts| ChangeKind::Become { cells: vec![(Cell::new(2, 0), 1)], class, lasts: NonZeroU32::new(lasts) };
     let changes = [LandChange { first: 3, every: None, kind: kind(0, 17) }];
     let ends = [Cell::new(0, 0), Cell::new(4, 0)];
     let mut foresight = Foresight::default();
-    // It enters the slow cell at once: 1 + 9 + 1 + 1 ticks.
     assert_eq!(foresight.least_cost((&road, &changes, 0), ends, Norm::Euclidean, 1 << 20), Some(12 * 70));
-    // If the cell took 200 ticks, waiting for its opening is faster; it starts right after the tick
-    // before.
+    // If the cell takes 200 ticks, waiting for its opening is faster.
     let road = Terrain::from_cells(5, 1, vec![1, 1, 200, 1, 1]).expect("fits");
     let least = foresight.least_cost((&road, &changes, 0), ends, Norm::Euclidean, 1 << 20);
     assert_eq!(least, Some(19 * 70 + 1 + 3 * 70));
@@ -115,7 +113,6 @@ fn rows_and_tables_have_a_row_per_knowledge_and_drift() {
         assert!(text.matches(known).count() >= 2, "{text}");
     }
     assert!(report.points.iter().all(|point| point.arrived == 4 && point.time_loss_percent >= Some(0.0)));
-    // All kinds of knowledge have the same landscapes.
     for runs in runs.chunks(2).map(|pair| &pair[0]) {
         assert!(runs.iter().map(|run| run.least_cost).eq(self_least(&plan)));
     }

@@ -1,4 +1,4 @@
-//! Movement of one robot on changing land, with limited knowledge.
+//! Moves of one robot on changing land with limited knowledge.
 
 use super::Run;
 use crate::route::CELLS;
@@ -10,14 +10,13 @@ use staya_sim::terrain::change::{LandChange, change};
 use staya_sim::world::scouts::Memory;
 use staya_sim::world::{known_window, window};
 
-/// Moves after which a robot counts as lost, per cell of the map's half perimeter.
+/// Moves after which a robot counts as lost, per cell of width + height.
 const PATIENCE: usize = 200;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knowledge<'a> {
-    /// Its map; without one it plans on its sight.
+    /// `None`: plans on its sight.
     pub map: Option<&'a Terrain>,
-    /// Range of sight, cells.
     pub sight: u8,
 }
 
@@ -31,9 +30,8 @@ pub(super) struct Scout {
 }
 
 impl Scout {
-    /// Moves a robot, which crosses a cell at the pace that the cell has when it is entered, as in
-    /// the simulator. The walk ends at the target, if there is no possible move, or after 200 moves
-    /// per cell of width + height.
+    /// Crosses cells at their pace on entry, as in the simulator. Ends at the target, without a
+    /// possible move, or after `PATIENCE`.
     pub fn walk(
         &mut self,
         (land, changes, seed): Changing<'_>,
@@ -48,7 +46,7 @@ impl Scout {
         let limit = PATIENCE * (usize::from(land.width()) + usize::from(land.height()));
         let mut next = ticks.next();
         while (run.moves as usize) < limit {
-            // It decides at the first tick after its arrival in the cell.
+            // Decides at the first tick after arrival in the cell.
             let now = run.cost.div_ceil(u64::from(UNIT));
             while let Some(tick) = next.filter(|&tick| u64::from(tick) <= now) {
                 change(&mut land, changes, seed, tick, |_, _| ());

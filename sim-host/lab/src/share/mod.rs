@@ -1,12 +1,10 @@
 //! Benefit of maps shared between robots.
 //!
 //! Each run creates one natural landscape (A. V. Kuznetsov 2017, KUZ, section 5) and sends a group
-//! of robots across it, each to its own goal: without sharing, and with maps shared over the radio
-//! ([`staya_controller::land`]) at each packet loss. The complete simulator runs: agents, packets
-//! over the radio, and bodies that block each other. The loss of a robot is its travel time
-//! compared with the fastest route on the whole map, as in [`crate::route`].
-//!
-//! The benefit depends on the routes within the group: see [`Starts`].
+//! of robots across it, without sharing and with shared maps ([`staya_controller::land`]) at each
+//! packet loss. The complete simulator runs: agents, packets over the radio, and bodies that block
+//! each other. The loss of a robot is its travel time compared with the fastest route on the whole
+//! map, as in [`crate::route`]. The benefit depends on the routes within the group: see [`Starts`].
 
 mod report;
 
@@ -39,27 +37,25 @@ use staya_sim::world::MoveRules;
 use std::ops::ControlFlow;
 
 const LANDSCAPES: u32 = 0x0045_0201;
-/// Random number stream for the seeds for robots and radio.
+/// For robots and radio.
 const RUNS: u32 = 0x0045_0202;
 const PLACES: u32 = 0x0045_0203;
 
-/// Microseconds per tick; only beacons depend on it.
+/// Only beacons depend on it.
 const TICK_US: u32 = 1_000_000;
-/// Time limit of a run, ticks.
 const TICKS: u32 = 20_000;
-/// Distance of neighbours in a group that starts together, cells.
+/// Distance in a group that starts together, cells.
 const SPACING: i16 = 3;
 
-/// Where the robots of a group start and go.
+/// Starts and goals of a group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Starts {
-    /// Anywhere, to anywhere half the land away or farther.
+    /// Random places, at least half the land apart.
     #[default]
     Anywhere,
-    /// In a block in one corner, to the same block in the opposite corner, all at once: they see
-    /// the same land at the same time.
+    /// Opposite corners, all at once: robots see the same land at the same time.
     Together,
-    /// The same, but each sets out some time after the one before it.
+    /// Like `Together`, with departures one after the other.
     InTurn,
 }
 
@@ -96,12 +92,11 @@ pub struct Plan {
     pub hills: Hills,
     /// Norm of the distance to an obstacle.
     pub hill_norm: Norm,
-    /// Ticks between the departures of two robots with [`Starts::InTurn`].
+    /// Ticks between two departures with [`Starts::InTurn`].
     pub interval: u32,
     /// Parameters of routing.
     pub route: RouteParams,
-    /// Equal seeds give equal results. The default differs from seed 1, which was used to develop
-    /// shared maps.
+    /// Seed; equal seeds give equal results. Shared maps were developed on seed 1.
     pub seed: u64,
 }
 
@@ -129,7 +124,6 @@ pub(crate) struct Case {
     pub obstacles: u32,
     pub group: u32,
     pub starts: Starts,
-    /// Packet loss; `None` without sharing.
     pub shared: Option<f64>,
 }
 
@@ -138,11 +132,11 @@ pub(crate) struct Case {
 pub struct Trip {
     /// Robots that arrived.
     pub arrived: u32,
-    /// Mean excess of their travel time over that of the fastest route, in percent.
+    /// Mean excess of travel times over those of the fastest routes, percent.
     pub loss_percent: f64,
-    /// Excess of the first robot, in percent; `None` if it has not arrived.
+    /// Excess of the first robot, percent; `None` if it did not arrive.
     pub first_percent: Option<f64>,
-    /// Excess of the last robot, in percent; `None` if it has not arrived.
+    /// Excess of the last robot, percent; `None` if it did not arrive.
     pub last_percent: Option<f64>,
     /// Packets sent: beacons and shared maps.
     pub packets: u64,
@@ -168,8 +162,6 @@ impl Record for Trip {
 }
 
 impl Plan {
-    /// All cases in the order of points. Those of one group and land are adjacent, without sharing
-    /// first.
     pub(crate) fn cases(&self) -> Vec<Case> {
         let shared: Vec<Option<f64>> = [None].into_iter().chain(self.losses.iter().copied().map(Some)).collect();
         let mut cases = Vec::new();
@@ -183,7 +175,6 @@ impl Plan {
         cases
     }
 
-    /// Seed of a landscape, a function of seed, obstacles and number of the run.
     fn landscape_seed(&self, obstacles: u32, run: u32) -> u64 {
         Rng::keyed(self.seed, LANDSCAPES, obstacles, run).next_u64()
     }
@@ -194,7 +185,6 @@ impl Plan {
         natural_by(&plan, obstacles, self.hill_norm, self.hills)
     }
 
-    /// Start and goal of each robot; all starts differ, and so do all goals.
     fn places(&self, case: Case, run: u32) -> Vec<(Cell, Cell)> {
         let last = self.size.cast_signed() - 2;
         if case.starts != Starts::Anywhere {
@@ -253,8 +243,7 @@ impl Plan {
 }
 
 impl Trip {
-    /// Evaluates a run, given the departure tick and the fastest route of each robot, [`UNIT`]s of
-    /// a tick.
+    /// `fastest`: departure tick, and travel time of the fastest route, [`UNIT`]ths of a tick.
     pub(crate) fn of(outcome: &Outcome, fastest: &[(u32, f64)]) -> Self {
         let over = |(&at, &(departure, fastest)): (&Option<u64>, &(u32, f64))| {
             let since = u64::from(departure) * u64::from(UNIT);
@@ -274,7 +263,7 @@ impl Trip {
     }
 }
 
-/// Robots on a landscape without formation; `shared` is the packet loss at which they share maps.
+/// `shared`: packet loss at which robots share maps.
 pub(crate) fn scenario(
     terrain: Terrain,
     robots: Vec<Robot>,
@@ -330,7 +319,7 @@ impl Experiment for Plan {
             "no groups; give --group and --starts one value or more"
         );
         for group in &self.groups {
-            // A block of the larger groups has five columns.
+            // A block of a large group has five columns.
             let most = 5 * (u32::from(size) / 6);
             ensure!((1..=100.min(most)).contains(group), "a group of {group} robots; it must be 1..={}", 100.min(most));
         }
@@ -355,7 +344,6 @@ impl Experiment for Plan {
     }
 
     fn given(&self, point: usize) -> Vec<(&'static str, Value)> {
-        // Destructured, so that a new field cannot be forgotten.
         let Self {
             obstacles: _,
             groups: _,
@@ -394,8 +382,7 @@ impl Experiment for Plan {
         ]
     }
 
-    /// Seed of the landscape, as accepted by `staya terrain`. Other random numbers are functions of
-    /// the first seed.
+    /// Seed of the landscape, for `staya terrain`; other random numbers depend on the first seed.
     fn seed(&self, point: usize, run: u32) -> u64 {
         self.landscape_seed(self.cases()[point].obstacles, run)
     }

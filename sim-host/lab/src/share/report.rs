@@ -1,4 +1,4 @@
-//! Results of the experiments with shared maps.
+//! Results with shared maps.
 
 use super::{Plan, Trip};
 use crate::experiment::Maybe;
@@ -6,7 +6,7 @@ use serde::Serialize;
 use staya_stats::{Summary, mean};
 use std::fmt::{self, Display, Formatter};
 
-/// Results of all groups of a point, with or without sharing.
+/// Results of the groups of a point, with or without sharing.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outlook {
     /// Whether maps are shared.
@@ -15,11 +15,11 @@ pub struct Outlook {
     pub loss: f64,
     /// Robots that arrived.
     pub arrived: u32,
-    /// dT over the means of the groups, percent.
+    /// dT, means of the groups, percent.
     pub loss_percent: Summary,
-    /// dT of the groups' first robots, percent.
+    /// dT of the first robots, percent.
     pub first_percent: Option<f64>,
-    /// dT of the groups' last robots, percent.
+    /// dT of the last robots, percent.
     pub last_percent: Option<f64>,
     /// Packets per group.
     pub packets: f64,
@@ -27,7 +27,7 @@ pub struct Outlook {
     pub collisions: u64,
 }
 
-/// Results of groups of one size, for one number of obstacles.
+/// Results for one group size and number of obstacles.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
     /// Arrangement of starts and goals.
@@ -51,13 +51,12 @@ pub struct Report {
     pub radius: u8,
     /// Seed of the experiment.
     pub seed: u64,
-    /// Results by start, group size and obstacles.
+    /// Results by starts, group size and obstacles.
     pub points: Vec<Point>,
 }
 
 impl Outlook {
-    /// Summarises a point's groups; `shared` is the packet loss at which they share maps. `None` if
-    /// no robot arrived.
+    /// `shared`: packet loss at which robots share maps. `None` if no robot arrived.
     pub(crate) fn of(shared: Option<f64>, trips: &[Trip]) -> Option<Self> {
         let over = |value: fn(&Trip) -> Option<f64>| mean(&trips.iter().filter_map(value).collect::<Vec<_>>());
         let arrived = trips.iter().filter(|trip| trip.arrived > 0);

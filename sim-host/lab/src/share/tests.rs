@@ -19,11 +19,10 @@ fn followers_are_faster_with_the_maps_of_robots_ahead() {
     for outlook in [alone, perfect, lossy] {
         assert_eq!((outlook.arrived, outlook.collisions), (24, 0));
     }
-    // The first robot has no predecessor to learn from, so the last one is compared.
+    // The first robot has no predecessor.
     let last = |outlook: &Outlook| outlook.last_percent.unwrap();
     assert!(last(perfect) < 0.6 * last(alone), "{report}");
     assert!(last(lossy) < 0.8 * last(alone), "{report}");
-    // A second packet after each beacon, but for a shorter time.
     assert!(perfect.packets > alone.packets, "{report}");
 }
 

@@ -5,20 +5,20 @@ use crate::sweep::merge::Merged;
 use crate::sweep::value::Figure;
 use staya_stats::Summary;
 
-/// The figures of one point.
+/// Figures of one point.
 #[derive(Clone, Debug)]
 pub struct Point {
     /// Number of the point.
     pub number: u64,
-    /// Value of each parameter.
+    /// Values of the parameters.
     pub values: Vec<String>,
-    /// Available runs of the point.
+    /// Number of available runs.
     pub runs: usize,
     /// Summary of each measure; `None` if no run has a value or one is infinite.
     pub figures: Vec<Option<Summary>>,
 }
 
-/// Aggregates all points with at least one run, in order. O(rows).
+/// Aggregates all points that have runs, in order. O(rows).
 #[must_use]
 pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
     let seeds = plan.runs_per_point();
@@ -35,8 +35,8 @@ pub fn points(plan: &dyn Design, merged: &Merged) -> Vec<Point> {
     by_point.map(point).collect()
 }
 
-/// Formats points as CSV with one line per point and figure. `low95` and `high95` are the ends of
-/// the mean's 95 % interval (Student).
+/// Formats points as CSV, one line per point and figure; `low95` and `high95` are the ends of the
+/// mean's 95 % interval (Student).
 #[must_use]
 pub fn text(plan: &dyn Design, points: &[Point]) -> String {
     let statistics = "figure,runs,values,mean,low95,high95,median,deviation,min,max";
@@ -51,7 +51,6 @@ pub fn text(plan: &dyn Design, points: &[Point]) -> String {
             cells.extend(point.values.iter().cloned());
             cells.extend([name.clone(), point.runs.to_string()]);
             cells.push(summary.map_or(0, |summary| summary.count).to_string());
-            // A single value has no interval.
             let ends = summary.filter(|s| s.mean_error95.is_some()).map(|s| s.mean_interval95());
             let of = |figure: fn(&Summary) -> f64| summary.as_ref().map(figure);
             let figures = [

@@ -1,7 +1,6 @@
-//! Numbered runs, the common interface of sweep plans and experiments.
+//! Numbered runs: the common interface of sweep plans and experiments.
 
-/// A set of numbered runs, with everything known before they are made. A run is a function of its
-/// number.
+/// A set of numbered runs, each a function of its number.
 ///
 /// Runs `0..runs_per_point` belong to the first point, the next ones to the second, and so on. Runs
 /// of a point differ in their seeds only.
@@ -9,7 +8,7 @@ pub trait Design: Sync {
     /// Name of the results.
     fn name(&self) -> &str;
 
-    /// Fingerprint, 16 hex digits. Designs with different runs or rows have different fingerprints.
+    /// Fingerprint, 16 hex digits; other runs or rows have another fingerprint.
     fn fingerprint(&self) -> String;
 
     /// Number of runs.
@@ -36,12 +35,12 @@ pub trait Design: Sync {
         String::from("a figure of summary.json")
     }
 
-    /// Most parallel runs on any machine: 1 for timed runs.
+    /// Most parallel runs on a machine; 1 for timed runs.
     fn at_once(&self) -> usize {
         usize::MAX
     }
 
-    /// Sort key that defines the order in which runs are started; by default their number.
+    /// Sort key of the order in which runs are started; by default their number.
     fn turn(&self, run: u64) -> u64 {
         run
     }

@@ -4,13 +4,12 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Executes the jobs `0..count` on as many threads as rayon has here, at most `at_once`.
+/// Executes the jobs `0..count` in order, on as many threads as rayon has here, at most `at_once`.
 ///
-/// Jobs start in order. Each thread has a scratch memory, whose contents must not affect results.
-/// If there are more threads than jobs, the surplus is available for parallel work inside jobs.
-/// `take` receives one result at a time, as soon as it is available. After it returns `Break`, no
-/// further job starts; jobs in progress are finished and delivered, so that finished jobs always
-/// form a prefix.
+/// The contents of a thread's scratch memory must not affect results. Surplus threads are available
+/// for parallel work inside jobs. `take` receives one result at a time, as soon as it is available.
+/// After it returns `Break`, no further job starts, and jobs in progress are finished and
+/// delivered, so that finished jobs form a prefix.
 pub fn each<S: Default, T: Send>(
     count: usize,
     at_once: usize,
@@ -22,8 +21,7 @@ pub fn each<S: Default, T: Send>(
     let (next, is_over) = (AtomicUsize::new(0), AtomicBool::new(false));
     let take = Mutex::new(take);
     let work = || {
-        // If its own pool cannot be created (out of memory), a job uses the global one: slower, but
-        // correct.
+        // If its own pool cannot be created (out of memory), a job uses the slower global one.
         let inner = rayon::ThreadPoolBuilder::new().num_threads(threads / workers).use_current_thread();
         let _inner = inner.build();
         let mut scratch = S::default();

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// The rows of a plan, ordered by run number, each run once.
 #[derive(Clone, Debug, Default)]
 pub struct Merged {
-    /// Rows in order.
+    /// Rows ordered by run number.
     pub rows: Vec<Row>,
     /// Rows found in two places, identically.
     pub doubles: u64,
@@ -39,7 +39,7 @@ impl Merged {
                     }
                     Entry::Occupied(place) => {
                         let (other, path, at) = place.get();
-                        // Compares texts, because a figure may be NaN.
+                        // As text, because a figure may be NaN.
                         if other.line(plan) != row.line(plan) {
                             let what = format!("run {} has another row in {}:{at}", row.run, path.display());
                             let remedy =
@@ -85,7 +85,7 @@ impl Merged {
         Ok(Self { rows: rows.into_iter().map(|(_, row)| row).collect(), ..Self::default() })
     }
 
-    /// Refuses missing runs. `remedy` states how to make them.
+    /// Refuses missing runs; `remedy` states how to make them.
     ///
     /// # Errors
     /// A run is missing.

@@ -1,4 +1,4 @@
-//! Charts of a figure over one or two axes.
+//! Charts of figures over one or two axes.
 
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::{Plan, PlotTable};
@@ -9,14 +9,13 @@ use staya_stats::Summary;
 use std::path::{Path, PathBuf};
 
 const MOST: usize = 24;
-/// Least and most equal parts of an axis with more values.
 const PARTS: [usize; 2] = [4, 12];
-/// Average number of runs per part, or per cell of two axes, if there are enough.
+/// Average number of runs per part or cell, if there are enough.
 const RUNS: usize = 4;
 const CURVES: usize = 6;
 const UNASKED: usize = 8;
 
-/// The pictures that a plan requests; by default its first figures over its first two axes.
+/// Pictures that a plan requests; by default its first figures over its first two axes.
 #[must_use]
 pub fn plots(plan: &Plan) -> Vec<PlotTable> {
     if !plan.plots.is_empty() {
@@ -71,9 +70,7 @@ pub fn draw(plan: &Plan, merged: &Merged, plot: &PlotTable, folder: &Path) -> Re
 
 struct Levels {
     names: Vec<String>,
-    /// Numeric values; `None` if they are words.
     numbers: Option<Vec<f64>>,
-    /// Whether each level is a part of the axis.
     is_parts: bool,
     is_log: bool,
     ends: [f64; 2],
@@ -86,7 +83,6 @@ impl Levels {
         let is_log = plan.is_log(axis);
         let numbers: Option<Vec<f64>> = values.iter().map(Value::number).collect();
         let Some(mut numbers) = numbers else {
-            // In the order of the plan.
             let mut names: Vec<String> = Vec::new();
             for value in values.drain(..).map(|value| value.to_string()) {
                 if !names.contains(&value) {
@@ -110,7 +106,6 @@ impl Levels {
         Self { names: numbers.iter().map(name).collect(), numbers: Some(numbers), is_parts, is_log, ends }
     }
 
-    /// Index of the level that a value belongs to.
     fn of(&self, value: &Value) -> usize {
         let Some((number, numbers)) = value.number().zip(self.numbers.as_ref()) else {
             let name = value.to_string();
@@ -126,7 +121,6 @@ impl Levels {
     }
 }
 
-/// Formats a number with at most four digits.
 fn short(number: f64) -> String {
     let rounded: f64 = format!("{number:.2e}").parse().unwrap_or(number);
     Figure(Some(rounded)).to_string()
@@ -135,7 +129,6 @@ fn short(number: f64) -> String {
 struct Picture<'a> {
     plan: &'a Plan,
     plot: &'a PlotTable,
-    /// Value on the first axis, value on the second, figure.
     rows: Vec<(Value, Option<Value>, f64)>,
     x: Levels,
     y: Option<Levels>,
@@ -162,7 +155,6 @@ impl Picture<'_> {
         format!("{what} of {} runs{over}", self.rows.len())
     }
 
-    /// Summary of the runs at level `x` and, with a second axis, at level `y`.
     fn summary(&self, x: usize, y: Option<usize>) -> Option<Summary> {
         let is_here = |(over, and, _): &&(Value, Option<Value>, f64)| {
             let at_y = self.y.as_ref().zip(and.as_ref()).map(|(levels, value)| levels.of(value));

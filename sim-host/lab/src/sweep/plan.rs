@@ -1,4 +1,4 @@
-//! Sweep plans: the fields of a scenario that vary between runs, and their values.
+//! Sweep plans: fields of a scenario that vary between runs, and their values.
 
 mod axes;
 mod check;
@@ -17,25 +17,22 @@ pub use table::PlotTable;
 use table::{PlanFile, SeedRange, Seeds};
 
 const LIST: &str = "docs/sweeps.md";
-/// Most runs of a plan: some hundred megabytes of rows.
+/// Some hundred megabytes of rows.
 const MOST: u64 = 1_000_000;
-/// To be increased when equal plans give other runs.
+/// Increase when equal plans give other runs.
 const FORMAT: u64 = 1;
 
 /// A checked plan. A run is a function of the plan and its number.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Name; results go to `out/NAME`.
+    /// Name of the plan; results go to `out/NAME`.
     pub name: String,
     path: PathBuf,
     scenario: PathBuf,
-    /// The scenario, with the plan's settings for all runs.
     base: toml::Table,
     axes: Vec<Axis>,
-    /// Groups of axes that advance together, as ranges of `axes`. Groups are crossed with each
-    /// other.
+    /// Axes that advance together, as ranges of `axes`; groups are crossed with each other.
     groups: Vec<Range<usize>>,
-    /// At least one seed.
     seeds: Vec<u64>,
     measures: Vec<String>,
     /// Requested pictures; empty for the default.
@@ -48,16 +45,16 @@ pub struct Plan {
 pub struct Run<'a> {
     /// Number of the run.
     pub number: u64,
-    /// Number of its point: runs of one point differ in their seeds only.
+    /// Number of its point; runs of a point differ in their seeds only.
     pub point: u64,
-    /// Value of each axis.
+    /// Value of each axis, in order.
     pub values: Vec<&'a Value>,
     /// Seed of the run.
     pub seed: u64,
 }
 
 impl Plan {
-    /// Reads a plan and checks it together with its scenario (`plan/check.rs`).
+    /// Reads a plan and checks it together with its scenario.
     ///
     /// # Errors
     /// Names file, line and field, with cause and remedy.
@@ -66,7 +63,7 @@ impl Plan {
         Self::parse(&text, path)
     }
 
-    /// Like [`Plan::load`], for the text of a file `path`, which need not exist.
+    /// Like [`Plan::load`], for the text of a file `path` that need not exist.
     ///
     /// # Errors
     /// See [`Plan::load`].
@@ -88,7 +85,6 @@ impl Plan {
         })?;
         let mut base: toml::Table = match scenario_text.parse() {
             Ok(base) => base,
-            // Repeats the parse for its error message.
             Err(_) => {
                 return Err(Scenario::parse(&scenario_text, &scenario, &Overrides::default())
                     .map(drop)
@@ -133,7 +129,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Path of its file.
+    /// Path of the plan's file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -161,7 +157,7 @@ impl Plan {
         self.axes.iter().map(|axis| axis.field.name())
     }
 
-    /// Values of an axis, in order; `None` if there is no such axis.
+    /// Values of an axis; `None` if there is no such axis.
     #[must_use]
     pub fn values(&self, axis: &str) -> Option<&[Value]> {
         self.find(axis).map(|index| &self.axes[index].values[..])
@@ -173,7 +169,7 @@ impl Plan {
         self.axes().position(|name| name == axis)
     }
 
-    /// Whether the values of axis `index` form a geometric sequence instead of an arithmetic one.
+    /// Whether the values of axis `index` form a geometric sequence.
     #[must_use]
     pub fn is_log(&self, index: usize) -> bool {
         self.axes.get(index).is_some_and(|axis| axis.is_log)
@@ -188,8 +184,8 @@ impl Plan {
     /// Checks whether a picture can be drawn.
     ///
     /// # Errors
-    /// The picture names a figure or an axis that the plan does not have. Returns the wrong field,
-    /// the cause and the remedy.
+    /// The plan does not have a figure or an axis of the picture. Returns the field, the cause and
+    /// the remedy.
     pub fn check_plot(&self, plot: &PlotTable) -> Result<(), (&'static str, String, String)> {
         let list = |names: &mut dyn Iterator<Item = &str>| match names.collect::<Vec<_>>() {
             names if names.is_empty() => "there is none".to_owned(),
@@ -212,13 +208,13 @@ impl Plan {
         Ok(())
     }
 
-    /// Fingerprint, 16 hex digits. Plans with different runs or rows have different fingerprints.
+    /// Fingerprint, 16 hex digits; other runs or rows have another fingerprint.
     #[must_use]
     pub fn fingerprint(&self) -> String {
         format!("{:016x}", self.fingerprint)
     }
 
-    /// Run `number`, counted from 0. Seeds change first, then the last axis.
+    /// Run `number` from 0. Seeds change first, then the last axis.
     ///
     /// # Panics
     /// If there is no such run.
@@ -239,7 +235,6 @@ impl Plan {
         Run { number, point, values, seed: self.seeds[(number % self.seeds()) as usize] }
     }
 
-    /// Scenario of a run. An error names the fault of the plan or of the scenario.
     pub(crate) fn scenario(&self, run: &Run<'_>) -> Result<Scenario, ScenarioError> {
         let mut table = self.base.clone();
         for (axis, value) in self.axes.iter().zip(&run.values) {
@@ -256,7 +251,7 @@ impl Plan {
             .map_err(|error| self.said_of_plan(run, error))
     }
 
-    /// Converts an error of a generated scenario to one with places in the user's files.
+    /// Converts an error of a generated scenario to places in the user's files.
     fn said_of_plan(&self, run: &Run<'_>, error: ScenarioError) -> ScenarioError {
         let ScenarioError::Field { field, what, remedy, .. } = error else {
             return error;
@@ -269,7 +264,6 @@ impl Plan {
         };
         if let Some(axis) = self.axes.iter().find(is_meant) {
             let field = axis.field.name().to_owned();
-            // Serde's message for a field that expects text.
             let is_word = axis.is_range && what.contains("string");
             let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
             return ScenarioError::Field { path: self.path.clone(), line: axis.line, field, what, remedy };
@@ -277,7 +271,6 @@ impl Plan {
         let values: Vec<_> = self.axes().zip(&run.values).map(|(name, value)| format!("{name} = {value}")).collect();
         let values = values.join(", ");
         let what = if values.is_empty() { what } else { format!("{what} (with {values} of {})", self.path.display()) };
-        // The field's place in the scenario's file, present or not.
         let text = read_text(&self.scenario, TEXT).unwrap_or_default();
         match Source::new(&self.scenario, &text) {
             Ok(source) => source.error(&field, what, remedy),
@@ -285,8 +278,7 @@ impl Plan {
         }
     }
 
-    /// Hashes everything that rows depend on: fields, values, seeds, figures, and the files that
-    /// the scenario names.
+    /// Covers everything that rows depend on: fields, values, seeds, figures, the scenario's files.
     fn digest(&self) -> u64 {
         let scenario = toml::to_string(&self.base).unwrap_or_default();
         let mut all = chained(FORMAT, digest(scenario.as_bytes()));
@@ -390,7 +382,6 @@ fn check_seeds(source: &Source<'_>, seeds: &Seeds) -> Result<Vec<u64>, ScenarioE
     Err(source.error("seeds", what, "give a number of them, a list, or { from, count }"))
 }
 
-/// Checks the requested figures; by default those that every run has.
 fn check_measures(
     source: &Source<'_>,
     measures: Option<Vec<String>>,

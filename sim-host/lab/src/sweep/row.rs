@@ -1,4 +1,4 @@
-//! Record of a run: one line of CSV, identical on every machine.
+//! Record of a run: a line of CSV, identical on every machine.
 
 use crate::sweep::design::Design;
 use crate::sweep::value::Figure;
@@ -9,11 +9,11 @@ use staya_console::VERSION;
 pub struct Row {
     /// Number of the run in the plan.
     pub run: u64,
-    /// Whether the run was possible; if not, it has no figures.
+    /// Whether the run was possible.
     pub outcome: Outcome,
-    /// The figures, in the order of the design.
+    /// Figures in the order of the design; empty if the run was impossible.
     pub figures: Vec<Figure>,
-    /// 16 hex digits; empty if there was no simulation.
+    /// Trace hash, 16 hex digits; empty if there was no simulation.
     pub trace_hash: String,
 }
 
@@ -22,8 +22,7 @@ pub struct Row {
 pub enum Outcome {
     /// The run was made.
     Done,
-    /// The run cannot be simulated, because its values are inconsistent or a file is missing. It is
-    /// tried again on resume.
+    /// Inconsistent values or a missing file; tried again on resume.
     Impossible,
 }
 
@@ -36,7 +35,7 @@ impl Outcome {
     }
 }
 
-/// Header line of a file, without line end.
+/// Header line of a file of rows, without line end.
 #[must_use]
 pub fn header(plan: &dyn Design) -> String {
     let own = |name: &str| name.to_owned();

@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 /// A completed run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
-    /// Its record.
+    /// Record of the run.
     pub row: Row,
     /// Wall time, seconds.
     pub seconds: f64,
-    /// Reason if the run is impossible.
+    /// Reason for an impossible run.
     pub refusal: Option<String>,
 }
 
@@ -33,7 +33,7 @@ pub fn perform(plan: &Plan, number: u64, goes_on: impl Fn() -> bool) -> Option<F
     Some(Finished { row, seconds: since.elapsed().as_secs_f64(), refusal })
 }
 
-/// Summary of a run, and whether it was stopped early. `watch` is called after each tick.
+/// The summary, and whether it was stopped early; `watch` is called after each tick.
 fn simulated(plan: &Plan, number: u64, watch: &mut dyn FnMut(u32) -> bool) -> Result<(Summary, bool), String> {
     let scenario = plan.scenario(&plan.run(number)).map_err(|error| error.to_string())?;
     let mut is_cut = false;
@@ -59,7 +59,7 @@ pub struct Estimate {
     pub tried: usize,
     /// Processor time, seconds.
     pub seconds: f64,
-    /// Whether each tried run was completed. A run that was not may end before its last tick.
+    /// Whether every tried run reached its last tick.
     pub is_whole: bool,
     /// Size of all rows, bytes.
     pub bytes: u64,

@@ -1,9 +1,8 @@
-//! Random samples: the value of each axis in 0..1, a function of seed, axis and number only.
+//! Random samples in 0..1: functions of seed, axis and number only.
 
 use serde::Deserialize;
 use staya_controller::rand::Rng;
 
-/// Random number streams, separate from those of runs.
 const PLACE: u32 = u32::from_be_bytes(*b"swpl");
 const ORDER: u32 = u32::from_be_bytes(*b"swor");
 
@@ -13,12 +12,11 @@ const ORDER: u32 = u32::from_be_bytes(*b"swor");
 pub enum Kind {
     /// Independent values.
     Random,
-    /// Each axis is divided into as many equal parts as there are samples, with one sample in each
-    /// part (McKay, Beckman and Conover 1979).
+    /// One sample in each equal part of each axis (McKay, Beckman and Conover 1979).
     LatinHypercube,
 }
 
-/// Samples of axis `axis`, each in 0..1. O(count).
+/// O(count).
 pub fn shares(kind: Kind, seed: u64, axis: u32, count: u32) -> Vec<f64> {
     let within = |number: u32| {
         // 53 bits: all multiples of 2^-53 below 1 are equally likely.

@@ -1,9 +1,8 @@
-//! Machine-readable description of the columns of rows.
+//! Description of the columns of rows.
 
 use crate::sweep::design::Design;
 
-/// Contents of `rows.schema.json`: name, unit and meaning of each column of `rows.csv`, in the
-/// format of `trace.schema.json`.
+/// Contents of `rows.schema.json`: name, unit and meaning of each column, like `trace.schema.json`.
 #[must_use]
 pub fn schema(design: &dyn Design) -> String {
     let column = |name: &str, kind: &str, unit: &str, meaning: &str| serde_json::json!({ "name": name, "type": kind, "unit": unit, "meaning": meaning });
@@ -28,7 +27,6 @@ pub fn schema(design: &dyn Design) -> String {
     format!("{schema:#}\n")
 }
 
-/// Unit in the suffix of a name, as in `radius_m`; empty if there is none.
 fn unit(name: &str) -> &'static str {
     match name.rsplit('_').next().unwrap_or_default() {
         "m" => "m",

@@ -1,17 +1,15 @@
-//! Scripts that run a sweep with Slurm or GNU parallel.
-//!
-//! Each task is a shard and makes the shard's missing runs. A task that is restarted for any reason
-//! loses at most the run in progress.
+//! Scripts that run a sweep with Slurm or GNU parallel. Each task makes the missing runs of a
+//! shard; a restarted task loses at most the run in progress.
 
 use crate::sweep::SweepError;
 use crate::sweep::plan::Plan;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Most tasks of an array in a default installation of Slurm (`MaxArraySize = 1001`).
+/// Slurm's default (`MaxArraySize = 1001`).
 const MOST: u32 = 1000;
 
-/// Common inputs of both kinds of scripts.
+/// Common inputs of scripts.
 #[derive(Clone, Debug)]
 pub struct Job<'a> {
     /// Path of the program on the hosts.
@@ -46,7 +44,6 @@ impl Job<'_> {
         format!("{program} sweep {plan} --out {out} --shard {shard} --threads 1 --resume --quiet")
     }
 
-    /// Command line that merges the shards, as a comment in a script.
     fn merging(&self) -> String {
         let Self { program, plan, out, .. } = self;
         let [plan, out] = [plan, out].map(|path| quoted(&path.display().to_string()));
@@ -63,7 +60,7 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// Creates a job for `sbatch`: an array with one core per task. Tasks may be requeued at any time.
+/// Creates a job for `sbatch`: an array with one core per task, which may be requeued at any time.
 ///
 /// # Errors
 /// More tasks than runs, or than Slurm accepts.

@@ -1,7 +1,7 @@
-//! The part of a plan that one process does, and its file of rows.
+//! The part of a plan that one process makes, and its file of rows.
 //!
-//! Whole lines are appended to the file, so a crash or a full disk can damage only the last line.
-//! The other rows stay valid, and the next process makes the missing runs.
+//! Whole lines are appended to the file, so a crash or a full disk damages only the last line. The
+//! next process makes the missing runs.
 
 use crate::sweep::SweepError;
 use crate::sweep::design::Design;
@@ -21,9 +21,8 @@ use std::time::{Duration, Instant};
 
 /// Folder of the shards' rows within the results.
 pub const FOLDER: &str = "shards";
-/// Folder of the run times, which are not part of rows because they differ between machines.
+/// Run times are not part of rows, because they differ between machines.
 const TIMES: &str = "times";
-/// Shortest time between two synchronisations with the disk.
 const SYNC: Duration = Duration::from_secs(2);
 
 /// One of several equal parts of a plan.
@@ -41,14 +40,13 @@ impl Default for Shard {
 }
 
 impl Shard {
-    /// Whether it is the whole plan.
+    /// Whether the shard is the whole plan.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.of == 1
     }
 
-    /// Whether it contains a run. Consecutive runs are in different shards, so that all take about
-    /// equally long.
+    /// Whether the shard contains a run; consecutive runs are in different shards.
     #[must_use]
     pub fn has(&self, run: u64) -> bool {
         run % self.of == self.index - 1
@@ -85,16 +83,15 @@ pub enum Existing {
     Refuse,
     /// Make the missing runs.
     Resume,
-    /// Replace them.
+    /// Replace the rows.
     Forget,
 }
 
-/// The rows of one file.
+/// Rows of one file.
 #[derive(Debug, Default)]
 pub struct Rows {
     /// Rows with their line numbers.
     pub rows: Vec<(usize, Row)>,
-    /// Bytes of complete lines.
     whole: u64,
     /// Bytes of an incomplete last line.
     pub torn: usize,
@@ -103,8 +100,7 @@ pub struct Rows {
 /// Reads a file of rows without an incomplete last line.
 ///
 /// # Errors
-/// The file cannot be read, or a line does not belong to this plan and version. Names file and
-/// line.
+/// The file cannot be read, or a line belongs to another plan or version. Names file and line.
 pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
     let unreadable = |error: std::io::Error| {
         let remedy = staya_sim::file::read_remedy(&error);
@@ -132,7 +128,7 @@ pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
     Ok(rows)
 }
 
-/// Lists the files of rows in a folder of results, sorted; none if there is no such folder.
+/// Lists the files of rows in a folder of results, sorted.
 ///
 /// # Errors
 /// The folder cannot be read.
@@ -163,14 +159,13 @@ struct Appended {
 }
 
 impl Appended {
-    /// Opens the shard's file to append lines after its first `whole` bytes.
     fn open(plan: &dyn Design, out: &Path, shard: Shard, existing: Existing) -> Result<(Self, usize), SweepError> {
         let path = out.join(FOLDER).join(shard.file_name());
         make_dir(&out.join(FOLDER))?;
         make_dir(&out.join(TIMES))?;
         let open = File::options().create(true).read(true).append(true).open(&path);
         let mut file = open.map_err(Error::new("open", &path))?;
-        // If the file system does not support locks, continues without one.
+        // Continues without a lock if the file system does not support locks.
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let what = "another process is at work on it";
             return Err(SweepError::new(path.display(), what, "wait for it, or end it"));
@@ -190,7 +185,7 @@ impl Appended {
     }
 
     fn append(&mut self, line: &str) -> Result<(), Error> {
-        // In one write: a process that is killed leaves all of the line or nothing.
+        // In one write: a killed process leaves the whole line or nothing.
         let written = self.file.write_all(format!("{line}\n").as_bytes());
         written.map_err(Error::new("write", &self.path))?;
         if self.synced.elapsed() > SYNC {
@@ -210,11 +205,11 @@ impl Appended {
 pub struct Course {
     /// Runs of the shard.
     pub runs: u64,
-    /// Rows that existed before.
+    /// Rows found at the start.
     pub found: u64,
     /// Runs made now.
     pub done: u64,
-    /// Number of impossible runs among them, with the first reason.
+    /// Impossible runs among them, and the first reason.
     pub impossible: Option<(u64, String)>,
     /// Incomplete lines found.
     pub torn: usize,
@@ -228,10 +223,10 @@ impl Course {
     }
 }
 
-/// Makes the missing runs of a shard and appends each row as soon as its run is done.
+/// Makes the missing runs of a shard and appends each row when its run is done.
 ///
-/// `job` makes a run on any thread; `None` ends the shard. `progress` receives the number of runs
-/// done and the number to do.
+/// `job` makes a run on any thread; `None` ends the shard. `progress` receives the numbers of runs
+/// done and to do.
 ///
 /// # Errors
 /// Existing rows belong to another plan or version or must not be replaced, or a file cannot be
@@ -279,7 +274,6 @@ pub fn perform_shard<S: Default>(
             return ControlFlow::Break(());
         }
         if let Some(times) = &mut file.times {
-            // Errors are ignored, because the times are optional.
             let _ = writeln!(times, "{},{seconds:.6}", row.run);
         }
         if let Some(why) = refusal {

@@ -1,8 +1,8 @@
-//! Values that a plan assigns to fields.
+//! Values of scenario fields.
 
 use std::fmt::{self, Display, Formatter};
 
-/// Value of a scenario field or a table cell: a number, a truth value or a word.
+/// Value of a scenario field or a table cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A whole number, for integer and floating-point fields.
@@ -11,15 +11,13 @@ pub enum Value {
     Number(f64),
     /// `true` or `false`.
     Truth(bool),
-    /// A word that the field permits, or a file name.
+    /// A word or a file name.
     Word(String),
 }
 
-/// Doubles represent every whole number up to this one exactly.
 const EXACT: f64 = 9_007_199_254_740_992.0;
 
 impl Value {
-    /// Reads a value of a plan; the error states the cause.
     pub(crate) fn read(value: &toml::Value) -> Result<Self, String> {
         match value {
             toml::Value::Integer(number) => Ok(Self::Whole(*number)),
@@ -34,7 +32,6 @@ impl Value {
         }
     }
 
-    /// Converts a computed number, to a whole one if possible.
     pub(crate) fn of(number: f64) -> Self {
         let is_whole = libm::trunc(number) == number && number.abs() < EXACT;
         if is_whole { Self::Whole(number as i64) } else { Self::Number(number) }
@@ -91,7 +88,6 @@ impl From<String> for Value {
 }
 
 impl Display for Value {
-    /// Formats as in tables; numbers are read back bit for bit.
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
             Self::Whole(number) => write!(f, "{number}"),
@@ -102,8 +98,7 @@ impl Display for Value {
     }
 }
 
-/// A figure in a table: the shortest text that reads back to the same bits, or empty if it is
-/// missing.
+/// A figure in a table: the shortest text with the same bits, or empty if it is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure(pub Option<f64>);
 

@@ -1,4 +1,4 @@
-//! Title, axes and scale of a snapshot; both axes have the same scale.
+//! Title, axes and scale of a snapshot.
 
 use super::Snapshot;
 use crate::canvas::{Anchor, Canvas, Stroke, Text};
@@ -10,23 +10,21 @@ const PAD: f64 = 12.0;
 const TITLE: f64 = 13.5;
 const LABEL: f64 = 11.5;
 const SMALL: f64 = 10.5;
-/// Margin around the content, as a fraction of its larger side.
+/// Fraction of the larger side of the content.
 const MARGIN: f64 = 0.04;
 
 /// Transformation from metres to the picture.
 pub struct Frame {
-    /// Left, top, width, height of the plotting area.
+    /// Left, top, width, height.
     pub plot: [f64; 4],
     area: [f64; 4],
-    /// Metres at the plotting area's lower left corner.
+    /// Metres at the lower left corner of `plot`.
     low: [f64; 2],
-    /// Units per metre.
     pub scale: f64,
     ticks: [Vec<Tick>; 2],
 }
 
 impl Frame {
-    /// Fits the content, or the chosen view, into left, top, width, height.
     pub fn new(snapshot: &Snapshot, area: [f64; 4]) -> Self {
         let [x, y, width, height] = area;
         let is_range = |[low, high]: &[[f64; 2]; 2]| {
@@ -50,7 +48,6 @@ impl Frame {
         let room = [(right - left).max(20.0), (bottom - top).max(20.0)];
         let sides = [x_range[1] - x_range[0], y_range[1] - y_range[0]];
         let scale = (room[0] / sides[0]).min(room[1] / sides[1]);
-        // The axis with spare room shows more on both sides.
         let shown = room.map(|units| units / scale);
         let middle = [x_range, y_range].map(|[low, high]| low + (high - low) / 2.0);
         let low = [0, 1].map(|axis| middle[axis] - shown[axis] / 2.0);
@@ -61,8 +58,7 @@ impl Frame {
         Self { plot: [left, top, room[0], room[1]], area, low, scale, ticks }
     }
 
-    /// Position in the picture; `None` if it is not finite or so far outside that SVG readers lose
-    /// precision.
+    /// `None` if the position is not finite or so far outside that SVG readers lose precision.
     pub fn at(&self, place: [f64; 2]) -> Option<[f64; 2]> {
         let [left, top, _, height] = self.plot;
         let at = [left + (place[0] - self.low[0]) * self.scale, top + height - (place[1] - self.low[1]) * self.scale];
@@ -106,7 +102,6 @@ impl Frame {
     }
 }
 
-/// Number of ticks for an axis of this length.
 fn marks(length: f64, spacing: f64) -> usize {
     ((length / spacing) as usize).clamp(2, 12)
 }

@@ -1,4 +1,4 @@
-//! Legend of a sheet in rows below its title, for the marks that it contains.
+//! Legend of a sheet: rows below its title, for the marks that it contains.
 
 use super::{Sheet, Snapshot, marks};
 use crate::canvas::{Anchor, Canvas, Stroke, Text};
@@ -19,7 +19,7 @@ enum Mark {
     Near,
 }
 
-/// Draws the legend from `top` with a width. Returns its lower end.
+/// Returns the lower end of the legend.
 pub fn draw(sheet: &Sheet, canvas: &mut Canvas, mut top: f64, width: f64) -> f64 {
     let mut x = PAD;
     let keys = keys(sheet);
@@ -56,7 +56,6 @@ fn keys(sheet: &Sheet) -> Vec<(Mark, String)> {
     keys.into_iter().filter_map(|(mark, name)| Some((mark, name?))).collect()
 }
 
-/// A sample of a mark, centred in `MARK` units from `at`.
 fn sample(mark: &Mark, canvas: &mut Canvas, [x, y]: [f64; 2]) {
     let (middle, ends) = ([x + MARK / 2.0, y], vec![[x + 2.0, y], [x + MARK - 2.0, y]]);
     let colour = colour::nth(0);

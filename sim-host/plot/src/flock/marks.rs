@@ -12,9 +12,9 @@ const STONE: Colour = Colour::hex(0xc9_c4_bb);
 pub const STONE_EDGE: Colour = Colour::hex(0x6f_68_5c);
 pub const EDGE: Colour = Colour::hex(0x9a_a8_b5);
 const GOAL: Colour = Colour::hex(0xd5_5e_00);
-/// Smaller discs (in units) are drawn as darts.
+/// Smaller discs are drawn as darts; units.
 const LEAST_RADIUS: f64 = 2.6;
-/// Length of the fastest robot's arrow outside of its disc.
+/// Length of the fastest robot's arrow outside its disc, units.
 const ARROW: f64 = 11.0;
 const DART: f64 = 4.2;
 const SMALL_DART: f64 = 2.2;
@@ -72,7 +72,6 @@ fn trails(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
         // Pale lines would be invisible on a map.
         let paler = if snapshot.land.is_some() { 0.0 } else { 0.45 };
         let colour = colour_of(snapshot, robot).towards(WHITE, paler);
-        // A point that cannot be drawn leaves a gap.
         let lines = trail
             .split(|&at| frame.at(at).is_none())
             .map(|part| part.iter().filter_map(|&at| frame.at(at)).collect())
@@ -82,7 +81,6 @@ fn trails(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     }
 }
 
-/// Lines between robots within range of each other.
 fn edges(positions: &[[f64; 2]], range: f64, frame: &Frame) -> Vec<Vec<Point>> {
     let mut cells = Cells::new(Space::OPEN, range);
     cells.rebuild(positions);
@@ -111,7 +109,7 @@ fn colour_of(snapshot: &Snapshot, robot: usize) -> Colour {
     colour::nth(snapshot.groups.get(robot).copied().unwrap_or(0))
 }
 
-/// Discs with arrows if they are large enough, else darts; dots for stationary robots.
+/// Large robots are discs with arrows, small ones darts; stationary small robots are dots.
 fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
     let is_crowd = snapshot.positions_m.len() > MOST_DISCS;
     let radius = snapshot.radius_m * frame.scale;
@@ -134,7 +132,6 @@ fn robots(snapshot: &Snapshot, frame: &Frame, canvas: &mut Canvas) {
             continue;
         };
         let (velocity, speed) = velocity(robot);
-        // Picture rows grow downwards.
         let ahead = if speed > 0.0 { [velocity[0] / speed, -velocity[1] / speed] } else { still };
         let group = snapshot.groups.get(robot).copied().unwrap_or(0) % groups;
         if are_discs {

@@ -1,4 +1,4 @@
-//! Sequence of frames: paths accumulate in the background, everything else is drawn for each frame.
+//! Frames of an animation: paths accumulate in the background, the rest is drawn in each frame.
 
 use super::{MOST_WAYS, View, colour_of};
 use crate::canvas::{Canvas, Stroke};
@@ -9,7 +9,6 @@ use staya_sim::scenario::Scenario;
 use std::io;
 use tiny_skia::Pixmap;
 
-/// The background so far.
 #[derive(Clone)]
 pub struct Frames {
     ground: Pixmap,

@@ -1,18 +1,16 @@
-//! The palette of a GIF: at most 255 colours for all frames, and a transparent one.
+//! The palette of a GIF: at most 255 colours, and a transparent one.
 
 use color_quant::NeuQuant;
 use tiny_skia::Pixmap;
 
-/// Index of the transparent colour, for unchanged pixels.
+/// Transparent colour, for unchanged pixels.
 pub const CLEAR: u8 = 255;
-/// Every n-th pixel is a sample.
 const STEP: i32 = 5;
-/// Bits of red, green and blue in the lookup table.
+/// Bits of each channel in the lookup table.
 const BITS: u32 = 6;
 
 pub struct Palette {
     colours: Vec<u8>,
-    /// Nearest colour by the leading bits of each channel.
     nearest: Vec<u8>,
 }
 
@@ -37,12 +35,11 @@ impl Palette {
         Self { nearest: (0..side.pow(3)).map(nearest).collect(), colours }
     }
 
-    /// Red, green and blue of each colour; the transparent one is black.
+    /// Red, green and blue of each colour; black for the transparent one.
     pub fn colours(&self) -> &[u8] {
         &self.colours
     }
 
-    /// Converts a picture to palette indices.
     pub fn indices(&self, picture: &Pixmap) -> Vec<u8> {
         let part = |value: u8| usize::from(value >> (8 - BITS));
         let index = |pixel: &[u8]| match pixel {

@@ -31,7 +31,6 @@ fn drawn(canvas: &Canvas) -> Vec<Point> {
 #[test]
 fn both_files_are_readable_and_reproducible() {
     let dir = tempfile::tempdir().unwrap();
-    // A point in the stem is not an extension; the folder is created.
     let stem = dir.path().join("new/loss-0.3");
     let files = full().write(&stem).unwrap();
     let names: Vec<_> = files.iter().map(|path| path.file_name().unwrap()).collect();
@@ -78,7 +77,6 @@ fn an_unwritable_path_is_named() {
     std::fs::write(&file, "").unwrap();
     let error = full().write(&file.join("chart")).unwrap_err();
     assert_eq!(error.path(), file);
-    // A folder in place of the picture.
     std::fs::create_dir(dir.path().join("b.png")).unwrap();
     let error = full().write(&dir.path().join("b")).unwrap_err();
     assert_eq!(error.path(), dir.path().join("b.png"));

@@ -2,7 +2,6 @@ use super::{assert_readable, assert_texts_apart, decode};
 use crate::canvas::{Canvas, Shape};
 use crate::flock::{MOST_DISCS, Obstacle, Sheet, Snapshot, View};
 
-/// Robots on a ring that move along it.
 fn ring(robots: u32, radius_m: f64) -> Snapshot {
     let angle = |robot: u32| f64::from(robot) / f64::from(robots) * std::f64::consts::TAU;
     let around = |robot| libm::sincos(angle(robot));
@@ -91,7 +90,6 @@ fn near_robots_have_edges_and_moving_robots_have_arrows() {
         ..Snapshot::default()
     };
     let plain = Snapshot { velocities_mps: Vec::new(), edges_within_m: None, ..three.clone() };
-    // The grid, then one edge, and one arrow of two lines.
     assert_eq!(lines(&plain.draw()).len(), 1);
     assert_eq!(lines(&three.draw())[1..], [1, 2]);
 }
@@ -113,7 +111,6 @@ fn invalid_items_are_skipped_and_a_chosen_view_is_kept() {
     let nowhere = Obstacle::Disc { centre_m: [f64::NAN; 2], radius_m: 2.0 };
     wild.obstacles.push(nowhere);
     assert_eq!(circles(&wild.draw()), circles(&everything().draw()));
-    // A valid view does not depend on the content; an invalid one shows everything.
     let view = |snapshot: Snapshot, view_m| Snapshot { view_m: Some(view_m), ..snapshot };
     let near = view(ring(12, 1.0), [[-50.0, 50.0]; 2]);
     let far = view(Snapshot { goals_m: vec![[900.0, 0.0]], ..ring(12, 1.0) }, [[-50.0, 50.0]; 2]);

@@ -1,4 +1,4 @@
-//! Tests of charts, pictures of runs, and their files.
+//! Tests of charts, pictures of runs, and files.
 
 mod charts;
 mod flocks;
@@ -10,8 +10,12 @@ use super::canvas::{Anchor, Canvas, Shape};
 use super::font;
 use std::path::Path;
 
+<<<<<<< HEAD
 /// Fails unless the text is XML with one root, every element closed, and no bare special
 /// characters.
+=======
+/// XML with one root, every element closed, and no bare special characters.
+>>>>>>> com5
 fn assert_well_formed(svg: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut roots = 0;
@@ -48,7 +52,7 @@ fn assert_well_formed(svg: &str) {
     assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""));
 }
 
-/// Width, height and bytes of a PNG of red, green and blue.
+/// Width, height and RGB.
 fn decode(path: &Path) -> (u32, u32, Vec<u8>) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
@@ -58,7 +62,6 @@ fn decode(path: &Path) -> (u32, u32, Vec<u8>) {
     (info.width, info.height, bytes)
 }
 
-/// Fails unless both files of each picture are readable.
 fn assert_readable(files: &[std::path::PathBuf]) {
     assert!(files.len().is_multiple_of(2));
     for path in files {
@@ -74,7 +77,7 @@ fn assert_readable(files: &[std::path::PathBuf]) {
     }
 }
 
-/// Left, top, right, bottom of each text.
+/// Left, top, right, bottom.
 fn text_boxes(canvas: &Canvas) -> Vec<(String, [f64; 4])> {
     let texts = canvas.shapes.iter().filter_map(|shape| match shape {
         Shape::Text(text) => Some(text),
@@ -99,7 +102,6 @@ fn text_boxes(canvas: &Canvas) -> Vec<(String, [f64; 4])> {
         .collect()
 }
 
-/// Fails if texts overlap or leave the picture.
 fn assert_texts_apart(canvas: &Canvas) {
     let boxes = text_boxes(canvas);
     for (index, (text, [left, top, right, bottom])) in boxes.iter().enumerate() {

@@ -38,7 +38,7 @@ fn tick(tick: u32, error: f64) -> TickRow {
     }
 }
 
-/// Robots side by side that move east by `speed` cells per tick on cells of 1 m.
+/// Robots side by side move east by `speed` cells per tick, on cells of 1 m.
 fn history(robots: u32, ticks: u32, speed: f64, error: f64) -> History {
     let mut recorder = Recorder::in_memory(Options::default());
     for now in 0..ticks {
@@ -76,7 +76,6 @@ fn runs_of_any_length_have_their_pictures() {
     for (robots, ticks) in [(0, 0), (0, 1), (1, 1), (1, 2), (3, 40), (12, 3), (13, 3), (201, 3)] {
         let out = dir.path().join(format!("{robots}-{ticks}"));
         let history = history(robots, ticks, 0.5, nan);
-        // Without frames there are no paths.
         let ways = if history.frames().is_empty() { 2 } else { 0 };
         assert_eq!(names(&land(40), &history, &[], &out), WITHOUT_FORMATION[ways..]);
         assert_texts_apart(&trajectories::draw(&land(40), &[], &history, &[]).unwrap());
@@ -133,14 +132,12 @@ fn missing_values_leave_gaps_and_an_empty_chart_is_skipped() {
 
 #[test]
 fn packets_are_counted_per_second() {
-    // 10 packets in each half second; the last mean covers a shorter time.
     for ticks in [2, 3, 101, 250, 1000] {
         let canvas = run::packets(&history(1, ticks, 0.0, 1.0)).draw();
         let dir = tempfile::tempdir().unwrap();
         let files = canvas.write(&dir.path().join("p")).unwrap();
         let text = std::fs::read_to_string(&files[0]).unwrap();
         assert!(text.contains("packets per second") && text.contains(">20<"), "{ticks}");
-        // Constant rates are level lines.
         let curve = text
             .lines()
             .find(|line| line.starts_with("<path") && line.contains("stroke=\"#0072b2\" stroke-width=\"1.8\""))
@@ -209,7 +206,6 @@ fn large_swarms_and_noisy_terrain_give_small_files() {
 
 #[test]
 fn long_paths_give_small_files() {
-    // 200 robots that turn at every step, 400 steps each: 80,000 corners.
     let mut recorder = Recorder::in_memory(Options::default());
     for now in 0..400 {
         let rows = (1..=200).map(|id| {

@@ -49,7 +49,7 @@ fn logarithmic_ticks_thin_out_with_the_range() {
     assert_eq!(texts(10.0, 160.0, 8), ["10", "20", "50", "100"]);
     assert_eq!(texts(1.0, 1e5, 8), ["1", "10", "100", "1000", "10k", "100k"]);
     assert_eq!(texts(1e-9, 1e9, 6).len(), 7);
-    // An axis needs ticks even if its range is less than one step of 1, 2, 5.
+    // Ticks are needed even if the range is less than one step of 1, 2, 5.
     assert!(texts(21.0, 49.0, 6).len() >= 2);
 }
 
@@ -77,11 +77,10 @@ proptest! {
         most in 5_usize..14,
     ) {
         let high = low + fraction * libm::pow(10.0, exponent.into());
-        // Ranges too narrow for doubles are widened.
         let [low, high] = sound(low, high);
         let ticks = linear(low, high, most);
         prop_assert!(ticks.len() >= 2 && ticks.len() <= most + 1, "{ticks:?}");
-        // A difference of doubles, so only its first digit is exact.
+        // Only the first digit of this difference of doubles is exact.
         let step: f64 = format!("{:.0e}", ticks[1].value - ticks[0].value).parse().unwrap();
         let digit = step / libm::pow(10.0, libm::floor(libm::log10(step * 1.000_001)));
         prop_assert!([1.0, 2.0, 5.0].iter().any(|d| (digit - d).abs() < 1e-3), "step {step}");
@@ -97,7 +96,6 @@ proptest! {
                 prop_assert!((read - tick.value).abs() <= 1e-6 * step.max(read.abs()), "{tick:?}");
             }
         }
-        // One more tick would need a finer step.
         prop_assert!((high - low) / step > most as f64 / 2.5 - 1e-6);
     }
 

@@ -3,21 +3,20 @@
 use super::tree::images;
 use staya_sim::nearby::{Found, Nearest, Query, Real, Search, Space, margin, numbered};
 
-/// Most points in a leaf, as in scipy's `KDTree`, which STA's listing uses.
+/// As in scipy's `KDTree`, which STA's listing uses.
 const LEAF: usize = 10;
 
-/// A leaf, or a cut with two children.
 #[derive(Clone, Copy, Debug)]
 enum Node<R> {
-    /// Range of points in the tree's order, end excluded.
+    /// Range of points in the tree's order, without its end.
     Leaf(u32, u32),
-    /// Points below `at` along `axis` are in the next node, the others in node `above`.
+    /// Points below `at` along `axis` are in the next node, others in node `above`.
     Cut { axis: u8, at: R, above: u32 },
 }
 
-/// A k-d tree by the sliding midpoint rule (S. Maneewongvatana and D. M. Mount 1999, reference 5 of
-/// STA; section 2.2 there). A box is cut in the middle of its longest side. If all points lie on
-/// one side, the cut slides to the nearest of them, so that no leaf is empty.
+/// A k-d tree by the sliding midpoint rule (S. Maneewongvatana and D. M. Mount 1999; STA, section
+/// 2.2): a box is cut in the middle of its longest side. If all points lie on one side, the cut
+/// slides to the nearest point, so that no leaf is empty.
 ///
 /// Build: O(n log n) for evenly distributed points, at worst O(n^2). Query: O(log n + found) for
 /// most queries. On a torus, a ball is searched once more for each border that it crosses.
@@ -26,7 +25,7 @@ pub struct MidpointTree<R, const D: usize> {
     space: Space<R, D>,
     nodes: Vec<Node<R>>,
     order: Vec<u32>,
-    /// The points in that order, folded into the torus.
+    /// In that order, folded into the torus.
     points: Vec<[R; D]>,
 }
 
@@ -37,8 +36,7 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
         Self { space, nodes: Vec::new(), order: Vec::new(), points: Vec::new() }
     }
 
-    /// Cuts boxes until none has more points than a leaf may have. Uses an explicit stack, because
-    /// the tree of unevenly distributed points may be as deep as there are points.
+    /// Uses an explicit stack, because the tree may be as deep as there are points.
     fn grow(&mut self, folded: &[[R; D]]) {
         let (mut low, mut high) = ([R::MAX; D], [-R::MAX; D]);
         for &index in &self.order {
@@ -50,8 +48,7 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
         let mut open = vec![Open { from: 0, to: self.order.len(), low, high, parent: None }];
         while let Some(Open { from, to, low, high, parent }) = open.pop() {
             let here = self.nodes.len() as u32;
-            // The subtree above a cut is built after the one below, so the cut stores its index
-            // now.
+            // The subtree above a cut is built after the one below, so its index is stored now.
             if let Some(Node::Cut { above, .. }) = parent.and_then(|parent| self.nodes.get_mut(parent as usize)) {
                 *above = here;
             }
@@ -69,8 +66,6 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
         }
     }
 
-    /// Visits the points of all leaves that the ball around `ball` touches, with their offsets from
-    /// `at`.
     fn visit(&self, ball: [R; D], radius: R, at: [R; D], each: &mut dyn FnMut(u32, [R; D])) {
         let reach = radius + margin(ball.iter().fold(radius, |far, &c| far.max(c.abs())), radius);
         let mut open = vec![0_u32];
@@ -97,22 +92,18 @@ impl<R: Real, const D: usize> MidpointTree<R, D> {
     }
 }
 
-/// A box whose subtree is not yet built, with its points.
 struct Open<R, const D: usize> {
     from: usize,
     to: usize,
     low: [R; D],
     high: [R; D],
-    /// The cut whose upper child this is.
     parent: Option<u32>,
 }
 
-/// Axis and place of the cut through a box, with points on both sides. `None` if all points
-/// coincide.
+/// Axis and place of a cut with points on both sides; `None` if all points coincide.
 fn cut<R: Real, const D: usize>(part: &[u32], points: &[[R; D]], low: [R; D], high: [R; D]) -> Option<(usize, R)> {
     let along = |axis: usize| part.iter().map(move |&index| points[index as usize][axis]);
     let ends = |axis: usize| along(axis).fold((R::MAX, -R::MAX), |(low, high), c| (low.min(c), high.max(c)));
-    // Longest side first. An axis along which all points coincide cannot be cut.
     let mut axes: [usize; D] = std::array::from_fn(|axis| axis);
     axes.sort_by(|&a, &b| (high[b] - low[b]).order(high[a] - low[a]));
     let (axis, (least, greatest)) = axes.into_iter().map(|axis| (axis, ends(axis))).find(|(_, (a, b))| a < b)?;
@@ -120,7 +111,6 @@ fn cut<R: Real, const D: usize>(part: &[u32], points: &[[R; D]], low: [R; D], hi
     let at = if middle > greatest {
         greatest
     } else if middle <= least {
-        // Slides the cut so that only the lowest points are below.
         along(axis).filter(|c| *c > least).fold(R::MAX, R::min)
     } else {
         middle
@@ -128,7 +118,6 @@ fn cut<R: Real, const D: usize>(part: &[u32], points: &[[R; D]], low: [R; D], hi
     Some((axis, at))
 }
 
-/// Moves the indices that are below to the front and returns their number.
 fn partition(part: &mut [u32], is_below: impl Fn(u32) -> bool) -> usize {
     let mut below = 0;
     for place in 0..part.len() {
@@ -167,7 +156,6 @@ impl<R: Real, const D: usize> Search<R, D> for MidpointTree<R, D> {
         for ball in images(at, query.radius, period) {
             self.visit(ball, query.radius, at, &mut |index, way| ways.push((index, way)));
         }
-        // A point may be near several images of the ball.
         ways.sort_unstable_by_key(|(index, _)| *index);
         ways.dedup_by_key(|(index, _)| *index);
         ways.into_iter().for_each(|(index, way)| nearest.offer(index, way));

@@ -1,5 +1,4 @@
-//! Neighbour searches described by STA, and the k-d tree of a library, to compare with the lattice
-//! cells of [`staya_sim::nearby`]. All give bitwise equal results.
+//! Neighbour searches to compare with [`staya_sim::nearby`], with bitwise equal results.
 
 mod midpoint;
 mod mutual;

@@ -1,18 +1,16 @@
-//! Search over all pairs that computes each distance once.
+//! Search over all pairs.
 
 use staya_sim::nearby::{Found, Nearest, Query, Real, Search, Space, numbered};
 
-/// Search over all pairs that uses each result for both points (STA, section 2.2: the symmetric
-/// search over all pairs).
+/// Search over all pairs that uses each distance for both points (STA, section 2.2).
 ///
-/// It computes half the distances of [`AllPairs`](staya_sim::nearby::AllPairs), O(n^2) when built,
-/// and stores every pair within the radius. It answers queries at its points with at most its
-/// radius; any other query searches all points.
+/// Build: O(n^2), with half the distances of [`AllPairs`](staya_sim::nearby::AllPairs); stores
+/// every pair within the radius. Queries at its points use these pairs; other points or larger
+/// radii search all points.
 #[derive(Clone, Debug)]
 pub struct MutualPairs<R, const D: usize> {
     space: Space<R, D>,
     radius: R,
-    /// Folded into the torus.
     points: Vec<[R; D]>,
     near: Vec<Vec<(u32, [R; D])>>,
 }

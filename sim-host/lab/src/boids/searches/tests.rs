@@ -18,7 +18,6 @@ fn assert_agree(space: Space<f64, 2>, points: &Points, queries: &[Query<f64, 2>]
     let expected = answers(AllPairs::new(space), points, queries);
     assert_eq!(expected, answers(Tree::new(space), points, queries));
     assert_eq!(expected, answers(MidpointTree::new(space), points, queries));
-    // Some radii cover the queries' radius, others do not.
     for radius in [0.0, 1.0, 5.0] {
         assert_eq!(expected, answers(MutualPairs::new(space, radius), points, queries), "{radius}");
     }
@@ -29,8 +28,7 @@ fn searches_agree_with_the_reference() {
     let spaces = [Space::OPEN, Space::torus([8.0, 9.5]).expect("above 0"), Space::torus([3.5, 20.0]).expect("above 0")];
     for seed in 0..60 {
         let mut rng = Rng::keyed(seed, 1, 2, 3);
-        // Half of the coordinates lie on a coarse grid, so that points coincide and distances equal
-        // the radius.
+        // A coarse grid makes points coincide and distances equal to the radius.
         let mut coordinate = || match rng.below(2) {
             0 => f64::from(rng.below(33)) / 2.0 - 4.0,
             _ => f64::from(rng.below(16_000)) / 1000.0 - 4.0,
@@ -62,8 +60,7 @@ fn points_that_are_not_finite_are_never_found() {
 
 #[test]
 fn midpoint_tree_supports_extremely_uneven_points() {
-    // Each point is half as far as the previous one: each cut in the middle separates a single
-    // point.
+    // Each point is half as far as the previous one, so each cut separates a single point.
     let mut points: Points = (0..900).map(|i| [libm::exp2(-f64::from(i)), 1.0]).collect();
     points.extend(std::iter::repeat_n([0.25, 1.0], 50));
     let query = |at, radius, most| Query { at, radius, most, except: None };

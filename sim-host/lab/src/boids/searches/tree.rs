@@ -1,10 +1,9 @@
-//! The k-d tree of the crate `kiddo`.
+//! A k-d tree of the crate `kiddo`.
 
 use kiddo::SquaredEuclidean;
 use kiddo::immutable::float::kdtree::ImmutableKdTree;
 use staya_sim::nearby::{Found, Nearest, Query, Real, Search, Space, margin, numbered};
 
-/// Most points in a leaf: the library's default.
 const LEAF: usize = 32;
 
 /// A number type supported by the library, whose own trait bounds are not public.
@@ -40,18 +39,16 @@ macro_rules! impl_tree {
 impl_tree!(f32);
 impl_tree!(f64);
 
-/// A k-d tree. Build: O(n log n). Query: O(log n + found) for most queries, wherever points lie.
+/// The k-d tree of the crate `kiddo`. Build: O(n log n). Query: O(log n + found) for most queries.
 ///
-/// The library returns candidates. Distances, limits and order are computed here, as in the other
+/// The library returns candidates; distances, limits and order are computed as in the other
 /// searches. On a torus, a ball is searched once more for each border that it crosses.
 #[derive(Clone, Debug)]
 pub struct Tree<R: Grow, const D: usize> {
     space: Space<R, D>,
-    /// `None` without points.
     tree: Option<R::Over<D>>,
-    /// The finite points, folded into the torus.
     points: Vec<[R; D]>,
-    /// Original indices of the points; empty if all points are finite.
+    /// Original indices; empty if all points are finite.
     indices: Vec<u32>,
 }
 
@@ -100,7 +97,6 @@ impl<R: Grow, const D: usize> Search<R, D> for Tree<R, D> {
                 R::visit(tree, ball, squared(ball, query.radius), &mut offer);
             }
         } else {
-            // A point may be in several images of so large a ball.
             let mut places = Vec::new();
             for ball in &balls {
                 let squared = squared(ball, query.radius);
@@ -114,7 +110,7 @@ impl<R: Grow, const D: usize> Search<R, D> for Tree<R, D> {
     }
 }
 
-/// Centres of a ball and of its images around the torus that may reach into it.
+/// Centres of the ball and of those images around the torus that may reach into it.
 pub(super) fn images<R: Real, const D: usize>(at: [R; D], radius: R, period: [R; D]) -> Vec<[R; D]> {
     let mut balls = vec![at];
     for axis in 0..D {
@@ -137,11 +133,11 @@ pub(super) fn images<R: Real, const D: usize>(at: [R; D], radius: R, period: [R;
     balls
 }
 
-/// The squared radius for the library, slightly enlarged because the library may round differently.
+/// Slightly enlarged, because the library may round differently.
 fn squared<R: Real, const D: usize>(at: &[R; D], radius: R) -> R {
     let far = at.iter().fold(radius, |far, &c| far.max(c.abs()));
     let reach = radius + margin(far, radius);
-    // If the square underflows, the smallest number suffices.
+    // The square may underflow.
     let squared = reach * reach + R::EPSILON * R::EPSILON * R::EPSILON;
     squared.min(R::MAX)
 }

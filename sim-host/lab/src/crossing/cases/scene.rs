@@ -14,18 +14,15 @@ use staya_sim::world::plane::Solid;
 use std::f64::consts::PI;
 
 pub(super) const RADIUS_M: f64 = 0.3;
-/// Distance from its goal at which a robot has arrived, metres.
 const TOLERANCE_M: f64 = 0.1;
-/// Half the width of a road, metres: three robots fit side by side.
+/// Half the width of a road: three robots fit side by side.
 const ROAD_M: f64 = 1.2;
 const FAR_M: f64 = 30.0;
-/// Distance between robots of a group at the start and at their goals, metres.
 const APART_M: f64 = 0.9;
 pub(super) const SPACING_M: f64 = 0.7;
 
 const NOISE: u32 = 0x0045_0002;
 
-/// A stationary robot that moves through these places to the last of them.
 fn start(at: [f64; 2], places: &[[f64; 2]]) -> Start {
     let fixed = |&[x, y]: &[f64; 2]| Target { position_m: [x, y, 0.0], velocity_mps: [0.0; 3] };
     Start {
@@ -41,8 +38,7 @@ fn polygon(points: &[[f64; 2]]) -> impl Iterator<Item = Solid> {
     points.iter().zip(next).map(|(&from, &to)| Solid::Wall([from, to]))
 }
 
-/// Place of robot `index` in rows of `row` robots: along the direction of travel, and across it,
-/// centred.
+/// Along the direction of travel, and across it (centred).
 fn in_rows(index: u32, row: u32, count: u32) -> [f64; 2] {
     let wide = row.min(count);
     [f64::from(index / row) * APART_M, (f64::from(index % row) - f64::from(wide - 1) / 2.0) * APART_M]
@@ -74,7 +70,6 @@ impl Plan {
             self.mix(&mut setup);
         }
         if case == Case::Intruder {
-            // The intruder reaches the middle at the same time as the robots.
             let way_m = circle_m(count);
             setup.intruders.push(Intruder {
                 position_m: [-way_m - 2.0, 0.2, 0.0].map(|x| x * self.size),
@@ -92,7 +87,6 @@ impl Plan {
         let mut scenario = self.conditions.scenario(case.name(), seed, self.longest_s, setup);
         scenario.radio.range_m *= self.size;
         if case == Case::Blackout {
-            // The failure starts just before the robots meet.
             let meet_s = circle_m(count) / self.conditions.speed_mps;
             scenario.radio.blackout_s = vec![[0.6 * meet_s, 0.6 * meet_s + self.blackout_s]];
         }
@@ -133,9 +127,8 @@ impl Plan {
     }
 }
 
-/// Four groups in the corners, each with the opposite corner as its goal, and between them four
-/// square blocks whose lanes cross in the middle. Robots pass the ends of the lanes as via points,
-/// as a planner would choose them (RVO2's example `Blocks` at 0.15 m per unit).
+/// Four square blocks between corners, with lanes that cross in the middle. Robots pass the ends of
+/// the lanes as via points (RVO2's example `Blocks` at 0.15 m per unit).
 fn blocks(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let unit = 0.15;
     let mut solids = Vec::new();
@@ -154,8 +147,7 @@ fn blocks(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, solids)
 }
 
-/// Roads that meet. A group from each arm goes straight across; on the tee, robots from the stem
-/// turn off to alternating sides.
+/// A group from each arm goes straight across; robots from the stem turn off to alternating sides.
 fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
     let (near, far) = (ROAD_M, FAR_M);
     let mut solids = Vec::new();
@@ -171,19 +163,17 @@ fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
     } else {
         solids.push(Solid::Wall([[-far, near], [far, near]]));
     }
-    // Directions towards the crossing from west, east, south and north.
     let ways = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
     let mut starts = Vec::new();
     for index in 0..count {
         for [wx, wy] in ways.into_iter().take(arms as usize) {
             let [back, side] = in_rows(index, 2, count);
             let at = |along: f64| [wx * along - wy * side, wy * along + wx * side];
-            // The front robot gets the rearmost goal.
+            // The front robot has the rearmost goal.
             let [end, _] = in_rows(count - 1 - index, 2, count);
             let goal = at(5.0 + end);
             let turn = if index % 2 == 0 { 1.0 } else { -1.0 };
             let stem = arms == 3 && wx == 0.0;
-            // Behind the robots that go straight.
             let [behind, _] = in_rows(count + 1, 2, count);
             let turned = [turn * (5.0 + behind + end), turn * side.abs()];
             let places = if stem { vec![[0.0, 0.0], turned] } else { vec![goal] };
@@ -193,7 +183,7 @@ fn roads(count: u32, arms: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, solids)
 }
 
-/// A wall along x = 0 with doors for one robot at these y, in ascending order.
+/// Doors for one robot at these y, ascending, in a wall along x = 0.
 fn wall_with_doors(doors: &[f64]) -> Vec<Solid> {
     let half = 0.5;
     let mut from = -FAR_M;
@@ -206,8 +196,7 @@ fn wall_with_doors(doors: &[f64]) -> Vec<Solid> {
     solids
 }
 
-/// Place of robot `index` in a crowd of `count` before a wall: distance from the wall, and
-/// sideways.
+/// Distance from the wall, and sideways, of robot `index` in a crowd.
 fn before_wall(index: u32, count: u32) -> [f64; 2] {
     let [along, side] = in_rows(index, 5, count);
     [2.5 + along * 1.3, side * 1.6]
@@ -223,8 +212,8 @@ fn door(count: u32, doors: &[f64]) -> (Vec<Start>, Vec<Solid>) {
     (starts, wall_with_doors(doors))
 }
 
-/// A crowd, a door, and behind it rows of parked robots without goals, half a body apart. Half of
-/// the crowd has goals in the middle of four parked robots, the others behind them all.
+/// Behind the door stand rows of parked robots, half a body apart. Half of the crowd has goals in
+/// the middle of four parked robots, the others behind them all.
 fn parked_door(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let (first_m, parked) = (1.8, (count + count.div_ceil(2)).next_multiple_of(5).max(10));
     let mut starts = Vec::new();
@@ -265,7 +254,6 @@ fn resize(setup: &mut PlaneSetup, size: f64) {
     }
 }
 
-/// Two groups meet in a corridor that is two robots wide.
 fn corridor(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let half = 0.8;
     let solids = [-half, half].map(|y| Solid::Wall([[-FAR_M, y], [FAR_M, y]]));
@@ -278,7 +266,6 @@ fn corridor(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, solids.into())
 }
 
-/// One robot whose goal is behind a row of robots that stay at theirs.
 fn parked(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let mut starts = vec![start([-2.0, 0.0], &[[2.0, 0.0]])];
     for index in 0..count.saturating_sub(1) {
@@ -289,7 +276,6 @@ fn parked(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts, Vec::new())
 }
 
-/// Radius of a circle with enough space for the robots, even for the largest size, metres.
 fn circle_m(count: u32) -> f64 {
     (0.2 * f64::from(count)).max(3.0)
 }
@@ -298,7 +284,7 @@ fn circle(count: u32) -> Vec<Start> {
     circle_starts(count, circle_m(count), 0.0, 0)
 }
 
-/// Robots evenly on a sphere (along a spiral), each with the opposite point as its goal.
+/// Evenly on a spiral; the goal of each is the opposite point.
 fn sphere(count: u32) -> Vec<Start> {
     let radius_m = 3.0 * libm::sqrt(f64::from(count.max(16)) / 16.0);
     let golden = PI * (3.0 - libm::sqrt(5.0));
@@ -317,10 +303,8 @@ fn sphere(count: u32) -> Vec<Start> {
         .collect()
 }
 
-/// Side of the terrain of the dead end, in cells of 1 m.
 const LAND: i16 = 40;
 
-/// Robots in a bag of walls deeper than their window; their goals are behind its bottom.
 fn dead_end(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let starts = (0..count).map(|index| {
         let [x, y] = [14 + (index / 5) as i16, 18 + (index % 5) as i16].map(|cell| f64::from(cell) + 0.5);
@@ -329,7 +313,7 @@ fn dead_end(count: u32) -> (Vec<Start>, Vec<Solid>) {
     (starts.collect(), Vec::new())
 }
 
-/// Adds the terrain of the dead end: a bag from x = 10 to 24, open to the west.
+/// Adds terrain: a bag from x = 10 to 24, open to the west.
 fn on_land(scenario: &mut Scenario) {
     let mut land = Terrain::flat(LAND as u16, LAND as u16);
     for x in 10..=24 {
@@ -353,7 +337,6 @@ fn on_land(scenario: &mut Scenario) {
         .collect();
 }
 
-/// A flock behind a reference that moves past two balls.
 fn flock(count: u32) -> (Vec<Start>, Vec<Solid>) {
     let row = libm::ceil(libm::sqrt(f64::from(count))) as u32;
     let target = Target { position_m: [0.0; 3], velocity_mps: [0.3, 0.0, 0.0] };

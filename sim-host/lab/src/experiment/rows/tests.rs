@@ -40,7 +40,6 @@ fn rows_contain_parameters_and_figures() {
     assert_eq!(column("loss"), ["0.2"; 8]);
     assert!(column("trace_hash").iter().all(|hash| hash.len() == 16));
     assert!(column("version").iter().all(|version| version.starts_with(env!("CARGO_PKG_VERSION"))));
-    // Figures equal those of the report, bit for bit.
     let report = plan().measure().expect("a report");
     let ratios: Vec<String> = report.runs.iter().map(|run| Figure(run.time_ratio).to_string()).collect();
     assert_eq!(column("time_ratio"), ratios);
@@ -58,8 +57,7 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     command(&out("whole"), &RowRetention::default()).expect("done");
     let whole = [ROWS, AGGREGATES].map(|name| text(&out("whole"), name));
     let same = |name: &str| assert_eq!([ROWS, AGGREGATES].map(|file| text(&out(name), file)), whole, "{name}");
-    // Shards first, then the whole; then again from a file with an incomplete line, as after a
-    // kill.
+    // Shards first, then the whole; then from a file with an incomplete line, as after a kill.
     for shard in ["2/3", "1/3", "3/3"] {
         let keeping = RowRetention { shard: shard.parse().expect("a shard"), ..RowRetention::default() };
         command(&out("shards"), &keeping).expect("done");
@@ -75,7 +73,6 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     assert!(refused.contains("--resume does the others, --restart forgets these"), "{refused}");
     command(&out("cut"), &resume).expect("done");
     same("cut");
-    // Completed results are replaced; those of another plan are not continued.
     command(&out("cut"), &RowRetention::default()).expect("done");
     same("cut");
     let other = swap::Plan { noise_m: 0.01, ..plan() };
@@ -104,7 +101,6 @@ fn early_end_keeps_finished_runs() {
     assert_eq!(jobs.course().expect("rows").found, course.done);
 }
 
-/// Checks that rows of a plan are valid and that another plan has another fingerprint.
 fn check<E: Experiment>(plan: &E, other: &E) {
     plan.check().unwrap_or_else(|what| panic!("{}: {what}", E::NAME));
     let sheet = Sheet::new(plan);
@@ -120,12 +116,10 @@ fn check<E: Experiment>(plan: &E, other: &E) {
     for run in [0, sheet.runs() - 1] {
         assert_eq!(sheet.values(run).len(), sheet.parameters().len());
     }
-    // All points have different parameters, so that no two rows mean the same run.
     let mut points: Vec<Vec<String>> =
         (0..plan.points() as u64).map(|p| sheet.values(p * sheet.runs_per_point())).collect();
     points.sort_unstable();
     assert!(points.windows(2).all(|pair| pair[0] != pair[1]), "{}", E::NAME);
-    // Rows are read back bit for bit.
     let (point, run) = sheet.place(sheet.runs() - 1);
     let mut blank = plan.blank(point, run);
     let mut number = 0.0;

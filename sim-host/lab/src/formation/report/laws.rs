@@ -1,4 +1,4 @@
-//! Results of other laws compared with ours.
+//! Other laws compared with ours.
 
 use super::{Journey, Point, Report};
 use crate::experiment::Maybe;
@@ -12,7 +12,7 @@ use std::fmt::{self, Formatter};
 pub struct LawJourney {
     /// The law.
     pub law: Law,
-    /// Its results.
+    /// Results of the crossings.
     #[serde(flatten)]
     pub journey: Journey,
 }
@@ -32,8 +32,6 @@ impl Point {
 }
 
 impl Report {
-    /// The laws that were tried, the planned one first, and the losses in ascending order; empty
-    /// without other laws.
     fn laws(&self) -> (Vec<Law>, Vec<f64>) {
         let tried = self.points.first().map_or(&[][..], |point| &point.other_laws);
         let has = |law: Law| law == Law::Staya || tried.iter().any(|other| other.law == law);
@@ -84,7 +82,6 @@ impl Report {
         self.write_waiting(f)
     }
 
-    /// Writes benefit and cost of waiting at the lowest loss.
     fn write_waiting(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let (laws, losses) = self.laws();
         let (Some(&loss), true) = (losses.first(), laws.contains(&Law::Unwaiting)) else {
@@ -117,7 +114,6 @@ impl Report {
         Ok(())
     }
 
-    /// Figure 6 for each law; `None` without other laws.
     pub(in crate::formation) fn laws_picture(&self) -> Option<Panels> {
         let (laws, losses) = self.laws();
         let loss = *losses.first()?;

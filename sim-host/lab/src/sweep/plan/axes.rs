@@ -1,4 +1,4 @@
-//! `axes`, `zip`, `sample` and `set` of a plan: fields and their values.
+//! Fields and their values: `axes`, `zip`, `sample` and `set` of a plan.
 
 use super::table::{PlanFile, RangeTable, SampleTable};
 use crate::sweep::sample::shares;
@@ -10,27 +10,23 @@ use toml::de::{DeTable, DeValue};
 
 const MOST: u32 = 1_000_000;
 
-/// A field and its values.
 #[derive(Clone, Debug)]
 pub struct Axis {
     pub field: Field,
     pub values: Vec<Value>,
-    /// Line in the plan.
     pub line: usize,
-    /// Whether the values form a geometric sequence.
     pub is_log: bool,
-    /// Whether the values come from a range, which is invalid for text fields.
+    /// Values come from a range, which is invalid for text fields.
     pub is_range: bool,
     span: Range<usize>,
 }
 
-/// All fields that a plan varies or sets.
+/// Fields that a plan varies or sets.
 #[derive(Debug, Default)]
 pub struct Axes {
     pub axes: Vec<Axis>,
-    /// Groups of axes that advance together.
     pub groups: Vec<Range<usize>>,
-    /// Fields with one value for all runs.
+    /// One value for all runs.
     pub set: Vec<(Field, Value, Range<usize>)>,
 }
 
@@ -105,7 +101,6 @@ pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError>
     Ok(all)
 }
 
-/// Refuses a range for a field that has a text or a truth value in the scenario.
 pub fn check_kind(source: &Source<'_>, axis: &Axis, stands: Option<&toml::Value>) -> Result<(), ScenarioError> {
     let is = match stands {
         Some(toml::Value::String(word)) => format!("a text ({word:?})"),
@@ -123,7 +118,6 @@ pub fn check_kind(source: &Source<'_>, axis: &Axis, stands: Option<&toml::Value>
     Ok(())
 }
 
-/// Cause and remedy of a range for text.
 pub fn no_range(is: &str) -> (String, String) {
     (format!("it is {is}, which has no range"), "give a list of values".to_owned())
 }
@@ -144,8 +138,7 @@ fn as_table<'a, 't>(value: &'a DeValue<'t>) -> Option<&'a DeTable<'t>> {
     }
 }
 
-/// Fields of a table in the order of the text; nested tables give dotted names. A table with `from`
-/// is a range.
+/// In the order of the text; nested tables give dotted names. A table with `from` is a range.
 fn entries<'a>(
     source: &Source<'_>,
     here: Option<&DeTable<'_>>,
@@ -232,7 +225,6 @@ fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
         }
         (None, Some(step)) => {
             let steps = libm::floor((to - from) / step + 1e-9);
-            // A step of 0 or of the wrong sign never reaches the end.
             if log || !(0.0..f64::from(MOST)).contains(&steps) {
                 let what = format!("steps of {step} do not lead from {from} to {to}");
                 return Err((what, "give a step towards `to`, at most a million times; for equal ratios give `count`"));
@@ -254,7 +246,6 @@ fn check_log(range: &RangeTable) -> Result<(), (String, &'static str)> {
     Ok(())
 }
 
-/// The value at a share of the range.
 fn between(range: &RangeTable, share: f64) -> f64 {
     let RangeTable { from, to, log, .. } = *range;
     if share == 0.0 {
@@ -268,7 +259,7 @@ fn between(range: &RangeTable, share: f64) -> f64 {
     }
 }
 
-/// Rounds to twelve digits, for 0.3 instead of 0.30000000000000004.
+/// Twelve digits, for 0.3 instead of 0.30000000000000004.
 fn neat(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
@@ -277,7 +268,6 @@ fn rounded(range: &RangeTable, value: f64) -> Value {
     Value::of(if range.whole { libm::round(value) } else { value })
 }
 
-/// Reads an axis with random values.
 fn sampled(
     source: &Source<'_>,
     Entry { field, span, value }: Entry<'_>,
@@ -303,7 +293,6 @@ fn sampled(
     Ok(Axis { field, values, line, is_log, is_range: is_ends, span })
 }
 
-/// Finds a duplicate value. O(n log n).
 fn twice(values: &[Value]) -> Option<String> {
     let mut texts: Vec<String> = values.iter().map(ToString::to_string).collect();
     texts.sort_unstable();

@@ -8,11 +8,9 @@ use staya_sim::summary::Summary;
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
-/// Most points to check. Of larger plans, checks points that cover each value, and points in
-/// between.
 const MOST: u64 = 500;
 
-/// Checks points of the plan with the scenario's parser. Returns the names of all figures.
+/// Checks points with the scenario's parser and returns the names of all figures.
 pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
     let mut known = figures(plan, source)?;
     let points: Vec<u64> = points(plan).into_iter().collect();
@@ -24,7 +22,7 @@ pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioEr
         |index, read| match read {
             Ok(()) => ControlFlow::Continue(()),
             Err(error) => {
-                // Reports the error of the first point, whichever thread was first.
+                // The error of the first point, whichever thread was first.
                 if wrong.as_ref().is_none_or(|(before, _)| index < *before) {
                     wrong = Some((index, error));
                 }
@@ -38,7 +36,6 @@ pub fn check(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioEr
     }
 }
 
-/// Names of the figures, from the first run before its first tick.
 fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioError> {
     let scenario = plan.scenario(&plan.run(0))?;
     let outcome = simulate(&scenario, |_, _| ControlFlow::Break(())).map_err(|error| {
@@ -51,8 +48,8 @@ fn figures(plan: &Plan, source: &Source<'_>) -> Result<Vec<String>, ScenarioErro
     Ok(Summary::new(&scenario, &outcome, Vec::new()).figures().into_iter().map(|(name, _)| name).collect())
 }
 
-/// Points to check: all of them or, in large plans, each value of each axis combined with the first
-/// values of the others, and points in between.
+/// All points or, in large plans, each value of each axis with the first values of the others, and
+/// points in between.
 fn points(plan: &Plan) -> BTreeSet<u64> {
     let count = plan.runs() / plan.seeds();
     if count <= MOST {

@@ -56,7 +56,6 @@ fn run_is_the_scenario_with_the_values_of_its_point() {
         plan("seeds = { from = 40, count = 2 }\n[set]\nticks = 33\n[axes]\nplane.robots.circle.count = [2, 6]\n");
     let scenario = plan.scenario(&plan.run(3)).expect("a scenario");
     assert_eq!((scenario.robots.len(), scenario.seed, scenario.ticks), (6, 41, 33));
-    // Without seeds, the plan uses the scenario's own.
     let folder = folder();
     let plan = parse(&folder, "[axes]\nradio.loss = [0, 1]\n").expect("a plan");
     assert_eq!((plan.runs(), plan.run(1).seed), (2, 9));
@@ -108,7 +107,6 @@ fn samples_depend_only_on_their_seed() {
         let ranges = values(&a, "radio.range_m");
         assert!(ranges.iter().any(|value| value == "3") && ranges.iter().any(|value| value == "8"));
     }
-    // Half of the parts of a logarithmic axis lie below its geometric mean.
     let even = plan(&text(3, "latin_hypercube"));
     let delays = even.values("radio.delay_ms").expect("an axis").iter().filter_map(Value::number);
     assert_eq!(delays.filter(|&delay| delay < 31.62).count(), 10);
@@ -261,7 +259,6 @@ fn every_field_of_a_plan_is_documented() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Any plan is either refused or gives a different run for each number.
     #[test]
     fn numbers_denote_different_runs(
         losses in proptest::collection::btree_set(0u32..100, 1..5),

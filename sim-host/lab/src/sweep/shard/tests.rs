@@ -59,7 +59,6 @@ fn any_number_of_shards_gives_identical_bytes() {
     assert_eq!(merged(&plan, &out("2")), whole);
     perform_all(&plan, &out("7"), &["3/7", "1/7", "7/7", "2/7", "6/7", "5/7", "4/7"], Existing::Refuse);
     assert_eq!(merged(&plan, &out("7")), whole);
-    // The rows may be in any order.
     let file = out("1").join("shards/1-of-1.csv");
     let text = fs::read_to_string(&file).expect("rows");
     let (header, rows) = text.split_once('\n').expect("lines");
@@ -93,7 +92,6 @@ fn early_end_keeps_finished_runs_and_resume_makes_the_missing_ones() {
     let goes_on = || asked.fetch_add(1, Ordering::Relaxed) < 40;
     let course = done(&plan, Shard::default(), &out, Existing::Refuse, &goes_on).expect("no error");
     assert!(course.done > 0 && course.missing() > 0, "{course:?}");
-    // Rows of another process count too.
     let other = perform_all(&plan, &out, &["2/3"], Existing::Resume);
     let rest = perform_all(&plan, &out, &["1/1"], Existing::Resume);
     assert_eq!(rest.done, 18 - course.done - other.done);
@@ -121,7 +119,6 @@ fn existing_rows_are_kept_unless_an_option_permits_it() {
             "{said}"
         );
     }
-    // Rows of a plan that has changed.
     let text = PLAN.replace("0.25", "0.3");
     let changed = Plan::parse(&text, &folder.path().join("plan.toml")).expect("a plan");
     let before = fs::read(out.join("shards/1-of-2.csv")).expect("rows");
@@ -172,7 +169,7 @@ fn inconsistent_rows_are_refused() {
     fs::write(&file, merged_text.replacen(first, &format!("{first}\n{first}"), 1)).expect("room");
     let said = Merged::reread(&plan, &file).expect_err("twice").to_string();
     assert!(said.contains("rows.csv:3: run 0 has two rows, or is out of order; merge the shards again"), "{said}");
-    // A row that differs comes from a changed program.
+    // A different row comes from another version of the program.
     let other = second.replacen(",done,", ",done,7", 1);
     fs::write(&one, format!("{rows}{other}\n")).expect("room");
     let said = read(&[one.clone(), two.clone()]).expect_err("they differ").to_string();
