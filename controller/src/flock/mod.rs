@@ -1,7 +1,6 @@
-//! Three flocks: the preferred motion of a robot, given its neighbours. Each is pure and
-//! independent of the others.
+//! Three independent flocks: the preferred motion of a robot, given its neighbours.
 //!
-//! - [`lattice`]: equal distances, a reference to follow, obstacles (Olfati-Saber 2006); returns an
+//! - [`lattice`]: equal distances, a reference, obstacles (Olfati-Saber 2006); returns an
 //!   acceleration.
 //! - [`goal`]: goals, the middle of the neighbours, repulsion (Pavlovsky and Pavlovsky); returns a
 //!   velocity.

@@ -38,8 +38,8 @@
 //!   wait for robots that follow another leader.
 //! - **Look-ahead.** With the law "lookahead" followers plan their routes to where their places
 //!   will be some moves later ([`Course`]).
-//! - **GapClosing.** If ranks are closed ([`FormationParams::closes_ranks`]), robots behind a dead robot
-//!   move up.
+//! - **GapClosing.** If ranks are closed ([`FormationParams::closes_ranks`]), robots behind a dead
+//!   robot move up.
 //! - **Misprints.** `less` is counted once (algorithm 5), the leader is the smallest number
 //!   (algorithm 6), sums restart for each direction (algorithm 7).
 
@@ -128,9 +128,9 @@ pub struct FormationParams {
     /// formation splits at every obstacle; with a large one it waits longer for a robot without a
     /// route. In the plane it is the leader's waiting time in seconds.
     pub patience: u16,
-    /// Whether robots behind a dead robot move up into its place ([`GapClosing`]) or leave it empty.
-    /// Fixed places keep all robots at the intended distances; moving up leaves no gap behind the
-    /// leader and keeps the formation within its radio range.
+    /// Whether robots behind a dead robot move up into its place ([`GapClosing`]) or leave it
+    /// empty. Fixed places keep all robots at the intended distances; moving up leaves no gap
+    /// behind the leader and keeps the formation within its radio range.
     pub closes_ranks: bool,
     /// How robots predict the positions of others.
     pub prediction: Prediction,
@@ -140,8 +140,8 @@ pub struct FormationParams {
 
 impl FormationParams {
     /// Good values for followers that look ahead ([`Course`]): the leader waits from 3 cells on
-    /// (210 units), and being off the own place costs twice as much; chosen on seed 1 of `staya
-    /// experiment formation`.
+    /// (210 units), and being off the own place costs twice as much; chosen on seed 1 of
+    /// `staya experiment formation`.
     #[must_use]
     pub fn looking_ahead() -> Self {
         Self { gain: Gain::from_sixteenths(32), halt_lag: 210, resume_lag: 210, ..Self::default() }

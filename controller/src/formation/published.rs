@@ -59,8 +59,8 @@ impl Default for PublishedParams {
     /// The paper specifies only gain and prediction. eps is 10 cells, as in Staya's law. r0 is
     /// chosen so that all arrive on most landscapes: from a sum of 30 cells (10 for each of the
     /// three neighbours of a robot in the middle of figure 5) down to 9. From 9 down to 3 the
-    /// errors are the paper's, and most runs jam (`staya experiment formation --paper-halt 9
-    /// --paper-resume 3`).
+    /// errors are the paper's, and most runs jam
+    /// (`staya experiment formation --paper-halt 9 --paper-resume 3`).
     fn default() -> Self {
         Self {
             eps: 10,

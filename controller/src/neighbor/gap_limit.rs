@@ -39,8 +39,8 @@ const TOLERANCE_UM: i32 = 200;
 /// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017, express this as
 /// cells; here it limits the velocity that the safety layer has chosen.)
 ///
-/// *ContactLossPolicy:* a silent neighbour that gives way keeps to the same rule. Thus the border of its ball
-/// comes nearer by at most half of the gap per step.
+/// *ContactLossPolicy:* a silent neighbour that gives way keeps to the same rule. Thus the border
+/// of its ball comes nearer by at most half of the gap per step.
 ///
 /// *Inertia:* the ball of a body with inertia follows its last course and grows by half of its
 /// acceleration times t^2, if that is less. The own robot takes no more of a gap than it can brake

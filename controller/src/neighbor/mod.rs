@@ -196,9 +196,9 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// 2. the robot farthest from `own`, if the newcomer is nearer or protected;
     /// 3. otherwise the newcomer is refused.
     ///
-    /// A [duplicate id](RobotId::duplicate) only replaces another duplicate, so a sender that forges
-    /// ids cannot crowd out other robots. The smaller id wins a tie. Distances are taken at the
-    /// extrapolated positions, and an unknown distance (NaN) counts as the largest. Thus the
+    /// A [duplicate id](RobotId::duplicate) only replaces another duplicate, so a sender that
+    /// forges ids cannot crowd out other robots. The smaller id wins a tie. Distances are taken at
+    /// the extrapolated positions, and an unknown distance (NaN) counts as the largest. Thus the
     /// content after a burst of beacons does not depend on their order, unless more than `N`
     /// senders are protected.
     pub fn put(

@@ -62,8 +62,8 @@ impl<S: Scalar> StalenessInflation<S> {
 /// | older than [`Ages::expire_after`] | not included | | |
 ///
 /// The ball of a stale robot grows at half of the speed in `inflation`, because
-/// [`GapLimit`](super::GapLimit) covers its worst case. It never grows over the own ball of `own_radius_m`,
-/// since an outdated state alone is not a collision. A robot that is not of `flock`
+/// [`GapLimit`](super::GapLimit) covers its worst case. It never grows over the own ball of
+/// `own_radius_m`, since an outdated state alone is not a collision. A robot that is not of `flock`
 /// ([`Neighbor::slot`]) is a stranger.
 ///
 /// O(N K); 24 K bytes of stack in addition to the result (`f32`, 32-bit pointers).

@@ -1,5 +1,4 @@
-//! The accuracy of ORCA's half-planes with `Fast32`, which takes a fifth fewer instructions on a
-//! Cortex-M4F (`docs/firmware.md`).
+//! Accuracy of half-planes with `Fast32`, which saves a fifth of the instructions on a Cortex-M4F.
 
 use super::{MovingBall, Params, half_plane};
 use crate::geom::Vec2;

@@ -30,8 +30,8 @@ pub fn velocity_half_plane<S: Scalar>(
     point.is_finite().then_some(HalfPlane { point, normal })
 }
 
-/// Half-planes of moving neighbours from a model of all velocity obstacles (`staya voxel build
-/// neighbor`), for an [`Avoider`](staya_controller::orca::Avoider).
+/// Half-planes of moving neighbours from a model of all velocity obstacles
+/// (`staya voxel build neighbor`), for an [`Avoider`](staya_controller::orca::Avoider).
 ///
 /// Turned so that the neighbour is on the x axis, with the disc's centre in the origin and its
 /// radius as unit, a velocity obstacle depends on one number: its half angle. The model's variables

@@ -30,8 +30,8 @@ impl<F: Framing, const N: usize> Sender<F, N> {
         Self { bytes: Vec::new(), begun: 0, is_cut: false, counts: Counts::NONE, framing: PhantomData }
     }
 
-    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox). O(outbox
-    /// + `N`) per frame.
+    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox).
+    /// O(outbox + `N`) per frame.
     pub fn send(&mut self, outbox: &[u8]) {
         let mut rest = outbox;
         while let Some(frame) = F::next_frame(&mut rest) {

@@ -80,8 +80,8 @@ impl<'a, S: Scalar> Scan<'a, S> {
 /// within `margin_m` of its ball, extrapolated from its last packet to `now`, but at most by
 /// `longest`. The margin covers the error of this extrapolation.
 ///
-/// For [`LocalMap::observe`] and [`outline`]: `|place| is_neighbor(agent.neighbors(), own, now,
-/// longest, place, margin)`. O(neighbours).
+/// For [`LocalMap::observe`] and [`outline`]:
+/// `|place| is_neighbor(agent.neighbors(), own, now, longest, place, margin)`. O(neighbours).
 #[must_use]
 pub fn is_neighbor<S: Scalar, P>(
     neighbors: &[Neighbor<S, P>],

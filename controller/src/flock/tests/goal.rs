@@ -79,7 +79,6 @@ fn repulsion_grows_with_the_square_and_is_held_below_half_the_least_distance() {
     {
         assert!((push(distance) - expected).abs() < 1e-9, "{distance}");
     }
-    // Sums over neighbours; a negative gain attracts.
     let around = [at(10.0, 0.0), at(0.0, 10.0)];
     assert_close(wished([0.0, 0.0, 0.1], None, &around), [-0.2, -0.2, 0.0]);
     assert_close(wished([0.0, 0.0, -0.1], None, &around), [0.2, 0.2, 0.0]);
@@ -268,7 +267,6 @@ proptest! {
     fn the_result_turns_and_mirrors_with_the_world_and_ignores_order(
         gains in [-2.0..2.0_f64, -2.0..2.0, -1.0..1.0], way in [-99..99_i32, -99..99], seen in seen(),
     ) {
-        // A quarter turn and a mirror, so that the goal's millimetres turn exactly.
         let way = way.map(f64::from);
         let plain = answer::<f64>(gains, way, &seen);
         let turn = |[x, y]: [f64; 2]| [-y, x];
