@@ -1,5 +1,3 @@
-//! One motor driven by a bridge.
-
 use core::fmt;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::pwm::SetDutyCycle;
@@ -67,8 +65,7 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
 
     fn set(&mut self, duty: i16) -> Result<(), Self::Error> {
         let power = scaled(duty, self.pwm.max_duty_cycle());
-        // Power must be off while the direction changes: half a period in the wrong direction is a
-        // jerk.
+        // Half a period in the wrong direction is a jerk.
         let pwm = |result: Result<(), P::Error>| result.map_err(MotorError::Pwm);
         pwm(self.pwm.set_duty_cycle(0))?;
         self.direction.set_state((duty >= 0).into()).map_err(MotorError::Pin)?;
@@ -134,7 +131,7 @@ impl<P: SetDutyCycle> Motor for HBridge<P> {
 
     fn set(&mut self, duty: i16) -> Result<(), P::Error> {
         let (used, idle) = if duty < 0 { (&mut self.back, &mut self.ahead) } else { (&mut self.ahead, &mut self.back) };
-        // First off, then on: both on would brake with full current.
+        // Both on would brake with full current.
         idle.set_duty_cycle(0)?;
         let power = scaled(duty, used.max_duty_cycle());
         used.set_duty_cycle(power)
@@ -144,7 +141,6 @@ impl<P: SetDutyCycle> Motor for HBridge<P> {
 fn scaled(duty: i16, max: u16) -> u16 {
     let full = u32::from(FULL.unsigned_abs());
     let power = u32::from(duty.unsigned_abs()).min(full);
-    // At most 65,535 * 32,767 + 16,383 < 2^31.
     let scaled = (power * u32::from(max) + (full >> 1)).checked_div(full);
     scaled.and_then(|s| u16::try_from(s).ok()).unwrap_or(0)
 }
