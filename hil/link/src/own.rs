@@ -1,7 +1,4 @@
-//! Robots with a user-defined guidance law.
-//!
-//! Such a firmware contains exactly one law. The host sends the law's initial state in postcard
-//! format: the device steps the value that the simulation built with `|index| MyLaw { .. }`.
+//! Robots with a user-defined guidance law: the host sends its initial state in postcard format.
 
 use crate::body::{Body, capacities, check, number};
 use crate::capacities::Capacities;

@@ -29,8 +29,8 @@ pub enum Refusal {
         /// Obstacles that fit.
         room: usize,
     },
-    /// A window whose cell count does not match its sides, an obstacle of unknown shape, or inputs
-    /// with neither a cell nor surroundings.
+    /// Inconsistent inputs: cell count and sides of a window, an unknown shape, no cell or
+    /// surroundings.
     Nonsense,
 }
 

@@ -1,12 +1,11 @@
-//! The device's end of the link: a robot with any built-in guidance law that steps on request of
-//! the host.
+//! The device's end of the link: a robot with any built-in guidance law.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
 mod robot {
     use staya_link::{robot, session::content_bytes};
 
-    /// The robot that fits the part, and the content of its longest frame, bytes.
+    /// And the content of its longest frame, bytes.
     #[cfg(not(part = "nrf51"))]
     pub type Robot = robot::Large;
     #[cfg(not(part = "nrf51"))]

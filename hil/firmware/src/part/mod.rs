@@ -1,4 +1,4 @@
-//! Drivers of the parts: each file sets up one part, with the same functions.
+//! One file per part, with the same functions.
 
 #[cfg(part = "nrf51")]
 mod nrf51;
@@ -18,20 +18,17 @@ pub use stm32f405::*;
 #[cfg(not(any(part = "stm32f405", part = "nrf51", part = "riscv32")))]
 compile_error!("no part has this target triple: see the table in src/lib.rs");
 
-/// Clock rates after the set-up.
 #[derive(Clone, Copy)]
 pub struct Clocks {
-    /// Processor clock, hertz.
     pub clock_hz: u32,
-    /// Rate of [`ticks`], hertz.
+    /// From `STAYA_BAUD` at build time.
     pub tick_hz: u32,
 }
 
-/// Baud rate, from `STAYA_BAUD` at build time.
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const BAUD: u32 = number(env!("STAYA_BAUD"));
 
-/// Parses a decimal number that the build script has checked.
+/// Checked by the build script.
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const fn number(text: &str) -> u32 {
     let mut rest = text.as_bytes();

@@ -1,5 +1,3 @@
-//! Sensor readings of a moving robot.
-
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -9,7 +7,7 @@ use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, encode};
 use std::vec::Vec;
 
-/// A beacon of robot 2, which circles around the first one.
+/// It circles around the first one.
 pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
     let at = (tick % 400) as i32;
     let beacon = Beacon {
@@ -30,14 +28,13 @@ pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
     out.to_vec()
 }
 
-/// The world of a reference robot without faults, which runs next to the one behind the line.
+/// A reference robot without faults.
 pub struct World {
     pub position: Position,
     pub velocity: Vec3<f32>,
     pub cell: Cell,
 }
 
-/// Inputs of the robot in one step.
 pub struct Scene {
     pub now: Instant,
     pub inbox: Vec<u8>,
