@@ -60,7 +60,6 @@ fn offer_script(here: &Path, part: &str, scripts: &[&str], is_optimised: bool) {
     let mut all: String =
         scripts.iter().chain(&["defmt.x", "note.x"]).map(|name| format!("INCLUDE {name}\n")).collect();
     if is_optimised {
-        // See `main`.
         all += "__defmt_default_panic = 0;\n";
     }
     let write = |name: &str, text: &[u8]| {
@@ -80,7 +79,6 @@ fn bins(here: &Path) -> Vec<String> {
     entries.filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string())).collect()
 }
 
-/// From the environment or the default, passed to the crate as an environment variable.
 fn number(name: &str, default: u32, range: std::ops::RangeInclusive<u32>) -> u32 {
     println!("cargo:rerun-if-env-changed={name}");
     let value = match env::var(name) {

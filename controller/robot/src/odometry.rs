@@ -6,8 +6,7 @@ use staya_controller::geom::{Position, Vec2};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Duration;
 
-/// The wrapping 16-bit counter of an incremental encoder. Read it before the wheel makes 32,767
-/// ticks.
+/// The wrapping 16-bit counter of an incremental encoder. Read it every 32,766 ticks or sooner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encoder<S> {
     rim_m: S,
@@ -70,8 +69,7 @@ pub struct Odometry<S> {
 }
 
 impl<S: Scalar> Odometry<S> {
-    /// Starts with a stationary robot; `None` unless `heading_rad` (counter-clockwise from east) is
-    /// finite.
+    /// Starts with a stationary robot; `None` unless `heading_rad` (from east) is finite.
     #[must_use]
     pub fn new(position: Position, heading_rad: S) -> Option<Self> {
         heading_rad.is_finite().then(|| Self {

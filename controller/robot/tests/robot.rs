@@ -110,7 +110,6 @@ struct Body {
     axle: Vec2<f64>,
     heading: f64,
     rims: [f64; 2],
-    /// Distances of the rims, metres.
     ways: [f64; 2],
     channels: [[Channel; 2]; 2],
     uart: Uart,
@@ -197,7 +196,6 @@ struct Firmware<G: Guidance<f32>> {
 }
 
 const LIMITS: Limits<f32> = Limits { speed_mps: 0.5, acceleration_mps2: 1.5 };
-/// 2 cm to spare.
 const AHEAD_M: f32 = 0.06;
 const RADIUS_M: f32 = BODY_M as f32 + AHEAD_M + 0.02;
 
@@ -351,7 +349,6 @@ fn a_robot_gets_around_a_wall_known_only_from_ranges() {
         let gaps = walls.iter().map(|wall| bodies[0].gap_to(wall));
         least = gaps.fold(least, f64::min);
     });
-    // Odometry may be off by some centimetres.
     let [body] = &bodies;
     let (sin, cos) = Scalar::sin_cos(body.heading);
     let point = body.axle + v(cos, sin) * f64::from(AHEAD_M);

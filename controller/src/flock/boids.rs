@@ -23,7 +23,6 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// The largest turn, as a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Turn<S> {
     cos: S,
@@ -70,7 +69,6 @@ pub struct BoidsParams<S> {
     closest: u64,
     turn: Turn<S>,
     turn_away: Turn<S>,
-    /// The values given to `new`.
     #[serde(with = "crate::digest::uncounted")]
     values: [S; 4],
 }
@@ -169,7 +167,6 @@ impl<S: Scalar> BoidsParams<S> {
         let is_left = if !is_parallel {
             heading.det(flies) > S::ZERO
         } else if heading.dot(flies) < S::ZERO {
-            // Head-on: both turn right and pass.
             true
         } else {
             let place = other.offset_m.xy();

@@ -126,7 +126,6 @@ fn among_neighbors<S: Scalar>(params: &GoalParams<S>, own: RobotId, nearby: &[Ne
         if !is_seen || other.id == own {
             continue;
         }
-        // The mean has the direction of the sum.
         if !other.is_stranger {
             sum += other.offset_m;
         }
@@ -221,7 +220,6 @@ impl<const N: usize> Goals<N> {
                 *total += i64::from(mm);
             }
         }
-        // To nearest: (2 s + n) / 2 n.
         let mean = |total: i64| (2 * total + count).checked_div_euclid(2 * count);
         let [x, y, z] = sum.map(|total| mean(total).and_then(|mm| i32::try_from(mm).ok()));
         Some(Position::from_mm([x?, y?, z?]))

@@ -57,8 +57,8 @@ pub enum Algorithm {
     /// Also obstacles; the pull of the reference is bounded.
     #[default]
     Three,
-    /// Like [`Algorithm::Three`], but no robot pushes one nearer to the reference (not in the
-    /// paper).
+    /// Like [`Algorithm::Three`], but no robot pushes one nearer to the reference: not in the
+    /// paper.
     ThreeInTurn,
 }
 
@@ -274,7 +274,6 @@ pub fn acceleration<S: Scalar>(
     sum
 }
 
-/// The parameters in the paper's units.
 struct Law<'a, S> {
     params: &'a LatticeParams<S>,
     /// 7 / d.
@@ -363,7 +362,6 @@ impl<'a, S: Scalar> Law<'a, S> {
         let outside = if is_inside { S::ZERO } else { distance };
         let SigmaNorm { sigma, slope } = sigma_norm(outside * outside);
         let adjacency = self.phi_beta.adjacency(sigma);
-        // The length of n^; inside like one unit in front of the border.
         let length = if is_inside { sigma_norm(S::ONE).slope } else { outside * slope };
         let push = -(self.params.beta.position * self.phi_beta.at(sigma, adjacency)) * length;
         let gain = self.params.beta.velocity * adjacency;
@@ -418,7 +416,6 @@ fn goes_first<S: Scalar>(other: &Nearby<S>, body: &Body<S>, reference: &Referenc
     is_nearer && !other.is_stranger && other.id != body.id
 }
 
-/// Zero if a velocity is not known.
 fn drag<S: Scalar>(gain: S, relative_mps: Vec3<S>) -> Vec3<S> {
     let term = relative_mps * gain;
     if term.is_finite() { term } else { Vec3::ZERO }

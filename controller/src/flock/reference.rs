@@ -35,8 +35,7 @@ impl<S: Scalar> ReferenceMotion<S> {
         }
     }
 
-    /// The velocity that a robot should have, m/s, given its vector to the reference, metres, and
-    /// the reference's velocity. Constant work.
+    /// The velocity that a robot at `offset_m` (vector to the reference) should have, m/s.
     #[must_use]
     pub fn wanted(self, offset_m: Vec3<S>, velocity_mps: Vec3<S>) -> Vec3<S> {
         let (Self::Resting(within_m), Some(ahead)) = (self, velocity_mps.normalized()) else {

@@ -80,8 +80,7 @@ impl GapClosing {
         }
     }
 
-    /// The template from the place that is held, with the current holders of the other places.
-    /// O(F * robots).
+    /// The template from the place that is held, with the current holders of places. O(F * robots).
     #[must_use]
     pub fn view<const F: usize>(
         &self,
@@ -273,7 +272,6 @@ mod tests {
         let mut seen: Vec<_> = view.entries.iter().map(|entry| (entry.id.0, entry.offset.x, entry.offset.y)).collect();
         seen.sort_unstable();
         assert_eq!(seen, [(1, -3, 0), (3, -3, -3), (5, -3, -6), (6, 0, -3)]);
-        // Beside it, not behind.
         let view = GapClosing::new().view(RobotId(1), &template(0), holders.into_iter().skip(1));
         let beside = view.entries.iter().find(|entry| entry.id == RobotId(4)).unwrap();
         assert_eq!(beside.offset, Cell::new(3, 0));

@@ -42,8 +42,7 @@ impl Steering for NextMove {
     }
 }
 
-/// Uses the leader's course over its recent moves, each weighted half as much as the next one.
-/// O(1).
+/// Uses the leader's recent moves, each weighted half as much as the next one. O(1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Course {
     leader: Option<(RobotId, Cell)>,
@@ -52,13 +51,10 @@ pub struct Course {
     y: i32,
 }
 
-/// A cell in a mean move.
 const ONE: i32 = 1024;
-/// Shorter mean moves do not define a course.
 const LEAST: i32 = 100;
 /// Cells. More saves time and costs accuracy; chosen on seed 1 of `staya experiment formation`.
 const AHEAD: u8 = 4;
-/// A move of this many cells replaces the course.
 const MOST: u32 = 16;
 
 impl Course {
@@ -157,9 +153,7 @@ mod tests {
         let south_west = course(&[(0, 0), (-1, -1), (-2, -2)]);
         let goal = Cell::new(-13, -10);
         assert_eq!(south_west.aims(&params, &anchor(), goal), [Cell::new(14, 17), Cell::new(16, 19)]);
-        // The goal draws it aside, but less than the course.
         assert_eq!(east.aims(&params, &anchor(), Cell::new(17, 90)), [Cell::new(21, 22), Cell::new(18, 20)]);
-        // At the goal only the course counts.
         assert_eq!(east.aims(&params, &anchor(), Cell::new(17, 20)), [Cell::new(21, 20), Cell::new(18, 20)]);
     }
 

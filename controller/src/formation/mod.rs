@@ -102,8 +102,7 @@ pub struct FormationParams {
     pub halt_lag: u16,
     /// Lag at which the leader continues, [`UNIT`](crate::grid::UNIT)s; at most `halt_lag`.
     pub resume_lag: u16,
-    /// How far ahead of the top leader the others aim, cells: the duration of its move and the
-    /// delay of its beacon.
+    /// How far ahead of the top leader the others aim, cells: its move and the delay of its beacon.
     pub lead: u8,
     /// Share of the land under the others' places in the top leader's price of a cell, sixteenths:
     /// 0 counts only its own cell, 16 only theirs. In the plane any other value than 0 counts the

@@ -59,16 +59,15 @@ impl<S: Scalar> Drive<S> {
         self.radius_m * S::from_milli(if was_there { 2 * AT_REST } else { AT_REST })
     }
 
-    /// The velocity towards a place `way_m` away that moves at `place_mps`, within the highest
-    /// speed.
+    /// The velocity towards a place `way_m` away that moves at `place_mps`.
     #[must_use]
     pub fn follow(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> Vec2<S> {
         let correction_mps = scaled(way_m, self.rate).clamp_norm(self.max_speed_mps);
         (place_mps + correction_mps).clamp_norm(self.max_speed_mps)
     }
 
-    /// Whether the robot is so far behind a place `way_m` away that moves at `place_mps` that its
-    /// leader should stop.
+    /// Whether the leader should stop for a robot `way_m` away from its place, which moves at
+    /// `place_mps`.
     #[must_use]
     pub fn is_far_behind(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> bool {
         dot(way_m, place_mps) > self.max_speed_mps * self.halt_m
@@ -117,8 +116,7 @@ pub(crate) fn scaled<S: Scalar>(v: Vec2<S>, s: S) -> Vec2<S> {
     v * s
 }
 
-/// How far `off_m` (actual minus desired) is behind in direction `ahead`, metres; ahead or
-/// aside: 0.
+/// How far `off_m` (actual minus desired) is behind in direction `ahead`, metres; at least 0.
 #[must_use]
 pub fn behind<S: Scalar>(off_m: Vec2<S>, ahead: Vec2<S>) -> S {
     (-dot(off_m, ahead)).max(S::ZERO)

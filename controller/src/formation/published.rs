@@ -16,12 +16,10 @@ named! {
     /// The available laws of formation keeping.
     #[derive(Default)]
     pub enum FormationLaw {
-        /// Staya's: the top leader chooses the route and waits for robots behind
-        /// ([`crate::formation`]).
+        /// Staya's: the top leader chooses the route and waits ([`crate::formation`]).
         #[default]
         Staya = "staya",
-        /// The paper's: each robot weighs its own route against all neighbours found
-        /// ([`PublishedParams`]).
+        /// The paper's: each robot weighs its own route ([`PublishedParams`]).
         Paper = "paper",
         /// Staya's, with routes to the future positions of places ([`Course`](super::Course)).
         Lookahead = "lookahead",
@@ -41,8 +39,7 @@ pub struct PublishedParams {
     pub halt: u16,
     /// Sum at which the formation is kept again (about r0), [`UNIT`]s; at most `halt`.
     pub resume: u16,
-    /// Missing and surplus robots above which others are asked to choose another direction (item
-    /// 6).
+    /// Missing and surplus robots above which others are asked to turn aside (item 6).
     pub crowd: u8,
     /// How robots predict the positions of others.
     pub prediction: Prediction,
@@ -190,7 +187,6 @@ mod tests {
         assert_eq!(found.members.len(), 3);
         assert_eq!(sum_of_deviations(PLACES[4], &found.members), UNIT);
         let sums = sums(Gain::ONE, PLACES[4], &found.members);
-        // One step east: in place by robot 2, a cell off by two others; west: 2 + 1 + 1.
         assert_eq!(sums.get(Dir::East), Gain::ONE.of(2 * UNIT));
         assert_eq!(sums.get(Dir::West), Gain::ONE.of(4 * UNIT));
     }

@@ -82,7 +82,6 @@ pub fn lag(off: Cell, heading: Dir) -> u32 {
     let behind = u32::try_from(-dot).unwrap_or(0);
     match heading {
         Dir::Stay => length,
-        // A diagonal of whole cells is DIAGONAL long.
         dir if dir.is_diagonal() => (behind.saturating_mul(DIAGONAL) >> 1).max(length >> 1),
         _ => behind.saturating_mul(UNIT).max(length >> 1),
     }
@@ -119,8 +118,7 @@ impl PaceControl {
         Self { waits: false }
     }
 
-    /// Returns whether to wait, by the largest lag, [`UNIT`]s: from above `halt_lag` down to
-    /// `resume_lag`.
+    /// Returns whether to wait: from a largest `lag` above `halt_lag` down to `resume_lag`.
     pub fn update(&mut self, params: &FormationParams, lag: u32) -> bool {
         let limit = if self.waits { params.resume_lag.min(params.halt_lag) } else { params.halt_lag };
         self.waits = lag > u32::from(limit);

@@ -105,7 +105,6 @@ fn costs_restart_for_each_direction_and_point_to_the_place() {
     let found = found(2, 1, 5, &robots);
     let price = distances(&params, Cell::new(5, 10), None, &found.members);
     assert_eq!(price.best(), Some(Dir::East));
-    // One cell off its place by all neighbours.
     assert_eq!(price.get(Dir::East), crate::cost::TICK);
     let by_top = distances(&params, Cell::new(5, 10), Some(Cell::new(7, 10)), &[]);
     assert_eq!(by_top.get(Dir::East), crate::cost::TICK);
@@ -172,7 +171,6 @@ fn land_is_priced_for_all_robots_that_would_cross_it() {
     assert_eq!(price(Footprint::Dearest), [9, 1, 9, BLOCKED]);
     let around = (Cell::new(20, 5), 1);
     assert!(blended(&window, around, &[entry], Footprint::Dearest, &mut [0; 1]).is_none());
-    // Only the needed part is priced, all of it is read.
     let mut near = [0; 2];
     let near = blended(&window, around, &[entry], Footprint::Mean(16), &mut near).unwrap();
     assert_eq!((near.origin(), near.cells()), (Cell::new(20, 5), &[9, 1][..]));
@@ -192,7 +190,6 @@ fn graph_distance_is_the_paper_s_sum() {
     robots[1].cell = Cell::new(4, 14);
     robots.remove(3);
     let at = graph_distance(Cell::new(10, 10), &found(1, 1, 10, &robots));
-    // Robot 4 is missing; robot 2 is (3, 4) = 5 cells off.
     assert_eq!((at.less, at.more, at.offsets), (1, 0, 350));
     assert_eq!(at.units(100), 70 + 3);
     assert_eq!(at.units(0), 70 + 350);

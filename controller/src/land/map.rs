@@ -40,9 +40,7 @@ pub(super) struct Known {
 /// square are forgotten.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LandMap<const T: usize> {
-    /// By position modulo the side; all or none.
     tiles: SparseVec<Known, T>,
-    /// South-west tile, a patch's corner.
     origin: Cell,
     aged_at: Option<Instant>,
     next: u16,
@@ -98,7 +96,6 @@ impl<const T: usize> LandMap<T> {
         self.tiles.get_mut(index)
     }
 
-    /// O(T) when the robot crosses the middle of a patch.
     fn center(&mut self, cell: Cell) {
         while T > 0 && self.tiles.push(Known::default()).is_ok() {}
         let at = tile_of(cell);

@@ -75,7 +75,6 @@ fn unknown(gains: &Gains, from: Cell, to: Cell) -> Cost {
     gains.a3.of(tiles.saturating_mul(TILE.unsigned_abs().into()))
 }
 
-/// Row by row from the south-west tile.
 struct Search<const T: usize> {
     /// Per cell, sixteenths.
     price: [u16; T],

@@ -83,7 +83,6 @@ fn new_tiles_are_sent_first_and_all_are_repeated_in_turn() {
     seeing(&mut map, at(16, 8), at(0, 0), 40, 3);
     let mut other = Map::new();
     seeing(&mut other, at(16, 8), at(100, 100), 4, 3);
-    // At least two patches wide and three high.
     for _ in 0..24 {
         other.hear(&map.say().unwrap());
     }
@@ -178,7 +177,6 @@ proptest! {
     #[test]
     fn merging_is_commutative_associative_and_idempotent(a: u8, b: u8, c: u8) {
         let [a, b, c] = [a, b, c].map(|byte| LandPatch::from_bytes(at(0, 0), [byte; PATCH_TILES]).tiles[0]);
-        // An unknown tile may have any age; that is not a difference.
         let same = |a: Tile, b: Tile| a == b || !a.is_known() && !b.is_known();
         prop_assert!(same(a.merged(b), b.merged(a)));
         prop_assert!(same(a.merged(b).merged(c), a.merged(b.merged(c))));

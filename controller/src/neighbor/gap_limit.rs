@@ -14,7 +14,6 @@ mod tests;
 
 /// Gap that remains, millimetres: rounding of both positions along each axis, and [`TOLERANCE_UM`].
 const ROUNDING_MM: i32 = 3;
-/// Rounds of turning aside before a velocity is shortened.
 const ROUNDS: u8 = 6;
 /// Excess accepted in the last round, micrometres.
 const TOLERANCE_UM: i32 = 200;
@@ -65,7 +64,6 @@ pub struct GapLimit<'a, S> {
 
 #[derive(Clone, Copy)]
 struct Limit<S> {
-    /// Unit vector towards it.
     ahead: Vec3<S>,
     /// Sine of the uncertainty of that direction.
     slant: S,
@@ -82,7 +80,6 @@ impl<S: Scalar> Limit<S> {
         (closing, side * self.slant)
     }
 
-    /// The largest approach in `step_s`, metres.
     fn taken(&self, velocity_mps: Vec3<S>, step_s: S) -> S {
         let (closing, side) = self.closing(velocity_mps);
         (closing + side) * step_s

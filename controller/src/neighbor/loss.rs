@@ -10,7 +10,6 @@ const MEMORY: u16 = 1 << 14;
 /// Accepted false alarms of a robot per minute, over all neighbours: one in 10,000 minutes; Q24.
 const FALSE_ALARMS: u64 = 1_677;
 const MINUTE_US: i32 = 60_000_000;
-/// Most silent periods that are examined one by one.
 const MOST_PERIODS: i32 = 64;
 
 /// Estimate of the packet loss, from gaps in the neighbours' sequence numbers.
@@ -24,9 +23,7 @@ const MOST_PERIODS: i32 = 64;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LossEstimate {
-    /// Frames sent by neighbours, received or not.
     frames: u16,
-    /// Gaps of more than [`SHORT`] frames.
     gaps: u16,
     ended: u16,
     /// Frames lost beyond the first [`SHORT`] of each gap.

@@ -73,8 +73,7 @@ pub struct Neighbor<S, P = ()> {
 }
 
 impl<S: Scalar, P> Neighbor<S, P> {
-    /// Returns the time since its state was received; `None` in the future (half of the clock's
-    /// range).
+    /// Returns the time since its state was received; `None` beyond half of the clock's range.
     #[must_use]
     pub fn age(&self, now: Instant) -> Option<Duration> {
         Some(now.since(self.heard)).filter(|age| *age >= Duration::ZERO)
@@ -227,7 +226,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         answer
     }
 
-    /// `None` if the newcomer must be refused.
     fn victim(
         &self,
         newcomer: &Neighbor<S, P>,
@@ -292,7 +290,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
                 others.any(|entry| entry.id.duplicate() == silent.id.duplicate() && is_within(entry, ages.stale_after))
             };
             if (range_m <= S::ZERO || distance(&silent) < range_m) && !is_moved() {
-                // An entry was removed above.
                 let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
                 self.sort_last();
             }
@@ -309,8 +306,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Removes the known robot `id` without remembering it as lost. Returns whether it was known.
-    /// O(N).
+    /// Removes the known robot `id` without remembering it as lost; whether it was known. O(N).
     pub fn forget(&mut self, id: RobotId) -> bool {
         let is_known = self.place(id).is_some();
         if is_known {
@@ -378,7 +374,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         self.entries.get(self.count()..).unwrap_or_default()
     }
 
-    /// The known robots precede the lost ones.
     fn count(&self) -> usize {
         match self.entries.last() {
             Some(last) if last.is_lost => self.entries.partition_point(|entry| !entry.is_lost),

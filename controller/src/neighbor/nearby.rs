@@ -21,8 +21,7 @@ pub struct Nearby<S> {
     pub velocity_mps: Vec3<S>,
     /// Radius of the ball that contains it, metres.
     pub radius_m: S,
-    /// Whether it gives way: its state is fresh and its [mode](crate::robot::Mode::gives_way)
-    /// permits it.
+    /// Whether it is fresh and its [mode](crate::robot::Mode::gives_way) gives way.
     pub gives_way: bool,
     /// The mode that it last reported.
     pub mode: Mode,
@@ -34,8 +33,7 @@ pub struct Nearby<S> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StalenessInflation<S> {
-    /// Growth of the radius, m/s: the highest speed of any robot, or 0. Less is not safe with
-    /// packet loss.
+    /// Growth of the radius, m/s: the highest speed of any robot; less is not safe. 0: no growth.
     pub growth_mps: S,
     /// Largest growth of the ball of a robot that is taken to stand, metres: how far away it may
     /// have stopped. More blocks more places; with less, a robot may hit one that lies in its way.

@@ -8,7 +8,6 @@ use crate::time::{Duration, Instant};
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// Robots whose positions can be in doubt at a time.
 const SUSPECTS: usize = 4;
 
 /// Limits on the values that a robot may report about itself, for robots that lie or whose sensors
@@ -33,8 +32,7 @@ pub struct PlausibilityLimits<S> {
     pub max_radius_m: S,
     /// Highest speed of any robot, m/s. With [`Scalar::MAX`], positions are not checked.
     pub max_speed_mps: S,
-    /// Additional distance between two positions of one robot, metres: positioning errors and
-    /// delays.
+    /// Additional distance between two positions, metres: positioning errors and delays.
     pub slack_m: S,
     /// How long a robot that has jumped must report consistent positions; 0: accepted at once.
     /// With a longer time a robot that was moved stays unseen for longer; with a shorter one a lying
@@ -91,8 +89,7 @@ impl<S: Scalar> PlausibilityLimits<S> {
         }
     }
 
-    /// Reduces radius and velocity to the limits. Returns whether the radius and the speed exceeded
-    /// them.
+    /// Reduces radius and velocity to the limits. Returns whether each exceeded its limit.
     #[must_use]
     pub fn cut<P>(&self, said: &mut Neighbor<S, P>) -> (bool, bool) {
         let is_large = said.radius_m > self.max_radius_m;

@@ -32,12 +32,11 @@ pub struct Sighting<S> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TrackParams<S> {
     /// Standard deviation of the other robots' accelerations, m/s^2. Larger: the estimate follows
-    /// turns sooner and weights each detection more. Smaller: it is smoother and lags behind turns.
-    pub acceleration_mps2: S,
-    /// Standard deviation of the other robots' accelerations, m/s^2. Larger: the estimate follows
     /// turns sooner. Smaller: it is smoother and lags behind.
-    pub speed_mps: S,
+    pub acceleration_mps2: S,
     /// Standard deviation of the velocity of a new track, m/s: about the speed of other robots.
+    pub speed_mps: S,
+    /// Standard deviation of the positions in beacons, metres: the sender's positioning error.
     pub heard_m: S,
     /// Standard deviation of the velocities in beacons, m/s: how well bodies follow them.
     pub heard_mps: S,
@@ -82,15 +81,13 @@ pub struct Sighted {
     pub new: u16,
     /// Repeated: an id already seen in this step, or inside the body of a robot already seen.
     pub repeated: u16,
-    /// Invalid: not a number, a deviation of 0 or less, a negative age, the own id or an impossible
-    /// one.
+    /// Invalid: not a number, deviation of 0 or less, negative age, own or impossible id.
     pub refused: u16,
     /// Dropped: all detections or tracks of the fixed buffers are in use.
     pub no_room: u16,
 }
 
 impl<S: Scalar> Sighting<S> {
-    /// Returns whether this can be a detection by robot `own`.
     pub(super) fn is_sound(&self, own: RobotId) -> bool {
         let Self { offset_m, deviation_m, age, radius_m, id, velocity_mps } = self;
         let is_size = |x: S| x.is_finite() && x >= S::ZERO;

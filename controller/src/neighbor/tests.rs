@@ -45,7 +45,6 @@ fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> S
     lost
 }
 
-/// A table whose robots 1, 2, ... are at 1 m, 2 m, ...
 fn full<const N: usize>(now: Instant) -> NeighborTable<f32, N> {
     let mut table = NeighborTable::new(AGES);
     for i in 1..=N as u32 {
@@ -164,10 +163,8 @@ fn the_ball_of_a_silent_neighbour_grows_until_it_expires() {
     };
     assert_eq!(look(0, 0.5), Some((10.0, -2.0, 0.25, true)));
     assert_eq!(look(1_000, 0.5), Some((8.0, -2.0, 0.25, true)));
-    // The growth is half a metre per second, at most a metre.
     assert_eq!(look(2_000, 0.5), Some((8.0, 0.0, 0.75, false)));
     assert_eq!(look(5_000, 0.5), Some((8.0, 0.0, 1.25, false)));
-    // The ball never grows over the own one.
     assert_eq!(look(5_000, 7.5), Some((8.0, 0.0, 0.5, false)));
     assert_eq!(look(5_000, 9.0), Some((8.0, 0.0, 0.25, false)));
     assert_eq!(look(5_001, 0.5), None);

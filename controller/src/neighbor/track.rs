@@ -22,7 +22,6 @@ pub struct Track<S> {
     pub at: Instant,
     /// World position.
     pub position: Position,
-    /// The part below a millimetre, metres.
     rest_m: Vec3<S>,
     /// World velocity, m/s.
     pub velocity_mps: Vec3<S>,
@@ -181,7 +180,6 @@ impl<S: Scalar> Track<S> {
         (surprise <= params.gate || off_m < self.radius_m + radius_m).then_some(surprise)
     }
 
-    /// In metres and in standard deviations.
     fn off(&self, place: Position, deviation_m: S, at: Instant, params: &TrackParams<S>) -> Option<(S, S)> {
         let then = self.predicted(at, params);
         // The displacement since a late measurement is only as certain as the velocity.
@@ -192,7 +190,6 @@ impl<S: Scalar> Track<S> {
     }
 }
 
-/// At least [`LEAST_VARIANCE`].
 fn variance<S: Scalar>(deviation: S) -> S {
     square(deviation).max(S::from_micro(LEAST_VARIANCE))
 }

@@ -20,7 +20,6 @@ pub const TRACKS: usize = 16;
 /// Detections of a step that are processed; further ones are counted in [`Sighted::no_room`].
 pub const SIGHTINGS: usize = 32;
 
-/// The corner of all maps.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 /// Assigns detections and beacons to tracks, and writes each track into the neighbour table.
@@ -118,7 +117,6 @@ impl<S: Scalar> Tracker<S> {
                 add(&mut count.repeated);
                 continue;
             }
-            // It has the capacity of `all`.
             let _ = named.push(id);
             let place = self.place_of(id, |track, params| placed.fit(track, params));
             match place.and_then(|place| self.tracks.get_mut(place)) {
@@ -182,7 +180,6 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// The track with that id, or the closest anonymous track by `fit`.
     fn place_of(&self, id: RobotId, fit: impl Fn(&Track<S>, &TrackParams<S>) -> Option<S>) -> Option<usize> {
         self.tracks.iter().position(|track| track.id == id).or_else(|| {
             let nameless = self.tracks.iter().enumerate().filter(|(_, track)| track.id.is_local());

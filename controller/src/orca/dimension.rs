@@ -50,8 +50,7 @@ pub struct MovingBall<V: Vector> {
     pub velocity_mps: V,
     /// Sum of both radii, metres; more than 0.
     pub radii_m: V::Scalar,
-    /// Direction to leave if both have one place and one velocity: any vector, opposite on the
-    /// other robot. East if zero.
+    /// Direction to leave one common place and velocity, opposite on the other robot; zero: east.
     pub tie: V,
 }
 

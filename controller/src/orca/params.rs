@@ -23,8 +23,7 @@ pub struct AvoidParams<S> {
     /// 0.01 covers one lost update in ten, 0.03 three in ten. Robots come nearer to each other by
     /// what is missing; a value that is much too large closes narrow places.
     pub margin_m: S,
-    /// The rule against jams in the plane; flying robots have a fixed one
-    /// ([`InSpace`](super::InSpace)).
+    /// The rule against jams in the plane; in space it is fixed ([`InSpace`](super::InSpace)).
     pub deadlock: DeadlockParams<S>,
 }
 

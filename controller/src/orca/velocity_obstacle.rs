@@ -15,7 +15,6 @@ pub struct VelocityObstacle<S> {
     ahead: Vec2<S>,
     tip_mps: Vec2<S>,
     radius_mps: S,
-    /// Sine of the angle between the legs and `ahead`.
     sin: S,
     cos: S,
 }

@@ -4,7 +4,6 @@ use super::dimension::HalfPlane;
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
 
-/// The nearest point on a part of the velocity obstacle's border, and its distance.
 struct Nearest<S> {
     distance: S,
     plane: HalfPlane<S>,
@@ -70,7 +69,6 @@ fn near_side<S: Scalar>(v: Vec2<S>, point: Vec2<S>, normal: Vec2<S>) -> Option<N
     is_near.then(|| Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } })
 }
 
-/// The half-circle around `end`.
 fn cap<S: Scalar>(v: Vec2<S>, end: Vec2<S>, other: Vec2<S>, reach: S) -> Option<Nearest<S>> {
     let normal = (v - end).normalized().or_else(|| (-end).normalized())?;
     // Both caps may claim the rounding gap between cap and side.

@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Escape {
     /// Squared distance to the target where the wall was met; `None` without a wall.
     met: Option<u64>,
-    /// The direction that is tried first, along a wall.
     first: u8,
     next: Dir,
 }
@@ -25,7 +24,6 @@ impl Escape {
 
     /// Returns whether the robot made the chosen move; otherwise it has left the boundary.
     pub(super) fn has_made(&mut self, params: &RouteParams, made: Dir) -> bool {
-        // The wall is on the right.
         let back = if params.corner_cutting && !made.is_diagonal() { 7 } else { 6 };
         self.first = (made.index() as u8).wrapping_add(back) & 7;
         made == self.next

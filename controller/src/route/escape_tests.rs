@@ -49,7 +49,6 @@ impl Land {
         known.contains(&to)
     }
 
-    /// `None` if the robot has not arrived after very many moves.
     fn walk<const M: usize, const L: usize>(&self, params: &RouteParams, from: Cell, to: Cell) -> Option<usize> {
         let mut router = Router::<M, L>::new();
         let mut field = CostField::<225>::new();
@@ -111,7 +110,6 @@ fn wall_following_and_learning_leave_a_dead_end_larger_than_the_window() {
     let (from, to) = (Cell::new(15, 10), Cell::new(19, 10));
     let wall = dead_end().walk::<0, 0>(&params, from, to).unwrap();
     let learning = dead_end().walk::<0, 256>(&params, from, to).unwrap();
-    // Around the nearer end: some 40 moves.
     assert!(wall < 100 && learning < 200, "{wall} and {learning}");
 }
 

@@ -40,11 +40,9 @@ pub struct CostField<const CELLS: usize> {
     queue: Queue<CELLS>,
     /// log2 of a bucket's width.
     shift: u32,
-    /// And whether there are walls.
     easiest: u8,
     has_walls: bool,
     learns: bool,
-    /// The own cell, which routes must not use.
     closed: usize,
     /// The next bucket, in an endless numbering of the ring: costs below it are final.
     at: u32,
@@ -175,8 +173,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         (self.easiest, self.has_walls)
     }
 
-    /// Continues the last search, which stops once the next moves are priced, until every cell of
-    /// the window has its cost. O(w h).
+    /// Completes the last search, which stops once the next moves are priced. O(w h).
     pub fn complete(&mut self, params: &RouteParams) {
         self.advance(params, None);
     }
@@ -191,8 +188,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         (open && is_final && cost != EXCLUDED).then_some(cost)
     }
 
-    /// The first move of the cheapest route from `cell` under the last query; `None` at an exit or
-    /// without a route.
+    /// The first move of the cheapest route from `cell` under the last query; `None` without one.
     #[must_use]
     pub fn descend(&self, params: &RouteParams, cell: Cell) -> Option<Dir> {
         let here = self.cost(cell)?;
@@ -285,7 +281,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.advance(query.params, Some(query.from));
     }
 
-    /// Until nothing is left, or all cells around a cell are final.
     #[inline(never)]
     fn advance(&mut self, params: &RouteParams, around: Option<usize>) {
         let mut idle = 0;
@@ -313,7 +308,6 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// Skips to the next cell if a whole turn of the ring settled none, which extreme gains cause.
     fn skip(&mut self) {
         self.at = self.lowest_offer();
-        // Leftovers of a larger window.
         let used = (usize::from(self.height) + 2) * self.stride;
         for cell in 0..used {
             if self.queue.holds(cell) {
@@ -334,7 +328,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         })
     }
 
-    /// In an endless numbering of the ring.
     fn lowest_offer(&self) -> u32 {
         let costs = self.queue.iter().filter_map(|cell| self.cost.get(cell).copied());
         costs.min().unwrap_or(0) >> self.shift

@@ -8,12 +8,10 @@ use crate::grid::{BLOCKED, Cell, Window};
 use crate::list::{SparseVec, sink_last};
 use serde::{Deserialize, Serialize};
 
-/// Ticks of a cell that is only assumed to be closed: no route crosses it while there is another
-/// one.
+/// Ticks of a cell that is only assumed to be closed: any other route is preferred.
 pub const SUPPOSED_CLOSED: u8 = u8::MAX;
 
-/// The class to plan with for a cell out of sight that was last seen, or is mapped, with this
-/// class.
+/// The class to plan with for a cell out of sight that was last seen, or is mapped, as `class`.
 #[must_use]
 pub const fn supposed(class: u8) -> u8 {
     if class == BLOCKED { SUPPOSED_CLOSED } else { class }
@@ -76,8 +74,7 @@ impl<const N: usize> LandMemory<N> {
         }
     }
 
-    /// Writes the remembered cells into a window of known land with this south-west cell, in rows
-    /// of `width` cells. O(N).
+    /// Writes the remembered cells into a window of this south-west cell and `width`. O(N).
     pub fn overlay(&self, origin: Cell, width: u16, cells: &mut [u8]) {
         for &(cell, class) in &self.cells {
             let [dx, dy] = [(cell.x, origin.x), (cell.y, origin.y)].map(|(at, from)| i32::from(at) - i32::from(from));

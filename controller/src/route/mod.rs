@@ -42,8 +42,7 @@ named! {
         /// The border cell with the least path cost + a3 * distance to the target (eq. 10).
         #[default]
         Best = "best",
-        /// The border cell on the ray to the target (alg. 3, line 8); if it is blocked, the nearest
-        /// border cell that can be reached.
+        /// The border cell on the ray to the target (alg. 3, line 8), or the nearest reachable one.
         Ray = "ray",
     }
 }
@@ -113,7 +112,6 @@ fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
     let (dx, dy) = (i64::from(target.x) - i64::from(from.x), i64::from(target.y) - i64::from(from.y));
     let longest = dx.abs().max(dy.abs());
     let scale = |d: i64| {
-        // Half away from 0.
         let half = if d < 0 { -longest } else { longest };
         (2 * d * i64::from(radius) + half).checked_div(2 * longest).unwrap_or(0)
     };

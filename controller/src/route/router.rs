@@ -49,11 +49,9 @@ pub struct Router<const M: usize, const L: usize = 0> {
     /// Last move first, each with the impassability that it was planned for.
     plan: SparseVec<(Dir, u8), PLAN>,
     learned: LearnedCosts<L>,
-    /// On the route to this target.
     easiest: u8,
     /// Squared distance.
     least: u64,
-    /// Moves since then.
     idle: u8,
     escape: Option<Escape>,
 }
@@ -87,7 +85,6 @@ impl<const M: usize, const L: usize> Router<M, L> {
         &self.visits
     }
 
-    /// Up to 255.
     pub(crate) const fn idle(&self) -> u8 {
         self.idle
     }

@@ -166,7 +166,6 @@ fn extreme_gains_neither_close_a_route_nor_take_long() {
                 let found = field.weights(&params, &window, Cell::default(), target, others, Some(&visits));
                 let best = found.unwrap().best().unwrap();
                 assert!(a3 == Gain::ZERO || best.offset().x >= 0, "{a0:?} {a3:?} {best:?}");
-                // Smaller than before, while the larger search is not complete.
                 let small = RouteParams { radius: 2, ..params };
                 let found = field.weights(&small, &window, Cell::default(), target, others, Some(&visits));
                 assert!(found.is_ok());

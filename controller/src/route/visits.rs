@@ -46,7 +46,6 @@ impl<const M: usize> VisitMemory<M> {
     }
 }
 
-/// Those behind it move up. Nothing happens if it does not exist.
 fn to_end<T>(items: &mut [T], at: usize) {
     let mut rest = items.get_mut(at..).unwrap_or_default();
     while let [item, next, ..] = rest {

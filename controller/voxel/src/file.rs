@@ -128,8 +128,7 @@ impl Header {
         self.count().saturating_mul(node).saturating_add(HEADER_LEN)
     }
 
-    /// The header as bytes, with a checksum of zero: write the [`checksum`] of the whole model to
-    /// bytes 44 to 47.
+    /// The header with a checksum of zero: write the [`checksum`] of the model to bytes 44 to 47.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; HEADER_LEN] {
         let mut bytes = [0; HEADER_LEN];

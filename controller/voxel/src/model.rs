@@ -44,12 +44,10 @@ impl<S: Scalar> Local<S, 2> {
     }
 }
 
-/// A function of `V` variables, 2 or 3, evaluated from borrowed bytes. About 8 + 13 V bytes
-/// (`f32`).
+/// A function of `V` variables, 2 or 3, in borrowed bytes. About 8 + 13 V bytes (`f32`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model<'a, S, const V: usize> {
     nodes: &'a [u8],
-    /// In bytes.
     component_len: usize,
     node_len: usize,
     /// Fixed point could not hold sums of products of whole components.
@@ -263,7 +261,6 @@ impl<S: Scalar> Axis<S> {
     }
 }
 
-/// Or the weighted sum of several.
 struct Sum<S, const V: usize> {
     slopes: [S; V],
     height: S,

@@ -31,7 +31,6 @@ pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
 pub(crate) struct Walker<S: Scalar, G: Guidance<S>, W = Postcard> {
     pub(crate) agent: GridAgent<S, G, W>,
     pub(crate) cell: Cell,
-    /// Milliseconds after the start.
     pub(crate) free_at_ms: u32,
 }
 
@@ -146,7 +145,6 @@ where
     probe.step(&mut walker.agent, &inputs, instant(tick), workspace)
 }
 
-/// KUZ algorithm 4.
 fn advance<S: Scalar, G: Guidance<S>, W>(
     scene: &Scene,
     walkers: &mut [Walker<S, G, W>],

@@ -24,7 +24,6 @@ impl Land {
         if !is_inside || self.walls.iter().any(is_wall) {
             return BLOCKED;
         }
-        // Two rounds leave no visible pattern.
         let mut bits = (u32::from(x.cast_unsigned()) << 16) | u32::from(y.cast_unsigned());
         for _ in 0..2 {
             bits = (bits ^ (bits >> 15)).wrapping_mul(0x9E37_79B1);

@@ -30,8 +30,7 @@ use staya_controller::time::Instant;
 use staya_controller::wire::{Postcard, Wire};
 use staya_mavlink::wire::Mavlink;
 
-/// Wrapper around each [`Agent::step`] of a case, in which firmware measures instructions and
-/// stack.
+/// Wrapper around each [`Agent::step`] of a case, in which firmware measures it.
 pub trait Probe<S: Scalar> {
     /// Calls `agent.step(inputs, now, workspace)`.
     fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
@@ -76,8 +75,7 @@ impl<S: Scalar> Probe<S> for Opaque {
     }
 }
 
-/// Runs every case with every number format used on parts, in the order of the golden table, and
-/// passes name, number format and result to `done`.
+/// Runs every case with every number format of parts, in the order of the golden table.
 pub fn every(mut done: impl FnMut(&'static str, &'static str, &Summary)) {
     each::<f32>("f32", &mut done);
     each::<Q16>("Q16", &mut done);
@@ -94,8 +92,7 @@ fn each<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'s
     }
 }
 
-/// Runs [`Case::Packets`] in each wire format. Reports the hash of each, then that of the course,
-/// which is equal for all.
+/// Runs [`Case::Packets`] in each wire format; the hash of the course is equal for all.
 pub fn in_each_format<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'static str, &Summary)) {
     let course = |summary: Summary| Summary { hash: summary.course, ..summary };
     let postcard = packets_over::<S, _, _>(Postcard, &mut Unmeasured);

@@ -18,7 +18,6 @@ pub(crate) struct Faults {
     pub(crate) twice: u32,
 }
 
-/// Holds the frames of the last tick of `R` senders.
 pub(crate) struct Medium<W, const R: usize> {
     wire: W,
     said: [Vec<u8, SAID>; R],
@@ -32,7 +31,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         Self { wire, said: [const { Vec::new() }; R], next: [const { Vec::new() }; R], faults }
     }
 
-    /// As long as they fit.
     pub(crate) fn send(&mut self, sender: usize, bytes: &[u8]) {
         if let Some(said) = self.next.get_mut(sender) {
             let mut rest = bytes;
@@ -42,7 +40,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// The frames of this tick become receivable.
     pub(crate) fn turn(&mut self) {
         core::mem::swap(&mut self.said, &mut self.next);
         for said in &mut self.next {
@@ -50,7 +47,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// In the order of the senders.
     pub(crate) fn hear(&self, receiver: usize, tick: u32, inbox: &mut Vec<u8, INBOX>) {
         inbox.clear();
         for (sender, said) in self.said.iter().enumerate() {
@@ -87,7 +83,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
     }
 }
 
-/// Length, and bytes with the delimiter, if any.
 fn next_packet<'a>(wire: &impl Wire, rest: &mut &'a [u8]) -> Option<(usize, &'a [u8])> {
     let before = *rest;
     let len = wire.next_frame(rest)?.len();

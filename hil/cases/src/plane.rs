@@ -42,7 +42,6 @@ pub(crate) enum Solid {
 
 pub(crate) struct Scene<S> {
     pub(crate) solids: &'static [Solid],
-    /// For guidance laws that need a grid.
     pub(crate) land: Option<Land>,
     pub(crate) max_speed_mps: S,
     /// Centres nearer than this overlap, millimetres.
@@ -167,7 +166,6 @@ fn overlaps<S: Scalar, G: Guidance<S>, A>(scene: &Scene<S>, movers: &[Mover<S, G
     pairs(movers).filter(|squared| *squared < least * least).count() as u32
 }
 
-/// Millimetres.
 fn apart<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
     let millimetres = |squared: Option<u64>| squared.unwrap_or(0).isqrt() as u32;
     [pairs(movers).min(), pairs(movers).max()].map(millimetres)

@@ -16,8 +16,7 @@ pub enum Case {
     Formation,
     /// Like [`Case::Formation`], with reflexive prediction.
     FormationReflexive,
-    /// Like [`Case::FormationReflexive`], over a radio that loses, damages and repeats packets,
-    /// with an operator who sends places, goal, "stop" and "resume".
+    /// Like [`Case::FormationReflexive`], over a bad radio and with an operator's orders.
     Packets,
     /// The grid's route law for bodies that move in the plane, with ORCA.
     RouteInPlane,

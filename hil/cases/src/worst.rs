@@ -220,7 +220,6 @@ where
     summary.finish(hash, STEPS)
 }
 
-/// 1 2 3, 4 5 6, 7 8 9.
 const PLACES: [Cell; 9] = [
     Cell::new(0, 0),
     Cell::new(-3, 0),

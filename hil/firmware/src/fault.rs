@@ -46,8 +46,7 @@ impl Display for Trap {
     }
 }
 
-/// Creates the report of an exception at this address. After an unserved semihosting call, records
-/// that and resets the part instead.
+/// Creates the report of an exception; after an unserved semihosting call, resets instead.
 #[must_use]
 pub fn trap(address: u32) -> Trap {
     if is_semihosting(address) {

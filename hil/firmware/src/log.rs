@@ -66,7 +66,6 @@ mod rtt {
     use rtt_target::rtt::{RttChannel, RttHeader};
     use rtt_target::{ChannelMode, UpChannel};
 
-    /// A debugger searches for it in memory.
     #[repr(C)]
     struct Block {
         header: RttHeader,
@@ -149,7 +148,6 @@ mod frames {
     use core::cell::UnsafeCell;
     use critical_section::RestoreState;
 
-    /// While one `defmt` frame is written, with interrupts disabled.
     struct Frame {
         restore: RestoreState,
         encoder: defmt::Encoder,

@@ -20,8 +20,7 @@ pub struct Start {
     pub boots: u32,
 }
 
-/// Sets up clocks, the tick counter and the UART. Waits are bounded: without an oscillator the part
-/// runs slower ([`Start::clock_hz`]).
+/// Sets up clocks, tick counter and UART. Without an oscillator the part runs slower.
 pub fn start() -> Start {
     let boots = boots::count();
     let clocks = part::start();
@@ -60,8 +59,7 @@ pub fn send(bytes: &[u8]) {
     }
 }
 
-/// Sleeps until an interrupt, unless a byte is waiting. The tick counter wakes the part several
-/// times per second.
+/// Sleeps until an interrupt (several times per second), unless a byte is waiting.
 pub fn sleep() {
     part::sleep_unless(|| !part::RECEIVED.is_empty());
 }

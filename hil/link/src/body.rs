@@ -19,12 +19,10 @@ pub(crate) const fn number<S: Scalar>() -> NumberFormat {
     if S::IS_FLOATING { NumberFormat::F32 } else { NumberFormat::Q16 }
 }
 
-/// Larger values saturate.
 pub(crate) fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
 }
 
-/// Without a grid search.
 pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize) -> Capacities {
     Capacities {
         neighbors: count(neighbors),
@@ -68,7 +66,6 @@ impl<A> Slot<A> {
     }
 }
 
-/// And for the decoded inputs and the result of its step.
 #[derive(Clone, Debug)]
 pub(crate) struct Body<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> {
     agent: Slot<Agent<S, G, N, A, W>>,
@@ -173,7 +170,6 @@ where
         Ok(())
     }
 
-    /// `None` before the robot is configured.
     pub(crate) fn result(&self) -> Option<StepResult> {
         let agent = self.agent.as_ref()?;
         Some(StepResult {

@@ -24,8 +24,7 @@ pub struct Capacities {
     pub inbox_bytes: u16,
 }
 
-/// Cells of the largest terrain window that a search of `search_cells` uses, without its outer
-/// ring.
+/// Cells of the largest terrain window that a search of `search_cells` uses.
 #[must_use]
 pub const fn window_cells(search_cells: usize) -> usize {
     let side = search_cells.isqrt().saturating_sub(2);

@@ -18,8 +18,7 @@ pub struct Cut {
     pub obstacles: usize,
 }
 
-/// The terrain window has too many cells. Terrain is never cut, because that would change the
-/// route.
+/// The terrain window has too many cells; cutting it would change the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WindowTooLarge {
     /// Cells of the window.

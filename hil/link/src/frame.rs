@@ -115,7 +115,6 @@ impl<const N: usize> Frame<N> {
 /// Updates the CRC and applies COBS to each byte of the content.
 struct Stuffer<'a, const N: usize> {
     out: &'a mut Vec<u8, N>,
-    /// Index of the open block's code.
     code_at: usize,
     /// Distance to the next byte.
     code: u8,
@@ -180,7 +179,6 @@ pub struct Deframer<const N: usize> {
     zero_follows: bool,
     has_begun: bool,
     is_too_long: bool,
-    /// The next byte starts a new frame.
     is_over: bool,
 }
 

@@ -52,7 +52,6 @@ impl RoundTrip {
         *mean_us = mean_us.saturating_sub(*mean_us >> 3).saturating_add(took_us >> 3).max(1);
     }
 
-    /// For the next answer.
     fn patience_us(self, most_us: u64) -> u64 {
         if self.mean_us == 0 {
             return most_us;
@@ -209,8 +208,7 @@ struct Waiting {
 }
 
 impl<const N: usize> Port<N> {
-    /// Creates a port to an unknown device; call [`Port::greet`] first. `run` distinguishes this
-    /// run of the host from others.
+    /// Creates a port to an unknown device; call [`Port::greet`] first. `run` differs between runs.
     #[must_use]
     pub const fn new(run: u32, limits: Limits) -> Self {
         Self {

@@ -29,8 +29,7 @@ pub enum Refusal {
         /// Obstacles that fit.
         room: usize,
     },
-    /// Inconsistent inputs: cell count and sides of a window, an unknown shape, no cell or
-    /// surroundings.
+    /// Inconsistent inputs: a window's size, an unknown shape, neither cell nor surroundings.
     Nonsense,
 }
 

@@ -119,7 +119,6 @@ struct Core<C, const CONTENT: usize> {
     counts: Counts,
 }
 
-/// Relative to the last request.
 enum Freshness {
     Repeated,
     Stale,
@@ -363,7 +362,6 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         let _ = self.note.fill(kind::HELLO, &hello);
     }
 
-    /// The rest of the frame buffer is available to the inbox.
     fn capacities(controller: &C) -> Capacities {
         let capacities = controller.capacities();
         let (cells, obstacles) = (capacities.search_cells, capacities.obstacles);
@@ -380,8 +378,8 @@ struct Setting {
     task: Option<staya_controller::agent::Task>,
 }
 
-/// Builds a fault frame for a panic handler, which has no session. Text beyond 80 bytes is cut.
 #[must_use]
+/// Builds a fault frame for a panic handler, which has no session. Text beyond 80 bytes is cut.
 pub fn fault_frame(kind: FaultKind, text: impl Display) -> Frame<MAX_NOTE> {
     let mut frame = Frame::new();
     fill_fault(&mut frame, 0, kind, text);

@@ -46,7 +46,7 @@ pub struct Options {
     pub shadows: Shadows,
     /// Folder for the logs of emulated devices, one file per robot; `None`: no logs.
     pub logs: Option<PathBuf>,
-    /// Longest time before a request is resent, plus its transmission time. Steps are resent sooner
+    /// Longest time before a request is resent, plus its transmission time
     /// ([`Port`](staya_link::port::Port)).
     pub resend_after: Duration,
     /// Timeout of a step.
@@ -61,8 +61,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Creates the defaults: requests are resent after 0.5 s; timeouts are 10 s for a step and 20 s
-    /// for a start.
+    /// Requests are resent after 0.5 s; timeouts are 10 s for a step and 20 s for a start.
     #[must_use]
     pub fn new(firmware: PathBuf) -> Self {
         Self {

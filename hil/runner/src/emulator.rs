@@ -13,7 +13,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Stored error output, bytes.
 const COMPLAINTS: usize = 2048;
 /// Kills the emulator when the thread that started it ends; part of util-linux.
 const GUARD: &str = "/usr/bin/setpriv";

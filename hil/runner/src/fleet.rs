@@ -173,7 +173,6 @@ impl Fleet {
             for unit in &mut self.units {
                 let due_us = unit.advance(now_us);
                 if !unit.is_settled() {
-                    // Without a due time, there is more to do at once.
                     let due_us = due_us.unwrap_or(now_us);
                     next_us = Some(next_us.map_or(due_us, |next: u64| next.min(due_us)));
                 }
@@ -185,7 +184,6 @@ impl Fleet {
                 }
                 return;
             }
-            // Checks the stop flag at least every 100 ms.
             let patience = next_us.saturating_sub(self.now_us()).min(100_000);
             match self.arrivals.recv_timeout(Duration::from_micros(patience)) {
                 Ok(first) => {

@@ -2,11 +2,9 @@ use staya_controller::rand::Rng;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Of the two directions.
 const PURPOSES: [u32; 2] = [u32::from_be_bytes(*b"to d"), u32::from_be_bytes(*b"from")];
 
-/// Faults of a line, such as a bad cable or a radio, equal in both directions. The default is a
-/// perfect line.
+/// Faults of a line, such as a bad cable or a radio, equal in both directions; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineFaults {
     /// Probability that a frame is lost.

@@ -95,7 +95,6 @@ impl Note {
     }
 }
 
-/// Through the section headers.
 fn section(elf: &[u8]) -> Option<&[u8]> {
     let half = |at: usize| Some(usize::from(u16::from_le_bytes(elf.get(at..)?.first_chunk().copied()?)));
     let word = |at: usize| usize::try_from(u32::from_le_bytes(elf.get(at..)?.first_chunk().copied()?)).ok();

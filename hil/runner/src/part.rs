@@ -50,8 +50,8 @@ impl Part {
         }
     }
 
-    /// Path of the part's firmware in the output of `cargo xtask firmware`; `folder` itself if it
-    /// is a file.
+    /// Path of the part's firmware in the output of `cargo xtask firmware`, or `folder` if it is a
+    /// file.
     #[must_use]
     pub fn elf(self, folder: &Path) -> PathBuf {
         if folder.is_file() {

@@ -129,7 +129,6 @@ impl Collector {
     }
 }
 
-/// 1 ns each.
 fn instructions(ticks: u64, ticks_per_second: u32) -> u64 {
     let scaled = u128::from(ticks) * 1_000_000_000 / u128::from(ticks_per_second.max(1));
     u64::try_from(scaled).unwrap_or(u64::MAX)

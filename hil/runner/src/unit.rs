@@ -51,7 +51,6 @@ pub struct Unit {
     /// After a scheduled reset.
     down: u32,
     answer: Option<Answer>,
-    /// How the device ended.
     gone: Option<String>,
     tally: Collector,
     packed: Vec<u8>,

@@ -14,7 +14,6 @@ fn firmware() -> PathBuf {
     if let Some(folder) = std::env::var_os("STAYA_FIRMWARE") {
         return folder.into();
     }
-    // target/debug/deps/emulated-...
     let program = std::env::current_exe().expect("this test's path");
     let target = program.ancestors().nth(3).expect("a target folder");
     target.join("firmware")
@@ -43,7 +42,6 @@ fn send(fleet: &mut Fleet, tick: u32) {
     }
 }
 
-/// Returns in how many steps each robot was down.
 fn run(fleet: &mut Fleet, ticks: u32) -> Vec<u32> {
     let mut down = vec![0; fleet.len()];
     for tick in 0..ticks {

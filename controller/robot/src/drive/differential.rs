@@ -12,8 +12,7 @@ pub struct Differential<S> {
 }
 
 impl<S: Scalar> Differential<S> {
-    /// `track_m`: distance between the contact points of the wheels; `None` unless more than 0 and
-    /// finite.
+    /// `track_m`: distance between the wheels' contact points; `None` unless above 0 and finite.
     #[must_use]
     pub fn new(track_m: S) -> Option<Self> {
         let per_track = S::ONE.checked_div(track_m)?;

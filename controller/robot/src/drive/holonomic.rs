@@ -14,8 +14,8 @@ pub struct Omni<S, const W: usize> {
 impl<S: Scalar, const W: usize> Omni<S, W> {
     const ENOUGH: () = assert!(W >= 3 && W <= 16, "fewer wheels cannot go any way");
 
-    /// The first wheel is at `first_rad` from the nose (counter-clockwise), all are `radius_m` from
-    /// the centre. `None` unless the radius is more than 0 and both are finite.
+    /// The first wheel is at `first_rad` from the nose, all are `radius_m` (above 0) from the
+    /// centre.
     #[must_use]
     pub fn new(first_rad: S, radius_m: S) -> Option<Self> {
         let () = Self::ENOUGH;
@@ -55,8 +55,7 @@ impl<S: Scalar, const W: usize> Kinematics<S, W> for Omni<S, W> {
     }
 }
 
-/// Four mecanum wheels: front left, front right, rear left, rear right. Seen from above, the
-/// rollers form an X.
+/// Four mecanum wheels: front left, front right, rear left, rear right; the rollers form an X.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mecanum<S> {

@@ -8,8 +8,7 @@ use staya_controller::time::Duration;
 pub struct Limits<S> {
     /// Top rim speed, m/s: that of the slowest motor under load with an old battery.
     pub speed_mps: S,
-    /// How fast a rim may change its speed, m/s^2, before it slips or the supply fails;
-    /// [`Scalar::MAX`]: at once.
+    /// How fast a rim may change its speed, m/s^2; [`Scalar::MAX`]: at once.
     pub acceleration_mps2: S,
 }
 
@@ -26,8 +25,7 @@ pub struct Mixer<S, K, const W: usize> {
 }
 
 impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
-    /// Starts with a stationary robot; `None` unless both limits are above 0 and the speed is
-    /// finite.
+    /// Starts with a stationary robot; `None` unless both limits are above 0 and the speed finite.
     #[must_use]
     pub fn new(kinematics: K, limits: Limits<S>) -> Option<Self> {
         let Limits { speed_mps: speed, acceleration_mps2: acceleration } = limits;
@@ -82,7 +80,6 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
     }
 }
 
-/// `None` if the new one is not finite.
 fn finite_max<S: Scalar>(most: S, value: S) -> Option<S> {
     value.is_finite().then(|| most.max(value.abs()))
 }

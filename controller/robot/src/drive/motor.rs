@@ -38,8 +38,7 @@ impl<P: fmt::Debug, D: fmt::Debug> fmt::Display for MotorError<P, D> {
 
 impl<P: fmt::Debug, D: fmt::Debug> core::error::Error for MotorError<P, D> {}
 
-/// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN
-/// mode), TB9051, Cytron MDD.
+/// PWM for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN) and TB9051.
 #[derive(Clone, Debug)]
 pub struct SignMagnitude<P, D> {
     pwm: P,
@@ -73,8 +72,7 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
     }
 }
 
-/// A PWM channel for the power and two pins for the direction (high, low: ahead; both low: coast),
-/// as on L298N and TB6612.
+/// PWM for the power and two pins for the direction (both low: coast), as on L298N and TB6612.
 #[derive(Clone, Debug)]
 pub struct TwoPins<P, A, B> {
     pwm: P,

@@ -30,7 +30,6 @@ fn wheels_turn_in_the_expected_directions() {
     assert_eq!(four.wheels(&twist([1.0, 0.0, 0.0])), [1.0; 4]);
     assert_eq!(four.wheels(&twist([0.0, 1.0, 0.0])), [-1.0, 1.0, 1.0, -1.0]);
     assert_eq!(four.wheels(&twist([0.0, 0.0, 1.0])), [-0.25, 0.25, -0.25, 0.25]);
-    // The first of three is at the nose: it only turns the robot.
     let three = Omni::<f64, 3>::new(0.0, 0.1).unwrap();
     let [nose, left, right] = three.wheels(&twist([1.0, 0.0, 0.0]));
     let half = 3f64.sqrt() / 2.0;

@@ -47,8 +47,7 @@ impl<S: Scalar> Calibration<S> {
     }
 }
 
-/// The rim speed, m/s, of a wheel of `radius_m` that turns `turns` times in `span_s`; 0 if
-/// undefined.
+/// Rim speed, m/s, of a wheel of `radius_m` that turns `turns` times in `span_s`; 0 if undefined.
 #[must_use]
 pub fn rim_speed<S: Scalar>(radius_m: S, turns: S, span_s: S) -> S {
     let way = (S::PI + S::PI) * radius_m * turns;

@@ -61,7 +61,6 @@ mod mavlink {
     use staya_mavlink::frame::{MAX_FRAME_LEN, Scan, next_frame, scan};
     use staya_mavlink::wire::{Mavlink, decode};
 
-    /// Without a delimiter: headers hold the length. Messages of others are [`Piece::Other`].
     impl Framing for Mavlink {
         const DELIMITER: Option<u8> = None;
         const LONGEST: usize = MAX_FRAME_LEN;

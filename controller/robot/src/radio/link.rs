@@ -29,8 +29,7 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
         Self { line, receiver: Receiver::new(), sender: Sender::new() }
     }
 
-    /// The frames received since the last call, for
-    /// [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
+    /// The frames received since the last call, for [`Inputs`](staya_controller::agent::Inputs).
     #[must_use]
     pub fn take(&mut self) -> &[u8] {
         self.receiver.take()

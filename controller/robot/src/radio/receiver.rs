@@ -11,7 +11,6 @@ use heapless::Vec;
 pub struct Receiver<F, const N: usize> {
     /// Whole frames, then the incoming bytes.
     bytes: Vec<u8, N>,
-    /// Length of the whole frames.
     whole: usize,
     /// Of those that the last step took.
     given: usize,
@@ -68,15 +67,13 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         self.end();
     }
 
-    /// Reports that the line lost bytes (an overrun, a framing error), which spoils the incomplete
-    /// frame.
+    /// Reports that the line lost bytes (an overrun, a framing error): drops the incomplete frame.
     pub fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
         self.cut_short();
     }
 
-    /// The frames received since the last call, for
-    /// [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
+    /// The frames received since the last call, for [`Inputs`](staya_controller::agent::Inputs).
     pub fn take(&mut self) -> &[u8] {
         self.forget_given();
         self.given = self.whole;
@@ -89,7 +86,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         self.counts
     }
 
-    /// Its rest will not arrive.
     fn end(&mut self) {
         match F::DELIMITER {
             Some(delimiter) => self.push(&[delimiter]),
@@ -108,7 +104,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// The last step is over when new bytes arrive.
     fn forget_given(&mut self) {
         let given = core::mem::take(&mut self.given);
         if given > 0 {

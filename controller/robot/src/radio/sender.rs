@@ -67,7 +67,6 @@ impl<F: Framing, const N: usize> Sender<F, N> {
     /// Reports that the line failed: of a partly sent frame only the delimiter is kept.
     pub fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
-        // If only the delimiter is left, the frame was sent.
         if self.begun > Self::END {
             remove(&mut self.bytes, 0, self.begun.saturating_sub(Self::END));
             self.begun = Self::END;

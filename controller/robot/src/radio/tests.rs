@@ -22,7 +22,6 @@ fn stream<F: Format>(sequences: impl IntoIterator<Item = u16>) -> Vec<u8> {
     sequences.into_iter().flat_map(frame::<F>).collect()
 }
 
-/// All must be intact.
 fn sequences<F: Format>(mut inbox: &[u8]) -> Vec<u16> {
     let (mut format, mut found) = (F::default(), Vec::new());
     while let Some(frame) = format.next_frame(&mut inbox) {
@@ -144,7 +143,6 @@ mod each {
         let len = frame::<F>(0).len();
         let mut sender = Sender::<F, ROOM>::new();
         sender.send(&stream::<F>([0, 1]));
-        // The leading delimiter, and three bytes of frame 0.
         sender.sent(usize::from(F::DELIMITER.is_some()) + 3);
         let rest = frame::<F>(0)[3..].to_vec();
         for sequence in 2..9 {

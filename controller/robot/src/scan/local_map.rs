@@ -15,8 +15,7 @@ use staya_controller::time::{Duration, Instant};
 pub struct MapParams {
     /// Added by a scan with a hit in the cell. A larger value makes obstacles of wrong ranges.
     pub hit: u8,
-    /// Subtracted by a scan with a beam through the cell and no hit. A smaller value keeps
-    /// obstacles that have left.
+    /// Subtracted by a scan with a beam through the cell and no hit.
     pub free: u8,
     /// The maximum evidence; divided by `free`, the number of scans that clear a cell.
     pub ceiling: u8,
@@ -25,8 +24,8 @@ pub struct MapParams {
     /// Period after which a cell loses one point; above 0. A longer period remembers what is behind
     /// the robot; a shorter one forgets robots that left unseen.
     pub fade_every: Duration,
-    /// Impassability of unknown land, 1..=255. With [`BLOCKED`] the robot never enters unseen
-    /// cells.
+    /// Impassability of unknown land, 1..=255; the robot never enters unseen cells with
+    /// [`BLOCKED`].
     pub ground: u8,
 }
 
@@ -40,9 +39,7 @@ impl Default for MapParams {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Known {
     evidence: u8,
-    /// Impassability of the ground; [`BLOCKED`] for a cliff.
     ground: u8,
-    /// Of this scan.
     news: News,
 }
 
@@ -60,7 +57,6 @@ enum News {
 pub struct LocalMap<const SIDE: usize = 11> {
     params: MapParams,
     origin: Cell,
-    /// From the south-west corner, row by row.
     known: [[Known; SIDE]; SIDE],
     window: [[u8; SIDE]; SIDE],
     own: Cell,
@@ -185,7 +181,6 @@ impl<const SIDE: usize> LocalMap<SIDE> {
     /// In cells from the corner; `step` is half a cell long.
     fn clear<S: Scalar>(&mut self, from: Vec2<S>, step: Vec2<S>, length: S) {
         let (mut place, mut gone) = (from, S::ZERO);
-        // More steps have left the square.
         for _ in 0..SIDE.saturating_mul(4) {
             if !(gone < length && self.set(place, News::Free)) {
                 return;

@@ -14,11 +14,10 @@ use staya_controller::scalar::Scalar;
 pub struct OutlineParams<S> {
     /// Maximum distance between a wall and its hits, metres: a few times the sensor's noise.
     pub tolerance_m: S,
-    /// Hits of neighbouring beams that are farther apart belong to different objects, metres; at
-    /// most the width that the robot fits through.
+    /// Neighbouring hits farther apart belong to different objects, metres; at most the robot's
+    /// width.
     pub gap_m: S,
-    /// Radius of the ball for a single hit, metres; above 0. Half the distance of beams at the
-    /// relevant range.
+    /// Radius of the ball for a single hit, metres; above 0, half the distance of beams.
     pub point_m: S,
 }
 
@@ -39,7 +38,6 @@ pub fn outline<S: Scalar, const K: usize>(
     for ray in scan.rays(heading_rad) {
         let end = ray.filter(|ray| ray.is_hit).map(|ray: Ray<S>| ray.end_m());
         let Some(end) = end.filter(|end| !is_robot(*end)) else {
-            // An invalid or free beam separates hits.
             if let Some(wall) = wall.take() {
                 add(&mut nearest, wall.obstacle(params));
             }
@@ -123,7 +121,6 @@ impl<S: Scalar> Sleeve<S> {
     }
 }
 
-/// A full list drops the farthest.
 fn add<S: Scalar, const K: usize>(nearest: &mut Vec<(S, Obstacle<S>), K>, obstacle: Obstacle<S>) {
     let Some((_, distance)) = obstacle.nearest_point() else {
         return;

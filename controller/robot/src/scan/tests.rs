@@ -12,7 +12,6 @@ fn scan(first_rad: f64, step_rad: f64, ranges_m: &[f64]) -> Scan<'_, f64> {
     Scan { first_rad, step_rad, ranges_m, min_m: 0.05, max_m: 4.0, mount_m: Vec2::ZERO }
 }
 
-/// Of cell (10, 10).
 fn middle() -> Vec2<f64> {
     FRAME.center(Cell::new(10, 10))
 }
@@ -97,7 +96,6 @@ fn invalid_ranges_change_nothing() {
 #[test]
 fn a_hit_wins_over_the_beams_that_cross_its_cell() {
     let mut map = map();
-    // Almost equal directions: one ends in the cell, one continues.
     for _ in 0..2 {
         look(&mut map, 0.0, &scan(0.0, 0.01, &[1.5, 3.0]));
         look(&mut map, 0.0, &scan(0.01, -0.01, &[3.0, 1.5]));
@@ -147,7 +145,6 @@ fn unseen_evidence_fades_even_if_the_clock_wraps() {
     assert_eq!(blocked(&map), [(3, 0)]);
     wait(&mut map, 10_000);
     assert!(blocked(&map).is_empty(), "15 less 10 is below 6");
-    // A long pause clears everything, without a loop.
     for _ in 0..9 {
         look(&mut map, 0.0, &scan(0.0, 0.0, &[1.5]));
     }

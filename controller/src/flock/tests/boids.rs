@@ -20,7 +20,6 @@ fn cos_sin(angle: f64) -> [f64; 2] {
     [cos, sin]
 }
 
-/// Speed 2 along `heading`.
 fn flying<S: Scalar>(id: u32, x: f64, y: f64, heading: f64) -> Nearby<S> {
     let [cos, sin] = cos_sin(heading);
     near(id, [x, y, 0.0], [2.0 * cos, 2.0 * sin, 0.0])
@@ -174,9 +173,7 @@ fn others_are_seen_at_their_nearest_image() {
     for (other, own, seen) in [
         (place(5_000, 5_000), place(4_000, 9_000), place(5_000, 5_000)),
         (place(799_000, 1_000), place(1_000, 599_000), place(-1_000, 601_000)),
-        // As others see it from the image: a turn or more away.
         (place(-1_000, 2_401_000), place(1_000, 1_000), place(-1_000, 1_000)),
-        // Half a turn: each on its own side of the other.
         (place(500_000, 300_000), place(100_000, 0), place(500_000, 300_000)),
         (place(100_000, 0), place(500_000, 300_000), place(100_000, 0)),
         (place(i32::MAX, 0), place(i32::MIN, 0), place(i32::MAX, 0)),
@@ -189,7 +186,6 @@ fn others_are_seen_at_their_nearest_image() {
     }
 }
 
-/// Must match `steer`.
 fn by_angles(heading: f64, others: &[Nearby<f64>]) -> f64 {
     let wrapped = |angle: f64| {
         let (sin, cos) = Scalar::sin_cos(angle);

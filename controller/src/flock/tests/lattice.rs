@@ -139,7 +139,6 @@ fn force_of_an_obstacle_has_its_known_values() {
 #[test]
 fn beta_agents_have_the_positions_and_velocities_of_the_lemma() {
     let v = Vec3::new(2.0, 3.0, 1.0);
-    // A ball of radius 2 at distance 5: mu = 2/5, P keeps what is across.
     let agent = beta_agent(&ball(5.0, 2.0), v).unwrap();
     assert_eq!(agent.normal, Vec3::new(-1.0, 0.0, 0.0));
     assert!(is_close(agent.distance_m, 3.0));
@@ -168,7 +167,6 @@ fn a_robot_inside_an_obstacle_is_pushed_out_along_its_normal() {
     let got = facing(&params, [0.0, 1.0, 0.0], ball(0.0, 3.0));
     assert!(got.y < -300.0 && got.is_finite(), "{got:?}");
     assert!(facing(&params, [0.0; 3], ball(0.0, 3.0)).x > 350.0);
-    // On a wall: to its left; in a wall that is a point: east.
     let wall = Obstacle::Wall([Vec2::new(-1.0, 0.0), Vec2::new(1.0, 0.0)]);
     assert!(facing(&params, [0.0; 3], wall).y > 350.0);
     assert!(facing(&params, [0.0; 3], Obstacle::Wall([Vec2::ZERO; 2])).x > 350.0);
@@ -236,7 +234,6 @@ fn two_robots_settle_at_the_distance_of_the_lattice_at_any_size() {
             let distance = settled(&alone, start);
             assert!((distance - 1.0).abs() < 1e-6, "{start} {distance}");
         }
-        // A reference brings them back, and its pull makes them a little closer.
         for start in [0.0, 0.3, 2.0] {
             let distance = settled(&params, start);
             assert!((0.95..1.01).contains(&distance), "{spacing} {start} {distance}");
@@ -346,7 +343,6 @@ fn strangers_push_and_do_nothing_else() {
         let other = Nearby { is_stranger, ..near(2, [x, 0.0, 0.0], velocity) };
         acceleration(&params, &body([0.0; 3]), &[other], &[], None)
     };
-    // No pull beyond the spacing, and no alignment at any velocity.
     assert_eq!(of(true, 4.0, [0.0; 3]), of(false, 4.0, [0.0; 3]));
     assert!(of(false, 8.0, [0.0; 3]).x > 0.0);
     assert_eq!(of(true, 8.0, [0.0; 3]), V::ZERO);
@@ -384,7 +380,6 @@ fn with_turns_no_robot_pushes_one_nearer_to_the_reference() {
         let with = acceleration(params, &body([0.0; 3]), others, &[], Some(reference));
         with - acceleration(params, &body([0.0; 3]), others, &[], None)
     };
-    // Without turns it would pull.
     let behind = near(2, [-8.0, 0.0, 0.0], [0.0; 3]);
     assert!(acceleration(&params, &body([0.0; 3]), &[behind], &[], None).x < -1.0);
     assert_eq!(

@@ -11,7 +11,6 @@ use std::vec::Vec;
 
 type V = Vec3<f64>;
 
-/// Positions over d.
 #[derive(Clone, Debug)]
 struct Case {
     own: [f64; 3],
@@ -104,7 +103,6 @@ proptest! {
             let (single, fixed) = (answer::<f32>(spacing, &case, |v| v), answer::<Q16>(spacing, &case, |v| v));
             prop_assert!(error(single) < 1e-4, "{:?} {:?}", single, plain);
             prop_assert!(error(fixed) < 0.02, "{:?} {:?}", fixed, plain);
-            // A root that is off by 0.2 % matters where the force of the obstacle sets in.
             let fast = answer::<Fast32>(spacing, &case, |v| v);
             prop_assert!((fast - plain).norm() < 0.3 * plain.norm().max(50.0), "{:?} {:?}", fast, plain);
         }

@@ -39,7 +39,6 @@ fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * f64::from(rng.unit_q32()) / 4_294_967_296.0
 }
 
-/// A sample of the normal distribution from twelve uniform ones.
 fn normal(rng: &mut Rng, deviation: f64) -> f64 {
     ((0..12).map(|_| uniform(rng, 0.0, 1.0)).sum::<f64>() - 6.0) * deviation
 }
@@ -128,7 +127,6 @@ impl Flock {
         }
     }
 
-    /// Number of groups connected by distances below `range`.
     fn components(&self, range: f64) -> usize {
         let mut group: Vec<usize> = (0..self.places.len()).collect();
         for i in 0..group.len() {

@@ -54,7 +54,6 @@ fn heard<S: Scalar>(id: u32, x: f64, y: f64, step: i32) -> Neighbor<S> {
     Neighbor { velocity_mps: Vec3::ZERO, radius_m: S::from_milli(150), ..stranger(&track, 0) }
 }
 
-/// As an agent does in a step.
 fn merge<S: Scalar>(tracker: &mut Tracker<S>, table: &mut Table<S>, step: i32) -> std::vec::Vec<RobotId> {
     let mut gone = std::vec::Vec::new();
     tracker.hear(table, Position::ORIGIN);
@@ -72,7 +71,6 @@ fn ids<S: Scalar>(tracker: &Tracker<S>) -> std::vec::Vec<RobotId> {
 fn goes_with_even_speed<S: Scalar>() -> (f64, f64) {
     let mut tracker = Tracker::<S>::new(params());
     let mut rng = Rng::keyed(7, 0, 0, 0);
-    // Nearly normal, with deviation 1.
     let mut error = || (0..12).map(|_| f64::from(rng.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0;
     let mut off = (0.0_f64, 0.0_f64);
     for step in 0..200 {

@@ -74,7 +74,6 @@ impl Run {
         }
     }
 
-    /// Returns how many have arrived.
     fn until(&mut self, most_s: f64) -> usize {
         let arrived = |run: &Self| run.robots.iter().filter(|r| r.arrived_s.is_some()).count();
         let mut tick = 0;

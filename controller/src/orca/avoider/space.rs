@@ -39,7 +39,6 @@ fn obstacle(own: V, obstacle: &Obstacle<f64>, radius_m: f64, horizon_s: f64) -> 
     static_obstacle(&params, &body, own, obstacle)
 }
 
-/// Returns the time of the last robot over the free time, and the least gap.
 fn swap(starts: &[V], most_s: f64) -> (Option<f64>, f64) {
     let goals: StdVec<_> = starts.iter().map(|&start| -start).collect();
     let (mut places, mut speeds) = (starts.to_vec(), std::vec![Vec3::ZERO; starts.len()]);
@@ -141,7 +140,6 @@ fn floors_balls_and_walls_limit_the_speed_towards_them() {
     // 2 m up with a radius of 0.5 m: at most 0.75 m/s down for 2 s.
     let above = obstacle(down, &floor(2.0), 0.5, 2.0).unwrap();
     assert_eq!((above.point, above.normal), (v(0.0, 0.0, -0.75), v(0.0, 0.0, 1.0)));
-    // On the floor or in it: no lower.
     for distance in [0.5, 0.1, -3.0] {
         let on = obstacle(down, &floor(distance), 0.5, 2.0).unwrap();
         assert_eq!(on.penetration(V::ZERO), 0.0);
@@ -234,7 +232,6 @@ fn flat(most: f64) -> impl Strategy<Value = [f64; 2]> {
     [-most..most, -most..most]
 }
 
-/// Some overlap, some do not give way.
 fn flat_robots() -> impl Strategy<Value = StdVec<Nearby<f64>>> {
     let others = proptest::collection::vec((flat(2.0), flat(0.5), any::<bool>()), 0..10);
     others.prop_map(|others| {

@@ -46,7 +46,6 @@ fn robots_in_the_same_place_separate_in_opposite_directions() {
 
 #[test]
 fn a_robot_that_does_not_give_way_gets_the_whole_correction() {
-    // With share 1 the own half-plane lies twice as far away.
     let own = body(1, [0.5, 0.0]);
     let swerve = |gives_way| {
         let other = Nearby { gives_way, ..robot(2, [1.2, -0.01], [-0.5, 0.0]) };

@@ -8,7 +8,6 @@ use crate::scalar::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gap<S> {
     pub(super) middle: Vec2<S>,
-    /// Unit vector through it, towards the goal.
     pub(super) ahead: Vec2<S>,
     pub(super) half: S,
     /// Half its depth, metres; 0 between walls without thickness.
@@ -22,7 +21,6 @@ pub(super) struct Wanted<S> {
     pub(super) most_m: S,
     /// Longest passage among gaps that are not narrow, metres.
     pub(super) deepest_m: S,
-    /// Gaps of less width are narrow.
     pub(super) narrow_m: S,
     /// How far behind a gap it still counts.
     pub(super) past_m: S,
@@ -76,7 +74,6 @@ impl<S: Scalar> Gap<S> {
             .all(|place| obstacles.iter().filter_map(|obstacle| distance(obstacle, place)).any(|near| near < self.half))
     }
 
-    /// No obstacle is nearer to its middle than its sides.
     fn is_clear(&self, obstacles: &[Obstacle<S>]) -> bool {
         let room = self.half - self.half * S::from_milli(1);
         obstacles.iter().filter_map(|obstacle| distance(obstacle, self.middle)).all(|distance| distance >= room)
@@ -170,7 +167,6 @@ fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
     sides && ends
 }
 
-/// `None` for planes, which have no end.
 fn distance<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Option<S> {
     let moved = match *obstacle {
         Obstacle::Wall([a, b]) => Obstacle::Wall([a - from, b - from]),

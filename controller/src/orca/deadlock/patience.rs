@@ -21,7 +21,6 @@ const BACK: i32 = 2_000;
 pub struct Patience<S> {
     /// Recent mean velocity, or the one to back off with, m/s.
     course_mps: Vec2<S>,
-    /// Remaining distance to back off, own radii.
     left: S,
 }
 

@@ -69,13 +69,11 @@ pub struct RightOfWay<S> {
 struct Approach<'a, S: Scalar> {
     gap: Gap<S>,
     situation: &'a Situation<'a, Vec2<S>>,
-    /// See [`Gap::place`].
     own: Vec2<S>,
     is_narrow: bool,
 }
 
 struct Traffic<S> {
-    /// Number of robots on this side that are nearer to the gap.
     rank: i32,
     /// A robot in the gap moves in this robot's direction.
     ahead: bool,
@@ -89,10 +87,8 @@ struct Traffic<S> {
     is_behind: bool,
     /// The nearest waiting robot that is before this one and too close.
     crowds: Option<Vec2<S>>,
-    /// A robot is coming out of the gap on this side.
     comes_out: bool,
     opposite: bool,
-    /// One of those has priority by distance or number.
     opposite_is_nearer: bool,
     largest: S,
 }
@@ -150,7 +146,6 @@ impl<S: Scalar> RightOfWay<S> {
         Some(way.normalized().map_or(Vec2::ZERO, |unit| unit * pace))
     }
 
-    /// It was at a gap for one robot in the last step.
     pub(in crate::orca) const fn takes_turns(&self) -> bool {
         self.is_narrow
     }
@@ -302,7 +297,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         }
     }
 
-    /// `None`: here.
     fn place_to_wait(&self, traffic: &Traffic<S>, has_lanes: bool) -> Option<Vec2<S>> {
         let radius = self.situation.body.radius_m;
         let own = self.own;

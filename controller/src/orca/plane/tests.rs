@@ -253,7 +253,6 @@ fn shortest_vectors_still_give_half_planes() {
     let tiny = [0.0, 1e-30, 1e-23, 1e-20, 1e-15, 1e-10];
     for (reach, off) in tiny.iter().flat_map(|reach| tiny.map(|off| (*reach, off))) {
         let disc = |offset_m: Vec2<f32>, radii_m: f32| ball(offset_m, Vec2::ZERO, radii_m);
-        // A relative velocity that points at the disc's centre except for `off`, and tiny robots.
         let own = Vec2::new(500.0 - off, off);
         let far = half_plane(own, &disc(Vec2::new(1000.0, 0.0), 1.0), &params);
         let small = half_plane(own, &disc(Vec2::new(reach * 3.0, 0.0), reach), &params);

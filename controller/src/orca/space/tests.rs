@@ -12,7 +12,6 @@ fn v(x: f64, y: f64, z: f64) -> V {
     V::new(x, y, z)
 }
 
-/// Rodrigues' formula.
 fn turn(at: V, axis: V, angle: f64) -> V {
     let axis = axis.normalized().unwrap();
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
@@ -33,7 +32,6 @@ fn worked_example_of_the_paper_holds_in_any_plane() {
 
 #[test]
 fn robots_that_fly_exactly_at_each_other_turn_to_opposite_sides() {
-    // Far inside the cone, on its axis.
     for (offset, side) in [
         (v(10.0, 0.0, 0.0), v(0.0, -1.0, 0.0)),
         (v(0.0, 0.0, 10.0), v(1.0, 0.0, 0.0)),
@@ -106,7 +104,6 @@ fn vector(most: f64) -> impl Strategy<Value = V> {
 
 fn crowd() -> impl Strategy<Value = (Vec<HalfSpace<V>>, V)> {
     let others = proptest::collection::vec((vector(1.0), vector(2.0), 0.1..1.0_f64), 0..10);
-    // In about one of five cases no velocity is permitted.
     let spread = 0.5..4.0_f64;
     (others, spread, vector(2.0), vector(2.0)).prop_map(|(others, spread, own, preferred)| {
         let spaces = others

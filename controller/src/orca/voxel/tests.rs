@@ -14,7 +14,6 @@ fn v(x: f64, y: f64) -> V {
 
 const PARAMS: Params<f64> = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
 
-/// Robots of 0.1 to 0.5 m within 5 m, at up to 1.5 m/s.
 fn sample(rng: &mut Rng) -> (V, MovingBall<V>) {
     let mut unit = || f64::from(rng.below(1 << 20)) / f64::from(1 << 20);
     let radii = 0.2 + 0.8 * unit();
@@ -155,7 +154,6 @@ proptest! {
         prop_assert!((plane.normal.norm() - 1.0).abs() < 1e-6, "{plane:?}");
         let obstacle = VelocityObstacle::new(other.offset_m, other.radii_m, 2.0).unwrap();
         let (tip, radius) = obstacle.disc();
-        // It touches the disc, and both legs lead away from it.
         let point = plane.point - other.velocity_mps;
         let gap = (point - tip).dot(plane.normal) - radius;
         prop_assert!(gap.abs() < 1e-6, "{gap}");

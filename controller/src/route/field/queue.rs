@@ -5,12 +5,10 @@ pub(super) const RING: u32 = 64;
 const NIL: u16 = 0;
 pub(super) const MOST_CELLS: usize = u16::MAX as usize;
 
-/// Its number plus one.
 const fn name(cell: usize) -> u16 {
     cell.wrapping_add(1) as u16
 }
 
-/// Beyond all cells for [`NIL`].
 const fn cell(name: u16) -> usize {
     (name as usize).wrapping_sub(1)
 }

@@ -11,7 +11,6 @@ use staya_controller::geom::{Position, Vec3};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::scalar::Scalar;
 
-/// Millimetres.
 const CROWD: [[i32; 3]; 5] = [[0, 0, 0], [0, 700, 0], [600, 300, 0], [-500, -400, 0], [700, -500, 0]];
 
 fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
@@ -72,7 +71,6 @@ pub(super) fn boids<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let params = BoidsParams::new(S::from_milli(300), S::from_i32(30), S::from_ratio(1, 20), S::from_ratio(1, 50));
     let mut movers = Vec::new();
     add_movers(&mut movers, &CROWD, |_| BoidsGuidance::new(params, S::HALF), || Unguarded);
-    // Speeds are equalised in the first step.
     let ways = [[5, 0], [4, 3], [3, -4], [0, 5], [4, -3]];
     for (mover, [x, y]) in movers.iter_mut().zip(ways) {
         let tenths = |n| S::from_ratio(n, 10);

@@ -16,7 +16,6 @@ use staya_controller::wire::{
 
 const LAND: Land = Land { size: 28, roughness_log2: 2, walls: &[(9, 7, 12), (18, 14, 19)] };
 const OPERATOR: RobotId = RobotId(200);
-/// 1 2 and 3 4.
 const PLACES: [Cell; ROBOTS] = [Cell::new(0, 0), Cell::new(-3, 0), Cell::new(0, -3), Cell::new(-3, -3)];
 const EDGES: [(u16, u16); 4] = [(0, 1), (0, 2), (1, 3), (2, 3)];
 const START: Cell = Cell::new(5, 5);
@@ -139,7 +138,6 @@ impl<W: Wire> Operator<W> {
     fn say(&mut self, message: Message, out: &mut Vec<u8, INBOX>) {
         let header = Header { boot: 0, sender: OPERATOR, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
-        // What does not fit is sent in a later tick.
         let _ = self.wire.encode(header, &message, out);
     }
 }

@@ -13,7 +13,6 @@ mod program {
     use core::hint::black_box;
     #[cfg(not(part = "nrf51"))]
     use staya_cases::Opaque;
-    // Only its inbox is smaller.
     #[cfg(not(part = "nrf51"))]
     use staya_link::robot::{Large as Robot, SMALL_INBOX};
     #[cfg(part = "nrf51")]

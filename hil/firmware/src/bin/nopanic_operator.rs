@@ -30,7 +30,6 @@ mod program {
                 now: Instant,
                 workspace: &mut G::Workspace,
             ) -> Outputs<S> {
-                // Always `None`.
                 let mut commanded = black_box(None::<Agent<S, Commanded<S, G>, N, A, W>>);
                 if let Some(agent) = black_box(&mut commanded) {
                     tune(agent);

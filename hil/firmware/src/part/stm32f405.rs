@@ -183,8 +183,7 @@ pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     });
 }
 
-/// The independent watchdog's own 32 kHz (17 to 47), divided by 64, 2048 steps: four seconds
-/// (section 21.3). It pauses while a debugger halts the core.
+/// Its own 32 kHz (17 to 47) / 64, 2048 steps: four seconds (section 21.3); pauses in the debugger.
 pub fn start_watchdog() {
     DBGMCU.apb1fzr().modify(|freeze| freeze.set_iwdg(true));
     // The watchdog accepts the two values only once its oscillator runs.

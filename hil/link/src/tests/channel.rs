@@ -158,7 +158,6 @@ fn nothing_new(tick: u32) -> StepInputs<'static> {
     }
 }
 
-/// Of the time of a step, microseconds.
 fn median_and_p99(faults: Faults, seed: u64) -> (u64, u64) {
     let mut bench = Bench::<Large>::new(Faults { lost: 0, ..faults }, seed);
     bench.port.set_limits(Limits { resend_after_us: 500_000, give_up_after_us: 10_000_000 });
@@ -200,7 +199,6 @@ fn silent_device_times_out_with_the_request_and_the_waiting_time() {
     assert_eq!(error, PortError::Silent { asked, attempts: 60, waited_us });
     assert_eq!(std::format!("{error}"), "no answer to greeting within 1200 ms (60 attempts)");
     assert_eq!(bench.port.poll(bench.now), Ok(Next::Idle));
-    // The error names the step.
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
     bench.configure(&in_plane(), None);
     bench.there.faults = deaf;

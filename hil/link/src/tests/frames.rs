@@ -31,7 +31,6 @@ fn raw(kind: u8, body: &[u8]) -> Vec<u8> {
     super::frame(kind, &Raw(body))
 }
 
-/// Runs of about the length of a block.
 fn body() -> impl Strategy<Value = Vec<u8>> {
     let run = (prop_oneof![Just(0_u8), 1..=u8::MAX], 0_usize..520);
     vec(run, 0..4).prop_map(|runs| {

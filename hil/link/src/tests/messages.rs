@@ -161,7 +161,6 @@ fn longest_step_fits_its_buffer() {
     let capacities = super::hello(session.hello()).capacities;
     assert_eq!(usize::from(capacities.inbox_bytes), crate::robot::LARGE_INBOX);
     assert!(bytes.len() <= capacities.frame_bytes());
-    // Refused for its content, not for its length.
     let answers = super::answers(&mut session, &bytes);
     let fault: Fault = read(kind::FAULT, &answers[0]);
     assert_eq!(fault.kind, FaultKind::NotConfigured);

@@ -70,7 +70,6 @@ fn inputs(tick: u32) -> StepInputs<'static> {
     }
 }
 
-/// The last eastward speed, m/s.
 fn run<C: Controller, const N: usize>(mut session: Session<C, N>, mut shadow: C, ticks: u16) -> f32 {
     let mut law = [0; 16];
     let law = postcard::to_slice(&LAW, &mut law).expect("fits");

@@ -65,7 +65,6 @@ fn requests_out_of_order_are_reported_or_ignored() {
     assert_eq!((kind, seq), (FaultKind::Gap, 1));
     assert_eq!(text, "request 1 after 65535");
     assert_eq!(answers(&mut session, &step(0)).len(), 1, "after the wrap");
-    // The host no longer waits for an answer.
     assert!(answers(&mut session, &step(u16::MAX)).is_empty());
     assert!(answers(&mut session, &configure(u16::MAX - 5)).is_empty());
     assert_eq!(session.counts().stale, 2);

@@ -21,7 +21,6 @@ pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
     let header = Header { boot: 0, sender: RobotId(2), sequence: tick as u16 };
     let mut out = heapless::Vec::<u8, 128>::new();
     encode(header, &Message::Beacon(beacon), &mut out).expect("fits");
-    // Every ninth beacon is damaged.
     if tick.is_multiple_of(9) {
         out[10] ^= 1;
     }
