@@ -12,7 +12,7 @@ pub struct Encoder<S> {
     rim_m: S,
     ticks_per_turn: u16,
     last: Option<u16>,
-    /// From the initial angle, less than one turn.
+    /// Ticks since the initial angle, less than one turn.
     in_turn: i32,
     is_inverted: bool,
 }

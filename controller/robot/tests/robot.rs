@@ -47,7 +47,7 @@ const TRACK_M: f64 = 0.12;
 const WHEEL_M: f64 = 0.03;
 const BODY_M: f64 = 0.09;
 const TICKS_PER_TURN: u16 = 1440;
-/// And the part of the duty that moves nothing.
+/// Rim speed at full duty, and the part of the duty that moves nothing.
 const FULL_MPS: f64 = 0.6;
 const DEAD: f64 = 0.12;
 const MAX_DUTY: u16 = 999;
@@ -120,7 +120,7 @@ impl Body {
         Self { axle, heading, rims: [0.0; 2], ways: [0.0; 2], channels: Default::default(), uart: Uart::default() }
     }
 
-    /// With a lag of 40 ms; the right motor is mounted inversely.
+    /// The motors lag by 40 ms; the right one is mounted inversely.
     fn roll(&mut self) {
         for (side, [ahead, back]) in self.channels.iter().enumerate() {
             let duty = f64::from(ahead.0.get()) - f64::from(back.0.get());

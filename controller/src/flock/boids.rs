@@ -160,7 +160,7 @@ impl<S: Scalar> BoidsParams<S> {
         target.normalized().map_or(heading, |target| self.turn.towards(heading, target))
     }
 
-    /// To the right if the other heading points to the left of the own one.
+    /// Turns to the right if the other heading points to the left of the own one.
     fn separate(&self, own: RobotId, heading: Vec2<S>, other: &Nearby<S>) -> Vec2<S> {
         let flies = other.velocity_mps.xy();
         let is_parallel = heading.det(flies) == S::ZERO;

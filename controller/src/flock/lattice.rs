@@ -409,7 +409,7 @@ impl<'a, S: Scalar> Law<'a, S> {
     }
 }
 
-/// Nearer to the reference, or as near with a smaller number.
+/// Whether `other` is nearer to the reference, or as near with a smaller number.
 fn goes_first<S: Scalar>(other: &Nearby<S>, body: &Body<S>, reference: &Reference<S>) -> bool {
     let (way, other_way) = (reference.offset_m, reference.offset_m - other.offset_m);
     let is_nearer = (other_way.length_key(), other.id) < (way.length_key(), body.id);

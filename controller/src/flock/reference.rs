@@ -35,7 +35,7 @@ impl<S: Scalar> ReferenceMotion<S> {
         }
     }
 
-    /// The velocity that a robot at `offset_m` (vector to the reference) should have, m/s.
+    /// The demanded velocity, m/s; `offset_m` and `velocity_mps` are those of the reference.
     #[must_use]
     pub fn wanted(self, offset_m: Vec3<S>, velocity_mps: Vec3<S>) -> Vec3<S> {
         let (Self::Resting(within_m), Some(ahead)) = (self, velocity_mps.normalized()) else {

@@ -20,9 +20,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GapClosing {
-    /// And its distance, cells.
+    /// The place held instead of the own one, and its distance, cells.
     taken: Option<(u8, Cell)>,
-    /// If its holder was received before.
+    /// The place in front, once its holder was received.
     front: Option<u8>,
 }
 
@@ -33,7 +33,7 @@ impl GapClosing {
         Self { taken: None, front: None }
     }
 
-    /// From the own place to the one that is held.
+    /// The vector from the own place to the one that is held, cells.
     #[must_use]
     pub fn shift(&self) -> Cell {
         self.taken.map_or(Cell::default(), |(_, shift)| shift)
@@ -45,8 +45,8 @@ impl GapClosing {
         self.taken.map_or(template.slot, |(slot, _)| slot)
     }
 
-    /// Steps into the place in front if it is empty, or back if a smaller number holds the
-    /// same place. `holders` are the robots received, with the place numbers in their beacons. O(F *
+    /// Steps into the place in front if it is empty, or back if a smaller number holds the same
+    /// place. `holders` are the robots received, with the place numbers in their beacons. O(F *
     /// robots).
     pub fn close<const F: usize>(
         &mut self,

@@ -53,7 +53,7 @@ pub struct Course {
 
 const ONE: i32 = 1024;
 const LEAST: i32 = 100;
-/// Cells. More saves time and costs accuracy; chosen on seed 1 of `staya experiment formation`.
+/// Planning distance, cells; more saves time and costs accuracy (`staya experiment formation`).
 const AHEAD: u8 = 4;
 const MOST: u32 = 16;
 

@@ -34,7 +34,7 @@ pub struct Drive<S> {
 }
 
 impl<S: Scalar> Drive<S> {
-    /// For a body at the highest speed that it can have in its present place.
+    /// The law for a body at the highest speed that it can have in its current place.
     #[must_use]
     pub fn new(body: &Body<S>) -> Self {
         let Body { max_speed_mps, max_acceleration_mps2, radius_m, step_s, .. } = *body;

@@ -76,13 +76,13 @@ fn unknown(gains: &Gains, from: Cell, to: Cell) -> Cost {
 }
 
 struct Search<const T: usize> {
-    /// Per cell, sixteenths.
+    /// Price per cell, sixteenths.
     price: [u16; T],
     cost: [Cost; T],
 }
 
 impl<const T: usize> Search<T> {
-    /// With paths over the neighbours on one side; returns whether the tile improved.
+    /// Tries paths over the neighbours on one side; returns whether the tile improved.
     fn relax(&mut self, at: usize, (x, y): (i32, i32), sides: [(i32, i32); 4], norm: Norm) -> bool {
         let bits = LandMap::<T>::BITS;
         let inside = 0..1_i32 << bits;

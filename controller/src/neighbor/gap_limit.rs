@@ -65,7 +65,7 @@ pub struct GapLimit<'a, S> {
 #[derive(Clone, Copy)]
 struct Limit<S> {
     ahead: Vec3<S>,
-    /// Sine of the uncertainty of that direction.
+    /// Sine of the angle by which `ahead` may be wrong.
     slant: S,
     /// Permitted approach in this step, metres. Negative, by at most the tolerance, if the gap is
     /// used up.

@@ -33,7 +33,7 @@ pub use tie::tie;
 pub use track::Track;
 pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 
-/// Out of range from here on, thousandths of the distance to the farthest fresh robot.
+/// Where a lost robot is out of range, thousandths of the distance to the farthest fresh robot.
 const LEAVES_FROM: i32 = 750;
 
 /// The last known state of one robot. `P` is the payload of its guidance law, if any.
@@ -306,7 +306,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Removes the known robot `id` without remembering it as lost; whether it was known. O(N).
+    /// Removes robot `id` without remembering it as lost; returns whether it was known. O(N).
     pub fn forget(&mut self, id: RobotId) -> bool {
         let is_known = self.place(id).is_some();
         if is_known {

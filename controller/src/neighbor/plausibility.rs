@@ -34,8 +34,8 @@ pub struct PlausibilityLimits<S> {
     pub max_speed_mps: S,
     /// Additional distance between two positions, metres: positioning errors and delays.
     pub slack_m: S,
-    /// How long a robot that has jumped must report consistent positions; 0: accepted at once.
-    /// With a longer time a robot that was moved stays unseen for longer; with a shorter one a lying
+    /// How long a robot that has jumped must report consistent positions; 0: accepted at once. With
+    /// a longer time a robot that was moved stays unseen for longer; with a shorter one a lying
     /// robot can jump more often.
     pub settle: Duration,
     /// The greatest id of any robot.

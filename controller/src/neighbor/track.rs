@@ -27,7 +27,7 @@ pub struct Track<S> {
     pub velocity_mps: Vec3<S>,
     /// Variance of the position along each axis, m^2.
     pub position_variance: S,
-    /// Of position and velocity, m^2/s.
+    /// Covariance of position and velocity, m^2/s.
     covariance: S,
     /// Variance of the velocity along each axis, m^2/s^2.
     pub velocity_variance: S,
@@ -75,12 +75,12 @@ impl<S: Scalar> Track<S> {
         self.position_variance.sqrt()
     }
 
-    /// At the time of the estimate, metres.
+    /// Offset at the time of the estimate, metres.
     pub(super) fn offset_m(&self, from: Position) -> Vec3<S> {
         self.position.since(from) + self.rest_m
     }
 
-    /// Unchanged for an earlier time.
+    /// An earlier time leaves the estimate unchanged.
     #[must_use]
     pub(super) fn predicted(mut self, to: Instant, params: &TrackParams<S>) -> Self {
         let span = to.since(self.at);
@@ -127,7 +127,7 @@ impl<S: Scalar> Track<S> {
         self.seen = Some(self.seen.filter(|seen| at.is_before(*seen)).unwrap_or(at));
     }
 
-    /// The position at `at`, and the velocity since then.
+    /// Updates the position at `at` and the velocity since then.
     pub(super) fn hear(&mut self, position: Position, velocity_mps: Vec3<S>, at: Instant, params: &TrackParams<S>) {
         *self = self.predicted(at, params);
         let late = seconds::<S>(self.at.since(at));

@@ -52,7 +52,7 @@ pub struct Tracker<S> {
     nameless: u16,
 }
 
-/// Its track was replaced by a nearer one.
+/// A robot whose track was replaced by a nearer one.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Displaced {
     id: RobotId,

@@ -131,7 +131,7 @@ fn mix<S: Scalar>(from: Vec2<S>, to: Vec2<S>, share: S) -> Vec2<S> {
     from + (to - from) * share
 }
 
-/// Without a root if the length is nearly 1; it is, except between distant directions.
+/// Takes no root if the length is nearly 1, as it is except between distant directions.
 fn unit<S: Scalar>(v: Vec2<S>) -> Option<Vec2<S>> {
     let short = S::ONE - v.norm_squared();
     if short.abs() > S::from_ratio(1, 32) {

@@ -35,7 +35,7 @@ pub struct CostField<const CELLS: usize> {
     /// Costs of entering a cell in addition to crossing it. In a search that learns: a lower bound
     /// of the cost from the cell.
     extra: [Cost; CELLS],
-    /// 0 in cells that routes must not use, so that no cost is lower.
+    /// Cost to the exit; 0 in cells that routes must not use, so that no cost is lower.
     cost: [Cost; CELLS],
     queue: Queue<CELLS>,
     /// log2 of a bucket's width.
@@ -109,7 +109,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.weights_knowing(params, window, (from, target), others, visits, &Beyond::default())
     }
 
-    /// With knowledge of the land beyond the window. Additional O(w + h) for each learned cell.
+    /// [`Self::weights`] with knowledge of land beyond the window; O(w + h) more per learned cell.
     pub(super) fn weights_knowing<const M: usize>(
         &mut self,
         params: &RouteParams,

@@ -50,7 +50,7 @@ pub struct Router<const M: usize, const L: usize = 0> {
     plan: SparseVec<(Dir, u8), PLAN>,
     learned: LearnedCosts<L>,
     easiest: u8,
-    /// Squared distance.
+    /// Least squared distance to the target so far.
     least: u64,
     idle: u8,
     escape: Option<Escape>,

@@ -203,7 +203,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         self.components(node)
     }
 
-    /// Moved to the point at `offset`.
+    /// Adds the plane of a node, moved to the point at `offset`.
     #[inline]
     fn add(&self, sum: &mut Sum<S, V>, node: usize, weight: S, offset: &[S; V]) -> Option<()> {
         let (slopes, [own, free]) = self.components(node)?;

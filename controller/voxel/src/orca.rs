@@ -58,7 +58,7 @@ impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
         &self.model
     }
 
-    /// At the border nearest to `w`, in disc radii from the disc's centre, `w.y >= 0`.
+    /// The normal at the border nearest to `w`, in disc radii from the disc's centre, `w.y >= 0`.
     fn normal(&self, w: Vec2<S>, sine: S) -> Option<Vec2<S>> {
         let cos = (S::ONE - sine * sine).sqrt();
         let opening = sine.checked_div(S::ONE + cos)?;
@@ -166,7 +166,7 @@ pub fn obstacles<S: Scalar>(
     Some(planes)
 }
 
-/// Behind nearer planes; there is space. `swap` and `sort` would leave panics in firmware.
+/// Inserts a plane behind nearer ones. `swap` and `sort` would leave panics in firmware.
 fn insert<S: Scalar, const N: usize>(found: &mut Vec<(Vec2<S>, S), N>, plane: (Vec2<S>, S)) {
     let _ = found.push(plane);
     let mut at = found.len().saturating_sub(1);

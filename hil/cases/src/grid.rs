@@ -15,7 +15,7 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Postcard, Wire};
 
-/// In the plane; on the grid the table has room for all robots.
+/// Table size in the plane; on the grid the table holds all robots.
 pub(crate) const KNOWN: usize = 8;
 const VISITS: usize = 32;
 const TEMPLATE: usize = ROBOTS;

@@ -37,7 +37,7 @@ impl Hash {
         }
     }
 
-    /// All except events, which follow from the rest of the state.
+    /// Hashes all outputs except events, which follow from the rest of the state.
     pub(crate) fn outputs<S: Scalar>(&mut self, out: &Outputs<S>) {
         self.command(&out.command);
         self.bytes(&out.received.to_le_bytes());

@@ -12,7 +12,7 @@ pub(crate) struct Land {
     pub(crate) size: i16,
     /// Binary logarithm of the largest impassability.
     pub(crate) roughness_log2: u8,
-    /// North-south: column, first and last row.
+    /// North-south walls: column, first and last row.
     pub(crate) walls: &'static [(i16, i16, i16)],
 }
 

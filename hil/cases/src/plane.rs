@@ -32,7 +32,7 @@ pub(crate) struct Mover<S: Scalar, G: Guidance<S>, A> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid {
-    /// Millimetres.
+    /// Ends, millimetres.
     Wall([[i32; 2]; 2]),
     /// Centre and radius, millimetres.
     Ball([i32; 3], i32),
@@ -44,7 +44,7 @@ pub(crate) struct Scene<S> {
     pub(crate) solids: &'static [Solid],
     pub(crate) land: Option<Land>,
     pub(crate) max_speed_mps: S,
-    /// Centres nearer than this overlap, millimetres.
+    /// Bodies whose centres are nearer than this overlap.
     pub(crate) apart_mm: i32,
     pub(crate) faults: Faults,
     pub(crate) ticks: u32,

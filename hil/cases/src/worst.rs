@@ -37,7 +37,7 @@ const STEPS: u32 = 64;
 const OBSTACLES: usize = 4;
 const PURPOSE: u32 = u32::from_be_bytes(*b"wrst");
 const RADIUS_MM: i32 = 150;
-/// In the middle, so that templates name robots on both sides.
+/// A number in the middle, so that templates name robots on both sides.
 const OWN: RobotId = RobotId(5);
 
 type Inbox = Vec<u8, { 16 * Beacon::MAX_FRAME_LEN }>;

@@ -51,7 +51,7 @@ pub fn is_mute() -> bool {
     read().is_some_and(|kept| kept.is_mute != 0)
 }
 
-/// For the next start; the current start does not count.
+/// Records this for the next start, and does not count the current one.
 pub fn mute() {
     write(current().wrapping_sub(1), 1);
 }

@@ -58,7 +58,7 @@ mod console {
     }
 }
 
-/// `rtt_init!` panics if it runs twice.
+/// Replaces `rtt_init!`, which panics if it runs twice.
 #[cfg(target_arch = "arm")]
 mod rtt {
     use core::mem::MaybeUninit;
@@ -107,7 +107,7 @@ mod rtt {
     pub fn write(_: &[u8]) {}
 }
 
-/// The emulator stops once per line and not once per piece.
+/// Line buffer: the emulator stops once per line and not once per piece.
 pub struct Text {
     bytes: [u8; 96],
     used: usize,

@@ -34,7 +34,7 @@ pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize)
     }
 }
 
-/// It has a robot id and a packet format that the firmware speaks.
+/// Checks the robot id and the packet format.
 pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
     if setup.agent.id == RobotId::NONE {
         return Err(Refusal::Nobody);

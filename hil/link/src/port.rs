@@ -30,16 +30,16 @@ const MOST_DOUBLINGS: u32 = 10;
 /// Retransmission timer of RFC 6298 (section 2) for steps.
 #[derive(Clone, Copy, Debug, Default)]
 struct RoundTrip {
-    /// Gain 1/8; 0 before the first measurement.
+    /// Smoothed mean with gain 1/8; 0 before the first measurement.
     mean_us: u64,
     /// Mean deviation, gain 1/4.
     deviation_us: u64,
-    /// Since the last step that was answered without a resend (section 5.5).
+    /// Doublings since the last step that was answered without a resend (section 5.5).
     doublings: u32,
 }
 
 impl RoundTrip {
-    /// Not for a resent step: its answer may belong to either copy (Karn's algorithm).
+    /// Omits resent steps: their answers may belong to either copy (Karn's algorithm).
     fn note(&mut self, took_us: u64) {
         let Self { mean_us, deviation_us, doublings } = self;
         *doublings = 0;

@@ -32,7 +32,7 @@ use core::fmt::{Display, Write};
 use heapless::String;
 use postcard::take_from_bytes;
 
-/// Other than answers to requests. A test fills one.
+/// Largest frame other than answers to requests, bytes. A test fills one.
 const MAX_NOTE: usize = 128;
 
 /// Computes `CONTENT` of a [`Session`] for this search, number of obstacles and inbox.
@@ -371,7 +371,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     }
 }
 
-/// Without its number and the law after it.
+/// [`Configure`](crate::message::Configure) without its number and the law after it.
 #[derive(serde::Deserialize)]
 struct Setting {
     setup: staya_controller::agent::Setup,
@@ -393,7 +393,7 @@ fn fill_fault(frame: &mut Frame<MAX_NOTE>, seq: u16, kind: FaultKind, text: impl
     let _ = frame.fill(kind::FAULT, &Fault { seq, kind, text });
 }
 
-/// Drops the rest.
+/// Keeps the text that fits.
 struct Cut<const N: usize>(String<N>);
 
 impl<const N: usize> Write for Cut<N> {

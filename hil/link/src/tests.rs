@@ -82,7 +82,7 @@ pub fn answers<B: crate::robot::Controller, const N: usize>(session: &mut Sessio
     answers
 }
 
-/// It must be of this kind.
+/// Decodes a frame, which must be of this kind.
 pub fn read<T: serde::de::DeserializeOwned>(expected: u8, frame: &[u8]) -> T {
     let mut deframer = crate::frame::Deframer::<16384>::new();
     for byte in frame {

@@ -6,7 +6,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// A read is then repeated; the bytes of a write then count as lost.
+/// After this time a read is repeated, and the bytes of a write count as lost.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Reason why a device cannot be opened.

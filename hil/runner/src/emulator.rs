@@ -35,7 +35,7 @@ pub enum EmulatorError {
     Log { path: PathBuf, source: io::Error },
 }
 
-/// Killed on drop.
+/// A running emulator, which is killed on drop.
 #[derive(Debug)]
 pub struct Emulator {
     child: Child,

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-/// Empty at the end of the stream.
+/// Bytes from a device; empty at the end of the stream.
 struct Arrival {
     index: usize,
     at_us: u64,

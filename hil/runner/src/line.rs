@@ -29,7 +29,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// To the device (0) or from it (1).
+    /// `direction` is to the device (0) or from it (1).
     pub fn new(faults: LineFaults, direction: usize, robot: u32) -> Self {
         Self {
             faults,
@@ -78,7 +78,7 @@ impl Line {
         Some(frame)
     }
 
-    /// Of the next bytes.
+    /// Arrival time of the next bytes.
     pub fn next_us(&self) -> Option<u64> {
         self.on_the_way.front().map(|(due, _)| *due)
     }

@@ -48,7 +48,7 @@ pub struct Unit {
     there: Line,
     back: Line,
     phase: Phase,
-    /// After a scheduled reset.
+    /// Steps for which the robot stays down after a reset.
     down: u32,
     answer: Option<Answer>,
     gone: Option<String>,
@@ -165,7 +165,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Empty if the device is gone.
+    /// `bytes` is empty if the device is gone.
     pub fn arrived(&mut self, bytes: &[u8], at_us: u64) {
         if bytes.is_empty() {
             let emulator = self.channel.emulator.as_mut();
@@ -343,7 +343,7 @@ impl Unit {
         matches!(self.phase, Phase::Ready | Phase::Failed)
     }
 
-    /// To the last [`Unit::send`].
+    /// Takes the answer to the last [`Unit::send`].
     pub fn answer(&mut self) -> Option<Answer> {
         self.answer.take()
     }
@@ -387,7 +387,7 @@ fn limits(resend_after: Duration, limit: Duration) -> Limits {
     Limits { resend_after_us: micros(resend_after).max(1), give_up_after_us: micros(limit) }
 }
 
-/// Equal number format and capacities.
+/// Finds the shadow with equal number format and capacities.
 fn shadow(shadows: Shadows, hello: &Hello) -> Option<Box<dyn Controller + Send>> {
     let is_same = |controller: &dyn Controller| {
         let inbox_bytes = hello.capacities.inbox_bytes;

@@ -169,7 +169,7 @@ fn device_that_resets_by_itself_is_down_for_a_step_and_rejoins() {
     assert_eq!((statistics.resets, statistics.steps), (1, 59));
 }
 
-/// From its fiftieth step on.
+/// A device that computes wrongly from its fiftieth step on.
 struct Wrong {
     controller: Large,
     steps: u32,

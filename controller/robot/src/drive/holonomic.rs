@@ -14,8 +14,8 @@ pub struct Omni<S, const W: usize> {
 impl<S: Scalar, const W: usize> Omni<S, W> {
     const ENOUGH: () = assert!(W >= 3 && W <= 16, "fewer wheels cannot go any way");
 
-    /// The first wheel is at `first_rad` from the nose, all are `radius_m` (above 0) from the
-    /// centre.
+    /// The first wheel is at `first_rad` from the nose (counter-clockwise), all are `radius_m` from
+    /// the centre. `None` unless the radius is more than 0 and both are finite.
     #[must_use]
     pub fn new(first_rad: S, radius_m: S) -> Option<Self> {
         let () = Self::ENOUGH;

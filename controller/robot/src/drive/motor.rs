@@ -13,7 +13,7 @@ pub trait Motor {
     /// Sets the duty; [`FULL`] is full power ahead.
     ///
     /// # Errors
-    /// That of the pins; the duty is then unknown.
+    /// The error of the pins; the duty is then unknown.
     fn set(&mut self, duty: i16) -> Result<(), Self::Error>;
 }
 
@@ -21,9 +21,9 @@ pub trait Motor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum MotorError<P, D> {
-    /// Of the PWM channel.
+    /// Error of the PWM channel.
     Pwm(P),
-    /// Of a direction pin.
+    /// Error of a direction pin.
     Pin(D),
 }
 

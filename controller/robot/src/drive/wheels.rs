@@ -70,7 +70,7 @@ impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
     /// Drives the rims at these speeds, m/s.
     ///
     /// # Errors
-    /// That of the first motor that failed. All others are stopped, or the robot would spin.
+    /// The error of the first motor that failed. All others are stopped, or the robot would spin.
     pub fn turn(&mut self, rims_mps: &[S; W]) -> Result<(), M::Error> {
         let motors = self.motors.iter_mut().zip(rims_mps);
         for ((motor, calibration), rim) in motors {
@@ -85,7 +85,7 @@ impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
     /// Switches off all motors; tries each of them.
     ///
     /// # Errors
-    /// That of the first motor that failed.
+    /// The error of the first motor that failed.
     pub fn stop(&mut self) -> Result<(), M::Error> {
         let mut result = Ok(());
         for (motor, _) in &mut self.motors {

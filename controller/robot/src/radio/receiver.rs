@@ -12,7 +12,7 @@ pub struct Receiver<F, const N: usize> {
     /// Whole frames, then the incoming bytes.
     bytes: Vec<u8, N>,
     whole: usize,
-    /// Of those that the last step took.
+    /// Length of the frames that the last step took.
     given: usize,
     /// Bytes up to the next delimiter are unusable.
     is_skipping: bool,

@@ -105,7 +105,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         };
         self.follow(own);
         self.fade(now);
-        // In cells from the corner: small numbers, at any position.
+        // Cells from the corner are small numbers at any position.
         let half = frame.cell_m * S::HALF;
         let corner_m = frame.center(self.origin) - Vec2::new(half, half);
         let robot = (place_m - corner_m) * per_cell;
@@ -158,7 +158,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         self.show();
     }
 
-    /// For [`OnGrid::window`](staya_controller::agent::OnGrid::window) and
+    /// The cells, for [`OnGrid::window`](staya_controller::agent::OnGrid::window) and
     /// [`grid_walls`](staya_controller::obstacle::grid_walls). The robot's own cell is always
     /// passable.
     #[must_use]
@@ -178,7 +178,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         self.known.get_mut(y)?.get_mut(x)
     }
 
-    /// In cells from the corner; `step` is half a cell long.
+    /// Lengths are in cells from the corner; `step` is half a cell long.
     fn clear<S: Scalar>(&mut self, from: Vec2<S>, step: Vec2<S>, length: S) {
         let (mut place, mut gone) = (from, S::ZERO);
         for _ in 0..SIDE.saturating_mul(4) {
@@ -190,7 +190,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         }
     }
 
-    /// In cells from the corner; false outside the square.
+    /// `place` is in cells from the corner; false outside the square.
     fn set<S: Scalar>(&mut self, place: Vec2<S>, news: News) -> bool {
         let along = |at: S| usize::try_from(at.floor_to_i32()?).ok();
         let Some((x, y)) = along(place.x).zip(along(place.y)) else {
@@ -232,7 +232,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         if loss == 0 && now.since(last) >= Duration::ZERO {
             return;
         }
-        // After a long pause, or if the clock was set back.
+        // The period restarts after a long pause, or if the clock was set back.
         self.faded = Some(if loss == self.params.ceiling || loss == 0 { now } else { last });
         for known in self.known.as_flattened_mut() {
             known.evidence = known.evidence.saturating_sub(loss);

@@ -3,7 +3,7 @@ use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// Clones are the same channel.
+/// A PWM channel; clones are the same channel.
 #[derive(Clone, Default)]
 pub struct Channel<const MAX: u16>(pub Rc<Cell<u16>>);
 

@@ -299,7 +299,7 @@ proptest! {
         step::<6>(&own, vector(wish), &nearby, &obstacles)?;
     }
 
-    /// Bit for bit, unless two are equally near.
+    /// Results are identical, unless two obstacles are equally near.
     #[test]
     fn the_order_of_obstacles_does_not_matter(
         wish in flat(0.6),

@@ -29,7 +29,7 @@ fn meets_somebody<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -
     })
 }
 
-/// The right as seen from above; straight up: to the east, straight down: to the west.
+/// Turns to the right as seen from above: to the east if straight up, to the west if straight down.
 fn turned<S: Scalar>(own: RobotId, wish: Vec3<S>) -> Vec3<S> {
     let (cos, sin) = (S::from_ratio(90_631, 100_000), S::from_ratio(42_262, 100_000));
     let east = if wish.z > S::ZERO { S::ONE } else { -S::ONE };

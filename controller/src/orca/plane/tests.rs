@@ -223,7 +223,7 @@ proptest! {
 }
 
 proptest! {
-    /// The normal too, unless two exits are equally long.
+    /// Normals agree too, unless two exits are equally long.
     #[test]
     fn both_methods_to_leave_the_cone_agree(
         p in (-9.0_f64..9.0, -9.0_f64..9.0),

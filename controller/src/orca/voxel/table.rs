@@ -61,7 +61,7 @@ const fn legs() -> [[i16; 2]; LEVELS] {
     legs
 }
 
-/// Rounded down: the cone must not be wider than the stored normals allow.
+/// Sines are rounded down: the cone must not be wider than the stored normals allow.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
 const fn sines(legs: &[[i16; 2]; LEVELS]) -> [u16; LEVELS] {
     let mut sines = [0; LEVELS];
@@ -87,7 +87,7 @@ const fn normals(legs: &[[i16; 2]; LEVELS]) -> [[i16; 2]; LEVELS * DIRECTIONS] {
     normals
 }
 
-/// `x` before and `y` beside the centre.
+/// The normal for a point `x` before and `y` beside the centre.
 const fn normal(leg: [i16; 2], x: f64, y: f64) -> [i16; 2] {
     let scale = ONE as f64 / root(x * x + y * y);
     let found = [rounded(x * scale), rounded(y * scale)];

@@ -61,7 +61,7 @@ fn looked_up(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     half_plane_from_table(own, other, &PARAMS).unwrap()
 }
 
-/// The nearest direction of the level below.
+/// Uses the nearest direction of the level below.
 fn single_node(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     let table = VoxelTable2k::TABLE;
     let (ahead, distance) = (other.offset_m.normalized().unwrap(), other.offset_m.norm());

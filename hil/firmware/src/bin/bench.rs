@@ -207,7 +207,7 @@ mod program {
         row(decode, "-", &mut hearing, kept);
     }
 
-    /// Not inlined: `cargo xtask size` finds their flash by their names.
+    /// Not inlined: `cargo xtask size` finds the flash of this function by its name.
     #[inline(never)]
     fn encode<W: Wire>(
         wire: &mut W,

@@ -5,7 +5,7 @@
 mod robot {
     use staya_link::{robot, session::content_bytes};
 
-    /// And the content of its longest frame, bytes.
+    /// The robot that fits the part, and the content of its longest frame, bytes.
     #[cfg(not(part = "nrf51"))]
     pub type Robot = robot::Large;
     #[cfg(not(part = "nrf51"))]

@@ -55,7 +55,7 @@ mod program {
         Duration::from_micros(black_box(1))
     }
 
-    /// Accepts everything and returns any value.
+    /// A stub that accepts everything and returns any value.
     struct Pin;
 
     impl PinError for Pin {

@@ -21,14 +21,15 @@ compile_error!("no part has this target triple: see the table in src/lib.rs");
 #[derive(Clone, Copy)]
 pub struct Clocks {
     pub clock_hz: u32,
-    /// From `STAYA_BAUD` at build time.
+    /// Rate of [`ticks`].
     pub tick_hz: u32,
 }
 
+/// Baud rate, from `STAYA_BAUD` at build time.
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const BAUD: u32 = number(env!("STAYA_BAUD"));
 
-/// Checked by the build script.
+/// Parses a number that the build script has checked.
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const fn number(text: &str) -> u32 {
     let mut rest = text.as_bytes();

@@ -106,7 +106,7 @@ pub fn ticks() -> u32 {
     minstret::read() as u32
 }
 
-/// Always enabled.
+/// Reception is always enabled.
 pub fn listen() {}
 
 pub fn send(byte: u8) -> bool {
@@ -130,7 +130,7 @@ pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     });
 }
 
-/// There is none.
+/// The machine has no watchdog.
 pub fn start_watchdog() {}
 
 pub fn feed_watchdog() {}

@@ -159,7 +159,7 @@ pub fn ticks() -> u32 {
     }
 }
 
-/// Always enabled.
+/// Reception is always enabled.
 pub fn listen() {}
 
 pub fn send(byte: u8) -> bool {

@@ -21,7 +21,7 @@ use staya_runner::{Channel, DeviceConfig, LineFaults};
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 
-/// In the plane with ORCA or, for every other number, on the grid.
+/// Robots use ORCA in the plane or, for every other number, the grid.
 pub fn config(robot: u32, device: &str) -> DeviceConfig {
     let agent = AgentConfig {
         seed: 7,
@@ -54,7 +54,7 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
     }
 }
 
-/// They do not depend on the robot's decisions.
+/// Sensor readings that do not depend on the robot's decisions.
 pub struct Scene {
     wire: AnyWire,
     inbox: Vec<u8>,
@@ -138,7 +138,7 @@ pub fn now(tick: u32) -> Instant {
     Instant::from_micros(tick * 100_000)
 }
 
-/// At these steps, counted over the device's whole life.
+/// Misbehaviour at these steps, counted over the device's whole life.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mischief {
     pub resets_at: Option<u32>,

@@ -98,7 +98,7 @@ impl<B: Controller + Default> Bench<B> {
         self.back.send(&hello, self.now);
     }
 
-    /// Until the outstanding request ends.
+    /// Runs until the outstanding request ends.
     pub fn wait(&mut self) -> Result<Event, PortError> {
         loop {
             let until = match self.port.poll(self.now)? {

@@ -7,7 +7,7 @@ use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Beacon, Header, Message, encode};
 use std::vec::Vec;
 
-/// It circles around the first one.
+/// A beacon of robot 2, which circles around the first one.
 pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
     let at = (tick % 400) as i32;
     let beacon = Beacon {
