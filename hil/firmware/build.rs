@@ -16,8 +16,7 @@ fn main() {
 
     let target = env::var("TARGET").unwrap_or_default();
     let (part, scripts): (&str, &[&str]) = match target.as_str() {
-        // cortex-m-rt's link.x includes memory.x, and the linker finds the workspace's first: that
-        // of the STM32F405.
+        // cortex-m-rt's link.x includes memory.x: the workspace's, for the STM32F405.
         "thumbv7em-none-eabihf" => ("stm32f405", &["link.x"]),
         "thumbv6m-none-eabi" => ("nrf51", &["nrf51-memory.x", "nrf51.x"]),
         "riscv32imac-unknown-none-elf" => ("riscv32", &["riscv32.x", "link.x"]),

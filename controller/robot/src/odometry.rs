@@ -19,8 +19,8 @@ pub struct Encoder<S> {
 
 impl<S: Scalar> Encoder<S> {
     /// An encoder on a wheel of `wheel_radius_m` with `ticks_per_turn` counts per turn of the wheel
-    /// (all edges, including the gear); `None` unless both are above 0. `is_inverted`: it counts
-    /// down ahead.
+    /// (all edges, including the gear); `None` unless both are above 0. `is_inverted`: down if
+    /// ahead.
     #[must_use]
     pub fn new(wheel_radius_m: S, ticks_per_turn: u16, is_inverted: bool) -> Option<Self> {
         let sensible = wheel_radius_m > S::ZERO && ticks_per_turn > 0;
@@ -54,12 +54,10 @@ impl<S: Scalar> Encoder<S> {
     }
 }
 
-/// Position and heading of the robot's middle (of the axle, for two wheels), summed over small
-/// motions.
+/// Position and heading of the robot's middle (two wheels: of the axle), a sum of small motions.
 ///
 /// It drifts: wheels slip, and each error of the heading affects all later motion. Correct it from
-/// time to time by another source (beacons, a camera, satellites): [`Self::correct`]. Remainders
-/// below a millimetre are kept.
+/// time to time by another source (beacons, a camera, satellites): [`Self::correct`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Odometry<S> {
     position: Position,
@@ -82,8 +80,7 @@ impl<S: Scalar> Odometry<S> {
 
     /// Adds the motion of the body within `span`: `way` in metres and radians, for example
     /// [`Kinematics::twist`](crate::drive::Kinematics::twist) of the distances of the rims. A
-    /// motion that is not a number is ignored. Second-order Runge-Kutta; the error is way * turn^2
-    /// / 24.
+    /// motion that is not a number is ignored. Runge-Kutta of second order.
     pub fn advance(&mut self, way: &Twist<S>, span: Duration) {
         let mid = self.heading_rad + way.turn_radps * S::HALF;
         let (sin, cos) = mid.sin_cos();
@@ -171,8 +168,7 @@ mod tests {
 
     #[test]
     fn fixed_point_ticks_do_not_drift() {
-        // A tick of 0.03 mm is two of the least numbers: single ticks would be off by a few
-        // percent.
+        // A tick of 0.03 mm is two of the least numbers: single ticks would be imprecise.
         let mut encoder = Encoder::new(Q16::from_ratio(3, 100), 6000, false).unwrap();
         let mut sum = Encoder::travelled(&mut encoder, 0);
         let mut count = 0u16;

@@ -1,5 +1,4 @@
-//! Robots between simulated hardware and the real agent: bytes of a bad UART, encoder counters and
-//! lidar ranges in, PWM duties out.
+//! Robots between simulated hardware (UART, encoders, lidar, PWM) and the real agent.
 #![allow(
     clippy::indexing_slicing,
     clippy::unwrap_used,

@@ -12,8 +12,8 @@ pub fn epsilon<S: Scalar>() -> S {
     S::from_ratio(1, 10)
 }
 
-/// A length in the sigma norm, (sqrt(1 + e z^2) - 1) / e, and its slope z / sqrt(1 + e z^2), the
-/// length of n_ij.
+/// A length in the sigma norm, (sqrt(1 + e z^2) - 1) / e, and its slope z / sqrt(1 + e
+/// z^2), |n_ij|.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SigmaNorm<S> {

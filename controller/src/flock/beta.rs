@@ -21,8 +21,7 @@ pub struct BetaAgent<S> {
 /// - A plane: P = I - a a', p^ = P p.
 /// - A ball of radius R at distance D: p^ = mu P p with mu = R / D, limited to 1 (inside). At its
 ///   exact centre the exit is backwards, or east for a stationary robot.
-/// - A wall: beside it like a plane on the robot's side, beyond its end like a ball of radius 0, on
-///   the wall itself to its left.
+/// - A wall: beside it like a plane on the robot's side, beyond its end like a ball of radius 0.
 ///
 /// `None` if the obstacle is not finite, a normal is zero or a radius negative. Constant work.
 #[must_use]

@@ -14,8 +14,7 @@
 //! - Two boids with one heading both turned left and stayed near. Here each turns away from the
 //!   other, or, in one place, in the direction of [`tie`].
 //!
-//! **Cost.** Headings are unit vectors: a step takes two roots per boid and no trigonometric
-//! function.
+//! **Cost.** Headings are unit vectors: a step takes two roots per boid and no sines.
 
 use crate::geom::Vec2;
 use crate::neighbor::{Nearby, tie};

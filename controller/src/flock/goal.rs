@@ -2,8 +2,7 @@
 //! and repelled by the nearest. Start with [`wish`].
 //!
 //! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous
-//! flock of robots", section 2 (the first stage of a motion; collisions are left to a safety
-//! layer).
+//! flock of robots", section 2 (first stage; add a safety layer).
 //!
 //! **Differences to the paper:**
 //!
@@ -81,12 +80,10 @@ impl<S: Scalar> GoalParams<S> {
     }
 }
 
-/// The preferred velocity of the robot at `own`, m/s: V_Max times r1 + r2 + r3 shortened to
-/// length 1.
+/// The preferred velocity of the robot at `own`, m/s: V_Max (r1 + r2 + r3), at most V_Max.
 ///
 /// Without a goal r1 is zero. `nearby` may be in any order; a neighbour whose position is not a
-/// number is ignored. The result is finite and at most as long as V_Max for any input. O(nearby),
-/// with one root per neighbour.
+/// number is ignored. The result is finite and at most as long as V_Max for any input. O(nearby).
 #[must_use]
 #[inline(never)]
 pub fn wish<S: Scalar>(

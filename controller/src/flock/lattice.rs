@@ -11,16 +11,14 @@
 //!
 //! **Differences to the paper:**
 //!
-//! - Robots in one place separate by [`tie`], as strongly as one unit (d / 7) apart; the paper's
-//!   n_ij vanishes there.
+//! - Robots in one place separate by [`tie`], as strongly as one unit (d / 7) apart.
 //! - A robot inside an obstacle, or exactly on its border, is pushed out along the normal as
 //!   strongly as one unit in front of it; the paper's force points inwards there. A wall has no
 //!   inside: a robot that has crossed it is pushed further.
 //! - Values that are not a number contribute nothing.
 //! - Robots of another flock ([`Nearby::is_stranger`]) push like those of the own flock, but
 //!   neither pull nor pass on their velocity. The more of them are in the way, the more the pull of
-//!   the reference turns to the right. Otherwise two lattices of one spacing interlock like combs
-//!   and stop.
+//!   the reference turns to the right. Otherwise lattices interlock like combs.
 //! - In a gap for one robot, two robots side by side stop forever, since those behind push them at
 //!   each other. With [`Algorithm::ThreeInTurn`] the robot nearer to the reference goes first: the
 //!   pull of the reference on the other robot, and the velocity that it demands, fade from full at
@@ -57,8 +55,7 @@ pub enum Algorithm {
     /// Also obstacles; the pull of the reference is bounded.
     #[default]
     Three,
-    /// Like [`Algorithm::Three`], but no robot pushes one nearer to the reference: not in the
-    /// paper.
+    /// Like [`Algorithm::Three`], but no robot pushes one nearer to the reference.
     ThreeInTurn,
 }
 
@@ -123,8 +120,7 @@ pub struct LatticeParams<S> {
     /// with (5, 50, 2) 150 robots in a narrow passage pass through each other.
     pub beta: Gain<S>,
     /// Gains of the reference (c_gamma). Higher gains gather faster and compress the lattice: in
-    /// algorithm 2, 150 robots need c_alpha above 40 c_gamma for a mean squared deviation of 0.005
-    /// d^2.
+    /// algorithm 2, 150 robots need c_alpha above 40 c_gamma for a deviation of 0.005 d^2.
     pub gamma: Gain<S>,
 }
 
@@ -210,11 +206,9 @@ impl<S: Scalar> LatticeParams<S> {
     }
 }
 
-/// The point that the flock follows (the gamma-agent), as a robot sees it; [`ReferenceMotion`]
-/// moves it.
+/// The point that the flock follows (the gamma-agent), moved by [`ReferenceMotion`].
 ///
-/// The velocity of a static one need not be zero: the paper's obstacle courses pull the flock past
-/// a fixed point.
+/// The velocity of a static one need not be zero: it pulls the flock past a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference<S> {
@@ -378,8 +372,7 @@ impl<'a, S: Scalar> Law<'a, S> {
         if is_in_the_way { nearness * ahead } else { S::ZERO }
     }
 
-    /// The share of the reference, 0 to 1: below 1 if a robot of the flock goes first and is closer
-    /// than d.
+    /// The share of the reference, 0 to 1: below 1 if a nearby robot of the flock goes first.
     fn share(&self, body: &Body<S>, nearby: &[Nearby<S>], reference: &Reference<S>) -> S {
         nearby.iter().filter(|other| goes_first(other, body, reference)).fold(S::ONE, |share, other| {
             let spacings = other.offset_m.norm().checked_div(self.params.spacing_m).unwrap_or(S::ONE);

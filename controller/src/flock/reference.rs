@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 /// How a reference moves.
 ///
 /// The static one with a velocity of the paper's courses hardly pulls back a robot that has passed
-/// it, so parts of a flock that obstacles have split stay apart. A resting one gathers them.
+/// it, so parts of a flock that obstacles have split stay apart. A resting one (not in the paper)
+/// gathers them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReferenceMotion<S> {
@@ -15,12 +16,10 @@ pub enum ReferenceMotion<S> {
     Static,
     /// Moves with its velocity (a dynamic gamma-agent).
     Dynamic,
-    /// Stays, and demands a velocity that decreases linearly to zero over this distance behind it,
-    /// metres (not in the paper).
+    /// Stays, and demands a velocity that decreases linearly to zero within this distance, metres.
     ///
-    /// The flock rests within that distance, and later robots join it. Below the flock's own
-    /// radius, part of it rests before the reference. A distance that is not above 0 rests at the
-    /// reference.
+    /// The flock rests within that distance, and later robots join it. Below the flock's radius,
+    /// part of it rests before the reference; at 0 or below, all of it at the reference.
     Resting(S),
 }
 

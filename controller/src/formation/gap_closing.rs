@@ -46,8 +46,7 @@ impl GapClosing {
     }
 
     /// Steps into the place in front if it is empty, or back if a smaller number holds the same
-    /// place. `holders` are the robots received, with the place numbers in their beacons. O(F *
-    /// robots).
+    /// place. `holders` are the robots received, with the places in their beacons. O(F x robots).
     pub fn close<const F: usize>(
         &mut self,
         own: RobotId,

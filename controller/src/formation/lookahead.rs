@@ -2,8 +2,7 @@
 //!
 //! With [`Course`] a follower looks ahead (R. C. Coulter, "Implementation of the pure pursuit path
 //! tracking algorithm", CMU-RI-TR-92-01, 1992): it plans its route to where its place will be some
-//! moves later, avoids bad land in time, and the leader waits less. [`NextMove`] uses only the move
-//! that the leader announced.
+//! moves later, avoids bad land in time, and the leader waits less.
 
 use super::{Anchor, FormationParams, aim, lag};
 use crate::grid::{Cell, Dir, Norm, UNIT};
@@ -12,12 +11,10 @@ use serde::{Deserialize, Serialize};
 
 /// The course that followers assume for their leader.
 pub trait Steering {
-    /// Records the last known position of the top leader, or the own one without a leader; at each
-    /// decision.
+    /// Records the last known position of the top leader, or the own one.
     fn note(&mut self, leader: (RobotId, Cell));
 
-    /// The cell to plan the route to, and the place by which moves are priced; `goal` is this
-    /// robot's final place.
+    /// The cell to plan the route to, and the place that prices moves; `goal` is the final place.
     #[must_use]
     fn aims(&self, params: &FormationParams, anchor: &Anchor, goal: Cell) -> [Cell; 2];
 

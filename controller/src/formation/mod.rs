@@ -1,11 +1,9 @@
-//! Formation keeping: which neighbours a robot should have, where they are, and what each move
-//! therefore costs.
+//! Formation keeping: a robot's neighbours, their places, and the resulting cost of each move.
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2 and 5 to 7; section 6 for the
 //! measures. All functions are pure; a robot's state is [`PaceControl`] and its
 //! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s
-//! per cell, costs those of [`crate::cost`]. In the plane, places are points ([`Drive`]), and cells
-//! matter for detours only.
+//! per cell, costs those of [`crate::cost`]. In the plane, places are points ([`Drive`]).
 //!
 //! The paper's own law is in `published`, behind the feature of that name. Differences to it
 //! (results: `staya experiment formation`):
@@ -19,17 +17,15 @@
 //! - **Weights.** The paper's sum over all neighbours outweighs the land. Here the weight is a gain
 //!   times half the distance to the place given by the top leader and half the mean of those given
 //!   by the direct neighbours ([`distances`]).
-//! - **Stop.** A requested stop makes the top leader wait ([`Recovery::Wait`]) or head for `def` as
-//!   in the paper ([`Recovery::Def`]).
+//! - **Stop.** A requested stop makes the top leader wait, or head for `def` as in the paper
+//!   ([`Recovery`]).
 //! - **Surplus.** Strangers in the places of missing neighbours (item 6) are asked to choose
 //!   another direction ([`Found::surplus`]). Each decision is a new random draw anyway.
 //! - **Leader.** A new leader is chosen when the old one falls silent or a smaller number is found,
-//!   not only at t = 0. A robot without a direct neighbour to follow follows a farther one
-//!   ([`find_leader`]).
+//!   not only at t = 0. It may be a farther neighbour ([`find_leader`]).
 //! - **Patience.** No robot waits forever ([`FormationParams::patience`]), and a leader does not
 //!   wait for robots that follow another leader.
-//! - **Additions.** Followers may look ahead ([`Course`]); robots behind a dead robot may move up
-//!   ([`GapClosing`]).
+//! - **Additions.** Followers may look ahead ([`Course`]) and close gaps ([`GapClosing`]).
 //! - **Misprints.** `less` is counted once (algorithm 5), the leader is the smallest number
 //!   (algorithm 6), sums restart for each direction (algorithm 7).
 
@@ -65,8 +61,8 @@ named! {
         #[default]
         Constant = "constant",
         /// It makes the move that this robot would make in its place (KUZ section 7, item 1), on
-        /// the land that this robot sees. One more search per neighbour; `Constant` if its
-        /// surroundings are out of sight.
+        /// the land that this robot sees. One more search per neighbour; `Constant` if it is out of
+        /// sight.
         Reflexive = "reflexive",
     }
 }
@@ -105,13 +101,11 @@ pub struct FormationParams {
     /// How far ahead of the top leader the others aim, cells: its move and the delay of its beacon.
     pub lead: u8,
     /// Share of the land under the others' places in the top leader's price of a cell, sixteenths:
-    /// 0 counts only its own cell, 16 only theirs. In the plane any other value than 0 counts the
-    /// dearest cell.
+    /// 0 counts only its own cell, 16 only theirs. In the plane all values but 0: the dearest cell.
     pub footprint: u8,
     /// Consecutive decisions for which a leader waits, or a follower is behind, before each
     /// continues alone. With a small value the formation splits at every obstacle; with a large one
-    /// it waits longer for a robot without a route. In the plane: the leader's waiting time in
-    /// seconds.
+    /// it waits longer for a robot without a route. In the plane: seconds.
     pub patience: u16,
     /// Whether robots behind a dead robot move up into its place ([`GapClosing`]), which keeps the
     /// formation within radio range, or leave it empty, which keeps all intended distances.
@@ -134,8 +128,7 @@ impl FormationParams {
 impl Default for FormationParams {
     /// The values of `staya experiment formation`: eps 10 cells, gain 1, r0 300 units (4.3 cells)
     /// without hysteresis, one cell ahead, half of the price from the others' land, a patience of
-    /// 100 decisions, waiting, and constant prediction (no worse than reflexive there, for less
-    /// work).
+    /// 100 decisions, waiting, and constant prediction.
     fn default() -> Self {
         Self {
             eps: 10,

@@ -100,8 +100,7 @@ pub fn find_neighbors<const F: usize>(
 /// The neighbour to follow (KUZ algorithm 6): the smallest number below the own one among the
 /// direct neighbours, or without any, among all found. [`RobotId::NONE`]: the robot leads.
 ///
-/// The paper considers direct neighbours only; if one died, the robots behind it would become
-/// leaders.
+/// The paper considers direct neighbours only; robots behind a dead one would become leaders.
 #[must_use]
 pub fn find_leader(own: RobotId, members: &[Member]) -> RobotId {
     let smaller = members.iter().filter(|member| member.seen.id < own);

@@ -10,14 +10,13 @@ use crate::geom::Vec2;
 use crate::grid::{Cell, Window};
 use crate::scalar::Scalar;
 
-/// Steps that a body without inertia needs to reach its speed: states of others are a step or
-/// older.
+/// Steps in which a body without inertia reaches its speed, since beacons are a step or older.
 const STEPS: i32 = 10;
 /// Speed that the top leader leaves for corrections, thousandths of the highest. More returns
 /// robots to their places sooner and makes every journey longer.
 const RESERVE: i32 = 100;
-/// A robot rests within this distance of the goal, thousandths of its radius, and sets off beyond
-/// twice.
+/// A robot rests this near the goal, thousandths of its radius, and sets off at twice that
+/// distance.
 const AT_REST: i32 = 250;
 
 /// The capabilities of a body, as the law needs them.
@@ -66,7 +65,7 @@ impl<S: Scalar> Drive<S> {
         (place_mps + correction_mps).clamp_norm(self.max_speed_mps)
     }
 
-    /// Whether the leader should stop for a robot `way_m` away from its place, which moves at
+    /// Whether the leader should stop for a robot `way_m` from its place, which moves at
     /// `place_mps`.
     #[must_use]
     pub fn is_far_behind(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> bool {

@@ -70,8 +70,7 @@ pub fn sum_of_deviations(cell: Cell, members: &[Member]) -> u32 {
     each.fold(0, u32::saturating_add)
 }
 
-/// The cost of each move for the formation (algorithm 7): `gain` times the [sum](sum_of_deviations)
-/// that it leads to. O(members).
+/// The cost of each move for the formation (algorithm 7): `gain` times [`sum_of_deviations`].
 #[must_use]
 pub fn sums(gain: Gain, cell: Cell, members: &[Member]) -> Weights {
     // A great distance must not act as a wall.
@@ -118,8 +117,8 @@ impl PublishedParams {
 }
 
 /// The cost of each move of another robot from its view: the sum over the `entries` that `cell_of`
-/// knows, and this robot in `own`, from their current positions (`predict` of algorithm 5, without
-/// a nested prediction). O(entries).
+/// knows, and this robot in `own`, from their current positions (`predict` of algorithm 5).
+/// O(entries).
 #[must_use]
 pub fn sums_of_other(
     gain: Gain,

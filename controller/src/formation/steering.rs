@@ -142,8 +142,7 @@ pub enum Footprint {
     Dearest,
 }
 
-/// Writes to `out` the price, for the whole formation, of each cell within `radius` of `center`
-/// with the top leader in that cell.
+/// Writes to `out` the formation's price of each cell of its leader within `radius` of `center`.
 ///
 /// The price combines the leader's cell and those of the others' visible and passable places, as
 /// `footprint` defines. Walls remain walls. O(cells * entries). `None` if `out` is too short for (2

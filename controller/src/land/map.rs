@@ -14,8 +14,8 @@ const PATCH_BITS: [u32; 2] = [PATCH_WIDTH.trailing_zeros(), PATCH_HEIGHT.trailin
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MapParams {
     /// Observations older than this are forgotten, 16 times the step of ages; above 0, at most 35
-    /// minutes. A shorter time adapts faster and drops false reports sooner; a longer one keeps the
-    /// start of a long path.
+    /// minutes. A shorter time adapts faster and drops false reports sooner; a longer one remembers
+    /// more.
     pub forget_after: Duration,
 }
 
@@ -36,8 +36,7 @@ pub(super) struct Known {
 /// A square of `T` tiles that moves with the robot. `T` is 0 (none), 256, 1024 or 4096, for 64, 128
 /// or 256 cells along each side; at least three eighths of a side lie ahead.
 ///
-/// Memory: 3 bytes per tile, on a host none before the first tile is known. Tiles that leave the
-/// square are forgotten.
+/// Memory: 3 bytes per tile, on a host none before the first tile is known.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LandMap<const T: usize> {
     tiles: SparseVec<Known, T>,
@@ -183,8 +182,7 @@ impl<const T: usize> LandMap<T> {
     }
 
     /// Returns the patch to send next: the one with the most unsent observations, and in every
-    /// second message an old one in turn, for robots that missed it. `None` if no tile is known.
-    /// O(T).
+    /// second message an old one in turn, for robots that missed it. `None` without a tile. O(T).
     pub fn say(&mut self) -> Option<LandPatch> {
         self.repeats = !self.repeats;
         let news = self.corners().map(|corner| (corner, self.count(corner, |known| known.is_news)));

@@ -127,8 +127,7 @@ impl<const T: usize> Search<T> {
 }
 
 impl<const T: usize> LandMap<T> {
-    /// An unknown tile beside known ones gets a mean of their prices and that of unknown land, as
-    /// land changes gradually.
+    /// Land changes gradually: unknown tiles get a mean of their neighbours and of unknown land.
     fn price(&self, gains: &Gains, at: Cell) -> u16 {
         let known =
             |tile: Tile| tile.ticks_16().map(|ticks| (u32::from(gains.a0.sixteenths()) * u32::from(ticks)) >> 4);

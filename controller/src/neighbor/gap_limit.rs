@@ -1,5 +1,4 @@
-//! Limits a velocity so that the robot cannot touch another one at any age of its neighbours'
-//! states.
+//! Limits a velocity so that robots cannot touch at any age of their neighbours' states.
 
 use super::{Neighbor, NeighborTable, StalenessInflation};
 use crate::body::Body;
@@ -36,9 +35,8 @@ const TOLERANCE_UM: i32 = 200;
 ///
 /// *Why half:* two robots that both take at most half of the gap in a step cannot touch, however
 /// long the step is (D. Zhou, Z. Wang, S. Bandyopadhyay, M. Schwager, "Fast, on-line collision
-/// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017). A silent
-/// neighbour that gives way keeps to this rule too, so its ball approaches by at most half of the
-/// gap per step.
+/// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017). The rule also
+/// limits the ball of a silent neighbour that gives way.
 ///
 /// *Inertia:* the ball follows the last course of the body and grows by half of its acceleration
 /// times t^2, if that is less. The own robot takes no more of a gap than it can brake within.
@@ -67,8 +65,7 @@ struct Limit<S> {
     ahead: Vec3<S>,
     /// Sine of the angle by which `ahead` may be wrong.
     slant: S,
-    /// Permitted approach in this step, metres. Negative, by at most the tolerance, if the gap is
-    /// used up.
+    /// Permitted approach in this step, metres; negative, within tolerance, without a gap.
     room_m: S,
 }
 
@@ -89,8 +86,7 @@ impl<S: Scalar> Limit<S> {
 impl<S: Scalar> GapLimit<'_, S> {
     /// Returns the part of `velocity_mps`, m/s, that the gaps allow: first turned aside, without
     /// running into `obstacles`, then shortened. `None` if a silent robot may be at the own
-    /// position: stand still. O(N + obstacles), at most two roots per robot; 20 N bytes of stack
-    /// (`f32`).
+    /// position: stand still. O(N + obstacles); 20 N bytes of stack (`f32`).
     #[must_use]
     #[inline(never)]
     pub fn limit<const N: usize, P: Copy>(
@@ -202,8 +198,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         if most >= S::MAX { S::ZERO } else { (speed * speed * S::HALF).checked_div(most).unwrap_or(S::ZERO) }
     }
 
-    /// Distance to cover in a step so that the body can stop within `left`, metres, which shrinks
-    /// at `growth_mps` meanwhile.
+    /// Distance to cover in a step before braking within `left`, metres, shrinking at `growth_mps`.
     fn brakes(&self, left: S, growth_mps: S) -> S {
         let Body { step_s, max_acceleration_mps2: most, .. } = *self.body;
         if most >= S::MAX || left <= S::ZERO {

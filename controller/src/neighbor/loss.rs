@@ -115,8 +115,7 @@ mod tests {
         }
     }
 
-    /// Gaps above the patience among the frames of one neighbour, and the final patience in
-    /// periods.
+    /// Gaps of one neighbour above the patience, and the final patience in periods.
     fn false_alarms(radio: &mut Radio, frames: u32, estimate: &mut LossEstimate) -> (u32, i32) {
         let (mut missed, mut alarms, mut patience) = (0, 0, LONGEST);
         let mut is_given_up = false;
@@ -161,8 +160,7 @@ mod tests {
 
     #[test]
     fn long_outages_are_recognised_after_the_first_ones() {
-        // One frame in ten is lost independently; an outage of about 30 periods begins every 500
-        // frames.
+        // One frame in ten is lost independently; every 500 frames about 30 are lost in a row.
         let (mut thin, mut spells) = (Radio::new(1, 0.1, 0.1), Radio::new(2, 0.002, 1.0 - 1.0 / 30.0));
         let mut estimate = LossEstimate::new();
         let (mut missed, mut given_up) = (0_u16, 0);

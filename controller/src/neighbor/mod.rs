@@ -92,9 +92,8 @@ impl<S: Scalar, P> Neighbor<S, P> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ages {
-    /// Age above which a neighbour is [`Knowledge::Stale`]: a few beacon periods. With a shorter
-    /// one packet loss makes all neighbours stale; with a longer one robots trust outdated
-    /// positions.
+    /// Age above which a neighbour is [`Knowledge::Stale`]: a few beacon periods. Shorter: packet
+    /// loss makes neighbours stale. Longer: robots trust outdated positions.
     pub stale_after: Duration,
     /// Age above which a neighbour is lost and only its last position is remembered; at most half
     /// an hour, so that the clock never wraps meanwhile.
@@ -262,8 +261,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// - A robot that left radio range: its extrapolated position is at least 3/4 as far from `own`
     ///   as the farthest fresh robot; without fresh robots, at least as far as any robot in contact
     ///   while another one was lost. If that never happened, all robots are remembered.
-    /// - One of two robots with one id, while the other is fresh: a robot that was moved looks like
-    ///   two.
+    /// - One of two robots with one id, while the other is fresh: the robot was moved.
     pub fn expire(
         &mut self,
         own: Position,
@@ -280,8 +278,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             self.entries.retain(|entry| entry.id != silent.id);
             let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));
             let farthest_m = fresh.map(distance).fold(S::ZERO, Scalar::max);
-            // Without contact: the range is known from earlier losses, or the own radio may have
-            // failed.
+            // Without contact the own radio may have failed, unless earlier losses give the range.
             let range_m = if farthest_m > S::ZERO { farthest_m * S::from_milli(LEAVES_FROM) } else { self.range_m };
             self.range_m = self.range_m.max(farthest_m);
             // The other robot with this id is fresh: it was moved.

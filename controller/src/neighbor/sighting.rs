@@ -45,9 +45,8 @@ pub struct TrackParams<S> {
     /// each other are confused. Smaller: one robot becomes two.
     pub gate: S,
     /// Standard deviations of the position that are added to the radius of a tracked robot.
-    /// Smaller: errors lead to overlaps. Larger: crowds stop. (D. Hennes, D. Claes, W. Meeussen, K.
-    /// Tuyls, "Multi-robot collision avoidance with localization uncertainty", AAMAS 2012, section
-    /// 3.)
+    /// Smaller: overlaps. Larger: crowds stop. (D. Hennes, D. Claes, W. Meeussen, K. Tuyls,
+    /// "Multi-robot collision avoidance with localization uncertainty", AAMAS 2012, section 3.)
     pub margin: S,
     /// Time after which a robot without beacons that is out of sight is forgotten. Longer: a robot
     /// that reappears is known sooner, and its last position stays blocked. Above

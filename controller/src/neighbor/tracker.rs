@@ -33,16 +33,14 @@ const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 /// - An anonymous track adopts the id of a detection or beacon that is assigned to it.
 /// - Detections without an id are assigned best pairs first, one per track and step (greedy nearest
 ///   neighbour: S. Blackman, R. Popoli, "Design and Analysis of Modern Tracking Systems", 1999,
-///   section 6.4). One inside the body of a robot already detected in this step does not start a
-///   track.
+///   section 6.4). One inside the body of a robot already detected starts no track.
 /// - A detection matches a track inside the gate, or if the two bodies would overlap: then it must
 ///   be one robot after an unexpected turn.
 ///
 /// A tracked neighbour has the fused position, the time of its last measurement, and a radius
 /// enlarged by [`margin`](TrackParams::margin) standard deviations. A neighbour known from beacons
 /// alone is stored unchanged. One known from detections alone has no leader, no cell and no
-/// payload; it counts as a member of the own flock that gives way. Memory: 16 tracks of 80 bytes
-/// (`f32`).
+/// payload; it counts as a member of the own flock that gives way. 16 tracks of 80 bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tracker<S> {
     params: TrackParams<S>,
@@ -87,8 +85,7 @@ impl<S: Scalar> Tracker<S> {
     }
 
     /// Processes the detections of robot `own`, at `position` with `velocity_mps`, at time `now`.
-    /// O(SIGHTINGS * TRACKS) predictions, then a pass over all pairs per track; 3 KiB of stack
-    /// (`f32`).
+    /// O(SIGHTINGS * TRACKS) predictions, and a pass over all pairs per track; 3 KiB of stack.
     pub fn see(
         &mut self,
         sightings: &[Sighting<S>],
@@ -202,8 +199,7 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// If all tracks are in use, it replaces the farthest one, if farther. Returns whether it was
-    /// added.
+    /// Replaces the farthest track if all are in use. Returns whether the track was added.
     fn insert(&mut self, track: Track<S>, own: Position) -> bool {
         if self.tracks.is_full() {
             let key = |track: &Track<S>| (track.offset_m(own).length_key(), track.id);
@@ -283,8 +279,7 @@ impl<S: Scalar> Tracker<S> {
             }
         }
         self.tracks.retain(|track| track.seen.is_some() || table.get(track.id, now).known().is_some());
-        // An anonymous robot with a new id, or whose track was replaced, must not keep its old
-        // entry.
+        // An anonymous robot with a new id or a replaced track must not keep its old entry.
         for n in (0..table.len()).rev() {
             let id = table.as_slice().get(n).map(|known| known.id).filter(|id| id.is_local());
             if let Some(id) = id.filter(|id| !self.tracks.iter().any(|track| track.id == *id))

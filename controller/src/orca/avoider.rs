@@ -65,12 +65,10 @@ impl<S: Scalar> HalfSpaces<S> for Analytic {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InSpace<S> {
-    /// Ratio of vertical to horizontal distance between robots, the same for all; at least 1 (a
-    /// ball).
+    /// Ratio of vertical to horizontal distance between robots, the same for all; at least 1.
     ///
     /// Rotors blow downwards, and a robot that flies through the stream of another sinks. Use 2.5
-    /// (W. Hönig et al. 2018) or more for small quadrotors. A larger value closes gaps between
-    /// layers.
+    /// (W. Hönig et al. 2018) or more for small quadrotors. A larger value closes gaps.
     pub downwash: S,
 }
 
@@ -94,8 +92,7 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
         if !is_higher {
             return half_space(own_velocity_mps, ball, params);
         }
-        // The ellipsoid becomes a ball in a scaled space; half-spaces remain half-spaces on the way
-        // back.
+        // In a scaled space the ellipsoid is a ball, and half-spaces remain half-spaces.
         let lowered = |v: Vec3<S>| Some(Vec3::new(v.x, v.y, v.z.checked_div(high)?));
         let ball = MovingBall { offset_m: lowered(ball.offset_m)?, velocity_mps: lowered(ball.velocity_mps)?, ..*ball };
         let HalfSpace { point, normal } = half_space(lowered(own_velocity_mps)?, &ball, params)?;

@@ -55,8 +55,7 @@ pub fn solve<V: Dimension, const N: usize>(
     }
 }
 
-/// If no velocity is permitted, the best for the constraints before the first one that leaves none,
-/// with the index of that one.
+/// Without a permitted velocity, the best before the first impossible constraint, and its index.
 fn optimum<V: Dimension>(constraints: &[HalfSpace<V>], speed: V::Scalar, aim: Aim<V>) -> (V, Option<usize>) {
     let mut best = match aim {
         Aim::Near(goal) => goal.clamp_norm(speed),
@@ -89,8 +88,7 @@ fn least_penetration<V: Dimension, const N: usize>(
         if constraint.penetration(best) <= depth {
             continue;
         }
-        // Velocities that violate this constraint no more than another lie on one side of the
-        // bisector.
+        // Velocities that violate this constraint less lie on one side of a bisector.
         let mut bisectors = Vec::<HalfSpace<V>, N>::new();
         for (other_index, other) in constraints.iter().enumerate().take(index) {
             let bisector = if other_index < hard { Some(*other) } else { bisector(constraint, other) };

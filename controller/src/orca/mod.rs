@@ -19,8 +19,7 @@
 //!
 //! Positions and velocities are relative to the robot, so that the result is the same 1000 km from
 //! the origin. Differences to RVO2: two robots in one place have a half-plane, values that are not
-//! finite give no constraint, and a body with inertia chooses among the velocities that it can
-//! reach.
+//! finite give no constraint, and a body with inertia chooses among reachable velocities.
 
 mod avoider;
 mod deadlock;

@@ -16,8 +16,7 @@ pub struct AvoidParams<S> {
     /// Own share of the correction towards robots that give way; 1/2 if all use the same. Below 1/2
     /// two robots together do not avoid. Towards robots that do not give way it is 1.
     pub share: S,
-    /// Error of the known positions, metres; added to the sum of two radii, and to the own radius
-    /// towards obstacles.
+    /// Error of the known positions, metres; added to the sum of two radii (obstacles: to the own).
     ///
     /// Positions in millimetres on both sides need 0.004. At 0.5 m/s and 20 updates per second,
     /// 0.01 covers one lost update in ten, 0.03 three in ten. Robots come nearer to each other by

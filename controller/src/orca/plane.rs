@@ -31,8 +31,7 @@ impl<S: Scalar> Dimension for Vec2<S> {
         best_on_line(constraint, before, speed, aim)
     }
 
-    /// In narrow places robots take turns; elsewhere they pass on the right, and stuck robots back
-    /// off.
+    /// In narrow places robots take turns; elsewhere they pass on the right or back off.
     #[inline(never)] // Its stack is free again for the solver.
     fn break_deadlock(
         memory: &mut Self::Memory,
@@ -47,8 +46,7 @@ impl<S: Scalar> Dimension for Vec2<S> {
         let patience = params.deadlock.patience_radii;
         let at_gap = right_of_way.wish(situation, goal, patience, rng);
         let wish = at_gap.unwrap_or_else(|| lean(params, situation, goal));
-        // A robot that waits for its turn must not back off; the other robots ensure that its turn
-        // comes.
+        // A robot that waits for its turn must not back off: its turn comes.
         if right_of_way.takes_turns() { wish } else { stuck.wish(situation, wish, patience, rng) }
     }
 
@@ -89,8 +87,7 @@ pub fn half_plane<S: Scalar>(
             // With floating-point numbers, only discs that touch within rounding reach this branch.
             Some(ahead) if !S::IS_FLOATING && p.norm() > r => leave_cone_by_angle(v, p, ahead, r, params.horizon_s)?,
             _ => {
-                // Overlapping: separate, directly away from each other if no other direction
-                // follows.
+                // Overlapping: separate, directly if no other direction follows.
                 let tip = Vec2::new(p.x.checked_div(params.separation_s)?, p.y.checked_div(params.separation_s)?);
                 let away = (-p).normalized().or_else(|| tie.normalized());
                 let away = away.unwrap_or(Vec2::new(S::ONE, S::ZERO));
@@ -165,8 +162,7 @@ fn best_on_line<S: Scalar>(
         let crossing = gap.checked_div(slope);
         let t = crossing.unwrap_or(S::ZERO);
         let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON * S::from_i32(64));
-        // Parallel. Rounding between copies of one half-plane (walls that share a corner) must not
-        // exclude the border.
+        // Parallel. Rounding between copies of one half-plane must not exclude the border.
         is_shut |= !is_crossed & (gap > rounding(speed, other));
         let rises = slope > S::ZERO;
         low = if is_crossed & rises & (t > low) { t } else { low };

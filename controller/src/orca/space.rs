@@ -2,8 +2,8 @@
 //! dimension), and linear programming on one border (RVO2-3D's `linearProgram2` and `1`).
 //!
 //! If everything lies in one horizontal plane, the result equals that of the plane. Robots that fly
-//! exactly at each other turn right, or to opposite sides if one is above the other; RVO2-3D has no
-//! direction in this case.
+//! exactly at each other turn right, or to opposite sides if one is above the other (RVO2-3D:
+//! undefined).
 
 use super::deadlock::spread;
 use super::dimension::{Aim, Dimension, HalfSpace, MovingBall, Situation, leave_ball};

@@ -3,8 +3,7 @@
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
 
-/// The relative velocities that lead to a collision within a time horizon: a cone whose tip is cut
-/// off by a disc.
+/// The relative velocities that collide within a time horizon: a cone whose tip a disc cuts off.
 ///
 /// Differences to the paper: its lines y = x tg(angle) fail for vertical lines and for x < 0. Here
 /// each predicate is the signed distance to its line. Eq. 13 places the disc's centre at -(p_B -

@@ -6,18 +6,16 @@
 //!
 //! Differences to the paper:
 //!
-//! - Legs and disc are tangent to the unit disc, so the distance to the border is cos x + sin y - 1
-//!   and need not be stored.
+//! - Legs and disc are tangent to the unit disc, so the distance to the border is cos x + sin
+//!   y - 1.
 //! - The normal is constant along a ray from the disc's centre. So voxels over (sine, direction)
 //!   suffice: in 2 KiB their mean angle error is 0.03 degrees, that of (sine, x, |y|) 0.18.
-//! - The normal is that of the nearest border, not the R-function's gradient
-//!   ([`VelocityObstacle::value`]).
+//! - The normal is not the R-function's gradient ([`VelocityObstacle::value`]).
 //! - Each lookup interpolates four nodes. The nearest node alone has at least 40 times the error.
 //!
 //! **A half-plane from the table is always safe.** The looked-up normal lies between those of the
 //! two legs, so its line touches the disc and has the whole obstacle behind it. An error only makes
-//! the demanded change longer. Both robots of a pair read the same nodes, so their half-planes are
-//! opposite.
+//! the demanded change longer. The half-planes of a pair are opposite.
 //!
 //! [`VelocityObstacle::value`]: super::VelocityObstacle::value
 

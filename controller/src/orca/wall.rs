@@ -10,8 +10,7 @@ struct Nearest<S> {
 }
 
 /// The velocities that keep a robot of `radius_m` off a wall for `horizon_s` seconds. The wall runs
-/// from `ends_m[0]` to `ends_m[1]`, relative to the robot's centre, metres; the whole correction is
-/// the robot's.
+/// from `ends_m[0]` to `ends_m[1]`, relative to the robot's centre, metres.
 ///
 /// The wall widened by the robot is a capsule C. The velocities that meet it within the horizon are
 /// K = {c / t : c in C, 0 < t <= horizon}, a convex set bounded by two tangents from the origin and

@@ -53,8 +53,7 @@ impl Escape {
         }
         let turns = 0..8_u8;
         let hand = turns.map(|turn| Dir::from_index(self.first.wrapping_add(turn) & 7)).find(|&dir| {
-            // If corners are not cut, an open diagonal lies between two open moves, with the wall
-            // beside them.
+            // If corners are not cut, an open diagonal lies between two open moves.
             (params.corner_cutting || !dir.is_diagonal()) && is_open(dir)
         });
         self.next = hand.unwrap_or_default();

@@ -32,8 +32,7 @@ pub struct CostField<const CELLS: usize> {
     height: u16,
     stride: usize,
     impassability: [u8; CELLS],
-    /// Costs of entering a cell in addition to crossing it. In a search that learns: a lower bound
-    /// of the cost from the cell.
+    /// Additional costs of entering a cell; in a search that learns, a lower bound of its cost.
     extra: [Cost; CELLS],
     /// Cost to the exit; 0 in cells that routes must not use, so that no cost is lower.
     cost: [Cost; CELLS],
@@ -400,8 +399,7 @@ impl<const CELLS: usize> CostField<CELLS> {
 
     /// The border cell nearest to `exit` (ties by [`Cell`]) that the robot can reach.
     fn nearest_reachable_border(&mut self, query: &Query<'_>, exit: Cell) -> Option<usize> {
-        // Moves are symmetric, so a search from the open neighbours of the own cell finds all
-        // reachable cells.
+        // Moves are symmetric: a search from the own cell finds all reachable cells.
         let open = self.outgoing_with(query, |_| Some(0));
         self.begin(query);
         for (dir, cost) in open.iter() {

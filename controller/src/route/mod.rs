@@ -7,10 +7,8 @@
 //!
 //! - The direction of algorithm 3, line 7 is (target - cell); the listing has it reversed.
 //! - One reverse search from the exits serves all directions.
-//! - Besides the single exit ([`ExitRule::Ray`]), every border cell may be one
-//!   ([`ExitRule::Best`]).
-//! - A robot that does not approach its target learns costs and finally follows the wall
-//!   ([`Router`]).
+//! - Every border cell may be the exit ([`ExitRule::Best`]).
+//! - A robot that does not approach its target learns or follows the wall ([`Router`]).
 
 mod escape;
 mod field;
@@ -66,12 +64,10 @@ pub struct RouteParams {
     /// behind others; large values lead to long detours.
     pub a1: Gain,
     /// Ticks per earlier visit of a cell (eq. 9). With 0 the robot can circle in a dead end until
-    /// [`Router`] takes another route; a large value keeps it away from good land that it used
-    /// before.
+    /// [`Router`] takes another route; a large value keeps it off land that it used.
     pub a2: Gain,
     /// Ticks per cell of distance between exit and target (eq. 10), near the time that a cell takes
-    /// on a good route. Below half of that the robot may not arrive; with more it moves straighter
-    /// over bad ground.
+    /// on a good route. Below half of that it may not arrive; with more it moves straighter.
     pub a3: Gain,
 }
 

@@ -29,8 +29,7 @@ named! {
     }
 }
 
-/// One robot's routing state: visits (`M` cells), the planned chain, and the way out of dead ends
-/// larger than its window.
+/// One robot's routing state: visits (`M` cells), the planned chain, and the way out of dead ends.
 ///
 /// While each move brings the robot closer to its target than ever before, the paper's rule
 /// decides. Otherwise, if walls are in sight (or for many moves), the robot *learns*: it stores the

@@ -7,7 +7,7 @@
 //! Differences to the literature:
 //!
 //! - Coordinates are relative to the node, in units of half of the extent; with one origin, cos
-//!   delta would lose bits far from it.
+//!   delta loses bits.
 //! - Components are signed integers, so that 0 is exactly 0; none of an M-image's greys is 0.
 //! - [`Model::blend`] of the surrounding planes is continuous, with errors of the square of the
 //!   step; [`Model::nearest`] is the original method.
@@ -79,12 +79,10 @@ impl<S, const V: usize> Serialize for Model<'_, S, V> {
 }
 
 impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
-    /// Opens the model in these bytes, which `staya voxel build` writes, and checks them:
-    /// O(length).
+    /// Opens and checks the model in these bytes, written by `staya voxel build`: O(length).
     ///
     /// # Errors
-    /// [`FileError`], for the first error found; a number that `S` cannot represent is an invalid
-    /// field.
+    /// [`FileError`], for the first error found; `S` must represent all fields.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FileError> {
         let header = Header::read(bytes)?;
         if usize::from(header.variables) != V {

@@ -38,8 +38,7 @@ pub fn velocity_half_plane<S: Scalar>(
 ///
 /// **Each half-plane is safe for any content of the model**: the model's normal (eq. 17) is limited
 /// to lie between those of the two legs, and the border touches the disc. An error only makes the
-/// demanded change of velocity longer. Both robots of a pair read the same nodes, so that their
-/// half-planes are opposite.
+/// demanded change of velocity longer. The half-planes of a pair are opposite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VoxelNeighbor<'a, S: Scalar> {
     model: Model<'a, S, 3>,
@@ -112,8 +111,7 @@ impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
 /// Number of directions that [`obstacles`] probes, in addition to the robot's own position.
 pub const PROBES: usize = 8;
 
-/// The obstacles around a robot from a model of land or a room, metres: planes that touch the
-/// nearest borders, nearest first.
+/// The obstacles around a robot from a model of land or a room, metres: planes, nearest first.
 ///
 /// In a corner the nearest border is not enough, so the model is also evaluated at [`PROBES`]
 /// points at the distance `reach_m` (the distance covered in a step or two, plus the radius; a

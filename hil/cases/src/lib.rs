@@ -3,8 +3,7 @@
 //! A case runs a few agents that receive each other's packets and move simulated bodies on terrain
 //! from a formula. The same code runs on a host and on a microcontroller; equal hashes of all
 //! outputs show that both computed the same. Nothing here allocates or panics. `inline(never)`
-//! keeps the cases from sharing one large stack frame: the largest runs in the 16 KiB of RAM of a
-//! micro:bit.
+//! keeps the cases from sharing one large stack frame: the largest runs in 16 KiB of RAM.
 #![no_std]
 
 #[cfg(test)]

@@ -20,8 +20,8 @@ struct Kept {
 static mut KEPT: MaybeUninit<Kept> = MaybeUninit::uninit();
 
 fn read() -> Option<Kept> {
-    // SAFETY: the section is RAM of this static alone. The read is volatile, and any bits are a
-    // valid u32.
+    // SAFETY: the section is RAM of this static alone. The read is volatile, so that it takes the
+    // contents after power-up as they are, and any bits are a valid u32.
     let kept = unsafe { addr_of_mut!(KEPT).cast::<Kept>().read_volatile() };
     (kept.check == kept.boots ^ kept.is_mute ^ MAGIC).then_some(kept)
 }

@@ -41,8 +41,7 @@ pub mod stack;
 #[macro_export]
 macro_rules! entry {
     ($run:path) => {
-        // SAFETY: cortex-m-rt and riscv-rt call `main` once the stack and the statics are set up;
-        // no other function has this name.
+        // SAFETY: `main` is called once stack and statics are set up; the name is unique.
         #[cfg(target_os = "none")]
         #[unsafe(export_name = "main")]
         extern "C" fn start_of_program() -> ! {
@@ -136,8 +135,7 @@ macro_rules! exceptions_go_over_the_link {
     };
 }
 
-/// Prints panics and processor exceptions, and ends the emulator with exit code 101. A board prints
-/// them over RTT and stops.
+/// Prints panics and processor exceptions, then ends the emulator with code 101 or stops a board.
 #[macro_export]
 macro_rules! faults_are_printed {
     () => {

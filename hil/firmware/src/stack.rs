@@ -40,8 +40,7 @@ pub fn paint() -> Painted {
 }
 
 impl Painted {
-    /// Most bytes of stack in use since, from the start of the stack, including interrupts; limited
-    /// to the painted range. O(bytes).
+    /// Most bytes of stack in use since, including interrupts, within the painted range. O(bytes).
     #[must_use]
     pub fn deepest(&self) -> u32 {
         let mut at = self.low;

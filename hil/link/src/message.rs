@@ -82,8 +82,7 @@ pub struct Step<'a> {
     pub inputs: StepInputs<'a>,
 }
 
-/// Inputs of one step: [`Inputs`](staya_controller::agent::Inputs) in wire format, borrowed from
-/// the receive buffer.
+/// Inputs of one step: [`Inputs`](staya_controller::agent::Inputs) as received.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepInputs<'a> {
     /// The host's step count, for reports only.

@@ -28,8 +28,7 @@ impl<S: Scalar, G> LinkedLaw<S> for G where
 {
 }
 
-/// A robot with law `G` behind a configurable safety layer: `N` neighbours, `K` half-planes, `O`
-/// obstacles, wire format `W`.
+/// A robot with law `G`: `N` neighbours, `K` half-planes, `O` obstacles, wire format `W`.
 #[derive(Clone, Debug)]
 pub struct Own<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> {
     body: Body<S, AnyWorld<G>, AnySafety<S, K>, W, N, O>,

@@ -271,8 +271,7 @@ impl<const N: usize> Port<N> {
         Ok(())
     }
 
-    /// Requests a step. Replaces an outstanding request, which the device will report as a gap:
-    /// wait for each answer.
+    /// Requests a step. Wait for each answer: the device reports a replaced request as a gap.
     ///
     /// # Errors
     /// [`TooLong`] if the request exceeds `N` bytes; then there is no outstanding request. Inputs
@@ -292,8 +291,7 @@ impl<const N: usize> Port<N> {
         self.waiting = Some(Waiting { asked, attempts: 0, since_us: now_us, due_us: now_us });
     }
 
-    /// Returns the next action. Call it after each request and event, and at the time that it
-    /// returned.
+    /// Returns the next action. Call it after requests and events, and at the returned time.
     ///
     /// # Errors
     /// [`PortError::Silent`] on a timeout; then there is no outstanding request.

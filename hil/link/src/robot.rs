@@ -36,8 +36,7 @@ pub trait Controller {
     /// See [`Refusal`]; the controller is then not configured.
     fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8]) -> Result<u64, Refusal>;
 
-    /// Executes one step; the result stays in [`Controller::result`], since returning it costs
-    /// stack.
+    /// Executes one step; the result stays in [`Controller::result`] to save stack.
     ///
     /// # Errors
     /// [`Refusal::NotConfigured`], or inputs that do not fit; the robot's state is unchanged.

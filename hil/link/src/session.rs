@@ -98,8 +98,8 @@ pub struct Counts {
     pub damaged: u32,
 }
 
-/// The device's end of the link, with controller `C` and frames of at most `CONTENT` bytes of
-/// content ([`content_bytes`]).
+/// The device's end of the link, with controller `C` and `CONTENT` bytes per frame
+/// ([`content_bytes`]).
 #[derive(Clone, Debug)]
 pub struct Session<C, const CONTENT: usize> {
     deframer: Deframer<CONTENT>,

@@ -1,6 +1,5 @@
 //! All devices of a run, in parallel. Each has a reader thread; everything else runs in the
-//! caller's. Each wait has a timeout, and each error names the robot, the device, the request and
-//! the time.
+//! caller's. Each wait has a timeout.
 
 use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
@@ -42,8 +41,7 @@ impl std::fmt::Debug for Fleet {
 }
 
 impl Fleet {
-    /// Starts all devices and configures their robots. Emulators end with the thread that calls
-    /// this.
+    /// Starts all devices and configures their robots. Emulators end with the calling thread.
     ///
     /// # Errors
     /// The first device that cannot be opened, does not answer or refuses its configuration.
@@ -127,8 +125,8 @@ impl Fleet {
 
     /// Assigns another robot, or the same one in its initial state, to device `index` and waits
     /// until it is configured. A device that ran another robot gets a new boot number, so that its
-    /// packets do not count as repeated. Errors are returned by [`Fleet::collect`]; an `index` out
-    /// of range is ignored.
+    /// packets do not count as repeated. Errors come by [`Fleet::collect`]; an `index` out of range
+    /// is ignored.
     pub fn assign(&mut self, index: usize, setup: Setup, task: Option<Task>) {
         let now_us = self.now_us();
         if let Some(unit) = self.units.get_mut(index) {

@@ -2,8 +2,7 @@ use crate::part::Part;
 use staya_link::frame::VERSION;
 use std::path::{Path, PathBuf};
 
-/// Content: `staya`, the link's version, the names of the part (24) and of the firmware (32),
-/// padded with zeros.
+/// Content: `staya`, link version, names of part (24) and firmware (32), padded with zeros.
 const SECTION: &[u8] = b".staya\0";
 const MAGIC: &[u8] = b"staya";
 
@@ -63,8 +62,7 @@ impl Note {
         section(&elf).and_then(Self::parse).ok_or(NoteError::NoSession { path })
     }
 
-    /// Reads the note of the firmware `elf` and checks its part, link version and, if given,
-    /// `program`.
+    /// Reads the note of the firmware `elf` and checks part, link version and `program`.
     ///
     /// # Errors
     /// Those of [`Note::read`], and any mismatch.

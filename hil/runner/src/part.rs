@@ -50,7 +50,7 @@ impl Part {
         }
     }
 
-    /// Path of the part's firmware in the output of `cargo xtask firmware`, or `folder` if it is a
+    /// Path of the part's firmware in `folder` (from `cargo xtask firmware`), or `folder` if a
     /// file.
     #[must_use]
     pub fn elf(self, folder: &Path) -> PathBuf {

@@ -31,8 +31,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
     }
 }
 
-/// Lets a robot that can only roll ahead and turn follow any velocity, by controlling a point ahead
-/// of its axle.
+/// Lets a robot that rolls ahead and turns follow any velocity: controls a point ahead of its axle.
 ///
 /// A point at distance D ahead of the axle's middle moves with v ahead and with D w to the side, so
 /// any velocity of the point corresponds to a pair (v, w): the usual feedback linearisation (J.
@@ -40,8 +39,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
 /// multiple robots under differential-drive constraints"). Therefore:
 ///
 /// - Give the controller the state of that point ([`Self::state`]) and goals for it.
-/// - The radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is [`Self::radius`]: the
-///   body's own plus D.
+/// - The radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is [`Self::radius`].
 /// - The top speed is that of the wheels in the worst direction: [`Self::max_speed`].
 ///
 /// D trades space for speed. Half the track leaves 71 % of the wheels' speed. With a small D the
@@ -53,8 +51,7 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
 /// With a as its `max_acceleration_mps2`, the controller accounts for the second term.
 ///
 /// The alternative, NH-ORCA (J. Alonso-Mora, A. Breitenmoser, M. Rufli, P. Beardsley, R. Siegwart
-/// 2010), keeps the centre but must forbid velocities with a larger tracking error, which Staya's
-/// safety layer does not.
+/// 2010), keeps the centre but must forbid velocities with a larger tracking error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LookAhead<S> {

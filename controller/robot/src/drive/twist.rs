@@ -34,8 +34,7 @@ impl<S: Scalar> Twist<S> {
 /// The world velocity that a command demands, m/s; zero for [`Command::Hold`] and
 /// [`Command::Move`].
 ///
-/// [`CellFollower`](staya_controller::agent::CellFollower) converts moves between cells to
-/// velocities.
+/// [`CellFollower`](staya_controller::agent::CellFollower) converts moves to velocities.
 #[must_use]
 pub fn wished_velocity<S: Scalar>(command: &Command<S>) -> Vec2<S> {
     match command {

@@ -7,9 +7,8 @@ use embedded_io_async::{Read, Write};
 
 impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize> PacketLink<(R, W), F, IN, OUT> {
     /// Moves bytes both ways until it is cancelled, for example by
-    /// `select(ticker.next(), link.serve()).await`. Errors of the line are counted, and damaged
-    /// bytes dropped. Reading and writing must be cancellable without losing bytes, as in buffered
-    /// UARTs.
+    /// `select(ticker.next(), link.serve()).await`. Line errors are counted. Reading and writing
+    /// must be cancellable without losing bytes, as in buffered UARTs.
     pub async fn serve(&mut self) -> Infallible {
         let Self { line: (reader, writer), receiver, sender } = self;
         let hear = async {

@@ -11,8 +11,7 @@ pub(super) const PIECE: usize = 32;
 ///
 /// - over a line that reports whether it is ready (`embedded-io`), by [`Self::pump`], at least as
 ///   often as the HAL's own buffer fills up (at 115,200 baud a byte arrives every 87 µs);
-/// - over the two halves of an asynchronous line (`embedded-io-async`, feature `async`), by
-///   `serve`.
+/// - over two halves of an asynchronous line (`embedded-io-async`, feature `async`), by `serve`.
 ///
 /// If the HAL's UART has neither, use a [`Receiver`] and a [`Sender`] directly.
 #[derive(Clone, Debug)]
@@ -63,12 +62,10 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
 where
     U: Read + ReadReady + Write + WriteReady,
 {
-    /// Moves all bytes that can be moved without waiting: reads at most `IN`, writes all queued
-    /// bytes.
+    /// Moves all bytes that can be moved without waiting; reads at most `IN`.
     ///
     /// # Errors
-    /// The line's first error. It is counted, the damaged frame is dropped, and the next call
-    /// continues.
+    /// The line's first error. It is counted, and the next call continues.
     pub fn pump(&mut self) -> Result<(), U::Error> {
         let heard = self.hear();
         if heard.is_err() {

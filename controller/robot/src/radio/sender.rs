@@ -5,8 +5,8 @@ use heapless::Vec;
 /// Holds frames until the line accepts them.
 ///
 /// A full buffer drops the oldest, but never the rest of a frame that was partly sent. In formats
-/// with a delimiter, one is sent before the first frame after a pause, so that noise on idle lines
-/// does not damage the frame.
+/// with a delimiter, one is sent after a pause, so that noise on idle lines does not damage the
+/// frame.
 #[derive(Clone, Debug)]
 pub struct Sender<F, const N: usize> {
     bytes: Vec<u8, N>,

@@ -24,8 +24,7 @@ pub struct MapParams {
     /// Period after which a cell loses one point; above 0. A longer period remembers what is behind
     /// the robot; a shorter one forgets robots that left unseen.
     pub fade_every: Duration,
-    /// Impassability of unknown land, 1..=255; the robot never enters unseen cells with
-    /// [`BLOCKED`].
+    /// Impassability of unknown land, 1..=255; the robot avoids unseen cells with [`BLOCKED`].
     pub ground: u8,
 }
 
@@ -51,8 +50,7 @@ enum News {
 }
 
 /// A square of `SIDE` by `SIDE` cells that moves with the robot, in its middle if `SIDE` is odd;
-/// route guidance of default capacity uses 11. Four bytes per cell. Cells that leave the square are
-/// forgotten.
+/// route guidance of default capacity uses 11. Four bytes per cell. It forgets all other cells.
 #[derive(Clone, Debug)]
 pub struct LocalMap<const SIDE: usize = 11> {
     params: MapParams,
@@ -123,8 +121,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
     }
 
     /// Sets the ground in `cell` from another sensor: impassability, or [`BLOCKED`] for a cliff,
-    /// until it is set again or the cell leaves the square. Returns whether the cell is in the
-    /// square.
+    /// until it is set again or the cell leaves the square. Returns false outside the square.
     pub fn set_ground(&mut self, cell: Cell, ground: u8) -> bool {
         let Some(known) = self.at_mut(cell) else {
             return false;
@@ -159,8 +156,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
     }
 
     /// The cells, for [`OnGrid::window`](staya_controller::agent::OnGrid::window) and
-    /// [`grid_walls`](staya_controller::obstacle::grid_walls). The robot's own cell is always
-    /// passable.
+    /// [`grid_walls`](staya_controller::obstacle::grid_walls). The own cell is passable.
     #[must_use]
     pub fn window(&self) -> Option<Window<'_>> {
         let side = Self::SIDE_CELLS.cast_unsigned();

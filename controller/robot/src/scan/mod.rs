@@ -30,9 +30,8 @@ pub struct Scan<'a, S> {
     pub min_m: S,
     /// The range within which the sensor reliably detects objects.
     pub max_m: S,
-    /// Position of the sensor relative to the robot's reference point
-    /// ([`LookAhead`](crate::drive::LookAhead): the point ahead): x to the nose, y to the left,
-    /// metres.
+    /// Sensor minus reference point ([`LookAhead`](crate::drive::LookAhead): the point ahead): x to
+    /// the nose, y to the left, metres.
     pub mount_m: Vec2<S>,
 }
 

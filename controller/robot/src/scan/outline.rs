@@ -14,8 +14,7 @@ use staya_controller::scalar::Scalar;
 pub struct OutlineParams<S> {
     /// Maximum distance between a wall and its hits, metres: a few times the sensor's noise.
     pub tolerance_m: S,
-    /// Neighbouring hits farther apart belong to different objects, metres; at most the robot's
-    /// width.
+    /// Hits farther apart belong to different objects, metres; at most the robot's width.
     pub gap_m: S,
     /// Radius of the ball for a single hit, metres; above 0, half the distance of beams.
     pub point_m: S,

@@ -111,8 +111,7 @@ fn lossy(seed: u32, percent: u32) -> impl FnMut(i32, usize, usize) -> bool {
 }
 
 proptest! {
-    /// Losses between 60 % and 100 % are excluded: a robot that only others receive is taken to
-    /// stand.
+    /// Losses from 60 to 100 % are excluded: a robot that only others receive is taken to stand.
     #[test]
     fn no_robots_touch_at_any_wishes_and_losses(
         seed in any::<u32>(), percent in prop_oneof![0..=60_u32, Just(100)], movers in 2..5_usize, radius_m in 0.25..1.5_f64, height in 0..2_u8,

@@ -27,8 +27,7 @@ pub(super) struct Wanted<S> {
 }
 
 impl<S: Scalar> Gap<S> {
-    /// Coordinates of the gap: x is the distance behind it (negative: before it; 0: in it), y the
-    /// distance to the right of its axis.
+    /// Coordinates: x behind the gap (negative: before it; 0: in it), y to the right of its axis.
     pub(super) fn place(&self, offset: Vec2<S>) -> Vec2<S> {
         let Vec2 { x, y } = self.turn(offset - self.middle);
         let beyond = (x.abs() - self.depth).max(S::ZERO);
@@ -64,8 +63,7 @@ impl<S: Scalar> Gap<S> {
         own.x > wanted.past_m || own.x > S::ZERO && own.y.abs() > self.half
     }
 
-    /// Whether walls lead on both sides to another gap in line, `way` away. Checks the point
-    /// halfway.
+    /// Whether walls lead on both sides to a gap in line, `way` away; checks halfway.
     fn is_walled(&self, way: Vec2<S>, obstacles: &[Obstacle<S>]) -> bool {
         let side = self.ahead.perp() * self.half;
         let halfway = self.middle + way * S::HALF;

@@ -5,7 +5,6 @@
 //!
 //! - **Order.** On each side the robot nearest to the gap goes first (ties: the smaller number).
 //!   The others wait at a distance that grows with their rank, beside the lane out of the gap.
-//!   Parked robots are ignored.
 //! - **Queue.** A robot that knows only its nearest neighbours cannot count a long queue. So it
 //!   waits [`QUEUE`] behind a waiting robot ahead, which leaves room for robots coming out.
 //! - **Wide gaps.** If two robots fit side by side, each direction keeps to its right half, without

@@ -212,8 +212,7 @@ proptest! {
             };
             let params = Params { horizon_s: S::TWO, separation_s: s(0.05), share: S::HALF };
             let plane = half_plane(Vec2::new(S::HALF, S::HALF), &other, &params).unwrap();
-            // On the axis of the cone the border may jump from leg to leg, but the demanded change
-            // does not.
+            // On the cone's axis the border may jump between legs; the demanded change does not.
             let own = plane.penetration(Vec2::new(S::HALF, S::HALF)).to_f64();
             (own - exact.penetration(v(0.5, 0.5))).abs()
         }

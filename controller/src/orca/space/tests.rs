@@ -117,8 +117,7 @@ fn crowd() -> impl Strategy<Value = (Vec<HalfSpace<V>>, V)> {
     })
 }
 
-/// The best of all points where the distance to `preferred` can have its minimum, on zero to three
-/// of the borders and on the ball.
+/// The best of all candidates for the nearest point, on up to three borders and on the ball.
 fn nearest_permitted(spaces: &[HalfSpace<V>], preferred: V, speed: f64) -> Option<f64> {
     let mut candidates = Vec::from([preferred, preferred.clamp_norm(speed)]);
     let onto_ball = |foot: V, flat: V| {

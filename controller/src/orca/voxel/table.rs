@@ -10,8 +10,8 @@ pub struct VelocityObstacleTable {
     pub(super) sines: &'static [u16],
     /// Directions per level: equal steps of x / (x + y), from perpendicular to straight back.
     pub(super) directions: usize,
-    /// Outward normals in 1 / 2^14, by level, then by direction: components along the axis, negated
-    /// to be positive, and across it.
+    /// Outward normals in 1 / 2^14, by level, then by direction: along the axis (negated) and
+    /// across it.
     pub(super) normals: &'static [[i16; 2]],
 }
 
@@ -46,8 +46,7 @@ impl VoxelTable2k {
     };
 }
 
-/// Normals of the left leg. The half angles are twice the arc tangents of equal steps, which are
-/// denser towards a right angle.
+/// Normals of the left leg, with half angles of twice the arc tangents of equal steps.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
 const fn legs() -> [[i16; 2]; LEVELS] {
     let mut legs = [[0; 2]; LEVELS];

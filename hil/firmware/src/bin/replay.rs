@@ -1,5 +1,4 @@
-//! Runs the canned swarms and prints the lines of `tests/golden/cases.txt`:
-//! `case number hash steps`.
+//! Runs the canned swarms and prints the lines of `tests/golden/cases.txt`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);

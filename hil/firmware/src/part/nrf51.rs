@@ -1,5 +1,4 @@
-//! nRF51822 of the micro:bit (version 1): UART0 on P0.24 (TX) and P0.25 (RX), behind its debug
-//! chip.
+//! nRF51822 of the micro:bit (version 1): UART0 on P0.24 (TX) and P0.25 (RX).
 //!
 //! 16 MHz from the crystal, or else from the internal oscillator. Without a SysTick, TIMER0 counts
 //! ticks. Sections: Nordic's nRF51 Series Reference Manual 3.0.
@@ -94,8 +93,7 @@ fn uart0() {
     unsafe { NVIC::unmask(Interrupt::UART0) };
 }
 
-/// Wakes [`send`] and empties the FIFO. The event is cleared first, so that a later byte sets it
-/// again.
+/// Wakes [`send`] and empties the FIFO. The event is cleared first: later bytes set it.
 // SAFETY: nrf-pac's interrupt table has this name for it; a handler without arguments.
 #[unsafe(export_name = "UART0")]
 extern "C" fn on_uart() {

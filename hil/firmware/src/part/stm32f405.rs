@@ -1,8 +1,6 @@
-//! STM32F405: USART1 on PA9 (TX) and PA10 (RX), 168 MHz from the crystal or the internal
-//! oscillator.
+//! STM32F405: USART1 on PA9 (TX) and PA10 (RX), 168 MHz from crystal or internal oscillator.
 //!
-//! USART1 is also the port of the boot loader and of QEMU's `netduinoplus2`. Sections and tables:
-//! ST's reference manual RM0090.
+//! The boot loader and QEMU's `netduinoplus2` use USART1 too. Sections and tables: ST's RM0090.
 
 use super::{BAUD, Clocks, number};
 use crate::ring::Ring;
@@ -19,8 +17,7 @@ const HSE_HZ: u32 = number(env!("STAYA_HSE_HZ"));
 const PLL_HZ: u32 = 168_000_000;
 const TX_PIN: usize = 9;
 const RX_PIN: usize = 10;
-/// Reads of a status bit before an oscillator counts as missing: tens of milliseconds at 16 MHz.
-/// Crystals need a few, the PLL 0.3.
+/// Reads of a status bit before an oscillator counts as missing: tens of milliseconds.
 const PATIENCE: u32 = 50_000;
 /// More than one byte's time at 9600 baud.
 const SEND_PATIENCE: u32 = 200_000;
@@ -50,8 +47,7 @@ pub fn is_emulated() -> bool {
     DBGMCU.idcode().read().0 == 0
 }
 
-/// 168 MHz from the crystal, else from the internal oscillator, else 16 MHz. Returns the clock,
-/// hertz.
+/// 168 MHz from either oscillator, else 16 MHz. Returns the clock, hertz.
 fn clocks() -> u32 {
     RCC.cr().modify(|cr| cr.set_hseon(true));
     let crystal = comes(|| RCC.cr().read().hserdy());
