@@ -1,3 +1,5 @@
+//! Derives the part from the target triple and passes its linker script to the linker.
+
 use std::env;
 use std::path::Path;
 

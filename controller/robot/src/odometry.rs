@@ -19,7 +19,7 @@ pub struct Encoder<S> {
 
 impl<S: Scalar> Encoder<S> {
     /// An encoder on a wheel of `wheel_radius_m` with `ticks_per_turn` counts per turn of the wheel
-    /// (all edges, including the gear); `None` unless both are above 0. `is_inverted`: down if
+    /// (all edges, including the gear); `None` unless both are above 0. An inverted one counts down
     /// ahead.
     #[must_use]
     pub fn new(wheel_radius_m: S, ticks_per_turn: u16, is_inverted: bool) -> Option<Self> {

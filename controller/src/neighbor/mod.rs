@@ -66,7 +66,7 @@ pub struct Neighbor<S, P = ()> {
     pub mode: Mode,
     /// It has been silent for longer than [`Ages::expire_after`]; only its last state is known.
     pub is_lost: bool,
-    /// Lower bound of the gap to the own body while it is silent, metres; maintained by [`GapLimit`].
+    /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`].
     pub gap_m: S,
     /// The last payload of its guidance law; the default until one arrives.
     pub payload: P,

@@ -1,7 +1,7 @@
 //! The reverse search: cost to the exit from every cell of the window.
 //!
 //! A move's cost depends only on the cell that it enters, so settling a cell offers its eight
-//! predecessors one of two costs. A bucket of the ring (`queue`) is no wider than the cheapest
+//! predecessors one of two costs. A bucket of the ring (`queue`) is at most as wide as the cheapest
 //! move, so a cell leaves the queue only once (Denardo and Fox 1979). All arrays have a blocked
 //! border of one cell, so that neighbours are index offsets.
 

@@ -24,7 +24,7 @@ pub fn choose(emulated: bool, is_mute: bool) {
     }
 }
 
-/// RTT drops bytes when its buffer is full: there may be no reader.
+/// RTT drops bytes when its buffer is full, since a reader may be absent.
 fn write(bytes: &[u8]) {
     match CHANNEL.load(Ordering::Relaxed) {
         SEMIHOSTING => console::write(bytes),

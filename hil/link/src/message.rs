@@ -82,7 +82,7 @@ pub struct Step<'a> {
     pub inputs: StepInputs<'a>,
 }
 
-/// Inputs of one step: [`Inputs`](staya_controller::agent::Inputs) as received.
+/// Inputs of one step: [`Inputs`](staya_controller::agent::Inputs), borrowed from the receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepInputs<'a> {
     /// The host's step count, for reports only.
