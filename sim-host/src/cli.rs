@@ -44,12 +44,13 @@ impl Command {
 /// Parses the command line, runs the command or its program, and reports errors.
 #[must_use]
 pub fn main() -> ExitCode {
-    let matches = programs::with_commands(Line::<Command>::command()).get_matches();
+    let matches = programs::with_commands(Line::<Command>::command()).try_get_matches();
+    let matches = matches.unwrap_or_else(|error| staya_console::refuse(error));
     let ended = match matches.subcommand() {
         Some(("help", asked)) => return help(asked.get_one::<String>("command").map(String::as_str)),
         Some((name, _)) if let Some(program) = programs::of(name) => programs::hand_over(program),
         _ => {
-            let line = Line::<Command>::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+            let line = Line::<Command>::from_arg_matches(&matches).unwrap_or_else(|error| staya_console::refuse(error));
             line.global.begin().and_then(|()| line.command.run(&line.global))
         }
     };

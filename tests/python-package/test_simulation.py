@@ -90,14 +90,14 @@ def test_a_robot_that_is_down_stops_and_restarts(scenario):
 
 def test_orders_change_goals_parameters_and_the_radio(scenario):
     sim = staya.Simulation(scenario("swap-circle"), ticks=2000)
-    sim.set_goal([0.0, 3.0], robot=1)
+    sim.set_goal(1, [0.0, 3.0])
     assert sim.goals[0].tolist() == [0.0, 3.0, 0.0]
     sim.set_radio(loss=1.0, range_m=1)
-    sim.set_parameter("speed_mps", 0.25)
+    sim.set_parameter("all", "speed_mps", 0.25)
     sim.step(100)
     assert sim.run(until=101).summary["packets"]["lost"] > 0
     with pytest.raises(ValueError, match="there is no robot 99; give the number"):
-        sim.set_goal([0, 0], robot=99)
+        sim.set_goal(99, [0, 0])
     with pytest.raises(ValueError, match="unknown variant"):
         sim.order("gaol", place_m=[0, 0, 0])
     with pytest.raises(ValueError, match=r"loss: .*is no probability"):
@@ -107,7 +107,7 @@ def test_orders_change_goals_parameters_and_the_radio(scenario):
 def test_orders_are_saved_in_a_scenario(scenario, tmp_path):
     sim = staya.Simulation(scenario("swap-circle"), seed=5, radio__loss=0.2)
     sim.step(30)
-    sim.set_goal([0.5, 2.5], robot=4)
+    sim.set_goal(4, [0.5, 2.5])
     sim.take_down(7)
     result = sim.run(until=200)
     sim.save(tmp_path / "by-hand.toml")

@@ -12,6 +12,7 @@ use anyhow::{Context as _, Result};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
 use std::io::{self, ErrorKind, Write as _};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Options of every command.
@@ -66,8 +67,43 @@ pub struct Line<C: Subcommand> {
 /// Runs a program: parses the command line, runs the command and reports its errors.
 #[must_use]
 pub fn main<C: Subcommand>(run: impl FnOnce(&C, &Global) -> Result<Ended>) -> ExitCode {
-    let Line { global, command } = Line::parse();
+    let Line { global, command } = Line::try_parse().unwrap_or_else(|error| refuse(error));
     exit("staya", global.begin().and_then(|()| run(&command, &global)))
+}
+
+/// Reports an error of the command line, and ends the process with clap's exit code. Texts of the
+/// standard library are replaced by the values that an option takes; old names get the new one.
+pub fn refuse(error: clap::Error) -> ! {
+    const TEXTS: [(&str, &str); 10] = [
+        ("invalid digit found in string", "give a whole number, 0 or more"),
+        ("number too large to fit in target type", "the number is too large"),
+        ("cannot parse integer from empty string", "give a whole number"),
+        ("invalid float literal", "give a number"),
+        ("invalid socket address syntax", "give ADDRESS:PORT with a port from 0 to 65535, such as 127.0.0.1:8080"),
+        ("unexpected argument '--anew' found", "the option --anew is called --restart now"),
+        ("unrecognized subcommand 'simulate'", "there is no command 'simulate'; `staya run` simulates a scenario"),
+        ("unrecognized subcommand 'sim'", "there is no command 'sim'; `staya run` simulates a scenario"),
+        ("unrecognized subcommand 'watch'", "there is no command 'watch'; `staya view` shows a run in the browser"),
+        ("unrecognized subcommand 'mavlink'", "there is no command 'mavlink'; `staya bridge` speaks MAVLink"),
+    ];
+    let mut text = error.render().to_string();
+    if let Some((old, new)) = TEXTS.iter().find(|(old, _)| text.contains(old)) {
+        text = text.replacen(old, new, 1);
+        // Standard error may be closed.
+        let _ = io::stderr().write_all(text.as_bytes());
+        std::process::exit(error.exit_code());
+    }
+    error.exit()
+}
+
+/// Parses a file name with one of these endings, without the dot.
+///
+/// # Errors
+/// The name has another ending; the text names those that are allowed.
+pub fn file_ending(name: &str, endings: &[&str]) -> Result<PathBuf, String> {
+    let path = PathBuf::from(name);
+    let is_allowed = path.extension().is_some_and(|ending| endings.iter().any(|one| ending.eq_ignore_ascii_case(one)));
+    if is_allowed { Ok(path) } else { Err(format!("the file name must end in .{}", endings.join(" or ."))) }
 }
 
 /// How a successful command ended.

@@ -26,6 +26,10 @@ pub struct HilCommand {
 }
 
 impl HilCommand {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Any error of the run, or the crate cannot be built.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         match &self.folder {
             Some(folder) => run_crate(folder),

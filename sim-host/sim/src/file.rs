@@ -50,7 +50,11 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// See [`read`]; also if the file is not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     let bytes = read(path, most)?;
-    String::from_utf8(bytes).map_err(|_| Error::new(ErrorKind::InvalidData, "stream did not contain valid UTF-8"))
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = 1 + valid.iter().filter(|&&byte| byte == b'\n').count();
+        Error::new(ErrorKind::InvalidData, format!("line {line} is not text in UTF-8"))
+    })
 }
 
 /// Whether `bytes` of memory are available, as far as the system reports it before use.

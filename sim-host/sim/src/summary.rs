@@ -13,6 +13,7 @@ use serde::Serialize;
 use staya_controller::agent::Wait;
 use staya_controller::grid::UNIT;
 use staya_controller::names::Named;
+use staya_controller::robot::Mode;
 use std::fmt::{Display, Formatter, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -31,6 +32,9 @@ pub struct Summary {
     /// Whether the run was stopped by Ctrl-C.
     pub interrupted: bool,
     arrived: usize,
+    /// Robots that have not arrived, by their reason.
+    #[serde(skip)]
+    absent: Vec<(&'static str, Vec<u32>)>,
     /// Mean and longest travel time, simulated seconds; null if no robot arrived.
     arrival_mean_seconds: Option<f64>,
     arrival_last_seconds: Option<f64>,
@@ -78,6 +82,8 @@ pub struct Arrival {
     pub robot: u32,
     /// Simulated seconds after the start; null if it has not arrived.
     pub seconds: Option<f64>,
+    /// Why it has not arrived; null if it has.
+    pub reason: Option<&'static str>,
 }
 
 /// An obstacle in the plane; lengths in metres, as in scenarios.
@@ -142,6 +148,39 @@ impl Display for Waited {
     }
 }
 
+/// Robots of one reason that the table names.
+const SHOWN: usize = 6;
+
+/// Why a robot has not arrived, from its state at the end.
+const fn reason(mode: Mode, wait: Option<Wait>) -> &'static str {
+    match (wait, mode) {
+        (Some(Wait::Team), _) => "waits for its formation",
+        (Some(Wait::Stopped), _) => "stopped on request",
+        (Some(Wait::Route), _) => "no open way to its goal",
+        (Some(Wait::Radio), _) => "no contact with other robots",
+        (Some(Wait::Turn), _) => "waits for its turn at a door",
+        (Some(Wait::Robots), _) => "other robots in its way",
+        (Some(Wait::GoalTaken), _) => "its goal is taken",
+        (None, Mode::Idle) => "it has no goal",
+        (None, Mode::Fault) => "down, or off the map",
+        (None, Mode::Passive) => "not steered by its agent",
+        (None, Mode::Forming | Mode::Cruise | Mode::Hold | Mode::Arrived) => "still on its way",
+    }
+}
+
+fn absent(scenario: &Scenario, outcome: &Outcome) -> Vec<(&'static str, Vec<u32>)> {
+    let mut absent = Vec::<(&str, Vec<u32>)>::new();
+    let ends = outcome.arrival_times.iter().zip(&outcome.ends);
+    for (robot, (_, &(mode, wait))) in scenario.robots.iter().zip(ends).filter(|(_, (time, _))| time.is_none()) {
+        let reason = reason(mode, wait);
+        match absent.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, robots)) => robots.push(robot.id.0),
+            None => absent.push((reason, vec![robot.id.0])),
+        }
+    }
+    absent
+}
+
 /// `None` for numbers that JSON cannot represent.
 fn finite(value: Option<f64>) -> Option<f64> {
     value.filter(|value| value.is_finite())
@@ -165,6 +204,7 @@ impl Summary {
             wall_seconds: 0.0,
             interrupted: false,
             arrived: outcome.arrived,
+            absent: absent(scenario, outcome),
             arrival_mean_seconds: (!units.is_empty()).then(|| seconds(mean)),
             arrival_last_seconds: units.iter().max().map(|&last| seconds(last as f64)),
             collisions: outcome.collisions,
@@ -172,10 +212,11 @@ impl Summary {
                 scenario
                     .robots
                     .iter()
-                    .zip(&outcome.arrival_times)
-                    .map(|(robot, units)| Arrival {
+                    .zip(outcome.arrival_times.iter().zip(&outcome.ends))
+                    .map(|(robot, (units, &(mode, wait)))| Arrival {
                         robot: robot.id.0,
                         seconds: units.map(|units| seconds(units as f64)),
+                        reason: units.is_none().then(|| reason(mode, wait)),
                     })
                     .collect(),
             ),
@@ -291,6 +332,12 @@ impl Summary {
             write!(arrived, ", on average after {mean:.1} s, the last after {last:.1} s")?;
         }
         line("arrived", arrived)?;
+        for (index, (reason, robots)) in self.absent.iter().enumerate() {
+            let ids: Vec<_> = robots.iter().take(SHOWN).map(ToString::to_string).collect();
+            let more = if robots.len() > SHOWN { ", ..." } else { "" };
+            let name = if index == 0 { "not arrived" } else { "" };
+            line(name, format!("{}: {reason} (robot {}{more})", robots.len(), ids.join(", ")))?;
+        }
         for (index, waited) in self.waits.iter().enumerate() {
             line(if index == 0 { "waited" } else { "" }, waited.to_string())?;
         }

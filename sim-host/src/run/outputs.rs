@@ -1,6 +1,7 @@
 use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
+use staya_console::file_ending;
 use staya_plot::movie::{self, Look};
 use staya_record::recording::{RecordingError, RunRecorder};
 use staya_sim::engine::Moment;
@@ -17,13 +18,13 @@ pub struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Record the run as MCAP, for Foxglove, Lichtblick and Rerun.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = |name: &str| file_ending(name, &["mcap"]))]
     mcap: Option<PathBuf>,
     /// Ticks between two recorded moments, in both files; the last tick is always recorded.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     record_every: u32,
     /// Draw the run as an animation.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = |name: &str| file_ending(name, &["gif"]))]
     gif: Option<PathBuf>,
     /// Width of the animation, pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 640, value_parser = clap::value_parser!(u32).range(64..=1920))]

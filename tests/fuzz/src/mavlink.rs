@@ -6,8 +6,9 @@ use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::mavlink_core::{Message as _, calculate_crc};
 use staya_mavlink::wire::{COMPONENT, decode, encode, next_frame};
 
-/// Of the swarm's seven messages.
-const FIRST_ID: u32 = 9_500_000;
+/// Ids of the swarm's messages.
+const IDS: [u32; 8] =
+    [9_500_000, 9_500_002, 9_500_003, 9_500_004, 9_500_005, 9_500_006, 9_500_007, 9_500_008];
 
 /// Decodes the bytes as a radio stream and as the payload of an intact frame, without panics or
 /// lost bytes. An accepted message can be encoded, and its encoding is accepted.
@@ -25,7 +26,7 @@ pub fn mavlink_decode(bytes: &[u8]) {
         return;
     };
     let payload = &payload[..payload.len().min(255)];
-    let id = FIRST_ID + u32::from(which % 7);
+    let id = IDS[usize::from(*which) % IDS.len()];
     let [a, b, c, _] = id.to_le_bytes();
     let mut frame = vec![0xFD, payload.len() as u8, 0, 0, 0, 7, COMPONENT, a, b, c];
     frame.extend(payload);

@@ -149,7 +149,7 @@ impl<W: Wire> Controller<W> {
     }
 
     #[cfg(test)]
-    pub fn known_radius_m(&self, robot: u32) -> Option<f32> {
+    pub(crate) fn known_radius_m(&self, robot: u32) -> Option<f32> {
         self.agent.neighbors().iter().find(|known| known.id.0 == robot).map(|known| known.radius_m)
     }
 

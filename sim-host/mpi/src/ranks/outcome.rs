@@ -108,6 +108,7 @@ pub(super) fn nothing(has_clearance: bool) -> Outcome {
         seconds: 0.0,
         arrived: 0,
         arrival_times: Vec::new(),
+        ends: Vec::new(),
         collisions: 0,
         packets: PacketCounts::default(),
         throttled: 0,

@@ -6,9 +6,9 @@ use super::ground::Part as Ground;
 use super::outcome::{Part, Row, Sums, nothing};
 use super::region::Region;
 use super::wire::Wire;
-use staya_controller::agent::{Guidance, Safety};
+use staya_controller::agent::{Guidance, Safety, Wait};
 use staya_controller::grid::Cell;
-use staya_controller::robot::RobotId;
+use staya_controller::robot::{Mode, RobotId};
 use staya_controller::wire::Ring;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::hash;
@@ -18,6 +18,9 @@ use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
 use staya_sim::scenario::{AttackKind, Intervention, Scenario};
 use std::time::Instant;
+
+/// A robot at the end: its number, arrival time, mode and cause of waiting.
+type End = (u32, Option<u64>, (Mode, Option<Wait>));
 
 /// How ranks share their work. No setting changes a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -421,21 +424,23 @@ where
 
     fn end(mut self) -> Result<Ended, RankError> {
         let engine = &self.engine;
-        let times = engine.here.iter().copied().zip(engine.arrivals.times().iter().copied());
-        let times: Vec<(u32, Option<u64>)> = times.collect();
+        let ends = engine.statuses.iter().map(|status| (status.mode, status.wait));
+        let times = engine.here.iter().copied().zip(engine.arrivals.times().iter().copied()).zip(ends);
+        let times: Vec<End> = times.map(|((number, time), end)| (number, time, end)).collect();
         let (part, traffic) = (Part::of(engine), self.wire.traffic);
         let heard = self.wire.gather_first(encode(&times))?;
-        let mut times = Vec::<(u32, Option<u64>)>::new();
+        let mut times = Vec::<End>::new();
         for (rank, bytes) in heard.iter().enumerate() {
-            times.extend(decode::<Vec<(u32, Option<u64>)>>(rank, "arrivals", bytes)?);
+            times.extend(decode::<Vec<End>>(rank, "arrivals", bytes)?);
         }
-        times.sort_unstable_by_key(|&(number, _)| number);
+        times.sort_unstable_by_key(|&(number, ..)| number);
         let engine = &self.engine;
         let (formation, place_error, formations) = engine.ground.kept();
         let mut outcome = Outcome {
             ticks: engine.tick,
             seconds: engine.seconds(),
-            arrival_times: times.into_iter().map(|(_, time)| time).collect(),
+            arrival_times: times.iter().map(|&(_, time, _)| time).collect(),
+            ends: times.into_iter().map(|(.., end)| end).collect(),
             formation,
             place_error,
             formations,

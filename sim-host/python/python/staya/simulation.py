@@ -6,7 +6,7 @@ import enum
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +15,7 @@ from . import _check
 from ._staya import Run, ScenarioError
 from .result import Page, Result, figures
 
-Guidance = Callable[["Simulation"], ArrayLike]
+Guidance = Callable[["Simulation"], ArrayLike | tuple[ArrayLike, ArrayLike]]
 
 
 class Mode(enum.IntEnum):
@@ -185,13 +185,17 @@ class Simulation:
         stops it after a tick.
 
         With `guidance` each tick begins with `wish(guidance(self))`: your own law over all robots.
-        The robots' collision avoidance and radio stay in effect.
+        The robots' collision avoidance and radio stay in effect. A law may also return a pair of
+        velocities and a boolean for each robot: robots with `True` have arrived; their own
+        guidance keeps them at their goals and reports the arrival.
         """
         n = _check.whole("n", n, 0)
         if guidance is None:
             return self._run.step(n)
         for _ in range(n):
-            self.wish(guidance(self))
+            wished = guidance(self)
+            velocities, arrived = wished if isinstance(wished, tuple) else (wished, None)
+            self.wish(velocities, mask=None if arrived is None else ~np.asarray(arrived, dtype=np.bool_))
             self._run.step(1)
 
     def run(self, *, every: int | None = None, guidance: Guidance | None = None, until: int | None = None) -> Result:
@@ -235,15 +239,15 @@ class Simulation:
         given = {name: value for name, value in fields.items() if value is not None}
         self._run.intervene(f"order = {_check.toml('order', {'kind': kind, **given})}")
 
-    def set_goal(self, place: ArrayLike, robot: int | None = None) -> None:
-        """Sets the goal of one robot or of all, metres. A formation keeps its shape around its
-        first robot's goal."""
-        self.order("goal", robot=robot, place_m=_check.point("place", place))
+    def set_goal(self, robot: int | Literal["all"], place: ArrayLike) -> None:
+        """Sets the goal of one robot, or of all with "all", metres. A formation keeps its shape
+        around its first robot's goal."""
+        self.order("goal", robot=_one_or_all(robot), place_m=_check.point("place", place))
 
-    def set_parameter(self, name: str, value: float, robot: int | None = None) -> None:
-        """Sets a parameter of the guidance law or the safety layer, for one robot or all that have
-        it."""
-        self.order("parameter", robot=robot, name=name, value=value)
+    def set_parameter(self, robot: int | Literal["all"], name: str, value: float) -> None:
+        """Sets a parameter of the guidance law or the safety layer of one robot, or with "all" of
+        all robots that have it."""
+        self.order("parameter", robot=_one_or_all(robot), name=name, value=value)
 
     def set_radio(self, *, loss: float | None = None, range_m: float | None = None) -> None:
         """Sets the radio's probability of loss and range in metres."""
@@ -273,6 +277,14 @@ class Simulation:
 
     def _repr_html_(self) -> str | None:
         return self.page()._repr_html_() if self._run.records else None
+
+
+def _one_or_all(robot: int | Literal["all"]) -> int | None:
+    if robot == "all":
+        return None
+    if isinstance(robot, bool) or not isinstance(robot, (int, np.integer)):
+        raise ValueError(f'robot: {robot!r} is not a robot id; give an id of `ids`, or "all"')
+    return int(robot)
 
 
 def _fields(fields: dict[str, Any]) -> dict[str, Any]:

@@ -95,6 +95,7 @@ where
             seconds: self.seconds(),
             arrived: self.arrivals.count(),
             arrival_times: self.arrivals.times().to_vec(),
+            ends: self.statuses.iter().map(|status| (status.mode, status.wait)).collect(),
             collisions: self.collisions,
             packets: self.packets,
             throttled: self.throttled,

@@ -12,8 +12,9 @@ use crate::world::Misplaced;
 use crate::world::plane::{Clearance, Disc, Solid};
 use staya_controller::agent::{
     AnyGuidance, AnySafety, Commanded, HALF_PLANES, LEARNED, MAP_TILES, MapSharing, NeighborTracking, Safety, TEMPLATE,
-    VISITS, WAYPOINTS,
+    VISITS, WAYPOINTS, Wait,
 };
+use staya_controller::robot::Mode;
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -61,6 +62,8 @@ pub struct Outcome {
     /// End of each robot's last move, [`UNIT`](staya_controller::grid::UNIT)ths of a tick after the
     /// start; `None`: not at its goal.
     pub arrival_times: Vec<Option<u64>>,
+    /// Mode of each robot at the end, and why it waits.
+    pub ends: Vec<(Mode, Option<Wait>)>,
     /// Robots in a wall or in another robot's cell, summed over ticks. Must be 0.
     pub collisions: u64,
     /// Packets of the whole run.

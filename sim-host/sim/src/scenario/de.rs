@@ -4,8 +4,8 @@
 
 use serde::de::value::StrDeserializer;
 use serde::de::{
-    DeserializeSeed, Deserializer, EnumAccess, Error as _, IntoDeserializer as _, MapAccess, SeqAccess, Unexpected,
-    VariantAccess, Visitor,
+    DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, IntoDeserializer as _, MapAccess, SeqAccess,
+    Unexpected, VariantAccess, Visitor,
 };
 use serde::{Deserialize, forward_to_deserialize_any};
 use std::borrow::Cow;
@@ -17,6 +17,8 @@ use toml::de::{DeTable, DeValue};
 #[derive(Debug)]
 pub struct Error {
     pub message: String,
+    /// How to correct it, if the error says so.
+    pub remedy: Option<String>,
     /// Position of the value or its key in the text, bytes.
     pub span: Option<Range<usize>>,
 }
@@ -38,7 +40,94 @@ impl std::error::Error for Error {}
 
 impl serde::de::Error for Error {
     fn custom<T: fmt::Display>(message: T) -> Self {
-        Self { message: message.to_string(), span: None }
+        Self { message: message.to_string(), remedy: None, span: None }
+    }
+
+    fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        Self::custom(format!("{} is not {}", in_words(found), needed(&expected.to_string())))
+    }
+
+    fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        Self::invalid_type(found, expected)
+    }
+
+    fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
+        let expected = expected.to_string();
+        let wanted = expected.rsplit(' ').next().unwrap_or(&expected);
+        Self::custom(format!("the list has {length} values, {wanted} are needed"))
+    }
+
+    fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
+        let remedy = match nearest(name, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("give one of {}", listed(known)),
+        };
+        Self { remedy: Some(remedy), ..Self::custom(format!("unknown value `{name}`")) }
+    }
+
+    fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
+        let renamed = RENAMED.iter().find(|(old, new)| *old == name && known.contains(new));
+        let remedy = match (renamed, nearest(name, known.iter().copied())) {
+            (Some((_, new)), _) => format!("the field is called `{new}` now"),
+            (None, Some(near)) => format!("did you mean `{near}`?"),
+            (None, None) if known.is_empty() => "this table has no fields".to_owned(),
+            (None, None) => format!("this table has {}", listed(known)),
+        };
+        Self { remedy: Some(remedy), ..Self::custom(format!("unknown field `{name}`")) }
+    }
+}
+
+/// Earlier names of fields, each with the present one.
+const RENAMED: [(&str, &str); 2] = [("eyes", "sensing"), ("claims", "plausibility")];
+
+/// The known name that is most similar to `name`, if any is similar.
+pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let similar = known.map(|one| (strsim::jaro_winkler(name, one), one)).filter(|(likeness, _)| *likeness > 0.8);
+    similar.max_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, one)| one)
+}
+
+fn listed(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+fn in_words(found: Unexpected<'_>) -> String {
+    match found {
+        Unexpected::Str(text) => format!("{text:?}"),
+        Unexpected::Bool(value) => value.to_string(),
+        Unexpected::Signed(value) => value.to_string(),
+        Unexpected::Unsigned(value) => value.to_string(),
+        Unexpected::Float(value) => short(value),
+        Unexpected::Seq => "a list".to_owned(),
+        Unexpected::Map => "a table".to_owned(),
+        Unexpected::Other(what) => format!("a {what}"),
+        other => other.to_string(),
+    }
+}
+
+/// A number in at most about twenty characters.
+pub fn short(value: f64) -> String {
+    let is_long = value != 0.0 && value.is_finite() && !(1e-6..1e15).contains(&value.abs());
+    if is_long { format!("{value:e}") } else { value.to_string() }
+}
+
+/// What a type accepts, without its Rust name.
+fn needed(expected: &str) -> &str {
+    match expected {
+        "f64" | "f32" => "a number",
+        "u8" => "a whole number from 0 to 255",
+        "u16" => "a whole number from 0 to 65535",
+        "u32" => "a whole number from 0 to 4294967295",
+        "u64" | "usize" => "a whole number, 0 or more",
+        "i16" => "a whole number from -32768 to 32767",
+        "i32" | "i64" => "a whole number",
+        "a boolean" => "true or false",
+        "path string" => "a file name in quotes",
+        "a sequence" => "a list",
+        "a map" => "a table",
+        _ if expected.starts_with("struct ") => "a table",
+        _ if expected.starts_with("enum ") => "a name in quotes",
+        _ if expected.starts_with("tuple ") || expected.starts_with("an array of length ") => "a list",
+        _ => expected,
     }
 }
 
@@ -125,7 +214,18 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
                 Err(_) => Err(Error::custom("invalid number")),
             },
             DeValue::Datetime(_) => Err(Error::invalid_type(Unexpected::Other("date"), &visitor)),
-            DeValue::Array(list) => visitor.visit_seq(Elements(list.iter())),
+            DeValue::Array(list) => {
+                let mut elements = Elements(list.iter());
+                let read = visitor.visit_seq(&mut elements);
+                match (elements.0.len(), read) {
+                    (left @ 1.., Ok(_)) => Err(Error::custom(format!(
+                        "the list has {} values, {} are needed",
+                        list.len(),
+                        list.len() - left
+                    ))),
+                    (_, read) => read,
+                }
+            }
             DeValue::Table(table) => Table(table).deserialize_any(visitor),
         };
         read.map_err(|error| error.at(self.0.span()))
@@ -152,7 +252,7 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
                 Some((name, value)) => visitor.visit_enum(Variant { name: name.get_ref(), value: Some(value) }),
                 None => Err(Error::custom("an empty table")),
             },
-            _ => Err(Error::custom("expected a string, or a table with one entry")),
+            _ => Err(Error::custom("not a name in quotes, and not a table with one entry")),
         };
         read.map_err(|error| error.at(span))
     }
@@ -160,7 +260,20 @@ impl<'a> Deserializer<'a> for Node<'a, '_> {
     forward_to_deserialize_any! {
         <W: Visitor<'a>>
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
-        tuple_struct map struct identifier ignored_any
+        tuple_struct map identifier ignored_any
+    }
+
+    fn deserialize_struct<V: Visitor<'a>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        // A derived visitor would read the fields of a list by their order.
+        match self.0.get_ref() {
+            DeValue::Array(_) => Err(Error::custom("a list is not a table").at(self.0.span())),
+            _ => self.deserialize_any(visitor),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Range checks and conversions shared by several tables.
 
+use super::de::short;
 use super::source::{ScenarioError, Source};
 
 pub(super) fn micros(seconds: f64) -> u32 {
@@ -21,6 +22,6 @@ pub fn within(
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    let what = format!("{value} is out of range");
-    Err(source.error(field, what, format!("give {low} to {high} {unit}").trim_end()))
+    let what = format!("{} is out of range", short(value));
+    Err(source.error(field, what, format!("give {} to {} {unit}", short(low), short(high)).trim_end()))
 }

@@ -114,10 +114,11 @@ impl<'a> Source<'a> {
     /// # Errors
     /// A field is unknown, missing, or of another type; the error names file, line and field.
     pub fn read<'s, T: Deserialize<'s>>(&'s self, list: &str) -> Result<T, ScenarioError> {
-        de::read(&self.root).map_err(|error| self.serde_error(&error.message, error.span, list))
+        de::read(&self.root).map_err(|error| self.serde_error(&error, list))
     }
 
-    fn serde_error(&self, message: &str, span: Option<Range<usize>>, list: &str) -> ScenarioError {
+    fn serde_error(&self, error: &de::Error, list: &str) -> ScenarioError {
+        let span = error.span.clone();
         let mut field = String::new();
         // The span of the whole file is empty.
         if let Some(span) = span.as_ref().filter(|span| !span.is_empty()) {
@@ -127,8 +128,11 @@ impl<'a> Source<'a> {
             path: self.path.to_owned(),
             line: line_of(self.text, span),
             field,
-            what: in_words(&first_line(message)),
-            remedy: format!("{list} lists all fields with their units"),
+            what: first_line(&error.message),
+            remedy: match &error.remedy {
+                Some(remedy) => format!("{remedy} ({list} lists all fields)"),
+                None => format!("{list} lists all fields with their units"),
+            },
         }
     }
 
@@ -249,20 +253,4 @@ fn line_of(text: &str, span: Option<Range<usize>>) -> usize {
 
 fn first_line(message: &str) -> String {
     message.lines().next().unwrap_or_default().to_owned()
-}
-
-fn in_words(message: &str) -> String {
-    let Some((start, name)) = message.rsplit_once(", expected ") else {
-        return message.to_owned();
-    };
-    let name = match name {
-        "f64" => "a number",
-        "u8" => "a whole number from 0 to 255",
-        "u16" => "a whole number from 0 to 65535",
-        "u32" => "a whole number from 0 to 4294967295",
-        "u64" => "a whole number, 0 or more",
-        "i16" => "a whole number from -32768 to 32767",
-        other => other,
-    };
-    format!("{start}, expected {name}")
 }

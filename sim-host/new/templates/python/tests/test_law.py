@@ -9,5 +9,5 @@ import staya
 def test_all_arrive_and_none_overlap(seed):
     sim = staya.Simulation(my_swarm.SCENARIO, seed=seed)
     figures = my_swarm.run(sim)
-    assert my_swarm.has_arrived(sim), f"not arrived after {sim.time_s} s"
+    assert figures["arrived"] == figures["robots"], f"not arrived after {sim.time_s} s"
     assert figures["collisions"] == 0
