@@ -40,7 +40,7 @@ pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize)
 /// Checks that a setup has a robot id and that the firmware speaks its packet format.
 pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
     if setup.agent.id == RobotId::NONE {
-        return Err(Refusal::Nobody);
+        return Err(Refusal::NoRobot);
     }
     Ok(())
 }

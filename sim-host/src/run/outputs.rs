@@ -34,7 +34,7 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
-    pub const fn begins_anew(&self) -> bool {
+    pub const fn is_recorded(&self) -> bool {
         self.record.is_some() || self.mcap.is_some()
     }
 

@@ -142,8 +142,8 @@ impl Plan {
         self.circle_m.unwrap_or_else(|| circle_m(robots))
     }
 
-    fn swap(&self, robots: u32, seed: u64, goes_on: &dyn Fn() -> bool) -> Option<Swap> {
-        let outcome = run(&self.scenario(robots, seed), goes_on, |_| ())?;
+    fn swap(&self, robots: u32, seed: u64, may_continue: &dyn Fn() -> bool) -> Option<Swap> {
+        let outcome = run(&self.scenario(robots, seed), may_continue, |_| ())?;
         let circle_m = self.circle_m(robots);
         let free_s = 2.0 * circle_m / self.conditions.speed_mps;
         let times: Vec<_> = self.conditions.arrivals_s(&outcome);
@@ -216,7 +216,7 @@ impl Experiment for Plan {
 
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Swap>>> {
         jobs.each(
-            |(): &mut (), point, run| Ok(self.swap(self.robots[point], self.seed(point, run), &|| jobs.goes_on())),
+            |(): &mut (), point, run| Ok(self.swap(self.robots[point], self.seed(point, run), &|| jobs.may_continue())),
         )
     }
 
