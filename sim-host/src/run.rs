@@ -99,7 +99,7 @@ impl RunArgs {
         if global.json {
             print_json(&summary)?;
         } else {
-            print(&summary.table(&out)?)?;
+            print(&summary.table(&out))?;
         }
         Ok(Ended::by(&stop))
     }

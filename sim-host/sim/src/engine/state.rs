@@ -61,7 +61,7 @@ pub struct StateError {
     remedy: &'static str,
 }
 
-const REMEDY: &str = "take another checkpoint, or start anew";
+const REMEDY: &str = "take another checkpoint, or restart the run";
 const SAME: &str = "restore it with the scenario, and the program, that made it";
 
 impl StateError {

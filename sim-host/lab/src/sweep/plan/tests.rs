@@ -120,7 +120,7 @@ fn errors_name_the_plan_the_line_and_the_field() {
         (axes("radoi.loss = [1]"), "plan.toml:4: radoi.loss: unknown field `radoi`"),
         (
             axes("radio.delay_ms = [1]\nradio.loss = [0.1, 1.5]"),
-            "plan.toml:5: radio.loss: 1.5 is no probability; give a",
+            "plan.toml:5: radio.loss: 1.5 is not a probability; give a",
         ),
         (axes("name = ['a', 'b']"), "plan.toml:4: name: it is a text, and no run depends on it; leave it out"),
         (
@@ -145,8 +145,8 @@ fn errors_name_the_plan_the_line_and_the_field() {
         ),
         (axes("radio.loss = { from = 0, to = 1, counts = 2 }"), "plan.toml:4: radio.loss: unknown field `counts`"),
         (axes("\"radio loss\" = [1]"), "plan.toml:4: radio loss: it is no name of a field"),
-        (axes("ticks.x = [1]"), "plan.toml:4: ticks.x: ticks is no table in the scenario"),
-        (axes("\"plane.group[0].count\" = [1]"), "plan.toml:4: plane.group[0].count: group is no list in the scenario"),
+        (axes("ticks.x = [1]"), "plan.toml:4: ticks.x: ticks is not a table in the scenario"),
+        (axes("\"plane.group[0].count\" = [1]"), "plan.toml:4: plane.group[0].count: group is not a list in the scenario"),
         (
             axes("plane.radius_m = [0.2, 9]"),
             "duel.toml:13: plane.robots: robots 1 and 2 overlap at the start (with plane.radius_m = 9 of",
