@@ -49,8 +49,8 @@ pub enum AskError {
 impl core::fmt::Display for AskError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::Full => "too many requests are on their way; wait until some are acknowledged or expire",
-            Self::NoAddressee => "a request to nobody: robots' numbers begin at 1",
+            Self::Full => "too many requests are pending; wait until some are acknowledged or expire",
+            Self::NoAddressee => "the request has no addressee; robot numbers begin at 1",
         })
     }
 }

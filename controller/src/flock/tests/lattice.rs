@@ -281,7 +281,7 @@ fn robots_in_one_place_separate_in_opposite_directions() {
     // In the direction of `tie`, as everywhere.
     let along = force(1, 2).normalized().unwrap().xy();
     assert!((along - tie(RobotId(1), RobotId(2))).norm() < 1e-12);
-    assert_eq!(force(1, 1), V::ZERO, "oneself is nobody's neighbour");
+    assert_eq!(force(1, 1), V::ZERO, "a robot is not its own neighbour");
 }
 
 #[test]
