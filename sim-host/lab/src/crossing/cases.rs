@@ -197,7 +197,7 @@ impl Record for Crossing {
         each("overlaps", "overlaps of bodies, and with walls, summed over ticks", &mut self.overlaps);
         each("deepest_m", "the deepest of them; 0: none", &mut self.deepest_m);
         each("intruder_overlaps", "overlaps with the intruder, summed over ticks", &mut self.intruder_overlaps);
-        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("least_gap_m", "least gap between two bodies; empty: no robots met", &mut self.least_gap_m);
         each("parts", "connected parts of a flock at the end; empty: no flock", &mut self.parts);
     }
 

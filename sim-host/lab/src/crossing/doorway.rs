@@ -98,7 +98,7 @@ impl Record for Passage {
         each("last_s", "when the last one had arrived; empty: not all did", &mut self.last_s);
         each("time_ratio", "last arrival over the longest free time", &mut self.time_ratio);
         each("turns", "changes of direction in the gap", &mut self.turns);
-        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("least_gap_m", "least gap between two bodies; empty: no robots met", &mut self.least_gap_m);
         each("least_wall_gap_m", "least gap between a body and the wall", &mut self.least_wall_gap_m);
         each("overlaps", "overlaps of bodies, and with the wall, summed over ticks", &mut self.overlaps);
     }

@@ -237,7 +237,11 @@ pub struct Jobs<'a, E> {
 
 impl<'a, E: Experiment> Jobs<'a, E> {
     /// `plan` is checked. `place`: folder and options; `None` if rows are not stored.
-    pub(crate) fn new(plan: &'a E, may_continue: &'a ProgressCallback<'a>, place: Option<(&'a Path, &'a RowRetention)>) -> Self {
+    pub(crate) fn new(
+        plan: &'a E,
+        may_continue: &'a ProgressCallback<'a>,
+        place: Option<(&'a Path, &'a RowRetention)>,
+    ) -> Self {
         Self { sheet: Sheet::new(plan), may_continue, place, course: Mutex::new(None) }
     }
 

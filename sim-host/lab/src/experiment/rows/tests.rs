@@ -69,7 +69,7 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     fs::create_dir_all(out("cut/shards")).expect("room");
     let rows = text(&out("whole"), "shards/1-of-1.csv");
     fs::write(out("cut/shards/1-of-1.csv"), &rows[..rows.len() / 2]).expect("room");
-    let refused = command(&out("cut"), &RowRetention::default()).expect_err("somebody's hours").to_string();
+    let refused = command(&out("cut"), &RowRetention::default()).expect_err("existing rows").to_string();
     assert!(refused.contains("--resume does the others, --restart forgets these"), "{refused}");
     command(&out("cut"), &resume).expect("done");
     same("cut");

@@ -178,11 +178,11 @@ fn inconsistent_rows_are_refused() {
         "{said}"
     );
     for (cells, what) in [
-        ("1,2,3", "it is no row"),
-        ("", "it is no row"),
+        ("1,2,3", "it is not a row"),
+        ("", "it is not a row"),
         (&second.replacen(&format!("{number},"), "77,", 1), "the plan has no such run"),
-        (&second.replacen(",done,", ",lost,", 1), "nobody knows what became of it"),
-        (&second.replacen(",done,", ",done,x", 1), "a figure is no number"),
+        (&second.replacen(",done,", ",lost,", 1), "its outcome is unknown"),
+        (&second.replacen(",done,", ",done,x", 1), "a figure is not a number"),
         (&second.replacen(",done,", ",done,1,", 1), "it has not as many figures as the plan"),
         (&second.replace(staya_console::VERSION, "9.9.9"), "it is of version 9.9.9"),
     ] {
