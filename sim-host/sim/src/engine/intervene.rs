@@ -118,7 +118,11 @@ where
             return Err(Refusal::new("kind", "some of these robots run elsewhere", "run them here"));
         }
         if !self.ground.is_open(place_m) {
-            return Err(Refusal::new("place_m", "no robot can stand there", "give a place on the map and not in a wall"));
+            return Err(Refusal::new(
+                "place_m",
+                "no robot can stand there",
+                "give a place on the map and not in a wall",
+            ));
         }
         let robots = number.map_or(0..self.robots.len(), |number| number..number + 1);
         let tops = self.shapes.iter().filter(|_| number.is_none());

@@ -136,7 +136,11 @@ fn attack(
     let ghosts = table.ghosts.unwrap_or(16);
     if table.ghosts.is_some() && !has_ghosts || !(1..=100).contains(&ghosts) {
         let remedy = "give 1 to 100, with lies = [\"ghosts\"]";
-        return Err(source.error(&format!("{field}.ghosts"), "the number of ghosts is out of range, or lies does not contain \"ghosts\"", remedy));
+        return Err(source.error(
+            &format!("{field}.ghosts"),
+            "the number of ghosts is out of range, or lies does not contain \"ghosts\"",
+            remedy,
+        ));
     }
     let lure_m = match (table.kind, table.lure_m, table.delay_s) {
         (AttackKind::Replay, None, _) => [0.0; 2],
@@ -177,7 +181,11 @@ fn attack(
     }
     if has_ghosts && claims.0.max(last.0) + u32::from(ghosts) > most.0 {
         let remedy = format!("give fewer; numbers end at {}", most.0);
-        return Err(source.error(&format!("{field}.ghosts"), format!("there are not enough robot numbers for {ghosts} ghosts"), remedy));
+        return Err(source.error(
+            &format!("{field}.ghosts"),
+            format!("there are not enough robot numbers for {ghosts} ghosts"),
+            remedy,
+        ));
     }
     Ok(Attack {
         kind: table.kind,

@@ -128,7 +128,11 @@ impl Intervention {
                 }
             }
             Self::Down { for_s: Some(for_s), .. } if !(0.0..=1e9).contains(for_s) => {
-                return Err(Refusal::new("for_s", format!("{} is out of range", short(*for_s)), "give seconds, 0 to 1e9"));
+                return Err(Refusal::new(
+                    "for_s",
+                    format!("{} is out of range", short(*for_s)),
+                    "give seconds, 0 to 1e9",
+                ));
             }
             Self::Radio { loss: Some(loss), .. } if !(0.0..=1.0).contains(loss) => {
                 let what = format!("{} is not a probability", short(*loss));
@@ -140,7 +144,11 @@ impl Intervention {
             }
             Self::Solid { solid } => solid.check()?,
             Self::Move { by_m, .. } if by_m.iter().any(|x| x.is_nan() || x.abs() > FAR_M) => {
-                return Err(Refusal::new("by_m", "the displacement is out of range", format!("give metres within {FAR_M}")));
+                return Err(Refusal::new(
+                    "by_m",
+                    "the displacement is out of range",
+                    format!("give metres within {FAR_M}"),
+                ));
             }
             _ => {}
         }

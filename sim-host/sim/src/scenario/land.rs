@@ -57,7 +57,11 @@ impl Entry<'_> {
             }
             (None, None, Some(corners)) => {
                 if corners.len() < 3 || corners.as_flattened().iter().any(|x| !x.is_finite()) {
-                    return Err(self.error("polygon_m", "this is not a polygon", "give three corners or more, in metres"));
+                    return Err(self.error(
+                        "polygon_m",
+                        "this is not a polygon",
+                        "give three corners or more, in metres",
+                    ));
                 }
                 let cells: Vec<Cell> = all().filter(|cell| contains(corners, land.center_m(*cell))).collect();
                 if cells.is_empty() {

@@ -45,19 +45,13 @@ pub(super) fn sharing(
     }
     let refused = |what: &str, remedy: &str| Err(source.error("maps.share", what, remedy));
     if plane.is_some_and(|plane| !plane.kinds().any(|group| group.guidance.kind().is_on_grid())) {
-        return refused(
-            "no robot plans on the map",
-            "give a guidance \"route\" or \"formation\", or leave it out",
-        );
+        return refused("no robot plans on the map", "give a guidance \"route\" or \"formation\", or leave it out");
     }
     if route.params.exit == ExitRule::Ray {
         return refused("route.exit = \"ray\" ignores the land beyond the window", "give exit = \"best\"");
     }
     if route.replan == Replan::UntilChanged {
-        return refused(
-            "route.replan = \"until_changed\" plans routes in the window only",
-            "give \"each_cell\"",
-        );
+        return refused("route.replan = \"until_changed\" plans routes in the window only", "give \"each_cell\"");
     }
     if file.scouting.is_some() {
         return refused("robots that have a map ([scouting]) plan by that one", "leave one of the two out");

@@ -79,7 +79,11 @@ pub(super) fn build(
     terrain: &Terrain,
 ) -> Result<(Vec<Robot>, Vec<Formation>), ScenarioError> {
     let Some(table) = &file.robots else {
-        return Err(source.error("robots", "the table is missing", "give exactly one of list, formation, scen, scattered"));
+        return Err(source.error(
+            "robots",
+            "the table is missing",
+            "give exactly one of list, formation, scen, scattered",
+        ));
     };
     let mut formations = Vec::new();
     let entries = match (&table.list, &table.formation[..], &table.scen, &table.scattered) {

@@ -362,7 +362,10 @@ fn maps_are_shared_if_robots_plan_on_terrain() {
     let brief = parse(&with("[maps]\nshare = true\nforget_after_s = 1.5\n")).expect("good");
     assert_eq!(brief.maps.map(|maps| maps.forget_after.as_micros()), Some(1_500_000));
     for (rest, expected) in [
-        ("[maps]\nforget_after_s = 9\n", "s.toml:8: maps.forget_after_s: no robot shares a map; give maps.share = true"),
+        (
+            "[maps]\nforget_after_s = 9\n",
+            "s.toml:8: maps.forget_after_s: no robot shares a map; give maps.share = true",
+        ),
         (
             "[maps]\nshare = true\nforget_after_s = 0.5\n",
             "s.toml:9: maps.forget_after_s: 0.5 is out of range; give 1 to 2100",

@@ -80,7 +80,7 @@ where
         bytes.clear();
         one.pack(index, &mut bytes);
         let length = bytes.len();
-        bytes.extend_from_slice(b"what follows is somebody else's");
+        bytes.extend_from_slice(b"bytes of another robot");
         assert_eq!(other.unpack(index, &bytes), Ok(length), "{name}");
     }
     for _ in tick..ticks {
@@ -228,7 +228,7 @@ fn a_damaged_state_is_refused_or_harmless() {
         assert!(engine.restore(&bytes).expect_err(whole).to_string().contains("under way"));
     }
     let small = scenario(TWO, "[radio]\njitter_ms = 900\n");
-    with_engines!(&small, check("a part is no state"));
+    with_engines!(&small, check("a part is not a state"));
 }
 
 #[test]

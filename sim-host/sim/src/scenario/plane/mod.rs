@@ -313,7 +313,11 @@ fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, S
         within(source, &field("radius_m"), entry.radius_m, 0.001, 65.0, "metres")?;
         if entry.heard && source.has("authentication") {
             let remedy = "give heard = false, or leave [authentication] out";
-            return Err(source.error(&field("heard"), "an intruder does not have the key, so robots reject its beacons", remedy));
+            return Err(source.error(
+                &field("heard"),
+                "an intruder does not have the key, so robots reject its beacons",
+                remedy,
+            ));
         }
         intruders.push(Intruder {
             position_m: entry.start_m.0,

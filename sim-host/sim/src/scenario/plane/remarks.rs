@@ -40,7 +40,9 @@ pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> 
         (in_space, "at another height, and this safety layer keeps to the plane: give safety = \"fly\""),
     ];
     remarks.extend(
-        troubles.into_iter().filter_map(|(robots, what)| Some(format!("plane.robots: the goal of {} is {what}", robots?))),
+        troubles
+            .into_iter()
+            .filter_map(|(robots, what)| Some(format!("plane.robots: the goal of {} is {what}", robots?))),
     );
     remarks
 }

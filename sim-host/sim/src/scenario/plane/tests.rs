@@ -134,7 +134,10 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             after("[[plane.balls]]\ncount = 0\nradius_m = 1\nfrom_m = [9, 9]\nto_m = [12, 12]\n"),
             "s.toml:9: plane.balls[0].count: 0 is out of range; give 1 to 1000000 balls",
         ),
-        (format!("{HEAD}{PLANE}"), "s.toml:3: plane.robots: the robots are not defined exactly once; give either plane.robots"),
+        (
+            format!("{HEAD}{PLANE}"),
+            "s.toml:3: plane.robots: the robots are not defined exactly once; give either plane.robots",
+        ),
         (robots(""), "s.toml:6: plane.robots: the robots are not defined exactly once; give exactly one of"),
         (robots("list = []"), "s.toml:7: plane.robots.list: there are no robots"),
         (robots("circle = { count = 0, radius_m = 3 }"), "s.toml:7: plane.robots.circle.count: 0 is out of range"),
