@@ -3,25 +3,23 @@
 use std::env;
 use std::path::Path;
 
-/// Default baud rate; the variable `STAYA_BAUD` overrides it.
+/// The variable `STAYA_BAUD` overrides it.
 const BAUD: u32 = 115_200;
-/// Default crystal of an STM32F405 board; the variable `STAYA_HSE_HZ` overrides it.
+/// Crystal of an STM32F405 board; the variable `STAYA_HSE_HZ` overrides it.
 const HSE_HZ: u32 = 8_000_000;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rustc-check-cfg=cfg(part, values(\"stm32f405\", \"nrf51\", \"riscv32\"))");
     number("STAYA_BAUD", BAUD, 1200..=2_000_000);
-    // The PLL divides the crystal down to 1 MHz, so only whole megahertz are possible.
+    // The PLL divides the crystal down to 1 MHz.
     let hse_hz = number("STAYA_HSE_HZ", HSE_HZ, 4_000_000..=26_000_000);
     assert!(hse_hz.is_multiple_of(1_000_000), "STAYA_HSE_HZ is not in whole megahertz");
 
     let target = env::var("TARGET").unwrap_or_default();
     let (part, scripts): (&str, &[&str]) = match target.as_str() {
-        // The link.x of cortex-m-rt includes memory.x. The linker finds the one in its working
-        // directory first: the workspace's, which is the memory map of the STM32F405.
+        // cortex-m-rt's link.x includes memory.x: the workspace's, for the STM32F405.
         "thumbv7em-none-eabihf" => ("stm32f405", &["link.x"]),
-        // Other Cortex-M parts therefore need complete scripts with other names.
         "thumbv6m-none-eabi" => ("nrf51", &["nrf51-memory.x", "nrf51.x"]),
         "riscv32imac-unknown-none-elf" => ("riscv32", &["riscv32.x", "link.x"]),
         _ => return,
@@ -45,26 +43,24 @@ fn main() {
             println!("cargo:rustc-link-arg-bin={bin}=-T{script}");
         }
         if is_only_linked || (bin == "lockstep" && is_optimised) {
-            // The script of defmt keeps the panic behind its macros `panic`, `assert` and `unwrap`
-            // even in programs without them, like these (`cargo xtask check` verifies it).
+            // defmt's script keeps the panic behind `panic`, `assert` and `unwrap` even in programs
+            // without them (`cargo xtask check` verifies it).
             println!("cargo:rustc-link-arg-bin={bin}=--defsym=__defmt_default_panic=0");
         }
     }
     // Relocations show `cargo xtask size` which code and constants a behaviour's step needs.
     println!("cargo:rustc-link-arg-bin=bench=--emit-relocs");
-    // Prevents the linker from padding sections to pages of 64 KiB.
+    // No padding to pages of 64 KiB.
     println!("cargo:rustc-link-arg-bins=--nmagic");
 }
 
-/// Offers firmware in other crates a single script on the linker's search path,
-/// `-Tstaya-firmware.x`: all scripts of the part, and the STM32F405's memory map for crates without
-/// a memory.x.
+/// Offers firmware in other crates a single script, `-Tstaya-firmware.x`: all scripts of the part,
+/// and the STM32F405's memory map for crates without a memory.x.
 fn offer_script(here: &Path, part: &str, scripts: &[&str], is_optimised: bool) {
     let out = std::path::PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     let mut all: String =
         scripts.iter().chain(&["defmt.x", "note.x"]).map(|name| format!("INCLUDE {name}\n")).collect();
     if is_optimised {
-        // As for `build.rs`'s own programs, see `main`.
         all += "__defmt_default_panic = 0;\n";
     }
     let write = |name: &str, text: &[u8]| {
@@ -84,8 +80,6 @@ fn bins(here: &Path) -> Vec<String> {
     entries.filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_string())).collect()
 }
 
-/// Takes a number from the environment or the default, and passes it to the crate as an environment
-/// variable.
 fn number(name: &str, default: u32, range: std::ops::RangeInclusive<u32>) -> u32 {
     println!("cargo:rerun-if-env-changed={name}");
     let value = match env::var(name) {

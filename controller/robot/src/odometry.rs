@@ -6,23 +6,21 @@ use staya_controller::geom::{Position, Vec2};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Duration;
 
-/// The wrapping 16-bit counter of an incremental encoder, as in timers.
-///
-/// Read it before the wheel makes 32,767 ticks.
+/// The wrapping 16-bit counter of an incremental encoder. Read it every 32,766 ticks or sooner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encoder<S> {
     rim_m: S,
     ticks_per_turn: u16,
     last: Option<u16>,
-    /// Ticks since the wheel was at its initial angle, less than one turn.
+    /// Ticks since the initial angle, less than one turn.
     in_turn: i32,
     is_inverted: bool,
 }
 
 impl<S: Scalar> Encoder<S> {
     /// An encoder on a wheel of `wheel_radius_m` with `ticks_per_turn` counts per turn of the wheel
-    /// (all edges, including the gear); `None` unless both are more than 0. `is_inverted`: it
-    /// counts down when the robot moves ahead.
+    /// (all edges, including the gear); `None` unless both are above 0. An inverted one counts down
+    /// ahead.
     #[must_use]
     pub fn new(wheel_radius_m: S, ticks_per_turn: u16, is_inverted: bool) -> Option<Self> {
         let sensible = wheel_radius_m > S::ZERO && ticks_per_turn > 0;
@@ -36,9 +34,7 @@ impl<S: Scalar> Encoder<S> {
     }
 
     /// The distance that the rim travelled since the last call, metres; 0 in the first call.
-    ///
-    /// It is the difference of two positions on the rim, so rounding errors cancel in the next call
-    /// and do not accumulate.
+    /// Rounding errors do not accumulate: it is the difference of two positions on the rim.
     #[must_use]
     pub fn travelled(&mut self, count: u16) -> S {
         let last = self.last.replace(count).unwrap_or(count);
@@ -58,13 +54,10 @@ impl<S: Scalar> Encoder<S> {
     }
 }
 
-/// Position and heading of the robot's middle (of the axle, for two wheels), accumulated from small
-/// motions.
+/// Position and heading of the robot's middle (two wheels: of the axle), a sum of small motions.
 ///
-/// It drifts: wheels slip, and each error of the heading affects all later motion. A robot needs
-/// another source that gives its position from time to time (beacons, a camera, satellites):
-/// [`Self::correct`]. The sum itself loses less than a millimetre, since remainders below a
-/// millimetre are kept.
+/// It drifts: wheels slip, and each error of the heading affects all later motion. Correct it from
+/// time to time by another source (beacons, a camera, satellites): [`Self::correct`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Odometry<S> {
     position: Position,
@@ -74,8 +67,7 @@ pub struct Odometry<S> {
 }
 
 impl<S: Scalar> Odometry<S> {
-    /// Starts with a stationary robot; `heading_rad` counter-clockwise from east; `None` if it is
-    /// not finite.
+    /// Starts with a stationary robot; `None` unless `heading_rad` (from east) is finite.
     #[must_use]
     pub fn new(position: Position, heading_rad: S) -> Option<Self> {
         heading_rad.is_finite().then(|| Self {
@@ -87,11 +79,8 @@ impl<S: Scalar> Odometry<S> {
     }
 
     /// Adds the motion of the body within `span`: `way` in metres and radians, for example
-    /// [`Kinematics::twist`](crate::drive::Kinematics::twist) of the distances that the rims
-    /// travelled. A motion that is not a number is ignored.
-    ///
-    /// The motion counts along its middle heading (second-order Runge-Kutta); the error is way *
-    /// turn^2 / 24.
+    /// [`Kinematics::twist`](crate::drive::Kinematics::twist) of the distances of the rims. A
+    /// motion that is not a number is ignored. Runge-Kutta of second order.
     pub fn advance(&mut self, way: &Twist<S>, span: Duration) {
         let mid = self.heading_rad + way.turn_radps * S::HALF;
         let (sin, cos) = mid.sin_cos();
@@ -115,7 +104,6 @@ impl<S: Scalar> Odometry<S> {
                 turn_radps: per_second(way.turn_radps)?,
             })
         };
-        // A span of zero gives no speed.
         self.twist = twist().unwrap_or(self.twist);
     }
 
@@ -180,8 +168,7 @@ mod tests {
 
     #[test]
     fn fixed_point_ticks_do_not_drift() {
-        // A tick of 0.03 mm is two of the least numbers: rounded individually, ticks would be off
-        // by a few percent.
+        // A tick of 0.03 mm is two of the least numbers: single ticks would be imprecise.
         let mut encoder = Encoder::new(Q16::from_ratio(3, 100), 6000, false).unwrap();
         let mut sum = Encoder::travelled(&mut encoder, 0);
         let mut count = 0u16;

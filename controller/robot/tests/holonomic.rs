@@ -1,5 +1,4 @@
-//! A robot on three omni wheels with fixed-point numbers reaches its goal while it spins; encoder
-//! ticks are the input, PWM duties the output.
+//! A spinning robot on three omni wheels with fixed-point numbers reaches its goal.
 
 use crate::common;
 use core::convert::Infallible;
@@ -91,7 +90,6 @@ fn an_omni_robot_in_fixed_point_arrives_while_it_spins() {
         let Ok(()) = motors.turn(&mixer.mix(&twist, TICK));
         now = now + TICK;
 
-        // The wheels follow the pins.
         let speed = |(power, ahead): &(Power, Ahead)| {
             let sign = if ahead.0.get() { 1.0 } else { -1.0 };
             sign * FULL_MPS * f64::from(power.0.get()) / f64::from(MAX_DUTY)

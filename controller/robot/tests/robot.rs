@@ -1,6 +1,4 @@
-//! Robots that use this crate between simulated hardware and the real agent. The inputs are bytes
-//! of a bad UART, encoder counters and lidar ranges; the outputs are PWM duties. A small world of
-//! wheels, walls and a wire simulates the rest.
+//! Robots between simulated hardware (UART, encoders, lidar, PWM) and the real agent.
 #![allow(
     clippy::indexing_slicing,
     clippy::unwrap_used,
@@ -58,14 +56,13 @@ const FRAME: GridFrame<f32> = GridFrame { origin_m: Vec2::new(0.0, 0.0), cell_m:
 
 type Channel = common::Channel<MAX_DUTY>;
 
-/// A UART: received bytes, and bytes to send.
 #[derive(Clone, Default)]
 struct Uart {
     heard: Rc<RefCell<VecDeque<u8>>>,
     said: Rc<RefCell<VecDeque<u8>>>,
 }
 
-/// Bytes that a UART sends in one step of the world: 57,600 baud.
+/// 57,600 baud.
 const BYTES_PER_MOMENT: usize = 28;
 
 impl ErrorType for Uart {
@@ -108,12 +105,10 @@ impl WriteReady for Uart {
     }
 }
 
-/// The true state of a robot.
 struct Body {
     axle: Vec2<f64>,
     heading: f64,
     rims: [f64; 2],
-    /// Distances of the rims, metres.
     ways: [f64; 2],
     channels: [[Channel; 2]; 2],
     uart: Uart,
@@ -124,7 +119,7 @@ impl Body {
         Self { axle, heading, rims: [0.0; 2], ways: [0.0; 2], channels: Default::default(), uart: Uart::default() }
     }
 
-    /// The motors follow their duties with a lag of 40 ms; the right one is mounted inversely.
+    /// The motors lag by 40 ms; the right one is mounted inversely.
     fn roll(&mut self) {
         for (side, [ahead, back]) in self.channels.iter().enumerate() {
             let duty = f64::from(ahead.0.get()) - f64::from(back.0.get());
@@ -147,7 +142,7 @@ impl Body {
         [ticks(self.ways[0]), ticks(-self.ways[1])]
     }
 
-    /// The lidar's measurements, with noise of a centimetre and one lost range in fifty.
+    /// Noise of a centimetre, one lost range in fifty.
     fn ranges(&self, walls: &[[Vec2<f64>; 2]], others: &[Vec2<f64>], rng: &mut Rng) -> Vec<f32> {
         let beam = |number: usize| {
             let bearing = core::f64::consts::TAU * number as f64 / BEAMS as f64;
@@ -178,7 +173,6 @@ impl Body {
     }
 }
 
-/// Distance along a ray to a wall.
 fn crossing(from: Vec2<f64>, ahead: Vec2<f64>, [a, b]: [Vec2<f64>; 2]) -> Option<f64> {
     let (to, along) = (a - from, b - a);
     let across = ahead.det(along);
@@ -201,7 +195,6 @@ struct Firmware<G: Guidance<f32>> {
 }
 
 const LIMITS: Limits<f32> = Limits { speed_mps: 0.5, acceleration_mps2: 1.5 };
-/// The point ahead, and the disc around it that holds the body, with 2 cm to spare.
 const AHEAD_M: f32 = 0.06;
 const RADIUS_M: f32 = BODY_M as f32 + AHEAD_M + 0.02;
 
@@ -280,8 +273,7 @@ where
     }
 }
 
-/// Delivers each robot's bytes to all others, with damage: one flipped bit per thousand bytes, and
-/// spurious bytes.
+/// One flipped bit per thousand bytes, and spurious bytes.
 fn carry(bodies: &[Body], rng: &mut Rng) {
     for (from, speaker) in bodies.iter().enumerate() {
         let said: Vec<u8> = speaker.uart.said.borrow_mut().drain(..).collect();
@@ -301,8 +293,7 @@ fn carry(bodies: &[Body], rng: &mut Rng) {
     }
 }
 
-/// Runs robots until all have arrived; returns the time. After each step of the world `check` is
-/// called.
+/// Returns the time until all have arrived; calls `check` after each step of the world.
 fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
     bodies: &mut [Body],
     robots: &mut [Firmware<G>],
@@ -310,7 +301,6 @@ fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
     mut check: impl FnMut(&[Body]),
 ) -> f64 {
     let mut rng = Rng::keyed(7, 0, 0, 0);
-    // The robots' clocks wrap during the run.
     let start = u32::MAX - 5_000_000;
     for moment in 0..24_000u32 {
         let now = Instant::from_micros(start.wrapping_add(moment * MOMENT_US));
@@ -339,7 +329,7 @@ fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
 
 #[test]
 fn a_robot_gets_around_a_wall_known_only_from_ranges() {
-    // From west to east of a wall 2.4 m long; the only path leads around its north end.
+    // The only path leads around the north end of the wall.
     let v = Vec2::new;
     let walls = [
         [v(2.0, 0.0), v(2.0, 2.4)],
@@ -358,7 +348,6 @@ fn a_robot_gets_around_a_wall_known_only_from_ranges() {
         let gaps = walls.iter().map(|wall| bodies[0].gap_to(wall));
         least = gaps.fold(least, f64::min);
     });
-    // The controller steers the point ahead; odometry may be off by some centimetres.
     let [body] = &bodies;
     let (sin, cos) = Scalar::sin_cos(body.heading);
     let point = body.axle + v(cos, sin) * f64::from(AHEAD_M);
@@ -395,7 +384,7 @@ fn two_differential_robots_swap_places_over_a_bad_wire() {
         assert!(heard.refused > 0, "the wire was bad");
         assert_eq!((heard.dropped, said.dropped), (0, 0));
     }
-    // The straight path of 3 m, at the speed that holds in any direction.
+    // 3 m at the speed that holds in any direction.
     assert!(time < 2.0 * 3.0 / f64::from(robots[0].max_speed_mps), "{time}");
 }
 

@@ -1,5 +1,5 @@
-//! The scalar functions of the alpha flock (Olfati-Saber 2006, sections II and VII), in the paper's
-//! units, where neighbours in a lattice are [`SPACING`] apart.
+//! Scalar functions of the alpha flock (Olfati-Saber 2006, sections II and VII), in the paper's
+//! units: neighbours in a lattice are [`SPACING`] apart.
 
 use crate::scalar::Scalar;
 
@@ -12,8 +12,8 @@ pub fn epsilon<S: Scalar>() -> S {
     S::from_ratio(1, 10)
 }
 
-/// A length in the sigma norm: sigma = (sqrt(1 + e z^2) - 1) / e, and its slope n = z / sqrt(1 + e
-/// z^2), which is the length of n_ij.
+/// A length in the sigma norm, (sqrt(1 + e z^2) - 1) / e, and its slope z / sqrt(1 + e
+/// z^2), |n_ij|.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SigmaNorm<S> {
@@ -39,7 +39,6 @@ pub fn bump<S: Scalar>(z: S, h: S) -> S {
     if z < h {
         return S::ONE;
     }
-    // False for NaN.
     let is_within = z <= S::ONE;
     if !is_within {
         return S::ZERO;
@@ -61,8 +60,8 @@ pub fn sigma_1<S: Scalar>(z: S) -> S {
     if z < S::ZERO { -magnitude } else { magnitude }
 }
 
-/// The uneven sigmoid phi(z) = ((a + b) sigma_1(z + c) + (a - b)) / 2 with c = |a - b| / sqrt(4 a
-/// b), which makes phi(0) = 0. `c` is [`sigmoid_shift`].
+/// The uneven sigmoid ((a + b) sigma_1(z + c) + (a - b)) / 2; c = |a - b| / sqrt(4 a b) makes
+/// phi(0) = 0 ([`sigmoid_shift`]).
 #[must_use]
 pub fn phi<S: Scalar>(z: S, a: S, b: S, c: S) -> S {
     ((a + b) * sigma_1(z + c) + (a - b)) * S::HALF
@@ -76,8 +75,7 @@ pub fn sigmoid_shift<S: Scalar>(a: S, b: S) -> Option<S> {
     is_sound.then(|| (b - a).checked_div(S::TWO * a.sqrt() * b.sqrt())).flatten()
 }
 
-/// The interaction of robots: phi_alpha(z) = rho_h(z / r_alpha) phi(z - d_alpha). Negative:
-/// repulsion.
+/// The interaction of robots, rho_h(z / r_alpha) phi(z - d_alpha); negative: repulsion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhiAlpha<S> {
@@ -100,8 +98,7 @@ impl<S: Scalar> PhiAlpha<S> {
         S::from_ratio(1, 5)
     }
 
-    /// a_ij = rho_h(z / r_alpha): to which degree a robot at distance `z` (in the sigma norm) is a
-    /// neighbour.
+    /// a_ij = rho_h(z / r_alpha): how far a robot at distance `z` (sigma norm) is a neighbour.
     #[must_use]
     pub fn adjacency(&self, z: S) -> S {
         let ratio = z.checked_div(self.r_alpha).unwrap_or(S::MAX);
@@ -115,8 +112,7 @@ impl<S: Scalar> PhiAlpha<S> {
     }
 }
 
-/// The effect of obstacles: phi_beta(z) = rho_h(z / d_beta) (sigma_1(z - d_beta) - 1), from -2 to
-/// 0.
+/// The effect of obstacles, rho_h(z / d_beta) (sigma_1(z - d_beta) - 1), from -2 to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PhiBeta<S> {

@@ -4,13 +4,11 @@ use crate::geom::{Vec2, Vec3};
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
 
-/// The virtual robot at the point of an obstacle's border nearest to a robot, relative to the
-/// robot.
+/// A virtual robot at the point of an obstacle's border nearest to a robot, relative to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BetaAgent<S> {
-    /// Unit vector out of the obstacle at the beta-agent: q^ - q is this times minus
-    /// [`Self::distance_m`].
+    /// Unit vector out of the obstacle at the beta-agent: q^ - q = -distance_m normal.
     pub normal: Vec3<S>,
     /// How far the robot's centre is in front of the border, metres; negative inside.
     pub distance_m: S,
@@ -21,11 +19,9 @@ pub struct BetaAgent<S> {
 /// The beta-agent of `obstacle` for a robot with this velocity.
 ///
 /// - A plane: P = I - a a', p^ = P p.
-/// - A ball of radius R at distance D: p^ = mu P p with mu = R / D. Inside the ball mu would grow
-///   without bound, so it is limited to 1. At its exact centre the exit is backwards, or east for a
-///   stationary robot.
-/// - A wall: beside it like a plane on the robot's side, beyond its end like a ball of radius 0. On
-///   the wall itself the exit is to its left.
+/// - A ball of radius R at distance D: p^ = mu P p with mu = R / D, limited to 1 (inside). At its
+///   exact centre the exit is backwards, or east for a stationary robot.
+/// - A wall: beside it like a plane on the robot's side, beyond its end like a ball of radius 0.
 ///
 /// `None` if the obstacle is not finite, a normal is zero or a radius negative. Constant work.
 #[must_use]

@@ -1,24 +1,20 @@
-//! Boids on a torus: constant speed, only the heading changes.
+//! Boids on a torus: constant speed, only the heading changes. Start with [`BoidsParams::steer`].
 //!
-//! Source: V. A. Starovoitova 2018 (STA), sections 2.1 and 2.4 and the listing of class `Boid`. In
-//! each step a boid with a neighbour nearer than `crowded` turns away from that neighbour's
-//! heading. Otherwise it turns to the mean heading of its neighbours and then to their middle. Read
-//! [`BoidsParams::steer`] first.
+//! Source: V. A. Starovoitova 2018 (STA), sections 2.1 and 2.4 and the listing of class `Boid`. A
+//! boid with a neighbour nearer than `crowded` turns away from that neighbour's heading. Otherwise
+//! it turns to the mean heading of its neighbours and then to their middle.
 //!
 //! **Defects of the listing that are corrected here:**
 //!
-//! - The mean heading summed angles, so that the mean of +179 and -179 degrees was 0; it also
-//!   summed the own heading without counting it. Here it is the direction of the sum of the
-//!   neighbours' velocities, which is the mean on the circle since all have one speed.
-//! - `cohere` turned away from the middle (own position minus middle). Here it turns towards it.
+//! - The mean heading summed angles (+179 and -179 degrees gave 0), and the own heading without
+//!   counting it. Here it is the direction of the sum of the neighbours' velocities.
+//! - `cohere` turned away from the middle. Here it turns towards it.
 //! - Distances and the middle ignored the torus. Here offsets are the shortest ones,
 //!   [`Torus::shortest`](crate::geom::Torus::shortest).
-//! - Two boids with exactly the same heading both turned left and remained as near as they were.
-//!   Here each turns away from the side of the other, or, in one place, in the direction that
-//!   [`tie`] gives.
+//! - Two boids with one heading both turned left and stayed near. Here each turns away from the
+//!   other, or, in one place, in the direction of [`tie`].
 //!
-//! **Cost.** Headings are unit vectors: a step needs no sine, cosine or arc tangent, two roots per
-//! boid, and none per neighbour.
+//! **Cost.** Headings are unit vectors: a step takes two roots per boid and no sines.
 
 use crate::geom::Vec2;
 use crate::neighbor::{Nearby, tie};
@@ -26,7 +22,6 @@ use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// The largest turn, prepared as a rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Turn<S> {
     cos: S,
@@ -36,7 +31,6 @@ struct Turn<S> {
 }
 
 impl<S: Scalar> Turn<S> {
-    /// Invalid angles give no turn; half a turn reaches every direction.
     fn new(angle: S) -> Self {
         let angle = if angle > S::ZERO { angle.min(S::PI) } else { S::ZERO };
         let (sin, cos) = angle.sin_cos();
@@ -51,11 +45,10 @@ impl<S: Scalar> Turn<S> {
         heading.rotate(self.cos, -self.sin)
     }
 
-    /// `heading` turned towards `target` by at most this angle. Straight back: to the left, as in
-    /// the listing.
+    /// Straight back: to the left, as in the listing.
     fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
         let (det, dot) = (heading.det(target), heading.dot(target));
-        // Small angles are compared by the sine, which is precise where the cosine is flat.
+        // The sine is precise where the cosine is flat.
         let is_near = if self.is_wide { dot >= self.cos } else { dot > S::ZERO && det.abs() <= self.sin };
         if is_near {
             target
@@ -67,7 +60,7 @@ impl<S: Scalar> Turn<S> {
     }
 }
 
-/// Parameters of boids. [`BoidsParams::new`] precomputes values that each step needs.
+/// Parameters of boids, with values that [`BoidsParams::new`] precomputes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BoidsParams<S> {
@@ -75,19 +68,16 @@ pub struct BoidsParams<S> {
     closest: u64,
     turn: Turn<S>,
     turn_away: Turn<S>,
-    /// The values given to `new`; redundant with the other fields.
     #[serde(with = "crate::digest::uncounted")]
     values: [S; 4],
 }
 
 impl<S: Scalar> BoidsParams<S> {
-    /// - `crowded_m`: a boid turns away from a nearest neighbour closer than this; the paper's
-    ///   value is 30. The larger, the looser the flock; above `closest_m` boids do not align any
-    ///   more.
+    /// - `crowded_m`: a boid turns away from a neighbour closer than this (paper: 30). The larger,
+    ///   the looser the flock; above `closest_m` boids do not align any more.
     /// - `closest_m`: neighbours count up to this distance (150).
     /// - `max_turn`: largest turn to the mean heading, and again to the middle, in a step, radians
-    ///   (0.05), so that a step turns by at most twice as much. The larger, the quicker and the
-    ///   more nervous.
+    ///   (0.05). The larger, the quicker and the more nervous.
     /// - `max_turn_away`: turn away from a neighbour that is too near, radians (0.02).
     ///
     /// With distances that are not above 0 no neighbour counts. Angles that are not above 0 give no
@@ -122,9 +112,8 @@ impl<S: Scalar> BoidsParams<S> {
     /// The heading of boid `own` one step later; headings are unit vectors.
     ///
     /// `nearby` holds offsets that are shortest on the torus, in any order; heights and radii are
-    /// ignored. A stationary neighbour has no heading but counts for the middle. A neighbour whose
-    /// position or velocity is not a number is ignored. The result is a unit vector for any input
-    /// (within rounding; errors do not accumulate over steps). O(nearby).
+    /// ignored. A stationary neighbour counts only for the middle, one whose position or velocity
+    /// is not a number not at all. The result is a unit vector for any input. O(nearby).
     #[must_use]
     #[inline(never)]
     pub fn steer(&self, own: RobotId, heading: Vec2<S>, nearby: &[Nearby<S>]) -> Vec2<S> {
@@ -167,24 +156,20 @@ impl<S: Scalar> BoidsParams<S> {
     }
 
     fn towards(&self, heading: Vec2<S>, target: Vec2<S>) -> Vec2<S> {
-        // Opposite neighbours cancel and give no direction.
         target.normalized().map_or(heading, |target| self.turn.towards(heading, target))
     }
 
-    /// Turns away from the heading of `other`: to the right if that points to the left of the own
-    /// heading.
+    /// Turns to the right if the other heading points to the left of the own one.
     fn separate(&self, own: RobotId, heading: Vec2<S>, other: &Nearby<S>) -> Vec2<S> {
         let flies = other.velocity_mps.xy();
         let is_parallel = heading.det(flies) == S::ZERO;
         let is_left = if !is_parallel {
             heading.det(flies) > S::ZERO
         } else if heading.dot(flies) < S::ZERO {
-            // Head-on: a difference of +pi, so both turn right and pass.
             true
         } else {
             let place = other.offset_m.xy();
             let place = if place == Vec2::ZERO { tie(other.id, own) } else { place };
-            // Straight ahead and straight behind also turn to opposite sides.
             let side = heading.det(place);
             side > S::ZERO || (side == S::ZERO && heading.dot(place) > S::ZERO)
         };
@@ -192,7 +177,6 @@ impl<S: Scalar> BoidsParams<S> {
     }
 }
 
-/// East for an invalid heading; otherwise a vector of length about 1.
 fn sound_heading<S: Scalar>(heading: Vec2<S>) -> Vec2<S> {
     let off = heading.norm_squared() - S::ONE;
     if off.abs() < S::HALF * S::HALF {

@@ -1,17 +1,14 @@
 //! The goal flock: robots move to goals together, each attracted to the middle of its neighbours
-//! and repelled by the nearest.
+//! and repelled by the nearest. Start with [`wish`].
 //!
 //! Source: V. E. Pavlovsky, V. V. Pavlovsky, "Mathematical model of a two-dimensional homogeneous
-//! flock of robots", section 2 (the first stage of a motion). Read [`wish`] first: r1 points to the
-//! goal, r2 to the middle of the neighbours, r3 away from neighbours that are too near. The second
-//! stage, collisions, is a separate safety layer.
+//! flock of robots", section 2 (first stage; add a safety layer).
 //!
 //! **Differences to the paper:**
 //!
 //! - Closer than half the least distance the paper has no repulsion. Here it is that at half the
 //!   least distance; robots in one place separate by [`tie`].
-//! - On its last step to the goal a robot does not pass it, or it would oscillate around it
-//!   forever.
+//! - On its last step a robot does not pass its goal, or it would oscillate around it forever.
 //! - All computations are in space; in the plane z remains 0.
 
 use crate::body::Body;
@@ -23,25 +20,21 @@ use crate::scalar::{Scalar, cast};
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Parameters of the goal flock. Only the ratios of the three gains matter once their sum is longer
-/// than 1. Any of them may be 0, or negative: away from the goal, away from the neighbours, towards
-/// the nearest.
+/// Parameters of the goal flock. Only the ratios of the gains matter once their sum is longer
+/// than 1. A gain may be 0, or negative (the opposite direction).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GoalParams<S> {
-    /// Pull of the goal (K1). Far above [`Self::center_gain`] each robot moves on its own, and the
-    /// group is lost.
+    /// Pull of the goal (K1). Far above [`Self::center_gain`] the group is lost.
     pub goal_gain: S,
     /// Pull of the middle of the neighbours (K2). Far above [`Self::goal_gain`] no robot arrives.
     pub center_gain: S,
     /// Push of each neighbour that is too near (K3), from 0 at twice the least distance to 2.25
-    /// times this at half of it. If it is too small, robots touch and block each other.
+    /// times this at half of it. With a gain that is too small, robots touch and block each other.
     pub repulsion_gain: S,
-    /// Distance up to which neighbours are considered (R_nbh), metres; at least twice
-    /// [`Self::min_distance_m`].
+    /// Range of neighbours (R_nbh), metres; at least twice [`Self::min_distance_m`].
     pub neighborhood_m: S,
-    /// Least distance of two robots' centres (R_MinDist), metres; more than 0 and at least two
-    /// radii.
+    /// Least distance of two robots' centres (R_MinDist), metres; above 0 and at least two radii.
     pub min_distance_m: S,
     /// Speed (V_Max), m/s; more than 0. The body's own limit also applies.
     pub speed_mps: S,
@@ -87,12 +80,10 @@ impl<S: Scalar> GoalParams<S> {
     }
 }
 
-/// The preferred velocity of the robot at `own`, m/s: V_Max times r1 + r2 + r3 shortened to length
-/// 1.
+/// The preferred velocity of the robot at `own`, m/s: V_Max (r1 + r2 + r3), at most V_Max.
 ///
-/// Without a goal r1 is zero. `nearby` may be in any order. A neighbour whose position is not a
-/// number is ignored; the result is finite and at most as long as V_Max for any input. O(nearby),
-/// with one root per neighbour.
+/// Without a goal r1 is zero. `nearby` may be in any order; a neighbour whose position is not a
+/// number is ignored. The result is finite and at most as long as V_Max for any input. O(nearby).
 #[must_use]
 #[inline(never)]
 pub fn wish<S: Scalar>(
@@ -128,12 +119,10 @@ fn among_neighbors<S: Scalar>(params: &GoalParams<S>, own: RobotId, nearby: &[Ne
     let (mut sum, mut r3) = (Vec3::ZERO, Vec3::ZERO);
     for other in nearby {
         let distance = other.offset_m.norm();
-        // False for NaN.
         let is_seen = distance <= params.neighborhood_m;
         if !is_seen || other.id == own {
             continue;
         }
-        // The mean has the direction of the sum.
         if !other.is_stranger {
             sum += other.offset_m;
         }
@@ -146,15 +135,14 @@ fn among_neighbors<S: Scalar>(params: &GoalParams<S>, own: RobotId, nearby: &[Ne
     (r2, r3)
 }
 
-/// f = K3 (2 - d / R_MinDist)^2 for R_MinDist / 2 <= d <= 2 R_MinDist (eqs. 6 and 7); 0 beyond,
-/// constant below.
+/// f = K3 (2 - d / R_MinDist)^2 for R_MinDist / 2 <= d <= 2 R_MinDist (eqs. 6 and 7); 0 beyond.
 fn repulsion<S: Scalar>(params: &GoalParams<S>, distance_m: S) -> S {
     let ratio = distance_m.checked_div(params.min_distance_m);
     let lack = S::TWO - ratio.unwrap_or(S::TWO).clamp(S::HALF, S::TWO);
     params.repulsion_gain * lack * lack
 }
 
-/// The present destination of a robot with goals.
+/// The current destination of a robot with goals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Stage {
@@ -170,14 +158,13 @@ pub enum Stage {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Full;
 
-/// Up to `N` goals of a robot. It first moves to the middle of all; there it chooses one of them at
-/// random (eq. 3).
+/// Up to `N` goals of a robot. It first moves to the middle of all, then to a random one (eq. 3).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Goals<const N: usize> {
     places: Vec<Position, N>,
     stage: Stage,
-    /// Number of restarts; each gives a new random choice.
+    /// Restarts; each gives a new random choice.
     round: u32,
 }
 
@@ -195,8 +182,8 @@ impl<const N: usize> Goals<N> {
         self.places.push(goal).map_err(|_| Full)
     }
 
-    /// Moves a goal, also during a run: the middle moves along, and a robot that has chosen the
-    /// goal moves to its new position. Returns whether the goal exists.
+    /// Moves a goal, also during a run: the middle and a robot that has chosen the goal follow.
+    /// Returns whether the goal exists.
     #[must_use]
     pub fn set_goal(&mut self, index: usize, goal: Position) -> bool {
         self.places.get_mut(index).map(|place| *place = goal).is_some()
@@ -208,7 +195,7 @@ impl<const N: usize> Goals<N> {
         &self.places
     }
 
-    /// The robot's present destination.
+    /// The robot's current destination.
     #[must_use]
     pub const fn stage(&self) -> Stage {
         self.stage
@@ -230,13 +217,12 @@ impl<const N: usize> Goals<N> {
                 *total += i64::from(mm);
             }
         }
-        // To nearest: (2 s + n) / 2 n. A mean of i32 fits one.
         let mean = |total: i64| (2 * total + count).checked_div_euclid(2 * count);
         let [x, y, z] = sum.map(|total| mean(total).and_then(|mm| i32::try_from(mm).ok()));
         Some(Position::from_mm([x?, y?, z?]))
     }
 
-    /// The position of the present destination; `None` without goals.
+    /// The position of the current destination; `None` without goals.
     #[must_use]
     pub fn current(&self) -> Option<Position> {
         match self.stage {
@@ -245,15 +231,15 @@ impl<const N: usize> Goals<N> {
         }
     }
 
-    /// Whether the robot at `own` is within `arrival_m` of its destination. A crowd needs space:
-    /// choose about the neighbourhood, or only the first robots ever reach the middle.
+    /// Whether the robot at `own` is within `arrival_m` of its destination. Choose about the
+    /// neighbourhood: a crowd needs space, and most robots never reach the middle itself.
     #[must_use]
     pub fn has_arrived<S: Scalar>(&self, own: Position, arrival_m: S) -> bool {
         self.current().is_some_and(|goal| goal.since::<S>(own).norm() <= arrival_m)
     }
 
-    /// Chooses a goal if the robot at `own` is within `arrival_m` of the middle: uniform over the
-    /// goals, a function of seed, robot and round. Returns the index chosen, if any.
+    /// Chooses a goal if the robot at `own` is within `arrival_m` of the middle: uniformly, as a
+    /// function of seed, robot and round. Returns the index chosen, if any.
     pub fn update<S: Scalar>(&mut self, own: Position, arrival_m: S, seed: u64, robot: RobotId) -> Option<usize> {
         if self.stage != Stage::Gather || !self.has_arrived(own, arrival_m) {
             return None;

@@ -1,42 +1,34 @@
 //! The alpha flock: robots that settle at equal distances, follow a reference and avoid obstacles.
+//! Start with [`acceleration`].
 //!
 //! Source: R. Olfati-Saber 2006, "Flocking for multi-agent dynamic systems: algorithms and theory",
-//! IEEE TAC 51(3), algorithms 1 to 3. Read section VII there beside [`acceleration`]; the functions
-//! are in [`super::action`], the beta-agents in [`super::beta`].
+//! IEEE TAC 51(3), algorithms 1 to 3 (section VII). See also [`super::action`] and [`super::beta`].
 //!
-//! **Any size.** The law is not scale-free: its constants (e, sigma_1) are made for a spacing of 7.
-//! So it is computed in units of d / 7 metres and its acceleration scaled back. Time is not scaled:
-//! a gain c1 is a stiffness in 1/s^2. At any size a flock takes as many seconds to settle and needs
-//! as short a step, which depends on a robot's electronics and not on its length. Therefore speeds
-//! and accelerations scale with d: at d = 0.5 m a robot approaches at 1/14 of the paper's speed,
-//! and 5 units/s in the paper are 0.36 m/s.
+//! **Any size.** The law's constants (e, sigma_1) are made for a spacing of 7. So it is computed in
+//! units of d / 7 metres and its acceleration scaled back. Time is not scaled (a gain c1 is in
+//! 1/s^2), so settling time and step are independent of d, and speeds scale with d: at d = 0.5 m a
+//! robot approaches at 1/14 of the paper's speed, and 5 units/s in the paper are 0.36 m/s.
 //!
 //! **Differences to the paper:**
 //!
-//! - n_ij vanishes where two robots are in one place, so they would stay together. Here they
-//!   separate by [`tie`], as strongly as if they were one unit (d / 7) apart.
-//! - Inside an obstacle the paper's force points inwards, so that a robot stays in. Here a robot
-//!   inside, or exactly on the border, is pushed out along the normal, as strongly as one unit in
-//!   front of the border, at any depth. A wall has no inside: a robot that has crossed it is pushed
-//!   further.
+//! - Robots in one place separate by [`tie`], as strongly as one unit (d / 7) apart.
+//! - A robot inside an obstacle, or exactly on its border, is pushed out along the normal as
+//!   strongly as one unit in front of it; the paper's force points inwards there. A wall has no
+//!   inside: a robot that has crossed it is pushed further.
 //! - Values that are not a number contribute nothing.
-//! - The paper has one flock. Robots of another flock ([`Nearby::is_stranger`]) push like those of
-//!   the own flock, but neither pull nor pass on their velocity. The more of them are near and in
-//!   the way, the more the pull of the reference turns to the right, so that flocks that meet keep
-//!   to the right of each other. Without the turn, two lattices of the same spacing interlock like
-//!   combs and stop.
-//! - In a gap for one robot, two robots that arrive side by side stop forever, since all robots
-//!   behind push them at each other. With [`Algorithm::ThreeInTurn`] the robot nearer to the
-//!   reference goes first: if another robot is nearer to the reference and closer than d, the pull
-//!   of the reference and the velocity that it demands fade, from full at d to zero at 0.8 d, as
-//!   long as the reference is ahead. The robot that goes first is not held back by those behind. So
-//!   a crowd before a gap waits in a queue and does not push.
+//! - Robots of another flock ([`Nearby::is_stranger`]) push like those of the own flock, but
+//!   neither pull nor pass on their velocity. The more of them are in the way, the more the pull of
+//!   the reference turns to the right. Otherwise lattices interlock like combs.
+//! - In a gap for one robot, two robots side by side stop forever, since those behind push them at
+//!   each other. With [`Algorithm::ThreeInTurn`] the robot nearer to the reference goes first: the
+//!   pull of the reference on the other robot, and the velocity that it demands, fade from full at
+//!   a distance of d to zero at 0.8 d, as long as the reference is ahead. Robots behind do not hold
+//!   the first back. So a crowd before a gap waits in a queue and does not push.
 //!
-//! **Delayed beacons.** The paper's robots see each other instantly. By radio, the known state of a
-//! neighbour is as old as the delay plus up to a beacon period, and then a stiff lattice oscillates
-//! until it breaks: at a delay of 0.1 s gains of (10, 6.3) leave pieces that never settle.
-//! [`LatticeParams::stable_for`] reduces the gains as far as required;
-//! [`LatticeParams::oldest_news_s`] returns the age that given gains tolerate.
+//! **Delayed beacons.** The known state of a neighbour is as old as the delay plus up to a beacon
+//! period. A stiff lattice then oscillates until it breaks: at a delay of 0.1 s gains of (10, 6.3)
+//! leave pieces that never settle. [`LatticeParams::stable_for`] reduces the gains as far as
+//! required; [`LatticeParams::oldest_news_s`] returns the age that given gains tolerate.
 //!
 //! **Limits.** Repulsion is bounded and vanishes at contact: robots that approach at more than
 //! about 2 d per second pass through each other. The law knows points, not bodies: choose d well
@@ -63,8 +55,7 @@ pub enum Algorithm {
     /// Also obstacles; the pull of the reference is bounded.
     #[default]
     Three,
-    /// Like [`Algorithm::Three`], but no robot pushes a robot that is nearer to the reference. Not
-    /// in the paper: see the description of this module.
+    /// Like [`Algorithm::Three`], but no robot pushes one nearer to the reference.
     ThreeInTurn,
 }
 
@@ -109,30 +100,27 @@ impl<S: Scalar> Gain<S> {
 pub struct LatticeParams<S> {
     /// The active terms.
     pub algorithm: Algorithm,
-    /// Distance of neighbours in the lattice (d), metres; from 0.01 to 100. More than two radii
+    /// Distance of neighbours in the lattice (d), metres; 0.01 to 100. Choose more than two radii
     /// plus the distance that a robot covers in half a second.
     pub spacing_m: S,
-    /// Range of interaction over spacing (r / d); above 1, at most 4. The larger, the more easily a
-    /// group forms, and the more second neighbours, at sqrt 3, compress the lattice: stay below
-    /// that.
+    /// Range of interaction over spacing (r / d); above 1, at most 4. A larger range forms groups
+    /// more easily; from sqrt 3 on, second neighbours compress the lattice.
     pub range_ratio: S,
     /// Distance kept from obstacles over spacing (d' / d); above 0, at most 4. The larger, the
     /// wider the narrowest passage that robots still take.
     pub obstacle_ratio: S,
-    /// Attraction (a of phi), and repulsion (b of phi): 0 < a <= b. The bounds of phi_alpha.
+    /// Attraction (a of phi, 0 < a <= b): upper bound of phi_alpha.
     pub attraction: S,
-    /// See [`Self::attraction`].
+    /// Repulsion (b of phi): -b is the lower bound of phi_alpha.
     pub repulsion: S,
-    /// Gains between robots (c_alpha). Higher gains give a stiffer and more even lattice, and need
-    /// a shorter step: (10, 6.3) works up to steps of 0.05 s, (50, 14) up to 0.03 s; (10, 6.3) at
-    /// 0.2 s and (100, 20) at 0.03 s break apart.
+    /// Gains between robots (c_alpha). Higher gains give a stiffer lattice and need a shorter step:
+    /// (10, 6.3) works up to 0.05 s, (50, 14) up to 0.03 s; (10, 6.3) at 0.2 s breaks apart.
     pub alpha: Gain<S>,
     /// Gains of obstacles (c_beta). Well above the others, or robots behind push those in front:
     /// with (5, 50, 2) 150 robots in a narrow passage pass through each other.
     pub beta: Gain<S>,
-    /// Gains of the reference (c_gamma). Higher gains gather and follow faster, and compress the
-    /// lattice: in algorithm 2, whose pull grows with the flock's size, 150 robots need c_alpha
-    /// above 40 c_gamma for a mean squared deviation of 0.005 d^2.
+    /// Gains of the reference (c_gamma). Higher gains gather faster and compress the lattice: in
+    /// algorithm 2, 150 robots need c_alpha above 40 c_gamma for a deviation of 0.005 d^2.
     pub gamma: Gain<S>,
 }
 
@@ -153,8 +141,8 @@ impl<S: Scalar> LatticeParams<S> {
         }
     }
 
-    /// Algorithm 3 with the paper's ratios and gains of 10, 200 and 2 on positions, with critical
-    /// damping: with these, 150 robots pass the paper's two obstacle courses without contact.
+    /// Algorithm 3 with the paper's ratios, critical damping, and gains of 10, 200 and 2 on
+    /// positions: 150 robots pass the paper's two obstacle courses without contact.
     #[must_use]
     pub fn new(spacing_m: S) -> Self {
         Self {
@@ -176,22 +164,20 @@ impl<S: Scalar> LatticeParams<S> {
         Law::new(self).is_some()
     }
 
-    /// Reduces the gains to those that are stable with beacons that are `delay_s` old and come
-    /// `rate_hz` times per second (beacons per second times the share that arrives).
+    /// Reduces the gains to those that are stable with beacons that are `delay_s` old and arrive
+    /// `rate_hz` times per second.
     ///
-    /// If the present gains are stable, they are unchanged. Otherwise the pulls of robots and
-    /// reference (c_alpha, c_gamma) decrease in the same proportion, with the same damping ratio;
-    /// those of obstacles, which a robot senses itself, are unchanged.
-    ///
-    /// A delay that is not at least 0 counts as 0, a rate that is not above 0 as the slowest
-    /// possible. Constant work.
+    /// Stable gains are unchanged. Otherwise those of robots and reference (c_alpha, c_gamma)
+    /// decrease in proportion, with the same damping ratio; those of obstacles, which a robot
+    /// senses itself, do not. A delay that is not at least 0 counts as 0, a rate that is not above
+    /// 0 as the slowest possible. Constant work.
     #[must_use]
     pub fn stable_for(mut self, delay_s: S, rate_hz: S) -> Self {
         let period = S::ONE.checked_div(rate_hz.max(S::ZERO)).unwrap_or(S::MAX);
         let news_s = delay_s.max(S::ZERO) + period;
         let bearable = self.oldest_news_s();
         if news_s > bearable {
-            // sqrt(c1) decreases with the age of beacons, and c2 = 2 sqrt(c1) with it.
+            // sqrt(c1) falls with the age of beacons, and c2 = 2 sqrt(c1) with it.
             let softer = bearable.checked_div(news_s).unwrap_or(S::ZERO);
             for gain in [&mut self.alpha, &mut self.gamma] {
                 gain.position = gain.position * softer * softer;
@@ -204,10 +190,9 @@ impl<S: Scalar> LatticeParams<S> {
     /// The age of a neighbour's state that these gains tolerate, seconds: its delay plus the time
     /// between two beacons. The largest number if nothing pulls.
     ///
-    /// sqrt(c_alpha) is the rate at which the lattice responds, and the state may be a fifth of its
-    /// inverse old. The fifth is measured, not the paper's (see the tests of this module): robots
-    /// at delays of 0 to 0.25 s and steps of 0.04 to 0.2 s settle with it, and oscillate from 0.47
-    /// on.
+    /// The bound is 1/5 of 1 / sqrt(c_alpha), the time in which the lattice responds. The fifth is
+    /// measured (see the tests of this module): at delays of 0 to 0.25 s and steps of 0.04 to 0.2 s
+    /// robots settle with it, and oscillate from 0.47 on.
     #[must_use]
     pub fn oldest_news_s(&self) -> S {
         let answer = self.alpha.position.max(S::ZERO).sqrt() * S::from_i32(5);
@@ -221,11 +206,9 @@ impl<S: Scalar> LatticeParams<S> {
     }
 }
 
-/// The point that the flock follows (the gamma-agent), as a robot sees it.
+/// The point that the flock follows (the gamma-agent), moved by [`ReferenceMotion`].
 ///
-/// A static one keeps its position and velocity forever, and its velocity need not be zero: the
-/// paper's obstacle courses pull the flock past a fixed point. A moving one follows its velocity.
-/// See [`ReferenceMotion`].
+/// The velocity of a static one need not be zero: it pulls the flock past a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference<S> {
@@ -237,12 +220,10 @@ pub struct Reference<S> {
 
 /// The acceleration of robot `body`, m/s^2 (u of the paper): u_alpha + u_beta + u_gamma.
 ///
-/// In the plane (all z zero) the result has z = 0. `nearby` may be in any order, and radii are
-/// ignored. The result is finite for any input, and not limited to what the body can do: see
-/// [`Body::reach`]. Zero for invalid parameters.
-///
-/// O(nearby + obstacles): each takes two roots and a cosine, a neighbour a third root in
-/// [`Algorithm::ThreeInTurn`].
+/// With all z zero the result has z = 0. `nearby` may be in any order, and radii are ignored. The
+/// result is finite for any input, zero for invalid parameters, and may exceed the capability of
+/// the body: see [`Body::reach`]. O(nearby + obstacles): each takes two roots and a cosine, a
+/// neighbour a third root in [`Algorithm::ThreeInTurn`].
 #[must_use]
 #[inline(never)]
 pub fn acceleration<S: Scalar>(
@@ -287,10 +268,9 @@ pub fn acceleration<S: Scalar>(
     sum
 }
 
-/// The parameters in the paper's units.
 struct Law<'a, S> {
     params: &'a LatticeParams<S>,
-    /// Units per metre, 7 / d, and metres per unit.
+    /// 7 / d.
     units: S,
     metres: S,
     range_squared: S,
@@ -333,12 +313,12 @@ impl<'a, S: Scalar> Law<'a, S> {
         })
     }
 
-    /// c1 phi_alpha(||q_j - q_i||_sigma) n_ij + c2 a_ij (p_j - p_i) of one neighbour j, m/s^2. A
-    /// neighbour that `is_after` does not hold back.
+    /// c1 phi_alpha(||q_j - q_i||_sigma) n_ij + c2 a_ij (p_j - p_i), m/s^2. A neighbour that
+    /// `is_after` does not hold back.
     fn alpha(&self, body: &Body<S>, other: &Nearby<S>, is_after: bool) -> Vec3<S> {
         let offset = other.offset_m * self.units;
         let squared = offset.norm_squared();
-        // False for NaN; fixed point saturates beyond the range.
+        // Fixed point saturates beyond the range.
         let is_near = squared < self.range_squared;
         if !is_near || other.id == body.id {
             return Vec3::ZERO;
@@ -346,7 +326,6 @@ impl<'a, S: Scalar> Law<'a, S> {
         let SigmaNorm { sigma, slope } = sigma_norm(squared);
         let adjacency = self.phi_alpha.adjacency(sigma);
         let n_ij = if other.offset_m == Vec3::ZERO {
-            // As if the other robot were one unit away, in the direction in which it separates.
             tie(other.id, body.id).extend(S::ZERO) * sigma_norm(S::ONE).slope
         } else {
             offset * slope
@@ -361,7 +340,7 @@ impl<'a, S: Scalar> Law<'a, S> {
         n_ij * (pull * self.metres) + drag(gain, other.velocity_mps - body.velocity_mps)
     }
 
-    /// c1 phi_beta(||q^ - q||_sigma) n^ + c2 b (p^ - p) of one obstacle, m/s^2.
+    /// c1 phi_beta(||q^ - q||_sigma) n^ + c2 b (p^ - p), m/s^2.
     fn beta(&self, body: &Body<S>, obstacle: &Obstacle<S>) -> Vec3<S> {
         let own_velocity = body.velocity_mps;
         let known_velocity = if own_velocity.is_finite() { own_velocity } else { Vec3::ZERO };
@@ -377,29 +356,23 @@ impl<'a, S: Scalar> Law<'a, S> {
         let outside = if is_inside { S::ZERO } else { distance };
         let SigmaNorm { sigma, slope } = sigma_norm(outside * outside);
         let adjacency = self.phi_beta.adjacency(sigma);
-        // The length of n^; inside like one unit in front of the border.
         let length = if is_inside { sigma_norm(S::ONE).slope } else { outside * slope };
-        // phi_beta is negative, and n^ is against the normal.
         let push = -(self.params.beta.position * self.phi_beta.at(sigma, adjacency)) * length;
         let gain = self.params.beta.velocity * adjacency;
         agent.normal * (push * self.metres) + drag(gain, agent.velocity_mps - known_velocity)
     }
 
-    /// How much a stranger is in the `way` (of length 1) to the reference, from 0 to 1; 0 from
-    /// three spacings on, and beside the way.
+    /// How much a stranger is in the `way` (a unit vector), 0 to 1; 0 from three spacings on.
     fn turn(&self, way: Vec3<S>, other: &Nearby<S>) -> S {
         let reach_m = self.params.spacing_m * S::from_i32(3);
         let distance = other.offset_m.norm();
         let nearness = S::ONE - distance.checked_div(reach_m).unwrap_or(S::ONE);
         let ahead = way.dot(other.offset_m).checked_div(distance).unwrap_or(S::ZERO);
-        // False for NaN.
         let is_in_the_way = nearness > S::ZERO && ahead > S::ZERO;
         if is_in_the_way { nearness * ahead } else { S::ZERO }
     }
 
-    /// The share of the reference that counts, from 0 to 1, with [`Algorithm::ThreeInTurn`]: 1
-    /// unless a robot of the flock is nearer to the reference (or as near, with a smaller number),
-    /// and closer than d.
+    /// The share of the reference, 0 to 1: below 1 if a nearby robot of the flock goes first.
     fn share(&self, body: &Body<S>, nearby: &[Nearby<S>], reference: &Reference<S>) -> S {
         nearby.iter().filter(|other| goes_first(other, body, reference)).fold(S::ONE, |share, other| {
             let spacings = other.offset_m.norm().checked_div(self.params.spacing_m).unwrap_or(S::ONE);
@@ -409,8 +382,7 @@ impl<'a, S: Scalar> Law<'a, S> {
     }
 
     /// -c1 sigma_1(q - q_r) - c2 (p - p_r), in algorithm 2 without sigma_1; m/s^2. The pull is
-    /// turned to the right by about `turn` of a quarter turn. The pull and p_r are scaled by
-    /// `share`.
+    /// turned to the right by about `turn` of a quarter turn.
     fn gamma(&self, body: &Body<S>, reference: &Reference<S>, turn: S, share: S) -> Vec3<S> {
         let Gain { position, velocity } = self.params.gamma;
         let mut way = reference.offset_m;
@@ -421,7 +393,6 @@ impl<'a, S: Scalar> Law<'a, S> {
         let pull = if self.params.algorithm == Algorithm::Two {
             way * position
         } else {
-            // sigma_1 of a vector is along it, not of each component.
             let distance = way.norm() * self.units;
             let direction = way.normalized().unwrap_or(Vec3::ZERO);
             direction * (position * sigma_1(distance) * self.metres)
@@ -431,15 +402,13 @@ impl<'a, S: Scalar> Law<'a, S> {
     }
 }
 
-/// Whether a robot of the flock is nearer to the reference than the own body, or as near with a
-/// smaller number.
+/// Whether `other` is nearer to the reference, or as near with a smaller number.
 fn goes_first<S: Scalar>(other: &Nearby<S>, body: &Body<S>, reference: &Reference<S>) -> bool {
     let (way, other_way) = (reference.offset_m, reference.offset_m - other.offset_m);
     let is_nearer = (other_way.length_key(), other.id) < (way.length_key(), body.id);
     is_nearer && !other.is_stranger && other.id != body.id
 }
 
-/// A velocity term; zero if a velocity is not known.
 fn drag<S: Scalar>(gain: S, relative_mps: Vec3<S>) -> Vec3<S> {
     let term = relative_mps * gain;
     if term.is_finite() { term } else { Vec3::ZERO }

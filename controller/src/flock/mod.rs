@@ -1,11 +1,8 @@
-//! Three flocks: the preferred motion of a robot, given its neighbours. Each is pure and
-//! independent of the others.
+//! Three independent flocks: the preferred motion of a robot, given its neighbours.
 //!
-//! - [`lattice`]: equal distances, a reference to follow, obstacles (Olfati-Saber 2006); returns an
-//!   acceleration.
-//! - [`goal`]: goals, the middle of the neighbours, repulsion (Pavlovsky and Pavlovsky); returns a
-//!   velocity.
-//! - [`boids`]: headings on a torus (Starovoitova 2018); returns a heading.
+//! - [`lattice`]: equal distances, a reference, obstacles (Olfati-Saber 2006): an acceleration.
+//! - [`goal`]: goals, the neighbours' middle, repulsion (Pavlovsky and Pavlovsky): a velocity.
+//! - [`boids`]: headings on a torus (Starovoitova 2018): a heading.
 //!
 //! None of them guarantees that robots do not touch: add a safety layer.
 

@@ -8,24 +8,21 @@ use serde::{Deserialize, Serialize};
 
 /// The place that a robot holds in its formation, if it is not its own.
 ///
-/// The rule is that of a file: when the place in front becomes empty, the robot steps into it, and
-/// the robot behind does the same with the vacated place. In front is the nearest place with a
-/// smaller number. A place is empty when the beacons of its holder
-/// ([`slot`](crate::wire::Beacon::slot)) have been silent for so long that the holder is lost. If
-/// two robots hold one place, the smaller number keeps it and the other returns to its own. So a
-/// robot that comes back finds its own place free, and the order is settled after a few beacons.
+/// When the holder of the place in front (the nearest with a smaller number) is lost, by the
+/// [`slot`](crate::wire::Beacon::slot) of its beacons, the robot steps into it, and the robot
+/// behind does the same. If two robots hold one place, the smaller number keeps it and the other
+/// returns to its own. So a robot that comes back finds its own place free.
 ///
-/// Applies if robots are numbered consecutively by their places, from any number: robot k + i has
-/// place i. Each robot computes k from its own number and place. A robot that receives a neighbour
-/// in a place that it could not have reached this way keeps its own. Therefore several formations
-/// need no identifier: a template names its members. The paper (A. V. Kuznetsov 2017) has no such
-/// rule; there the place of a missing robot remains empty.
+/// Applies if robots are numbered consecutively by their places: robot k + i has place i, and each
+/// computes k from its own number. A robot that receives a neighbour in a place that it could not
+/// have reached this way keeps its own, so several formations need no identifier. The paper (A. V.
+/// Kuznetsov 2017) leaves the place of a missing robot empty.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GapClosing {
     /// The place held instead of the own one, and its distance, cells.
     taken: Option<(u8, Cell)>,
-    /// The place in front, if its holder was received before.
+    /// The place in front, once its holder was received.
     front: Option<u8>,
 }
 
@@ -36,7 +33,7 @@ impl GapClosing {
         Self { taken: None, front: None }
     }
 
-    /// From the own place to the one that is held.
+    /// The vector from the own place to the one that is held, cells.
     #[must_use]
     pub fn shift(&self) -> Cell {
         self.taken.map_or(Cell::default(), |(_, shift)| shift)
@@ -48,10 +45,8 @@ impl GapClosing {
         self.taken.map_or(template.slot, |(slot, _)| slot)
     }
 
-    /// Steps into the place in front if that has become empty, or back if a smaller number holds
-    /// the place. O(F * robots).
-    ///
-    /// `holders` are the robots received, each with the place number in its beacon.
+    /// Steps into the place in front if it is empty, or back if a smaller number holds the same
+    /// place. `holders` are the robots received, with the places in their beacons. O(F x robots).
     pub fn close<const F: usize>(
         &mut self,
         own: RobotId,
@@ -84,8 +79,7 @@ impl GapClosing {
         }
     }
 
-    /// The template as seen from the place that is held, with the current holders of the other
-    /// places. O(F * robots).
+    /// The template from the place that is held, with the current holders of places. O(F * robots).
     #[must_use]
     pub fn view<const F: usize>(
         &self,
@@ -110,16 +104,14 @@ impl GapClosing {
             };
             Some(TemplateEntry { offset, id, ..*entry })
         });
-        // The robot that now holds this robot's own place.
         let behind = self.taken.and_then(|_| holder(template.slot));
         let behind = behind.map(|id| TemplateEntry { offset: Cell::default() - shift, id, hops: 1 });
         Template { slot: held, offset: template.offset + shift, entries: list::collect(others.chain(behind)) }
     }
 }
 
-/// The number of the robot that owns the first place, if robots are numbered consecutively by their
-/// places. The robots of the template then hold their own places or, having stepped forward,
-/// smaller ones. O(F * robots).
+/// The robot that owns the first place, if robots are numbered consecutively and those of the
+/// template hold their own or smaller places.
 fn first_of<const F: usize>(
     own: RobotId,
     template: &Template<F>,
@@ -131,7 +123,6 @@ fn first_of<const F: usize>(
     (!holders.any(is_below)).then_some(first)
 }
 
-/// The place that belongs to a robot if `first` owns the first place.
 fn place_of(id: RobotId, first: u32) -> Option<u8> {
     u8::try_from(id.0.checked_sub(first)?).ok()
 }
@@ -141,15 +132,13 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
-    /// Six in two columns, three cells apart, each knowing all others: 0 1 / 2 3 / 4 5.
+    /// Two columns, three cells apart: 0 1 / 2 3 / 4 5.
     fn template(own: usize) -> Template<8> {
         let places = [0, 1, 2, 3, 4, 5].map(|i: i16| Cell::new(3 * (i % 2), -3 * (i / 2)));
         let edges = [(0, 1), (0, 2), (1, 3), (2, 3), (2, 4), (3, 5), (4, 5)];
         Template::from_graph(&places, &edges, own, 3).unwrap()
     }
 
-    /// Six robots that receive each other, each with its ranks and number; `is_alive` tells which
-    /// are alive.
     struct File {
         ranks: [GapClosing; 6],
         is_alive: [bool; 6],
@@ -177,7 +166,6 @@ mod tests {
             core::array::from_fn(|own| self.is_alive[own].then(|| self.ranks[own].slot(&self.template(own))))
         }
 
-        /// All decide by the previous beacons.
         fn tick(&mut self) {
             let slots = self.slots();
             for own in (0..6).filter(|&own| self.is_alive[own]) {
@@ -213,7 +201,7 @@ mod tests {
                 let living = if dead == second { 5 } else { 4 };
                 let unique = held.windows(2).all(|pair| pair[0] < pair[1]);
                 assert!(unique && held.len() == living, "{dead} {second}: {held:?}");
-                // Neither the top nor any other front place is empty: at most a corner at the back.
+                // At most a corner at the back is empty.
                 assert!(held[0] == 0 && held[1] <= 2, "{dead} {second}: {held:?}");
             }
         }
@@ -274,7 +262,7 @@ mod tests {
 
     #[test]
     fn the_view_is_from_the_place_that_is_held() {
-        // Robot 2 is dead; robot 4 (place 3) steps into place 1, robot 6 (place 5) into place 3.
+        // Robot 2 is dead; robot 4 steps into place 1, robot 6 into place 3.
         let holders = [(1, 0), (3, 2), (4, 1), (5, 4), (6, 3)].map(|(id, slot)| (RobotId(id), slot));
         let ranks = GapClosing { taken: Some((1, Cell::new(0, 3))), front: None };
         let others = holders.into_iter().filter(|(id, _)| *id != RobotId(4));
@@ -283,7 +271,6 @@ mod tests {
         let mut seen: Vec<_> = view.entries.iter().map(|entry| (entry.id.0, entry.offset.x, entry.offset.y)).collect();
         seen.sort_unstable();
         assert_eq!(seen, [(1, -3, 0), (3, -3, -3), (5, -3, -6), (6, 0, -3)]);
-        // Robot 1 sees robot 4 beside it, not behind.
         let view = GapClosing::new().view(RobotId(1), &template(0), holders.into_iter().skip(1));
         let beside = view.entries.iter().find(|entry| entry.id == RobotId(4)).unwrap();
         assert_eq!(beside.offset, Cell::new(3, 0));

@@ -1,10 +1,8 @@
-//! How followers derive the place to head for from the top leader's position. Two laws differ here.
+//! How followers derive the place to head for from the top leader's position.
 //!
-//! With [`Course`] a follower looks ahead, as in steering along a path (R. C. Coulter,
-//! "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01, 1992). It plans
-//! its route to where its place will be some moves later, and prices its moves by where it should
-//! be soon. So it avoids bad land in time, and the leader waits less. [`NextMove`] uses only the
-//! move that the leader announced.
+//! With [`Course`] a follower looks ahead (R. C. Coulter, "Implementation of the pure pursuit path
+//! tracking algorithm", CMU-RI-TR-92-01, 1992): it plans its route to where its place will be some
+//! moves later, avoids bad land in time, and the leader waits less.
 
 use super::{Anchor, FormationParams, aim, lag};
 use crate::grid::{Cell, Dir, Norm, UNIT};
@@ -13,17 +11,14 @@ use serde::{Deserialize, Serialize};
 
 /// The course that followers assume for their leader.
 pub trait Steering {
-    /// Records the last known position of the top leader, or the own one without a leader. Call it
-    /// at each decision.
+    /// Records the last known position of the top leader, or the own one.
     fn note(&mut self, leader: (RobotId, Cell));
 
-    /// The cell to plan the route to, and the place by which moves are priced; `goal` is the final
-    /// place of this robot.
+    /// The cell to plan the route to, and the place that prices moves; `goal` is the final place.
     #[must_use]
     fn aims(&self, params: &FormationParams, anchor: &Anchor, goal: Cell) -> [Cell; 2];
 
-    /// How far `off` (actual minus desired, cells) is behind, [`UNIT`]s; `heading` is the leader's
-    /// next move.
+    /// How far `off` (actual minus desired, cells) is behind, [`UNIT`]s; `heading` is the leader's.
     #[must_use]
     fn lag(&self, off: Cell, heading: Dir) -> u32;
 }
@@ -44,24 +39,19 @@ impl Steering for NextMove {
     }
 }
 
-/// Uses the leader's course over its recent moves, each weighted half as much as the next one. All
-/// functions are O(1).
+/// Uses the leader's recent moves, each weighted half as much as the next one. O(1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Course {
     leader: Option<(RobotId, Cell)>,
-    /// The mean move, [`ONE`] per cell.
+    /// Mean move, [`ONE`] per cell.
     x: i32,
     y: i32,
 }
 
-/// A cell in a mean move.
 const ONE: i32 = 1024;
-/// Shorter mean moves do not define a course.
 const LEAST: i32 = 100;
-/// How far ahead of its place a follower plans its route, cells. A larger value saves time and
-/// costs accuracy; chosen on seed 1 of `staya experiment formation`.
+/// Planning distance, cells; more saves time and costs accuracy (`staya experiment formation`).
 const AHEAD: u8 = 4;
-/// A move of this many cells replaces the previous course completely.
 const MOST: u32 = 16;
 
 impl Course {
@@ -71,13 +61,12 @@ impl Course {
         Self { leader: None, x: 0, y: 0 }
     }
 
-    /// Its length; `None` if it is too short to define a direction.
+    /// `None` if it is too short to define a direction.
     fn length(self) -> Option<i32> {
         Some(length(self.x, self.y)).filter(|&length| length >= LEAST)
     }
 
-    /// The point `cells` cells along the course and half as far towards `to_go`, where the leader
-    /// will turn eventually; rounded to the nearest cell.
+    /// The point `cells` cells along the course and half as far towards `to_go`.
     fn ahead(self, cells: u8, to_go: Cell) -> Option<Cell> {
         let own = self.length()?;
         let [gx, gy] = [to_go.x, to_go.y].map(i32::from);
@@ -86,7 +75,6 @@ impl Course {
         let x = unit(self.x, own) + (unit(gx, rest) >> 1);
         let y = unit(self.y, own) + (unit(gy, rest) >> 1);
         let all = length(x, y);
-        // Rounds to nearest, also for negative values.
         let along = |part: i32| (2 * i32::from(cells) * part + all).checked_div_euclid(2 * all);
         Some(Cell::new(along(x)? as i16, along(y)? as i16))
     }
@@ -162,9 +150,7 @@ mod tests {
         let south_west = course(&[(0, 0), (-1, -1), (-2, -2)]);
         let goal = Cell::new(-13, -10);
         assert_eq!(south_west.aims(&params, &anchor(), goal), [Cell::new(14, 17), Cell::new(16, 19)]);
-        // The goal draws it aside, but less than the course does.
         assert_eq!(east.aims(&params, &anchor(), Cell::new(17, 90)), [Cell::new(21, 22), Cell::new(18, 20)]);
-        // At the goal only the course counts.
         assert_eq!(east.aims(&params, &anchor(), Cell::new(17, 20)), [Cell::new(21, 20), Cell::new(18, 20)]);
     }
 
@@ -172,10 +158,8 @@ mod tests {
     fn a_single_move_aside_turns_the_course_by_less_than_itself() {
         let turned = course(&[(0, 0), (1, 0), (2, 0), (3, 0), (4, 0), (4, 1)]);
         assert_eq!(turned.ahead(4, Cell::default()), Some(Cell::new(3, 3)));
-        // Late updates give the same course as one update per cell.
         let late = course(&[(0, 0), (4, 0), (4, 1)]);
         assert_eq!(late, turned);
-        // A change of leader does not count as a move.
         let mut other = turned;
         other.note((RobotId(2), Cell::new(50, 50)));
         assert_eq!((other.x, other.y), (turned.x, turned.y));

@@ -1,5 +1,4 @@
-//! Measures of formation quality (KUZ section 6): one that a robot computes from its neighbours,
-//! and one that an observer computes for all robots.
+//! Measures of formation quality (KUZ section 6): by a robot, and by an observer of all robots.
 
 use super::Found;
 use crate::grid::{Cell, Norm};
@@ -17,8 +16,8 @@ pub struct GraphDistance {
 }
 
 impl GraphDistance {
-    /// dist = m0 + m1 + kappa * offsets with kappa = 1 / diameter of the map, in
-    /// [`UNIT`](crate::grid::UNIT)ths; `diameter` in cells, 0 counts as 1. Rounded down.
+    /// dist = m0 + m1 + kappa * offsets with kappa = 1 / diameter of the map (cells, at least 1),
+    /// in [`UNIT`](crate::grid::UNIT)ths, rounded down.
     #[must_use]
     pub fn units(&self, diameter: u32) -> u32 {
         let whole = self.less.saturating_add(self.more);
@@ -37,11 +36,8 @@ pub fn graph_distance<const F: usize>(cell: Cell, found: &Found<F>) -> GraphDist
     GraphDistance { less: found.less.into(), more: found.more.into(), offsets }
 }
 
-/// The formation error dPhi: a sum over ticks of distances between desired and actual cells.
-///
-/// For an observer that knows every cell, such as a ground station that receives all beacons; a
-/// robot does not know where the whole formation should be. It uses integers, so that all observers
-/// get the same value.
+/// The formation error dPhi: a sum over ticks of distances between desired and actual cells, for an
+/// observer that knows every cell, such as a ground station.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FormationError {

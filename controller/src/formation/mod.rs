@@ -1,45 +1,31 @@
-//! Formation keeping: which neighbours a robot should have, where they are, and what each move
-//! therefore costs.
+//! Formation keeping: a robot's neighbours, their places, and the resulting cost of each move.
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2 and 5 to 7; section 6 for the
-//! measures. Read section 7 first. In the plane, places are points: see [`Drive`] in `places.rs`.
-//! The text below on cells applies to the grid, and in the plane to detours around closed cells.
-//!
-//! All functions are pure functions on slices; a robot's state consists of [`PaceControl`] and its
+//! measures. All functions are pure; a robot's state is [`PaceControl`] and its
 //! [`Template`](crate::template::Template). Lengths are integers in [`UNIT`](crate::grid::UNIT)s
-//! per cell, costs those of [`crate::cost`].
+//! per cell, costs those of [`crate::cost`]. In the plane, places are points ([`Drive`]).
 //!
-//! The paper's own law is in `published`, behind the feature of that name. Differences to it, and
-//! why (results: `staya experiment formation`):
+//! The paper's own law is in `published`, behind the feature of that name. Differences to it
+//! (results: `staya experiment formation`):
 //!
-//! - **Route.** In the paper each robot weighs the shortest route to its *own* target against the
-//!   places of its neighbours. Six robots then take six different routes around a hill, pull at
-//!   each other, and jam in one run of eight. Here the top leader alone chooses the route, and
-//!   prices land by what the whole formation would cross ([`blended`]). The others head for their
-//!   places beside it and ahead of it ([`aim`]), weighing their own land against the places of
-//!   their neighbours (algorithm 7).
-//! - **Waiting.** The leader waits when a robot has fallen behind by more than r0, not when any
-//!   robot is off its place in any direction ([`lag`]): a robot ahead or aside loses nothing if the
-//!   formation continues.
-//! - **Weights.** The paper adds the distances of all neighbours found to the weights. With many
-//!   neighbours this sum outweighs the land. Here it is a gain times half the distance to the place
-//!   given by the top leader and half the mean of the places given by the direct neighbours
-//!   ([`distances`]).
-//! - **Stop.** A requested stop makes the top leader wait ([`Recovery::Wait`]). The paper's leader
-//!   heads for `def` instead, which is [`Recovery::Def`].
-//! - **Surplus.** When neighbours are missing or strangers stand in their places (item 6), the
-//!   paper shuffles again or asks the strangers to choose another direction. Here the strangers are
-//!   asked ([`Found::surplus`]). Shuffling again is unnecessary, as each decision is a new random
-//!   draw.
+//! - **Route.** In the paper each robot weighs the route to its *own* target against the places of
+//!   its neighbours; six robots take six routes around a hill and jam in one run of eight. Here the
+//!   top leader alone chooses the route, by the land that the whole formation would cross
+//!   ([`blended`]). The others head for their places beside it ([`aim`]).
+//! - **Waiting.** The leader waits when a robot has fallen behind by more than r0 ([`lag`]); one
+//!   ahead or aside loses nothing if the formation continues.
+//! - **Weights.** The paper's sum over all neighbours outweighs the land. Here the weight is a gain
+//!   times half the distance to the place given by the top leader and half the mean of those given
+//!   by the direct neighbours ([`distances`]).
+//! - **Stop.** A requested stop makes the top leader wait, or head for `def` as in the paper
+//!   ([`Recovery`]).
+//! - **Surplus.** Strangers in the places of missing neighbours (item 6) are asked to choose
+//!   another direction ([`Found::surplus`]). Each decision is a new random draw anyway.
 //! - **Leader.** A new leader is chosen when the old one falls silent or a smaller number is found,
-//!   so that a formation survives the loss of any robot. Algorithm 2 chooses at t = 0 only. A robot
-//!   without a direct neighbour to follow follows a farther one ([`find_leader`]).
-//! - **Patience.** No robot waits forever: see [`FormationParams::patience`]. A leader does not
+//!   not only at t = 0. It may be a farther neighbour ([`find_leader`]).
+//! - **Patience.** No robot waits forever ([`FormationParams::patience`]), and a leader does not
 //!   wait for robots that follow another leader.
-//! - **Look-ahead.** With the law "lookahead" followers plan their routes to where their places
-//!   will be some moves later ([`Course`]).
-//! - **GapClosing.** If ranks are closed ([`FormationParams::closes_ranks`]), robots behind a dead robot
-//!   move up.
+//! - **Additions.** Followers may look ahead ([`Course`]) and close gaps ([`GapClosing`]).
 //! - **Misprints.** `less` is counted once (algorithm 5), the leader is the smallest number
 //!   (algorithm 6), sums restart for each direction (algorithm 7).
 
@@ -74,74 +60,65 @@ named! {
         /// It continues in the direction that it announced, as fast as the land allows: O(1).
         #[default]
         Constant = "constant",
-        /// It makes the move that this robot would make in its place (KUZ section 7, item 1): from
-        /// its cell, for its target and place, on the land that this robot sees. Predictions are
-        /// not nested. One more search of the window per neighbour. Falls back to `Constant` for a
-        /// robot whose surroundings are out of sight.
+        /// It makes the move that this robot would make in its place (KUZ section 7, item 1), on
+        /// the land that this robot sees. One more search per neighbour; `Constant` if it is out of
+        /// sight.
         Reflexive = "reflexive",
     }
 }
 
 named! {
-    /// What the top leader does while a robot is too far behind.
+    /// The reaction of the top leader to a robot that is too far behind.
     #[derive(Default)]
     pub enum Recovery {
-        /// It stops, so that no robot loses more time than the slowest needs.
+        /// It stops.
         #[default]
         Wait = "wait",
-        /// It heads for `cell + def` (KUZ section 7), the direction in which the others are
-        /// displaced.
+        /// It heads for `cell + def` (KUZ section 7), where the others are displaced to.
         Def = "def",
     }
 }
 
 /// As [`FormationParams::halt_lag`]: the leader never waits. No lag reaches this value (936 cells),
-/// since robots farther away than eps, at most 255 cells, are not waited for.
+/// since robots beyond eps, at most 255 cells, are not waited for.
 pub const NEVER: u16 = u16::MAX;
 
 /// Parameters of formation keeping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FormationParams {
-    /// How far from its place a neighbour may be and still counts as found, cells (eps of algorithm
-    /// 5). With a small value robots that stray are lost, and the formation does not wait for them.
+    /// How far from its place a neighbour still counts as found, cells (eps of algorithm 5). With a
+    /// small value the formation does not wait for robots that stray.
     pub eps: u8,
-    /// Price of being off the own place, ticks per cell (the coefficient of the scalarisation).
-    /// With 0 all robots take the shortest route; large values push robots straight over bad land.
+    /// Price of being off the own place, ticks per cell. With 0 all robots take the shortest route;
+    /// large values push robots straight over bad land.
     pub gain: Gain,
-    /// How far a robot may fall behind before the top leader waits, [`UNIT`](crate::grid::UNIT)s
-    /// (r0). A smaller value keeps the formation tighter and costs time; with [`NEVER`] the leader
-    /// does not wait.
+    /// Lag of a robot at which the top leader waits, [`UNIT`](crate::grid::UNIT)s (r0). A smaller
+    /// value keeps the formation tighter and costs time; with [`NEVER`] the leader does not wait.
     pub halt_lag: u16,
-    /// The lag down to which that robot must catch up before the leader continues,
-    /// [`UNIT`](crate::grid::UNIT)s; at most `halt_lag`.
+    /// Lag at which the leader continues, [`UNIT`](crate::grid::UNIT)s; at most `halt_lag`.
     pub resume_lag: u16,
-    /// How far ahead of the top leader's cell the others aim, cells along its heading. Compensates
-    /// for the duration of its move and the delay of its beacon.
+    /// How far ahead of the top leader the others aim, cells: its move and the delay of its beacon.
     pub lead: u8,
     /// Share of the land under the others' places in the top leader's price of a cell, sixteenths:
-    /// 0 counts only its own cell, 16 only theirs. In the plane, unless it is 0, the dearest cell
-    /// of all counts.
+    /// 0 counts only its own cell, 16 only theirs. In the plane all values but 0: the dearest cell.
     pub footprint: u8,
-    /// Number of consecutive decisions for which a leader waits, and for which a follower is
-    /// behind, before each continues alone until they are together again. With a small value the
-    /// formation splits at every obstacle; with a large one it waits longer for a robot without a
-    /// route. In the plane it is the leader's waiting time in seconds.
+    /// Consecutive decisions for which a leader waits, or a follower is behind, before each
+    /// continues alone. With a small value the formation splits at every obstacle; with a large one
+    /// it waits longer for a robot without a route. In the plane: seconds.
     pub patience: u16,
-    /// Whether robots behind a dead robot move up into its place ([`GapClosing`]) or leave it empty.
-    /// Fixed places keep all robots at the intended distances; moving up leaves no gap behind the
-    /// leader and keeps the formation within its radio range.
+    /// Whether robots behind a dead robot move up into its place ([`GapClosing`]), which keeps the
+    /// formation within radio range, or leave it empty, which keeps all intended distances.
     pub closes_ranks: bool,
     /// How robots predict the positions of others.
     pub prediction: Prediction,
-    /// What the top leader does while a robot is too far behind.
+    /// The reaction of the top leader to a robot that is too far behind.
     pub recovery: Recovery,
 }
 
 impl FormationParams {
-    /// Good values for followers that look ahead ([`Course`]): the leader waits from 3 cells on
-    /// (210 units), and being off the own place costs twice as much; chosen on seed 1 of `staya
-    /// experiment formation`.
+    /// Good values for followers that look ahead ([`Course`]): the leader waits from 3 cells (210
+    /// units) on, and the gain is doubled; chosen on seed 1 of `staya experiment formation`.
     #[must_use]
     pub fn looking_ahead() -> Self {
         Self { gain: Gain::from_sixteenths(32), halt_lag: 210, resume_lag: 210, ..Self::default() }
@@ -149,10 +126,9 @@ impl FormationParams {
 }
 
 impl Default for FormationParams {
-    /// The values behind the results of `staya experiment formation`: eps 10 cells, gain 1, r0 300
-    /// units (4.3 cells) without hysteresis, one cell ahead, half of the price from the others'
-    /// land, a patience of 100 decisions, waiting, and constant velocity (no worse than reflexive
-    /// there, for less work).
+    /// The values of `staya experiment formation`: eps 10 cells, gain 1, r0 300 units (4.3 cells)
+    /// without hysteresis, one cell ahead, half of the price from the others' land, a patience of
+    /// 100 decisions, waiting, and constant prediction.
     fn default() -> Self {
         Self {
             eps: 10,

@@ -52,11 +52,10 @@ pub struct Found<const F: usize> {
 /// Looks for each neighbour of the template within `eps` cells (Chebyshev) of its place, seen from
 /// a robot in `cell` (KUZ algorithm 5).
 ///
-/// An entry with a number takes that robot; an entry without a number takes the nearest robot (then
-/// the smallest number) that the template does not name. A place that its robot misses and that
-/// another robot, not a member of any entry, stands on counts in `more`. O(F * robots).
-///
-/// `robots` is called several times and must return the same robots in the order of their numbers.
+/// An entry with a number takes that robot; one without takes the nearest robot (then the smallest
+/// number) that the template does not name. A place whose robot is missing and on which a robot of
+/// no entry stands counts in `more`. `robots` is called several times and must return the same
+/// robots in the order of their numbers. O(F * robots).
 #[must_use]
 #[inline(never)]
 pub fn find_neighbors<const F: usize>(
@@ -99,11 +98,9 @@ pub fn find_neighbors<const F: usize>(
 }
 
 /// The neighbour to follow (KUZ algorithm 6): the smallest number below the own one among the
-/// direct neighbours in the graph, or without any, among all that were found. [`RobotId::NONE`]:
-/// the robot leads.
+/// direct neighbours, or without any, among all found. [`RobotId::NONE`]: the robot leads.
 ///
-/// The paper considers direct neighbours only. If one of those died, the robots behind it would
-/// become leaders beside the rest of their formation.
+/// The paper considers direct neighbours only; robots behind a dead one would become leaders.
 #[must_use]
 pub fn find_leader(own: RobotId, members: &[Member]) -> RobotId {
     let smaller = members.iter().filter(|member| member.seen.id < own);

@@ -1,27 +1,22 @@
-//! Formation keeping in the plane: a place is a point that moves with the top leader, and robots
-//! follow it.
+//! Formation keeping in the plane: a place is a point that moves with the top leader.
 //!
-//! The law is proportional control with feed-forward of the leader's velocity, as in standard
-//! leader-follower control (J. P. Desai, J. Ostrowski and V. Kumar 1998). The top leader is no
-//! faster than the slowest robot follows. All gains follow from one time, in which the body reaches
-//! its highest speed ([`Drive`]). No gain exceeds the reciprocal of that time, so that a body that
-//! lags behind its commands by up to that time reaches its place without oscillating. States of
-//! other robots are delayed by the radio, but these loops close over the own body.
+//! Proportional control with feed-forward of the leader's velocity (J. P. Desai, J. Ostrowski and
+//! V. Kumar 1998). No gain exceeds the reciprocal of the time in which the body reaches its highest
+//! speed ([`Drive`]), so that a body that lags by up to that time does not oscillate. Beacons are
+//! delayed, but these loops close over the own body.
 
 use crate::body::Body;
 use crate::geom::Vec2;
 use crate::grid::{Cell, Window};
 use crate::scalar::Scalar;
 
-/// Steps that a body without inertia is assumed to need to reach its speed, since states of other
-/// robots are a step or more old.
+/// Steps in which a body without inertia reaches its speed, since beacons are a step or older.
 const STEPS: i32 = 10;
-/// Speed that the top leader leaves to the others for corrections, thousandths of the highest
-/// speed. A larger value returns them to their places sooner and makes every journey longer by as
-/// much.
+/// Speed that the top leader leaves for corrections, thousandths of the highest. More returns
+/// robots to their places sooner and makes every journey longer.
 const RESERVE: i32 = 100;
-/// Distance from the goal within which a robot comes to rest, thousandths of its radius; beyond
-/// twice this distance it sets off again.
+/// A robot rests this near the goal, thousandths of its radius, and sets off at twice that
+/// distance.
 const AT_REST: i32 = 250;
 
 /// The capabilities of a body, as the law needs them.
@@ -30,16 +25,15 @@ const AT_REST: i32 = 250;
 pub struct Drive<S> {
     max_speed_mps: S,
     radius_m: S,
-    /// Half of the highest speed, used by the gentle half of the law.
     half_mps: S,
     step_s: S,
-    /// 1/T, where T is the time to reach the highest speed, or some steps if that is longer, 1/s.
+    /// 1/T, where T is the time to reach the highest speed, or some steps if longer, 1/s.
     rate: S,
     halt_m: S,
 }
 
 impl<S: Scalar> Drive<S> {
-    /// For a body at the highest speed that it can have in its present place.
+    /// The law for a body at the highest speed that it can have in its current place.
     #[must_use]
     pub fn new(body: &Body<S>) -> Self {
         let Body { max_speed_mps, max_acceleration_mps2, radius_m, step_s, .. } = *body;
@@ -51,38 +45,35 @@ impl<S: Scalar> Drive<S> {
         Self { max_speed_mps, radius_m, half_mps, step_s, rate, halt_m }
     }
 
-    /// The lag at which a leader stops, metres: the own radius plus half of the distance in which a
-    /// body reaches its speed. A robot within half of this value counts as being in its place.
+    /// The lag at which a leader stops, metres: the own radius plus half of the distance to reach
+    /// full speed. A robot within half of this is in its place.
     #[must_use]
     pub const fn halt_m(&self) -> S {
         self.halt_m
     }
 
-    /// The distance that counts as being at the goal, metres, depending on whether the robot was
-    /// there before.
+    /// The distance that counts as being at the goal, metres.
     #[must_use]
     pub fn tolerance_m(&self, was_there: bool) -> S {
         self.radius_m * S::from_milli(if was_there { 2 * AT_REST } else { AT_REST })
     }
 
-    /// The velocity towards a place `way_m` away that moves at `place_mps`. At most the highest
-    /// speed.
+    /// The velocity towards a place `way_m` away that moves at `place_mps`.
     #[must_use]
     pub fn follow(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> Vec2<S> {
         let correction_mps = scaled(way_m, self.rate).clamp_norm(self.max_speed_mps);
         (place_mps + correction_mps).clamp_norm(self.max_speed_mps)
     }
 
-    /// Whether a robot is so far behind a place `way_m` away that moves at `place_mps` that its
-    /// leader should stop.
+    /// Whether the leader should stop for a robot `way_m` from its place, which moves at
+    /// `place_mps`.
     #[must_use]
     pub fn is_far_behind(&self, way_m: Vec2<S>, place_mps: Vec2<S>) -> bool {
         dot(way_m, place_mps) > self.max_speed_mps * self.halt_m
     }
 
-    /// The top leader's speed, m/s. It leaves a reserve for the others, decreases in proportion to
-    /// the lag of the last robot, and lets the leader come to rest `left_m` ahead with half of its
-    /// braking.
+    /// The top leader's speed, m/s. It leaves a reserve, decreases in proportion to the lag of the
+    /// last robot, and lets the leader rest `left_m` ahead with half of its braking.
     #[must_use]
     pub fn leads_at(&self, lag_m: S, left_m: S) -> S {
         let reserved = self.max_speed_mps * S::from_milli(1000 - RESERVE);
@@ -90,8 +81,7 @@ impl<S: Scalar> Drive<S> {
         let speed = (reserved * room_m).checked_div(self.halt_m).unwrap_or(S::ZERO);
         let half = self.half_mps;
         let near = left_m * self.rate;
-        // v^2 = (V/2)^2 + 2 (V/2T) (d - VT/2), as a slope that ends where the proportional law
-        // begins. An invalid distance counts as 0.
+        // v^2 = (V/2)^2 + 2 (V/2T) (d - VT/2), which ends where the proportional law begins.
         let before_goal = if near > half {
             ((near + near - half) * half).sqrt()
         } else if near > S::ZERO {
@@ -103,7 +93,7 @@ impl<S: Scalar> Drive<S> {
     }
 
     /// The velocity nearest to `wish_mps` that a leader takes after `before_mps`. It accelerates
-    /// and turns half as fast as it could, and brakes as fast, since the others learn of it late.
+    /// and turns half as fast as it could, since the others learn of it late.
     #[must_use]
     pub fn gently(&self, before_mps: Vec2<S>, wish_mps: Vec2<S>) -> Vec2<S> {
         let change = wish_mps - before_mps;
@@ -125,16 +115,14 @@ pub(crate) fn scaled<S: Scalar>(v: Vec2<S>, s: S) -> Vec2<S> {
     v * s
 }
 
-/// How far `off_m` (actual minus desired) is behind for a formation that moves in direction
-/// `ahead`, metres. A robot ahead or aside loses nothing if the formation continues.
+/// How far `off_m` (actual minus desired) is behind in direction `ahead`, metres; at least 0.
 #[must_use]
 pub fn behind<S: Scalar>(off_m: Vec2<S>, ahead: Vec2<S>) -> S {
     (-dot(off_m, ahead)).max(S::ZERO)
 }
 
-/// Whether all cells under the straight path `way_m` satisfy `is_good`, as far as the window shows
-/// them; for a robot `offset_m` off the middle of its `cell`. Checks one point per half cell,
-/// O(width + height) points.
+/// Whether all visible cells under the straight path `way_m` satisfy `is_good`; for a robot
+/// `offset_m` off the middle of its `cell`. Checks a point per half cell, O(width + height).
 #[must_use]
 #[inline(never)]
 pub fn is_straight<S: Scalar>(
@@ -143,7 +131,6 @@ pub fn is_straight<S: Scalar>(
     way_m: Vec2<S>,
     is_good: &dyn Fn(Cell) -> bool,
 ) -> bool {
-    /// A cell has 2^6 parts, half of it 2^5.
     const PARTS: u32 = 6;
     let Some(per_m) = S::from_i32(1 << PARTS).checked_div(cell_m) else { return false };
     let parts = |length_m: Vec2<S>| {

@@ -1,11 +1,8 @@
 //! Formation keeping as published: A. V. Kuznetsov 2017 (KUZ), section 7, algorithms 2, 5, 6 and 7.
 //!
-//! This module holds the criteria of the paper;
-//! [`PublishedFormation`](crate::agent::PublishedFormation) applies them. Algorithm 5 is
-//! [`find_neighbors`](super::find_neighbors), `def` is [`def`](super::def); Staya's own law uses
-//! both too. The misprints are resolved as described in [`super`]: `less` is counted once, the
-//! leader is the smallest number, and sums restart for each direction and hold each neighbour's
-//! offset.
+//! This module holds the criteria; [`PublishedFormation`](crate::agent::PublishedFormation) applies
+//! them. Algorithm 5 is [`find_neighbors`](super::find_neighbors), `def` is [`def`](super::def).
+//! Misprints are resolved as in [`super`]; sums hold each neighbour's offset.
 
 use super::{Found, Member, Prediction, deviation};
 use crate::cost::{EXCLUDED, Gain, Weights};
@@ -19,15 +16,12 @@ named! {
     /// The available laws of formation keeping.
     #[derive(Default)]
     pub enum FormationLaw {
-        /// Staya's: the top leader chooses the route for all and waits for robots behind; see
-        /// [`crate::formation`].
+        /// Staya's: the top leader chooses the route and waits ([`crate::formation`]).
         #[default]
         Staya = "staya",
-        /// The paper's: each robot weighs its own shortest route against all neighbours found; see
-        /// [`PublishedParams`].
+        /// The paper's: each robot weighs its own route ([`PublishedParams`]).
         Paper = "paper",
-        /// Staya's, with followers that plan their routes to the future positions of their places;
-        /// see [`Course`](super::Course).
+        /// Staya's, with routes to the future positions of places ([`Course`](super::Course)).
         Lookahead = "lookahead",
     }
 }
@@ -36,20 +30,16 @@ named! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PublishedParams {
-    /// How far from its place a neighbour may be and still counts as found, cells (eps of algorithm
-    /// 5). According to the paper, a larger value gives a smaller error.
+    /// How far from its place a neighbour still counts as found, cells (eps of algorithm 5).
+    /// According to the paper, a larger value gives a smaller error.
     pub eps: u8,
-    /// Price of a cell of deviation from one neighbour, ticks (the coefficient of the
-    /// scalarisation; the paper adds both, so 1).
+    /// Price of a cell of deviation from one neighbour, ticks (1 in the paper).
     pub gain: Gain,
-    /// Sum of deviations from all neighbours found at which the formation is lost (`>> r0`),
-    /// [`UNIT`]s.
+    /// Sum of deviations from all neighbours at which the formation is lost (`>> r0`), [`UNIT`]s.
     pub halt: u16,
-    /// Sum down to which it must fall for the formation to be kept again (about r0), [`UNIT`]s; at
-    /// most `halt`.
+    /// Sum at which the formation is kept again (about r0), [`UNIT`]s; at most `halt`.
     pub resume: u16,
-    /// Number of missing and surplus robots together above which others are asked to choose another
-    /// direction (item 6).
+    /// Missing and surplus robots above which others are asked to turn aside (item 6).
     pub crowd: u8,
     /// How robots predict the positions of others.
     pub prediction: Prediction,
@@ -57,10 +47,9 @@ pub struct PublishedParams {
 
 impl Default for PublishedParams {
     /// The paper specifies only gain and prediction. eps is 10 cells, as in Staya's law. r0 is
-    /// chosen so that all arrive on most landscapes: from a sum of 30 cells (10 for each of the
-    /// three neighbours of a robot in the middle of figure 5) down to 9. From 9 down to 3 the
-    /// errors are the paper's, and most runs jam (`staya experiment formation --paper-halt 9
-    /// --paper-resume 3`).
+    /// chosen so that all arrive on most landscapes: from a sum of 30 cells (10 per neighbour) down
+    /// to 9. From 9 down to 3 the errors are the paper's, and most runs jam
+    /// (`staya experiment formation --paper-halt 9 --paper-resume 3`).
     fn default() -> Self {
         Self {
             eps: 10,
@@ -73,16 +62,15 @@ impl Default for PublishedParams {
     }
 }
 
-/// How far a robot in `cell` is off the places given by the predicted positions of its neighbours,
-/// summed over all neighbours found, [`UNIT`]s (the inner sum of algorithm 7). O(members).
+/// Sum of the distances of a robot in `cell` from the places given by the predicted positions of
+/// its neighbours, [`UNIT`]s (the inner sum of algorithm 7). O(members).
 #[must_use]
 pub fn sum_of_deviations(cell: Cell, members: &[Member]) -> u32 {
     let each = members.iter().map(|member| deviation(cell, member.seen.predicted, member.offset));
     each.fold(0, u32::saturating_add)
 }
 
-/// What each move costs the formation (algorithm 7): `gain` times the [sum](sum_of_deviations) that
-/// it leads to. O(members).
+/// The cost of each move for the formation (algorithm 7): `gain` times [`sum_of_deviations`].
 #[must_use]
 pub fn sums(gain: Gain, cell: Cell, members: &[Member]) -> Weights {
     // A great distance must not act as a wall.
@@ -90,24 +78,21 @@ pub fn sums(gain: Gain, cell: Cell, members: &[Member]) -> Weights {
     Weights::new(Dir::MOVES.map(price))
 }
 
-/// The neighbour to follow (algorithm 6): the smallest number below the own one among all found.
-/// [`RobotId::NONE`]: the robot leads.
-///
-/// With templates of geodesic radius 1 this gives figure 5: 2 and 4 follow 1, 3 and 5 follow 2, 6
-/// follows 3.
+/// The neighbour to follow (algorithm 6): the smallest number below the own one among all found;
+/// [`RobotId::NONE`]: the robot leads. With templates of geodesic radius 1 this gives figure 5.
 #[must_use]
 pub fn smallest_below(own: RobotId, members: &[Member]) -> RobotId {
     let smaller = members.iter().map(|member| member.seen.id).filter(|&id| id < own);
     smaller.min().unwrap_or(RobotId::NONE)
 }
 
-/// The state of a formation by its sum of deviations, with hysteresis around r0 (algorithm 2).
+/// The state of a formation by its sum of deviations (algorithm 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Kept {
     /// About r0 or less: lines 14 and 21.
     Well,
-    /// In between: the previous decision stands.
+    /// In between: the previous decision holds.
     Fairly,
     /// Much more than r0: lines 10 and 17.
     Lost,
@@ -131,10 +116,9 @@ impl PublishedParams {
     }
 }
 
-/// What each move of another robot would cost the formation from that robot's view, as far as this
-/// robot knows it: the sum over the `entries` that `cell_of` knows, and this robot in `own`, from
-/// their present positions. `predict` of algorithm 5 runs algorithm 7 in the other robot's place,
-/// without a nested prediction. O(entries).
+/// The cost of each move of another robot from its view: the sum over the `entries` that `cell_of`
+/// knows, and this robot in `own`, from their current positions (`predict` of algorithm 5).
+/// O(entries).
 #[must_use]
 pub fn sums_of_other(
     gain: Gain,
@@ -196,21 +180,19 @@ mod tests {
 
     #[test]
     fn sums_count_every_neighbour_found_and_restart_for_each_direction() {
-        // Robot 5 has three neighbours; robot 2, north of it, is a cell too far east.
+        // Robot 2, north of robot 5, is a cell too far east.
         let east = |other| if other == 1 { Cell::new(1, 0) } else { Cell::default() };
         let found = found(4, 1, east);
         assert_eq!(found.members.len(), 3);
         assert_eq!(sum_of_deviations(PLACES[4], &found.members), UNIT);
         let sums = sums(Gain::ONE, PLACES[4], &found.members);
-        // One step east: in place by robot 2, a cell off by the two others; west: 2 + 1 + 1.
         assert_eq!(sums.get(Dir::East), Gain::ONE.of(2 * UNIT));
         assert_eq!(sums.get(Dir::West), Gain::ONE.of(4 * UNIT));
     }
 
     #[test]
     fn a_prediction_counts_the_own_robot_and_the_known_ones() {
-        // Robot 1 predicts for robot 2, which has fallen back by a cell; 3 and 5 are behind it in
-        // their places.
+        // Robot 2 has fallen back by a cell; 3 and 5 are behind it in their places.
         let found = found(0, 3, |other| if other == 1 { Cell::new(-1, 0) } else { Cell::default() });
         let template = Template::<8>::from_graph(&PLACES, &EDGES, 0, 3).unwrap();
         let other = found.members.iter().find(|member| member.seen.id == RobotId(2)).unwrap();

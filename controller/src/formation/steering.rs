@@ -34,19 +34,15 @@ pub fn aim(anchor: &Anchor, lead: u8) -> Cell {
     anchor.place() + Cell::new(step.x * ahead, step.y * ahead)
 }
 
-/// How far a robot in `cell` is off its place beside a neighbour in `other`, both at their last
-/// known positions, [`UNIT`]s.
+/// Distance of a robot in `cell` from its place beside a neighbour in `other`, [`UNIT`]s.
 #[must_use]
 pub fn deviation(cell: Cell, other: Cell, offset: Cell) -> u32 {
     (cell + offset).distance(other, Norm::Euclidean)
 }
 
-/// What each move costs the formation (KUZ algorithm 7): gain times the distance that it would
-/// leave to the own place. Half of it is the place given by the top leader, half the mean of those
-/// given by the direct neighbours found. If one kind is missing, the other counts in full; if both
-/// are, the cost is zero.
-///
-/// The paper sums over all neighbours; the mean keeps the scale independent of their number.
+/// The cost of each move for the formation (KUZ algorithm 7): gain times the distance that it would
+/// leave to the own place, half by the top leader, half by the mean of the direct neighbours found
+/// (the paper: their sum). If one kind is missing, the other counts in full; without both, zero.
 #[must_use]
 pub fn distances(params: &FormationParams, cell: Cell, top: Option<Cell>, members: &[Member]) -> Weights {
     let direct = || members.iter().filter(|member| member.hops == 1);
@@ -76,9 +72,8 @@ pub fn should_stay(cell: Cell, place: Cell, first: Dir) -> bool {
     now < NEAR && then > now
 }
 
-/// How far `off` (actual minus desired, cells) is behind for a formation that heads in direction
-/// `heading`, [`UNIT`]s: its component against the heading, but at least half of its length; its
-/// whole length if there is no heading.
+/// How far `off` (actual minus desired, cells) is behind in direction `heading`, [`UNIT`]s: its
+/// component against the heading, at least half of its length; all of it without a heading.
 #[must_use]
 pub fn lag(off: Cell, heading: Dir) -> u32 {
     let length = Cell::default().distance(off, Norm::Euclidean);
@@ -87,14 +82,13 @@ pub fn lag(off: Cell, heading: Dir) -> u32 {
     let behind = u32::try_from(-dot).unwrap_or(0);
     match heading {
         Dir::Stay => length,
-        // A diagonal of whole cells is DIAGONAL long, so the unit vector is half of it.
         dir if dir.is_diagonal() => (behind.saturating_mul(DIAGONAL) >> 1).max(length >> 1),
         _ => behind.saturating_mul(UNIT).max(length >> 1),
     }
 }
 
-/// The direction in which the others are displaced (KUZ section 7, `def`): the sum over the members
-/// of actual minus desired, rounded to one of the eight moves; `Stay` if it is 0.
+/// The direction in which the others are displaced (KUZ section 7, `def`): the sum of actual minus
+/// desired, rounded to one of the eight moves; `Stay` if it is 0.
 #[must_use]
 pub fn def(cell: Cell, members: &[Member]) -> Dir {
     let (x, y) = members.iter().fold((0_i32, 0_i32), |(x, y), member| {
@@ -124,8 +118,7 @@ impl PaceControl {
         Self { waits: false }
     }
 
-    /// Updates the state with the largest lag, [`UNIT`]s, and returns whether to wait: from more
-    /// than `halt_lag` down to `resume_lag`.
+    /// Returns whether to wait: from a largest `lag` above `halt_lag` down to `resume_lag`.
     pub fn update(&mut self, params: &FormationParams, lag: u32) -> bool {
         let limit = if self.waits { params.resume_lag.min(params.halt_lag) } else { params.halt_lag };
         self.waits = lag > u32::from(limit);
@@ -139,27 +132,21 @@ impl PaceControl {
     }
 }
 
-/// How the land under the others' places counts in their leader's price of a cell.
+/// The weight of the land under the others' places in their leader's price of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Footprint {
-    /// Their mean counts this many sixteenths, the leader's own cell the rest: robots that are
-    /// slowed down fall behind and catch up later.
+    /// Their mean counts this many sixteenths, the leader's own cell the rest.
     Mean(u8),
-    /// The dearest cell of all, including the leader's, counts: no robot falls behind, and all move
-    /// at the pace of the slowest.
+    /// The dearest cell of all counts: all robots move at the pace of the slowest.
     Dearest,
 }
 
-/// Writes to `out` the price, for the whole formation, of each cell within `radius` of `center`
-/// with the top leader in that cell.
+/// Writes to `out` the formation's price of each cell of its leader within `radius` of `center`.
 ///
-/// The price combines the leader's own cell and those of the others' places that the window shows
-/// and that are passable, as `footprint` defines. Walls remain walls; if no place is in sight, only
-/// the own cell counts. O(cells * entries).
-///
-/// `None`: `out` is too short for (2 radius + 1)^2 cells, or for as many of them as the window
-/// shows.
+/// The price combines the leader's cell and those of the others' visible and passable places, as
+/// `footprint` defines. Walls remain walls. O(cells * entries). `None` if `out` is too short for (2
+/// radius + 1)^2 cells, or for as many of them as the window shows.
 #[must_use]
 pub fn blended<'a>(
     window: &Window<'_>,
@@ -182,7 +169,7 @@ pub fn blended<'a>(
                 let share = u32::from(share.min(16));
                 let (sum, count) = others.fold((0_u32, 0_u32), |(sum, count), u| (sum + u32::from(u), count + 1));
                 match (sum * share).checked_div(count) {
-                    // Sixteenths, rounded to nearest; at least 1, as both parts are.
+                    // Rounded to nearest; at least 1, as both parts are.
                     Some(others) => ((u32::from(own) * (16 - share) + others + 8) >> 4).clamp(1, 255) as u8,
                     None => own,
                 }

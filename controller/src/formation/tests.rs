@@ -5,7 +5,7 @@ use crate::template::{Template, TemplateEntry, TemplateError, rotated};
 use proptest::prelude::*;
 use std::vec::Vec;
 
-/// Figure 5: rows 1 2 3 and 4 5 6, three cells apart, robot 1 in front.
+/// Figure 5: rows 1 2 3 and 4 5 6, three cells apart.
 const PLACES: [Cell; 6] =
     [Cell::new(0, 0), Cell::new(-3, 0), Cell::new(-6, 0), Cell::new(0, -3), Cell::new(-3, -3), Cell::new(-6, -3)];
 const EDGES: [(u16, u16); 7] = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)];
@@ -35,7 +35,6 @@ fn leaders_of_figure_5_are_those_of_the_paper() {
     let leaders: Vec<u32> =
         (1..=6).map(|id| find_leader(RobotId(id), &found(id as usize, 1, 2, &robots).members).0).collect();
     assert_eq!(leaders, [0, 1, 2, 1, 2, 3]);
-    // With a larger radius, farther neighbours become leaders only if there is no nearer one.
     let leader_without = |dead: &[u32]| {
         let living: Vec<Seen> = robots.iter().copied().filter(|seen| !dead.contains(&seen.id.0)).collect();
         find_leader(RobotId(6), &found(6, 3, 2, &living).members).0
@@ -102,12 +101,10 @@ fn a_place_without_a_number_takes_the_nearest_unnamed_robot() {
 fn costs_restart_for_each_direction_and_point_to_the_place() {
     let params = FormationParams::default();
     let mut robots = in_place(Cell::new(10, 10));
-    // Robot 2 is two cells west of its place by robots 1, 3 and 5.
     robots[1].cell = Cell::new(5, 10);
     let found = found(2, 1, 5, &robots);
     let price = distances(&params, Cell::new(5, 10), None, &found.members);
     assert_eq!(price.best(), Some(Dir::East));
-    // One cell off its place by all neighbours: one tick at a gain of 1.
     assert_eq!(price.get(Dir::East), crate::cost::TICK);
     let by_top = distances(&params, Cell::new(5, 10), Some(Cell::new(7, 10)), &[]);
     assert_eq!(by_top.get(Dir::East), crate::cost::TICK);
@@ -161,7 +158,6 @@ fn def_points_in_the_direction_of_the_others_displacement() {
 
 #[test]
 fn land_is_priced_for_all_robots_that_would_cross_it() {
-    // Columns of impassability 1, 1, 9, 9; a robot two cells to the east; a wall at the end.
     let cells = [1, 1, 9, BLOCKED];
     let window = Window::new(&cells, Cell::new(20, 5), 4, 1).unwrap();
     let entry = TemplateEntry { offset: Cell::new(2, 0), id: RobotId(2), hops: 1 };
@@ -169,13 +165,12 @@ fn land_is_priced_for_all_robots_that_would_cross_it() {
     let mut price =
         |footprint| blended(&window, (Cell::new(20, 5), 3), &[entry], footprint, &mut out).unwrap().cells().to_vec();
     assert_eq!(price(Footprint::Mean(0)), cells);
-    // West cell: half of 1 and 9. Second: the wall behind does not count. Walls remain.
+    // West: half of 1 and 9. Second: the wall behind does not count.
     assert_eq!(price(Footprint::Mean(8)), [5, 1, 9, BLOCKED]);
     assert_eq!(price(Footprint::Mean(16)), [9, 1, 9, BLOCKED]);
     assert_eq!(price(Footprint::Dearest), [9, 1, 9, BLOCKED]);
     let around = (Cell::new(20, 5), 1);
     assert!(blended(&window, around, &[entry], Footprint::Dearest, &mut [0; 1]).is_none());
-    // A window larger than the search needs: only the needed part is priced, all of it is read.
     let mut near = [0; 2];
     let near = blended(&window, around, &[entry], Footprint::Mean(16), &mut near).unwrap();
     assert_eq!((near.origin(), near.cells()), (Cell::new(20, 5), &[9, 1][..]));
@@ -195,7 +190,6 @@ fn graph_distance_is_the_paper_s_sum() {
     robots[1].cell = Cell::new(4, 14);
     robots.remove(3);
     let at = graph_distance(Cell::new(10, 10), &found(1, 1, 10, &robots));
-    // Robot 4 is missing; robot 2 is (3, 4) = 5 cells off.
     assert_eq!((at.less, at.more, at.offsets), (1, 0, 350));
     assert_eq!(at.units(100), 70 + 3);
     assert_eq!(at.units(0), 70 + 350);
@@ -219,12 +213,10 @@ proptest! {
         prop_assert_eq!(rotated(offset, Dir::East), offset);
         let norm = |o: Cell| libm::sqrt(Cell::default().distance_squared(o) as f64);
         for dir in Dir::MOVES {
-            // Rounding moves a cell by at most half a diagonal.
             prop_assert!((norm(rotated(offset, dir)) - norm(offset)).abs() <= 0.72, "{:?}", dir);
         }
     }
 
-    /// Results do not depend on the origin of the map.
     #[test]
     fn everything_is_relative(
         shift in (-500_i16..500, -500_i16..500),
@@ -272,7 +264,7 @@ mod in_plane {
     use crate::robot::RobotId;
     use proptest::prelude::*;
 
-    /// One metre, 2 m/s, 1 m/s^2 in steps of a tenth of a second: two seconds to reach full speed.
+    /// 2 s to full speed.
     fn body() -> Body<f32> {
         Body {
             id: RobotId(1),
@@ -289,7 +281,6 @@ mod in_plane {
         let drive = Drive::new(&body());
         let leader = Vec2::new(1.2, -0.7);
         assert_eq!(drive.follow(Vec2::ZERO, leader), leader);
-        // A metre behind: half a metre per second faster, but never above its speed.
         assert_eq!(drive.follow(Vec2::new(1.0, 0.0), Vec2::new(1.0, 0.0)), Vec2::new(1.5, 0.0));
         assert!((drive.follow(Vec2::new(90.0, 9.0), leader).norm() - 2.0).abs() < 1e-5);
         assert_eq!(drive.follow(Vec2::new(f32::NAN, 0.0), Vec2::ZERO), Vec2::ZERO);
@@ -303,7 +294,6 @@ mod in_plane {
         assert!((drive.leads_at(1.5, 90.0) - 0.9).abs() < 1e-6);
         assert_eq!((drive.leads_at(3.0, 90.0), drive.leads_at(9.0, 90.0)), (0.0, 0.0));
         assert_eq!((drive.leads_at(0.0, 0.0), drive.leads_at(0.0, 1.0)), (0.0, 0.5));
-        // Without inertia ten steps replace the time to reach full speed.
         let drive = Drive::new(&Body { max_acceleration_mps2: f32::MAX, ..body() });
         assert_eq!(drive.halt_m(), 2.0);
     }
@@ -322,8 +312,7 @@ mod in_plane {
 
     #[test]
     fn a_wall_on_the_straight_way_closes_it_and_one_out_of_sight_does_not() {
-        // One row of five cells of 2 m, a wall in the fourth; the robot in the second, half a metre
-        // east of its middle.
+        // The robot is in the second cell, half a metre east of its middle.
         let cells = [1, 1, 1, BLOCKED, 1];
         let window = Window::new(&cells, Cell::new(10, 7), 5, 1).unwrap();
         let here = (Cell::new(11, 7), Vec2::new(0.5_f32, 0.0), 2.0);
@@ -337,8 +326,7 @@ mod in_plane {
         assert!(!is_straight(&window, nonsense, Vec2::new(1.0, 0.0), &|_| true));
     }
 
-    /// The final error and the overshoot of a body with lag beside a leader without lag that
-    /// starts, moves and stops, with beacons that are `delay` steps old.
+    /// The final error and the overshoot, with beacons that are `delay` steps old.
     fn follows(lag_s: f32, delay: usize) -> (f32, f32) {
         let (body, step_s) = (body(), 0.1);
         let mut leader = (Vec2::new(0.0, 0.0), Vec2::ZERO);

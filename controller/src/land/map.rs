@@ -1,5 +1,3 @@
-//! One robot's map of the land around it.
-
 use super::tile::{AGES, LandPatch, PATCH_HEIGHT, PATCH_TILES, PATCH_WIDTH, Tile};
 use super::tile_of;
 use crate::grid::{Cell, Window};
@@ -7,7 +5,7 @@ use crate::list::SparseVec;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Ages up to which the robot's own observations override messages.
+/// Own observations up to this age override messages.
 const OWN_STANDS: u8 = AGES >> 2;
 const PATCH_BITS: [u32; 2] = [PATCH_WIDTH.trailing_zeros(), PATCH_HEIGHT.trailing_zeros()];
 
@@ -15,9 +13,9 @@ const PATCH_BITS: [u32; 2] = [PATCH_WIDTH.trailing_zeros(), PATCH_HEIGHT.trailin
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MapParams {
-    /// Observations older than this are forgotten; 16 times the step of ages. A shorter time adapts
-    /// faster to changing land and drops false reports sooner; a longer one keeps what was seen at
-    /// the start of a long path. More than 0, at most 35 minutes.
+    /// Observations older than this are forgotten, 16 times the step of ages; above 0, at most 35
+    /// minutes. A shorter time adapts faster and drops false reports sooner; a longer one remembers
+    /// more.
     pub forget_after: Duration,
 }
 
@@ -27,31 +25,24 @@ impl Default for MapParams {
     }
 }
 
-/// A tile and its origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Known {
     pub(super) tile: Tile,
     is_own: bool,
-    /// The robot saw it itself and has not sent it yet.
+    /// Seen by the robot itself, and not sent yet.
     is_news: bool,
 }
 
 /// A square of `T` tiles that moves with the robot. `T` is 0 (none), 256, 1024 or 4096, for 64, 128
-/// or 256 cells along each side. At least three eighths of a side lie ahead, wherever the robot is
-/// in its patch.
+/// or 256 cells along each side; at least three eighths of a side lie ahead.
 ///
-/// Memory: 3 bytes per tile. Tiles that leave the square are forgotten. On a host no memory is used
-/// before the first tile is known.
+/// Memory: 3 bytes per tile, on a host none before the first tile is known.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LandMap<const T: usize> {
-    /// Indexed by position modulo the side; all or none.
     tiles: SparseVec<Known, T>,
-    /// The south-west tile, a patch's corner.
     origin: Cell,
     aged_at: Option<Instant>,
-    /// The next patch to be repeated.
     next: u16,
-    /// Whether the next message repeats an old patch or sends a new one.
     repeats: bool,
 }
 
@@ -104,8 +95,6 @@ impl<const T: usize> LandMap<T> {
         self.tiles.get_mut(index)
     }
 
-    /// Moves the square so that the robot in `cell` is in its middle. O(T) when the robot crosses
-    /// the middle of a patch.
     fn center(&mut self, cell: Cell) {
         while T > 0 && self.tiles.push(Known::default()).is_ok() {}
         let at = tile_of(cell);
@@ -119,7 +108,6 @@ impl<const T: usize> LandMap<T> {
         if self.origin == before {
             return;
         }
-        // Positions that were outside the old square are unknown.
         for place in self.places(self.origin) {
             let was_inside =
                 |at: i16, origin: i16| i32::from(at) - i32::from(origin) < i32::from(Self::SIDE) && at >= origin;
@@ -140,7 +128,7 @@ impl<const T: usize> LandMap<T> {
         let step = Duration::from_micros(params.forget_after.as_micros() >> 4);
         let since = self.aged_at.map(|at| now.since(at));
         match since {
-            // The clock went back, or wrapped halfway: start over.
+            // The clock wrapped halfway: start over.
             Some(since) if since >= Duration::ZERO => {
                 let due = since.as_micros().checked_div(step.as_micros()).unwrap_or(0).min(AGES.into());
                 if due <= 0 {
@@ -178,8 +166,8 @@ impl<const T: usize> LandMap<T> {
         }
     }
 
-    /// Adds a received patch. Tiles outside the square are dropped, and recent own observations are
-    /// kept; of all other tiles the newer one is kept. O([`PATCH_TILES`]).
+    /// Adds a received patch: the newer tile wins, except against recent own observations; tiles
+    /// outside the square are dropped. O([`PATCH_TILES`]).
     pub fn hear(&mut self, patch: &LandPatch) {
         for (at, tile) in patch.iter() {
             let Some(known) = self.get_mut(at) else { continue };
@@ -194,8 +182,7 @@ impl<const T: usize> LandMap<T> {
     }
 
     /// Returns the patch to send next: the one with the most unsent observations, and in every
-    /// second message one that was sent before, in turn, for robots that have missed it. `None` if
-    /// no tile is known. O(T).
+    /// second message an old one in turn, for robots that missed it. `None` without a tile. O(T).
     pub fn say(&mut self) -> Option<LandPatch> {
         self.repeats = !self.repeats;
         let news = self.corners().map(|corner| (corner, self.count(corner, |known| known.is_news)));

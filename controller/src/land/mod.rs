@@ -1,16 +1,13 @@
-//! Land beyond the window: coarse tiles of what robots have seen, small enough for messages, and
-//! the cost of a path across them.
+//! Land beyond the window: coarse tiles of what robots have seen, small enough for messages.
 //!
 //! A [`Tile`] stores the average cost of [`TILE`] x [`TILE`] cells and its age in one byte.
-//! [`LandMap`] keeps a square of tiles around the robot: its own observations ([`LandMap::see`])
-//! and those received ([`LandMap::hear`]) as a [`LandPatch`] of 32 tiles per message
-//! ([`LandMap::say`]). [`Outlook`] is the cheapest path onwards from each tile; [`crate::route`]
-//! uses it to price the exits of its window.
+//! [`LandMap`] keeps a square of tiles: own observations ([`LandMap::see`]) and received ones
+//! ([`LandMap::hear`]), sent as a [`LandPatch`] of 32 tiles ([`LandMap::say`]). [`Outlook`] is the
+//! cheapest path onwards from each tile; [`crate::route`] prices the exits of its window by it.
 //!
-//! Merging is by age: the newer tile wins, and of equally new ones the dearer, so that neither the
-//! order nor the repetition of messages changes the result. The robot's own observations override
-//! messages for a quarter of the lifetime of tiles. A message never adds a wall but only a high
-//! price, and it expires: a false report causes detours, but cannot wall a robot in.
+//! The newer tile wins, of equally new ones the dearer, so that order and repetition of messages do
+//! not matter. Own observations override messages for a quarter of the lifetime of tiles. A message
+//! never adds a wall but only a high price that expires: a false report cannot wall a robot in.
 
 mod map;
 mod outlook;

@@ -1,19 +1,13 @@
-//! The cheapest path onwards across the tiles.
-
 use super::{LandMap, TILE, Tile, tile_of};
 use crate::cost::{Cost, Gain};
 use crate::grid::{Cell, DIAGONAL, Norm, UNIT};
 use core::fmt::Debug;
 
-/// Sixteenths of a surplus that count.
-///
-/// Chosen on seed 1 of `staya experiment route --share` (six robots anywhere, 40 landscapes): dT
-/// 14.1, 14.8, 12.2, 14.3 % at 70, 100, 130, 160 obstacles; with 8, 14.7, 16.2, 12.3, 13.9 %; with
-/// 16, 15.6, 15.4, 12.3, 15.2 %.
+/// Sixteenths of a surplus that count, chosen on seed 1 of `staya experiment route --share` (dT
+/// 12.2 to 14.8 % at 70 to 160 obstacles; with 8, 12.3 to 16.2 %; with 16, 12.3 to 15.6 %).
 const BELIEVED_16: i64 = 10;
 const HALF_TILE: u32 = TILE.unsigned_abs() as u32 >> 1;
-/// Rounds of two sweeps each after which the search ends: a path that turns back more often is
-/// priced too high.
+/// Rounds of two sweeps; a path that turns back more often is priced too high.
 const ROUNDS: u8 = 12;
 
 /// The route parameters that matter here.
@@ -30,18 +24,15 @@ pub struct Gains {
 
 /// A source of knowledge about the land beyond the window.
 pub trait FarLand: Debug {
-    /// Calls `to` with the path to the cell `target` across the tiles; does nothing if no tile is
-    /// known.
-    ///
-    /// Bounded work: O(T) for a map of `T` tiles; 6 bytes per tile on the stack.
+    /// Calls `to` with the path to the cell `target` across the tiles, if any is known. O(T) for a
+    /// map of `T` tiles; 6 bytes per tile on the stack.
     fn look(&self, gains: &Gains, target: Cell, to: &mut dyn FnMut(&Outlook<'_>));
 }
 
-/// The cost of the path to the target from each tile, compared to its cost if no tile were known.
+/// The cost of the path to the target from each tile, compared to unknown land.
 #[derive(Clone, Copy, Debug)]
 pub struct Outlook<'a> {
     costs: &'a [Cost],
-    /// South-west tile.
     origin: Cell,
     bits: u32,
     target: Cell,
@@ -49,11 +40,11 @@ pub struct Outlook<'a> {
 }
 
 impl Outlook<'_> {
-    /// How much more (or less, below 0) the path from `cell` to the target costs than across
-    /// unknown land; interpolated between the centres of four tiles. 0 where no tile is known.
+    /// How much more (below 0: less) the path from `cell` to the target costs than across unknown
+    /// land; interpolated between four tiles, 0 where no tile is known.
     #[must_use]
     pub fn surplus(&self, cell: Cell) -> i64 {
-        // In eighths of a tile, from the centre of the first one.
+        // Eighths of a tile, from the centre of the first one.
         let last = (8 << self.bits) - 9;
         // Not `clamp`, which could panic.
         let along = |at: i16, origin: i16| (2 * i32::from(at) - 3 - 8 * i32::from(origin)).min(last).max(0);
@@ -69,7 +60,7 @@ impl Outlook<'_> {
             + at(1, 0) * east * (8 - north)
             + at(0, 1) * (8 - east) * north
             + at(1, 1) * east * north;
-        // Tiles are means, and the best path through them is cheaper.
+        // The best path through a tile is cheaper than its mean.
         (sum * BELIEVED_16) >> 10
     }
 }
@@ -84,16 +75,14 @@ fn unknown(gains: &Gains, from: Cell, to: Cell) -> Cost {
     gains.a3.of(tiles.saturating_mul(TILE.unsigned_abs().into()))
 }
 
-/// Scratch memory of a search, row by row from the south-west tile.
 struct Search<const T: usize> {
-    /// Price of a cell's length in the tile, as a [`Gain`] in sixteenths.
+    /// Price per cell, sixteenths.
     price: [u16; T],
     cost: [Cost; T],
 }
 
 impl<const T: usize> Search<T> {
-    /// Updates the tile `at` with paths over its neighbours on one side; returns whether it
-    /// improved.
+    /// Tries paths over the neighbours on one side; returns whether the tile improved.
     fn relax(&mut self, at: usize, (x, y): (i32, i32), sides: [(i32, i32); 4], norm: Norm) -> bool {
         let bits = LandMap::<T>::BITS;
         let inside = 0..1_i32 << bits;
@@ -108,7 +97,6 @@ impl<const T: usize> Search<T> {
             let (Some(&price), Some(&cost)) = (self.price.get(beside), self.cost.get(beside)) else { continue };
             let is_diagonal = dx != 0 && dy != 0 && norm == Norm::Euclidean;
             let length = if is_diagonal { DIAGONAL } else { UNIT };
-            // Half of the path lies in each tile.
             let step = (u32::from(own) + u32::from(price)).saturating_mul(length * HALF_TILE);
             best = best.min(cost.saturating_add(step));
         }
@@ -139,8 +127,7 @@ impl<const T: usize> Search<T> {
 }
 
 impl<const T: usize> LandMap<T> {
-    /// The price of a tile. An unknown tile beside known ones gets a mean of their prices and the
-    /// assumed price of unknown land, as land changes gradually.
+    /// Land changes gradually: unknown tiles get a mean of their neighbours and of unknown land.
     fn price(&self, gains: &Gains, at: Cell) -> u16 {
         let known =
             |tile: Tile| tile.ticks_16().map(|ticks| (u32::from(gains.a0.sixteenths()) * u32::from(ticks)) >> 4);
@@ -175,7 +162,6 @@ impl<const T: usize> FarLand for LandMap<T> {
             let (x, y) = place(at);
             let here = origin + Cell::new(x as i16, y as i16);
             *price = self.price(gains, here);
-            // From the edge straight on, unless the target is nearer.
             if (x, y) == to_target {
                 *cost = 0;
             } else if !is_inside && (is_edge(x) || is_edge(y)) {

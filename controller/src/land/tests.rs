@@ -14,7 +14,6 @@ fn at(x: i16, y: i16) -> Cell {
     Cell::new(x, y)
 }
 
-/// Shows the map `side` x `side` cells of impassability `u` from `corner` on.
 fn seeing(map: &mut Map, robot: Cell, corner: Cell, side: u16, u: u8) {
     let cells = vec![u; usize::from(side) * usize::from(side)];
     map.see(&Window::new(&cells, corner, side, side).unwrap(), robot);
@@ -84,21 +83,19 @@ fn new_tiles_are_sent_first_and_all_are_repeated_in_turn() {
     seeing(&mut map, at(16, 8), at(0, 0), 40, 3);
     let mut other = Map::new();
     seeing(&mut other, at(16, 8), at(100, 100), 4, 3);
-    // At least two patches wide and three high: every second message carries new tiles.
     for _ in 0..24 {
         other.hear(&map.say().unwrap());
     }
     let known =
         |map: &Map| (0..10).flat_map(|y| (0..10).map(move |x| at(x, y))).filter(|&t| map.get(t).is_known()).count();
     assert_eq!((known(&map), known(&other)), (100, 100));
-    // A new tile is sent in one of the next two messages, wherever it lies.
+    // In one of the next two messages, wherever it lies.
     seeing(&mut map, at(16, 8), at(36, 36), 4, 9);
     let told = [map.say().unwrap(), map.say().unwrap()];
     assert!(
         told.iter()
             .any(|patch| patch.iter().any(|(place, tile)| place == at(9, 9) && tile.ticks_16() == Some(144 - 16)))
     );
-    // A robot that missed these messages receives everything by repetition.
     let mut late = Map::new();
     seeing(&mut late, at(16, 8), at(100, 100), 4, 3);
     for _ in 0..24 {
@@ -154,7 +151,6 @@ fn a_hill_on_the_way_costs_and_a_valley_saves() {
     let over = surplus(&map, at(-2, 2), at(42, 2)).unwrap();
     let ticks = over as f64 / f64::from(crate::cost::TICK);
     assert!((30.0..70.0).contains(&ticks), "{ticks}");
-    // Behind it, and to targets on this side, the path is free.
     assert_eq!(surplus(&map, at(40, 2), at(56, 2)), Some(0));
     let mut valley = Map::new();
     for x in 0..10 {
@@ -181,7 +177,6 @@ proptest! {
     #[test]
     fn merging_is_commutative_associative_and_idempotent(a: u8, b: u8, c: u8) {
         let [a, b, c] = [a, b, c].map(|byte| LandPatch::from_bytes(at(0, 0), [byte; PATCH_TILES]).tiles[0]);
-        // An unknown tile may have any age; that is not a difference.
         let same = |a: Tile, b: Tile| a == b || !a.is_known() && !b.is_known();
         prop_assert!(same(a.merged(b), b.merged(a)));
         prop_assert!(same(a.merged(b).merged(c), a.merged(b.merged(c))));
@@ -219,7 +214,6 @@ proptest! {
         let said = map.say().unwrap();
         prop_assert!(said.corner.chebyshev(at(0, 0)) <= 16 + 8);
         map.look(&GAINS, at(100, 100), &mut |outlook| {
-            // Never cheaper than over the best land, nor dearer than over the worst.
             let most = i64::from(crate::cost::TICK) * 1000 * 32 * 4;
             assert!(outlook.surplus(at(0, 0)).abs() < most);
         });

@@ -8,18 +8,17 @@ pub(super) const TILE_BITS: u32 = 2;
 /// Cells along each side of a tile.
 pub const TILE: i16 = 1 << TILE_BITS;
 const CELLS: u32 = 1 << (2 * TILE_BITS);
-/// Number of visible cells from which a tile is known.
+/// Visible cells from which a tile is known.
 const ENOUGH: u32 = CELLS >> 1;
-/// Number of ages of a tile; beyond the last one it is forgotten.
+/// Ages of a tile; beyond the last one it is forgotten.
 pub const AGES: u8 = 16;
 
-/// The prices that a tile can have, in sixteenths of a tick per cell; number 0 is an unknown tile.
+/// Sixteenths of a tick per cell; number 0 is an unknown tile.
 const PRICES: [u16; 16] = [0, 16, 24, 32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 176, 256, 512];
-/// The contribution of a wall cell to the mean, ticks: a tile of walls has the highest price.
+/// A wall cell in the mean, ticks: a tile of walls has the highest price.
 const WALL_TICKS: u32 = 32;
 
-/// The price and the age of a tile. As a byte: the number of the price in the low four bits, the
-/// age above them.
+/// Price and age of a tile: the number of the price in the low four bits, the age above them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(transparent)]
@@ -37,8 +36,7 @@ impl Tile {
         Self(nearest.map_or(0, |(_, number)| number))
     }
 
-    /// The tile `at` as seen in the window; `None` if too little of it is visible. O(cells of a
-    /// tile).
+    /// The tile `at` as seen in the window; `None` if too little is visible. O(cells of a tile).
     #[must_use]
     pub fn seen(window: &Window<'_>, at: Cell) -> Option<Self> {
         let south_west = Cell::new(at.x << TILE_BITS, at.y << TILE_BITS);
@@ -98,8 +96,7 @@ pub const PATCH_HEIGHT: i16 = 4;
 /// Tiles of a patch.
 pub const PATCH_TILES: usize = PATCH_WIDTH as usize * PATCH_HEIGHT as usize;
 
-/// A piece of a robot's map for all robots: 32 x 16 cells. It is as reliable as its sender; see
-/// [`LandMap::hear`](super::LandMap::hear) for its effect.
+/// A piece of a robot's map, 32 x 16 cells, for [`LandMap::hear`](super::LandMap::hear).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LandPatch {

@@ -1,5 +1,4 @@
-//! Limits a velocity so that the robot cannot touch another one, however old the states of its
-//! neighbours are.
+//! Limits a velocity so that robots cannot touch at any age of their neighbours' states.
 
 use super::{Neighbor, NeighborTable, StalenessInflation};
 use crate::body::Body;
@@ -12,46 +11,38 @@ use heapless::Vec;
 #[cfg(all(test, feature = "wire"))]
 mod tests;
 
-/// Gap that remains between two bodies, millimetres: both positions are rounded to a millimetre
-/// along each axis, and both robots may exceed their limit by [`TOLERANCE_UM`].
+/// Gap that remains, millimetres: rounding of both positions along each axis, and [`TOLERANCE_UM`].
 const ROUNDING_MM: i32 = 3;
-/// Rounds in which a velocity is turned aside before it is shortened.
 const ROUNDS: u8 = 6;
-/// Excess that is accepted in the last round, micrometres; part of the rounding.
+/// Excess accepted in the last round, micrometres.
 const TOLERANCE_UM: i32 = 200;
 
-/// Limits a velocity by the gaps to the known robots.
+/// Limits a velocity by the gaps to the known robots, so that no two robots touch.
 ///
 /// | neighbour | where it may be |
 /// | --- | --- |
 /// | up to date | at its extrapolated position |
 /// | silent for t beyond a step | in a ball that grows at [`growth_mps`] |
-/// | lost | in that ball, which grows by at most [`max_m`] |
+/// | lost | in that ball, at most [`max_m`] larger |
 ///
 /// [`growth_mps`]: StalenessInflation::growth_mps
 /// [`max_m`]: StalenessInflation::max_m
 ///
 /// In a step the robot takes at most half of the gap to a neighbour, or all of it if that neighbour
-/// does not give way, minus the neighbour's own approach.
+/// does not give way, minus the neighbour's own approach. A robot inside such a ball stands still.
+/// The guarantee holds at any packet loss and in any blackout, as long as no robot is faster than
+/// `growth_mps` and bodies follow their commands.
 ///
 /// *Why half:* two robots that both take at most half of the gap in a step cannot touch, however
-/// long the step is. (D. Zhou, Z. Wang, S. Bandyopadhyay, M. Schwager, "Fast, on-line collision
-/// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017, express this as
-/// cells; here it limits the velocity that the safety layer has chosen.)
+/// long the step is (D. Zhou, Z. Wang, S. Bandyopadhyay, M. Schwager, "Fast, on-line collision
+/// avoidance for dynamic vehicles using buffered Voronoi cells", IEEE RA-L 2017). The rule also
+/// limits the ball of a silent neighbour that gives way.
 ///
-/// *ContactLossPolicy:* a silent neighbour that gives way keeps to the same rule. Thus the border of its ball
-/// comes nearer by at most half of the gap per step.
-///
-/// *Inertia:* the ball of a body with inertia follows its last course and grows by half of its
-/// acceleration times t^2, if that is less. The own robot takes no more of a gap than it can brake
-/// within.
+/// *Inertia:* the ball follows the last course of the body and grows by half of its acceleration
+/// times t^2, if that is less. The own robot takes no more of a gap than it can brake within.
 ///
 /// *Lost robots:* their balls stop growing at `max_m` only while at least half of all robots are
 /// fresh, or if [`may_be_alone`](Self::may_be_alone) is set.
-///
-/// A robot whose own centre lies inside such a ball stands still. No two robots touch at any packet
-/// loss and in any blackout, as long as no robot is faster than `growth_mps` and bodies follow
-/// their commands.
 #[derive(Clone, Copy, Debug)]
 pub struct GapLimit<'a, S> {
     /// Own body.
@@ -60,37 +51,32 @@ pub struct GapLimit<'a, S> {
     pub own: Position,
     /// Current time.
     pub now: Instant,
-    /// Age of the latest states in normal operation: a step, or the latency of the radio if that is
-    /// longer. Neighbours are taken to keep their velocities for this time, which is exact for one
-    /// step.
+    /// Age of the latest states in normal operation: a step, or the latency of the radio if longer.
+    /// Neighbours are taken to keep their velocities for this time.
     pub news: Duration,
     /// Growth of the balls around silent robots.
     pub inflation: StalenessInflation<S>,
-    /// Whether to treat lost robots as stationary even when most robots are lost.
+    /// Whether lost robots count as stationary even when most robots are lost.
     pub may_be_alone: bool,
 }
 
 #[derive(Clone, Copy)]
 struct Limit<S> {
-    /// Unit vector towards it.
     ahead: Vec3<S>,
-    /// Sine of the angle by which its direction may differ.
+    /// Sine of the angle by which `ahead` may be wrong.
     slant: S,
-    /// Distance that may be covered towards it in this step, metres. Negative, by at most the
-    /// tolerance, if the gap is already used up.
+    /// Permitted approach in this step, metres; negative, within tolerance, without a gap.
     room_m: S,
 }
 
 impl<S: Scalar> Limit<S> {
-    /// Returns the closing speed of `velocity_mps`, and the largest additional closing speed due to
-    /// the uncertain direction, m/s.
+    /// The closing speed, and the largest additional one due to the uncertain direction, m/s.
     fn closing(&self, velocity_mps: Vec3<S>) -> (S, S) {
         let closing = velocity_mps.dot(self.ahead);
         let side = if self.slant > S::ZERO { (velocity_mps - self.ahead * closing).norm() } else { S::ZERO };
         (closing, side * self.slant)
     }
 
-    /// The largest approach in `step_s` at `velocity_mps`, metres.
     fn taken(&self, velocity_mps: Vec3<S>, step_s: S) -> S {
         let (closing, side) = self.closing(velocity_mps);
         (closing + side) * step_s
@@ -98,11 +84,9 @@ impl<S: Scalar> Limit<S> {
 }
 
 impl<S: Scalar> GapLimit<'_, S> {
-    /// Returns the part of `velocity_mps`, m/s, that the gaps allow. The velocity is first turned
-    /// aside, without running into `obstacles`, then shortened. Returns `None` if a silent robot
-    /// may be at the own position: the robot must stand still.
-    ///
-    /// O(N + obstacles), with one or two square roots per robot; 20 N bytes of stack (`f32`).
+    /// Returns the part of `velocity_mps`, m/s, that the gaps allow: first turned aside, without
+    /// running into `obstacles`, then shortened. `None` if a silent robot may be at the own
+    /// position: stand still. O(N + obstacles); 20 N bytes of stack (`f32`).
     #[must_use]
     #[inline(never)]
     pub fn limit<const N: usize, P: Copy>(
@@ -120,7 +104,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         for other in &mut table.entries {
             let (limit, is_here) = self.limit_of(other, is_bad);
             is_hidden |= is_here;
-            // Cannot fail: both have capacity N.
+            // Both have capacity N.
             let _ = limits.push(limit);
         }
         let step_s = self.body.step_s;
@@ -135,7 +119,6 @@ impl<S: Scalar> GapLimit<'_, S> {
                     is_turned = true;
                 }
             }
-            // Another round would change nothing either.
             if !is_turned {
                 break;
             }
@@ -163,8 +146,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         (!is_hidden).then_some(v)
     }
 
-    /// Returns the limit that a robot imposes, and whether it can be at the own position. Stores
-    /// the gap bound.
+    /// Returns the limit, and whether the robot can be at the own position. Stores the gap bound.
     fn limit_of<P>(&self, other: &mut Neighbor<S, P>, is_bad: bool) -> (Limit<S>, bool) {
         let GapLimit { body, inflation, .. } = self;
         let age = other.age(self.now).unwrap_or(Duration::MAX);
@@ -175,8 +157,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         if is_parked {
             grown = grown.min(inflation.max_m);
         }
-        // Up to here the neighbour kept its reported velocity. With inertia it leaves that course
-        // gradually, so the course is extrapolated over its whole age.
+        // A body with inertia leaves its course gradually: extrapolate it over its whole age.
         let most = body.max_acceleration_mps2;
         let swerve_mps = most * (silent_s + body.step_s);
         let swerves = !is_parked && swerve_mps * S::HALF < inflation.growth_mps;
@@ -210,15 +191,14 @@ impl<S: Scalar> GapLimit<'_, S> {
         (Limit { ahead, slant, room_m: room_m.max(-S::from_micro(TOLERANCE_UM)) }, silent > 0 && grown >= distance)
     }
 
-    /// Braking distance of a body like the own one, metres; 0 without inertia.
+    /// Braking distance, metres; 0 without inertia.
     fn way_to_stand(&self, speed_mps: S) -> S {
         let most = self.body.max_acceleration_mps2;
         let speed = speed_mps.max(S::ZERO);
         if most >= S::MAX { S::ZERO } else { (speed * speed * S::HALF).checked_div(most).unwrap_or(S::ZERO) }
     }
 
-    /// Distance to cover in a step so that the body can stop within `left`, metres, which shrinks
-    /// at `growth_mps` until it stands.
+    /// Distance to cover in a step before braking within `left`, metres, shrinking at `growth_mps`.
     fn brakes(&self, left: S, growth_mps: S) -> S {
         let Body { step_s, max_acceleration_mps2: most, .. } = *self.body;
         if most >= S::MAX || left <= S::ZERO {

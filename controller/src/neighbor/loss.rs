@@ -3,39 +3,30 @@
 use crate::time::Duration;
 use serde::{Deserialize, Serialize};
 
-/// Number of silent periods that is not yet evidence of a gap.
+/// Silent periods that are not yet evidence of a gap.
 const SHORT: u16 = 3;
-/// All counts are halved at this count, so that old evidence loses weight.
+/// All counts are halved here, so that old evidence loses weight.
 const MEMORY: u16 = 1 << 14;
-/// Accepted false alarms of a robot per minute, over all of its neighbours: one in 10,000 minutes;
-/// Q24.
+/// Accepted false alarms of a robot per minute, over all neighbours: one in 10,000 minutes; Q24.
 const FALSE_ALARMS: u64 = 1_677;
 const MINUTE_US: i32 = 60_000_000;
-/// Largest number of silent periods that are examined one by one.
 const MOST_PERIODS: i32 = 64;
 
 /// Estimate of the packet loss, from gaps in the neighbours' sequence numbers.
 ///
-/// A gap is a loss of more than three consecutive frames of one sender. The estimate counts, over
-/// all neighbours, how often gaps begin and how long they last. As in the bad state of E. N.
-/// Gilbert's channel ("Capacity of a burst-noise channel", Bell System Technical Journal 39, 1960),
-/// a gap ends with equal probability at each frame.
-///
-/// That probability is a hazard estimate: observed ends per lost frame. A neighbour that was given
-/// up contributes its lost frames and no end, so a radio with long outages is recognised after the
-/// first one. Without evidence, the probabilities that a gap begins and that it ends are each 1/2
-/// per frame.
-///
-/// 8 bytes; constant work per frame.
+/// A gap is a loss of more than three consecutive frames of one sender. As in the bad state of E.
+/// N. Gilbert's channel ("Capacity of a burst-noise channel", Bell System Technical Journal 39,
+/// 1960), it ends with equal probability at each frame: observed ends per lost frame, over all
+/// neighbours. A neighbour that was given up contributes lost frames and no end, so long outages
+/// are recognised after the first one. Without evidence, gaps begin and end with probability 1/2
+/// per frame. 8 bytes; constant work per frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LossEstimate {
-    /// Frames sent by neighbours, received or not.
     frames: u16,
-    /// Gaps of more than [`SHORT`] frames.
     gaps: u16,
     ended: u16,
-    /// Frames lost in gaps, beyond the first [`SHORT`] of each.
+    /// Frames lost beyond the first [`SHORT`] of each gap.
     lost: u16,
 }
 
@@ -73,8 +64,8 @@ impl LossEstimate {
     /// Returns the silence beyond which a neighbour counts as lost.
     ///
     /// With `neighbors` robots that each send once per `period`, a working robot is mistaken for a
-    /// lost one less than once in 10,000 minutes. The result is between four periods and `longest`.
-    /// It is `longest` if 64 periods are not enough, which bounds the work.
+    /// lost one less than once in 10,000 minutes. The result is between four periods and `longest`,
+    /// which also replaces more than 64 periods.
     #[must_use]
     pub fn patience(&self, neighbors: usize, period: Duration, longest: Duration) -> Duration {
         let chance = |part: u16, whole: u16| {
@@ -105,7 +96,6 @@ mod tests {
     const PERIOD: Duration = Duration::from_millis(1_000);
     const LONGEST: Duration = Duration::from_millis(60_000);
 
-    /// A radio that loses frames in bursts.
     struct Radio {
         rng: Rng,
         begins: f64,
@@ -125,15 +115,13 @@ mod tests {
         }
     }
 
-    /// Returns the number of gaps above the patience among the frames of one neighbour, and the
-    /// final patience in periods.
+    /// Gaps of one neighbour above the patience, and the final patience in periods.
     fn false_alarms(radio: &mut Radio, frames: u32, estimate: &mut LossEstimate) -> (u32, i32) {
         let (mut missed, mut alarms, mut patience) = (0, 0, LONGEST);
         let mut is_given_up = false;
         for _ in 0..frames {
             if radio.loses() {
                 missed += 1;
-                // Lost in the first step in which its age exceeds the patience.
                 if !is_given_up && PERIOD.saturating_mul(missed) >= patience {
                     estimate.gave_up(u16::try_from(missed).unwrap());
                     (alarms, is_given_up) = (alarms + 1, true);
@@ -163,8 +151,7 @@ mod tests {
         for (seed, (begins, continues)) in (0..).zip([(0.01, 0.01), (0.1, 0.1), (0.3, 0.3), (0.02, 0.6), (0.4, 0.4)]) {
             let mut radio = Radio::new(seed, begins, continues);
             let mut estimate = LossEstimate::new();
-            // A million frames, one per second: 16,700 robot-minutes with one neighbour; the limit
-            // allows 1.7 alarms.
+            // 16,700 robot-minutes with one neighbour; the limit allows 1.7 alarms.
             let (alarms, patience) = false_alarms(&mut radio, 1_000_000, &mut estimate);
             assert!(alarms <= 8, "{alarms} alarms at {begins} {continues}, patience {patience}");
             assert!(patience < 60);
@@ -173,8 +160,7 @@ mod tests {
 
     #[test]
     fn long_outages_are_recognised_after_the_first_ones() {
-        // One frame in ten is lost independently; an outage of about 30 periods begins once in 500
-        // frames.
+        // One frame in ten is lost independently; every 500 frames about 30 are lost in a row.
         let (mut thin, mut spells) = (Radio::new(1, 0.1, 0.1), Radio::new(2, 0.002, 1.0 - 1.0 / 30.0));
         let mut estimate = LossEstimate::new();
         let (mut missed, mut given_up) = (0_u16, 0);

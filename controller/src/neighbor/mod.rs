@@ -1,10 +1,9 @@
 //! State of other robots: a neighbour table in a fixed buffer, silence and loss of neighbours,
 //! plausibility limits, tracking with sensors, and the gap to each neighbour.
 //!
-//! Start with [`NeighborTable`]. Entries are sorted by id, so results do not depend on the order in
-//! which packets arrive. Call [`NeighborTable::expire`] at the start of each step: the 32-bit clock
-//! cannot distinguish a neighbour that has been silent for 71.6 minutes from a fresh one, and a
-//! table that expires entries more often never holds such a neighbour.
+//! Start with [`NeighborTable`], and call [`NeighborTable::expire`] at the start of each step: the
+//! 32-bit clock cannot distinguish a neighbour silent for 71.6 minutes from a fresh one. Entries
+//! are sorted by id, so results do not depend on the order in which packets arrive.
 
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
@@ -34,12 +33,10 @@ pub use tie::tie;
 pub use track::Track;
 pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 
-/// A lost robot counts as out of range from this distance on, thousandths of the distance to the
-/// farthest fresh robot.
+/// Where a lost robot is out of range, thousandths of the distance to the farthest fresh robot.
 const LEAVES_FROM: i32 = 750;
 
-/// The last known state of one robot. `P` is the payload of its guidance law, of size 0 for laws
-/// without one.
+/// The last known state of one robot. `P` is the payload of its guidance law, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Neighbor<S, P = ()> {
@@ -67,28 +64,23 @@ pub struct Neighbor<S, P = ()> {
     pub slot: u8,
     /// The mode that it last reported.
     pub mode: Mode,
-    /// It has been silent for longer than [`Ages::expire_after`]. Only its last state is
-    /// remembered; its intentions no longer count.
+    /// It has been silent for longer than [`Ages::expire_after`]; only its last state is known.
     pub is_lost: bool,
-    /// Lower bound of the gap to the own body while it is silent, metres; maintained by [`GapLimit`].
+    /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`].
     pub gap_m: S,
     /// The last payload of its guidance law; the default until one arrives.
     pub payload: P,
 }
 
 impl<S: Scalar, P> Neighbor<S, P> {
-    /// Returns the time since its state was received, or `None` if that lies in the future, which
-    /// means that more than half of the clock's range has passed.
+    /// Returns the time since its state was received; `None` beyond half of the clock's range.
     #[must_use]
     pub fn age(&self, now: Instant) -> Option<Duration> {
         Some(now.since(self.heard)).filter(|age| *age >= Duration::ZERO)
     }
 
     /// Returns its offset from `from` at `now`, metres, if it kept its velocity for at most
-    /// `longest` after its state was received and then stopped.
-    ///
-    /// The bound keeps the extrapolation error of a silent robot bounded. [`Ages::stale_after`] is
-    /// a good value.
+    /// `longest` and then stopped. [`Ages::stale_after`] is a good bound.
     #[must_use]
     pub fn offset_at(&self, from: Position, now: Instant, longest: Duration) -> Vec3<S> {
         let span = self.age(now).map_or(longest, |age| age.min(longest));
@@ -100,10 +92,10 @@ impl<S: Scalar, P> Neighbor<S, P> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ages {
-    /// Age above which a neighbour is [`Knowledge::Stale`]: a few beacon periods. Shorter: a lossy
-    /// radio makes all neighbours stale. Longer: robots trust outdated positions.
+    /// Age above which a neighbour is [`Knowledge::Stale`]: a few beacon periods. Shorter: packet
+    /// loss makes neighbours stale. Longer: robots trust outdated positions.
     pub stale_after: Duration,
-    /// Age above which a neighbour is lost and only its last position is remembered. At most half
+    /// Age above which a neighbour is lost and only its last position is remembered; at most half
     /// an hour, so that the clock never wraps meanwhile.
     pub expire_after: Duration,
 }
@@ -160,17 +152,15 @@ type Entries<S, const N: usize, P> = heapless::Vec<Neighbor<S, P>, N, u16>;
 #[cfg(feature = "host")]
 type Entries<S, const N: usize, P> = crate::list::SparseVec<Neighbor<S, P>, N>;
 
-/// At most `N` robots, sorted by id: first the known robots, then the lost ones that are
-/// remembered.
+/// At most `N` robots, sorted by id: first the known robots, then the remembered lost ones.
 ///
-/// Bytes: `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the payload), and
-/// 16 more. With the feature `host`, only the memory of the stored robots.
+/// Bytes: 16, and `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the
+/// payload). With the feature `host`, only the memory of the stored robots.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTable<S, const N: usize, P = ()> {
     entries: Entries<S, N, P>,
     ages: Ages,
-    /// Distance to the farthest fresh robot when another robot was lost, metres, maximum over time;
-    /// 0 if that never happened.
+    /// Greatest distance to the farthest fresh robot when another one was lost, metres; 0: never.
     range_m: S,
 }
 
@@ -189,18 +179,16 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
 
     /// Stores `newcomer`, replacing the previous state of that robot. O(N).
     ///
-    /// A full table removes one robot. A robot for which `protect` returns true (the leader,
-    /// members of the formation's template) is removed only if it is lost. The candidates, in this
-    /// order:
+    /// A full table removes the first of these candidates; a robot for which `protect` returns true
+    /// (the leader, members of the formation's template) only if it is lost:
     /// 1. the robot with the oldest state, if older than [`Ages::expire_after`];
     /// 2. the robot farthest from `own`, if the newcomer is nearer or protected;
     /// 3. otherwise the newcomer is refused.
     ///
-    /// A [duplicate id](RobotId::duplicate) only replaces another duplicate, so a sender that forges
-    /// ids cannot crowd out other robots. The smaller id wins a tie. Distances are taken at the
-    /// extrapolated positions, and an unknown distance (NaN) counts as the largest. Thus the
-    /// content after a burst of beacons does not depend on their order, unless more than `N`
-    /// senders are protected.
+    /// A [duplicate id](RobotId::duplicate) only replaces another duplicate, so that forged ids
+    /// cannot crowd out other robots. The smaller id wins a tie; an unknown distance (NaN) is the
+    /// largest. Distances are extrapolated, so a burst of beacons gives the same content in any
+    /// order, unless more than `N` senders are protected.
     pub fn put(
         &mut self,
         newcomer: Neighbor<S, P>,
@@ -213,7 +201,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
         let place = self.place(newcomer.id);
         if place.is_none() {
-            // The robot may be among the lost ones.
             self.entries.retain(|entry| entry.id != newcomer.id);
         }
         if let Some(entry) = place.and_then(|i| self.entries.get_mut(i)) {
@@ -225,7 +212,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             let Some(victim) = self.victim(&newcomer, own, now, protect) else {
                 return Put::Refused;
             };
-            // The loss of a lost robot was already reported.
+            // Its loss was already reported.
             if self.place(victim).is_some() {
                 answer = Put::Evicted(victim);
             }
@@ -238,7 +225,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         answer
     }
 
-    /// Returns the robot to remove for `newcomer`, or `None` if the newcomer must be refused.
     fn victim(
         &self,
         newcomer: &Neighbor<S, P>,
@@ -251,7 +237,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             entry.is_lost || !protect(entry.id) && (!is_double || entry.id.duplicate_of().is_some())
         };
         let candidates = || self.entries.iter().filter(may_go);
-        // An age beyond half of the clock's range counts as the largest.
         let age = |entry: &Neighbor<S, P>| entry.age(now).unwrap_or(Duration::MAX);
         let stalest = candidates()
             .filter(|entry| !entry.is_lost && age(entry) > self.ages.expire_after)
@@ -269,19 +254,14 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     }
 
     /// Moves neighbours silent for longer than `longest` (at most [`Ages::expire_after`]) to the
-    /// list of lost robots. Reports each in the order of ids, and forgets robots silent for longer
-    /// than `remember`. O(N), and O(N) for each robot that is lost.
+    /// list of lost robots, reports each in the order of ids, and forgets robots silent for longer
+    /// than `remember`. Call it at the start of each step. O(N), and O(N) for each lost robot.
     ///
     /// These robots are not remembered:
-    /// - A robot that left radio range. It counts as out of range if its extrapolated position is
-    ///   at least 3/4 as far from `own` as the farthest fresh robot. If no robot is fresh, it must
-    ///   be at least as far as any robot that was in contact while another one was lost. If that
-    ///   never happened, all robots are remembered.
-    /// - One of two robots with an identical id, while the other one is fresh: a robot that was
-    ///   moved looks like two robots.
-    ///
-    /// Call it at the start of each step, so that the wrap of the 32-bit clock cannot make an old
-    /// entry look fresh.
+    /// - A robot that left radio range: its extrapolated position is at least 3/4 as far from `own`
+    ///   as the farthest fresh robot; without fresh robots, at least as far as any robot in contact
+    ///   while another one was lost. If that never happened, all robots are remembered.
+    /// - One of two robots with one id, while the other is fresh: the robot was moved.
     pub fn expire(
         &mut self,
         own: Position,
@@ -298,18 +278,15 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             self.entries.retain(|entry| entry.id != silent.id);
             let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));
             let farthest_m = fresh.map(distance).fold(S::ZERO, Scalar::max);
-            // A robot without any contact either knows the radio range from earlier losses or
-            // assumes that its radio failed.
+            // Without contact the own radio may have failed, unless earlier losses give the range.
             let range_m = if farthest_m > S::ZERO { farthest_m * S::from_milli(LEAVES_FROM) } else { self.range_m };
             self.range_m = self.range_m.max(farthest_m);
-            // The other robot with this id is fresh: it was moved, and was mistaken for a second
-            // robot.
+            // The other robot with this id is fresh: it was moved.
             let is_moved = || {
                 let mut others = self.as_slice().iter();
                 others.any(|entry| entry.id.duplicate() == silent.id.duplicate() && is_within(entry, ages.stale_after))
             };
             if (range_m <= S::ZERO || distance(&silent) < range_m) && !is_moved() {
-                // Cannot fail: an entry was removed above.
                 let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
                 self.sort_last();
             }
@@ -317,8 +294,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         self.entries.retain(|entry| !entry.is_lost || is_within(entry, remember));
     }
 
-    /// Stores the payload of robot `id`, if that robot is known. An invalid payload (`None`) is
-    /// ignored. O(log N).
+    /// Stores the payload of robot `id`, if known; ignores an invalid one (`None`). O(log N).
     pub fn tell(&mut self, id: RobotId, payload: Option<P>) {
         if let Some(payload) = payload
             && let Some(entry) = self.place(id).and_then(|i| self.entries.get_mut(i))
@@ -327,8 +303,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Removes the known robot `id` without remembering it as lost. Returns whether it was known.
-    /// O(N).
+    /// Removes robot `id` without remembering it as lost; returns whether it was known. O(N).
     pub fn forget(&mut self, id: RobotId) -> bool {
         let is_known = self.place(id).is_some();
         if is_known {
@@ -337,15 +312,14 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         is_known
     }
 
-    /// Moves all robots, including lost ones, to other positions; on a torus, to the image nearest
-    /// to the own robot. O(N).
+    /// Moves all robots, also lost ones; on a torus, to the image nearest to the own robot. O(N).
     pub fn see_at(&mut self, place: impl Fn(Position) -> Position) {
         for entry in &mut self.entries {
             entry.position = place(entry.position);
         }
     }
 
-    /// Resets the gap bounds of all robots. Call it in a step in which [`GapLimit`] is not used. O(N).
+    /// Resets all gap bounds. Call it in a step in which [`GapLimit`] is not used. O(N).
     pub fn forget_gaps(&mut self) {
         for entry in &mut self.entries {
             entry.gap_m = S::ZERO;
@@ -380,8 +354,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         }
     }
 
-    /// Iterates over the known robots in the order of ids. They are fresh or stale if
-    /// [`NeighborTable::expire`] is called in each step.
+    /// Iterates over the known robots in the order of ids.
     pub fn iter(&self) -> core::slice::Iter<'_, Neighbor<S, P>> {
         self.as_slice().iter()
     }
@@ -398,7 +371,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         self.entries.get(self.count()..).unwrap_or_default()
     }
 
-    /// Number of known robots, which precede the lost ones.
     fn count(&self) -> usize {
         match self.entries.last() {
             Some(last) if last.is_lost => self.entries.partition_point(|entry| !entry.is_lost),

@@ -1,5 +1,4 @@
-//! The nearest robots relative to the own one, as input of guidance and collision avoidance in the
-//! plane and in space.
+//! The nearest robots relative to the own one, as input of guidance and collision avoidance.
 
 use super::{Ages, Neighbor};
 use crate::geom::{Position, Vec3};
@@ -22,25 +21,22 @@ pub struct Nearby<S> {
     pub velocity_mps: Vec3<S>,
     /// Radius of the ball that contains it, metres.
     pub radius_m: S,
-    /// Whether it gives way: its state is fresh, and its agent steers it
-    /// ([`Mode::gives_way`](crate::robot::Mode::gives_way)).
+    /// Whether it is fresh and its [mode](crate::robot::Mode::gives_way) gives way.
     pub gives_way: bool,
     /// The mode that it last reported.
     pub mode: Mode,
-    /// It belongs to another flock. A flocking robot avoids it and otherwise ignores it.
+    /// It belongs to another flock: a flocking robot only avoids it.
     pub is_stranger: bool,
 }
 
-/// How the ball around a silent robot grows with the age of its state. By default it does not grow.
+/// How the ball around a silent robot grows with the age of its state; by default not at all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StalenessInflation<S> {
-    /// Growth of the radius, m/s: the highest speed of any robot. A lower value is not safe with a
-    /// bad radio; 0: no growth.
+    /// Growth of the radius, m/s: the highest speed of any robot; less is not safe. 0: no growth.
     pub growth_mps: S,
     /// Largest growth of the ball of a robot that is taken to stand, metres: how far away it may
-    /// have come to a stop. Larger: more places are blocked. Smaller: a robot may hit one that lies
-    /// in its way.
+    /// have stopped. More blocks more places; with less, a robot may hit one that lies in its way.
     pub max_m: S,
 }
 
@@ -52,8 +48,8 @@ impl<S: Scalar> StalenessInflation<S> {
     }
 }
 
-/// Returns the `K` robots nearest to `own` at `now` (or all, if fewer), nearest first, ties by id.
-/// A robot at an unknown distance (NaN) comes last.
+/// Returns the `K` robots nearest to `own` at `now`, nearest first, ties by id, unknown distances
+/// last.
 ///
 /// | neighbour | position | radius | gives way |
 /// | --- | --- | --- | --- |
@@ -62,11 +58,9 @@ impl<S: Scalar> StalenessInflation<S> {
 /// | older than [`Ages::expire_after`] | not included | | |
 ///
 /// The ball of a stale robot grows at half of the speed in `inflation`, because
-/// [`GapLimit`](super::GapLimit) covers its worst case. It never grows over the own ball of `own_radius_m`,
-/// since an outdated state alone is not a collision. A robot that is not of `flock`
-/// ([`Neighbor::slot`]) is a stranger.
-///
-/// O(N K); 24 K bytes of stack in addition to the result (`f32`, 32-bit pointers).
+/// [`GapLimit`](super::GapLimit) covers its worst case, and never over the own ball of
+/// `own_radius_m`. A robot that is not of `flock` ([`Neighbor::slot`]) is a stranger. O(N K); 24 K
+/// bytes of stack in addition to the result (`f32`, 32-bit pointers).
 #[must_use]
 pub fn nearest<S: Scalar, const K: usize>(
     known: &[Neighbor<S, impl Copy>],
@@ -84,7 +78,7 @@ pub fn nearest<S: Scalar, const K: usize>(
         }
         let offset_m = entry.offset_at(own, now, ages.stale_after);
         let key = offset_m.length_key();
-        // Entries come in the order of ids, so the larger id comes last among equal keys.
+        // Entries come in the order of ids: the larger id comes last among equal keys.
         if nearest.is_full() && nearest.last().is_some_and(|(farthest, ..)| *farthest > key) {
             nearest.pop();
         }
@@ -100,7 +94,7 @@ pub fn nearest<S: Scalar, const K: usize>(
 }
 
 /// Appends lost robots ([`NeighborTable::lost`](super::NeighborTable::lost)) as stationary balls
-/// that grow like those of stale robots. Robots beyond the capacity are dropped. O(lost).
+/// that grow like those of stale robots, up to the capacity. O(lost).
 pub fn add_lost<S: Scalar, const K: usize>(
     nearby: &mut Vec<Nearby<S>, K>,
     lost: &[Neighbor<S, impl Copy>],

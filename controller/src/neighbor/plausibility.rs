@@ -8,11 +8,10 @@ use crate::time::{Duration, Instant};
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// Number of robots whose positions can be in doubt at a time.
 const SUSPECTS: usize = 4;
 
-/// Limits on the values that a robot may report about itself. No honest robot reaches them, so they
-/// have no effect unless a robot lies or a sensor fails.
+/// Limits on the values that a robot may report about itself, for robots that lie or whose sensors
+/// fail.
 ///
 /// | reported value | effect |
 /// | --- | --- |
@@ -22,13 +21,10 @@ const SUSPECTS: usize = 4;
 /// | unreachable position, robots avoid by velocities | a second robot with that id is assumed |
 /// | unreachable position from either of the two, or on the grid | beacon refused |
 ///
-/// A position is unreachable if the robot cannot have moved there since its last beacon. When a
-/// second robot is assumed, both positions are avoided from then on. A robot with refused beacons
-/// counts as silent, so the gap grows with the distance that it may have moved. Its beacons are
-/// accepted again once it has reported mutually reachable positions for [`settle`](Self::settle).
-///
-/// A limit below the true value lets a robot run into a larger or faster one. If in doubt, choose a
-/// wide limit.
+/// A position is unreachable if the robot cannot have moved there since its last beacon. A robot
+/// with refused beacons counts as silent, until it has reported mutually reachable positions for
+/// [`settle`](Self::settle). With a limit below the true value a robot may run into a larger or
+/// faster one; if in doubt, choose a wide limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PlausibilityLimits<S> {
@@ -36,12 +32,11 @@ pub struct PlausibilityLimits<S> {
     pub max_radius_m: S,
     /// Highest speed of any robot, m/s. With [`Scalar::MAX`], positions are not checked.
     pub max_speed_mps: S,
-    /// Additional distance between two positions of one robot, metres: positioning errors, and
-    /// motion during the delay of a packet.
+    /// Additional distance between two positions, metres: positioning errors and delays.
     pub slack_m: S,
-    /// How long a robot that has jumped must report consistent positions before they are accepted;
-    /// 0: at once. Longer: a robot that was carried, or whose positioning has jumped, stays unseen
-    /// at its true position for longer. Shorter: a lying robot can jump more often.
+    /// How long a robot that has jumped must report consistent positions; 0: accepted at once. With
+    /// a longer time a robot that was moved stays unseen for longer; with a shorter one a lying
+    /// robot can jump more often.
     pub settle: Duration,
     /// The greatest id of any robot.
     pub last: RobotId,
@@ -94,8 +89,7 @@ impl<S: Scalar> PlausibilityLimits<S> {
         }
     }
 
-    /// Reduces the radius and the velocity of a report to the limits. Returns whether the radius
-    /// and whether the speed was above its limit.
+    /// Reduces radius and velocity to the limits. Returns whether each exceeded its limit.
     #[must_use]
     pub fn cut<P>(&self, said: &mut Neighbor<S, P>) -> (bool, bool) {
         let is_large = said.radius_m > self.max_radius_m;
@@ -144,19 +138,18 @@ type Jumpers = heapless::Vec<Suspect, SUSPECTS, u8>;
 #[cfg(feature = "host")]
 type Jumpers = crate::list::SparseVec<Suspect, SUSPECTS>;
 
-/// Robots that reported an unreachable position recently. 100 bytes; with the feature `host`, only
-/// the memory of its entries.
+/// Robots that reported an unreachable position recently. 100 bytes (less with `host`).
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PlausibilityFilter(Jumpers);
 
 /// The verdict on an unreachable position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The robot has reported consistent positions for long enough: accept it.
+    /// Accepted: the robot has reported consistent positions for long enough.
     Settled,
     /// Not accepted yet.
     Stands,
-    /// Not accepted yet, and the first unreachable position of this robot.
+    /// Not accepted, and the first unreachable position of this robot.
     Begins,
 }
 
@@ -167,11 +160,9 @@ impl PlausibilityFilter {
         Self(Jumpers::new())
     }
 
-    /// Judges a robot that reports, at time `at`, a position that it cannot have reached. A robot
-    /// whose last report is older than `longest` starts again. O(1).
-    ///
-    /// If all entries are in use, the robot stays in doubt until another one has been silent for
-    /// `longest`.
+    /// Judges a robot that reports, at time `at`, a position that it cannot have reached; it starts
+    /// again if its last report is older than `longest`. If all entries are in use, it stays in
+    /// doubt until another one has been silent for `longest`. O(1).
     pub fn judge<S: Scalar>(
         &mut self,
         id: RobotId,
@@ -192,7 +183,7 @@ impl PlausibilityFilter {
                 suspect.since
             }
             None => {
-                // A robot without an entry stays in doubt.
+                // Without an entry a robot stays in doubt.
                 let _ = self.0.push(Suspect { id, place, since: at, heard: at });
                 at
             }

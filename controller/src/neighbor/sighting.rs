@@ -1,5 +1,4 @@
-//! Detections of other robots by sensors, the parameters of tracking them, and the counts of a
-//! step.
+//! Detections of other robots by sensors, parameters of tracking, and counts of a step.
 
 use crate::geom::Vec3;
 use crate::robot::RobotId;
@@ -7,20 +6,16 @@ use crate::scalar::{Scalar, cast};
 use crate::time::Duration;
 use serde::{Deserialize, Serialize};
 
-/// A detection of another robot by the robot's own sensors.
+/// A detection of another robot by the robot's own sensors (camera, UWB, motion capture).
 ///
-/// The position is relative to the own one: a camera or UWB measures it without a common frame, so
-/// a robot with odometry alone can avoid other robots. Beacons are in the common frame; merging
-/// them with detections requires it. Motion capture reports positions in the common frame; subtract
-/// the own position.
+/// Its position is relative to the own one, so a robot with odometry alone can avoid others.
+/// Beacons are in the common frame; merging them with detections requires that frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sighting<S> {
-    /// Its position minus the own position at the time of the detection, metres, along world axes
-    /// (not body axes).
+    /// Its position minus the own position at the time of the detection, metres, along world axes.
     pub offset_m: Vec3<S>,
-    /// Standard deviation of the offset along each axis, metres; above 0. Values below 4 mm count
-    /// as 4 mm.
+    /// Standard deviation of the offset along each axis, metres; above 0, at least 4 mm is used.
     pub deviation_m: S,
     /// Time since the detection; 0 or more.
     pub age: Duration,
@@ -28,8 +23,7 @@ pub struct Sighting<S> {
     pub radius_m: S,
     /// The id, if the sensor identifies the robot; `None` for an anonymous detection.
     pub id: Option<RobotId>,
-    /// Its world velocity and the standard deviation along each axis, m/s, if the sensor measures
-    /// it.
+    /// Its world velocity and the standard deviation along each axis, m/s, if measured.
     pub velocity_mps: Option<(Vec3<S>, S)>,
 }
 
@@ -38,28 +32,24 @@ pub struct Sighting<S> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TrackParams<S> {
     /// Standard deviation of the other robots' accelerations, m/s^2. Larger: the estimate follows
-    /// turns sooner and weights each detection more. Smaller: it is smoother and lags behind turns.
+    /// turns sooner. Smaller: it is smoother and lags behind.
     pub acceleration_mps2: S,
-    /// Standard deviation of the velocity of a new track along each axis, m/s: about the speed of
-    /// other robots.
+    /// Standard deviation of the velocity of a new track, m/s: about the speed of other robots.
     pub speed_mps: S,
-    /// Standard deviation of the positions in beacons, metres: the positioning error of the sender.
+    /// Standard deviation of the positions in beacons, metres: the sender's positioning error.
     pub heard_m: S,
-    /// Standard deviation of the velocities in beacons, m/s: how well a body follows its reported
-    /// velocity.
+    /// Standard deviation of the velocities in beacons, m/s: how well bodies follow them.
     pub heard_mps: S,
-    /// Largest distance between a detection and the predicted position of its track, in standard
-    /// deviations. A detection that would overlap the body of the track matches at any value.
-    /// Larger: two robots that pass each other are confused. Smaller: one robot becomes two.
+    /// Largest distance between a detection and the prediction of its track, in standard
+    /// deviations; a detection that would overlap the body matches anyway. Larger: robots that pass
+    /// each other are confused. Smaller: one robot becomes two.
     pub gate: S,
     /// Standard deviations of the position that are added to the radius of a tracked robot.
-    /// Smaller: errors lead to overlaps. Larger: crowds come to a stop. (D. Hennes, D. Claes, W.
-    /// Meeussen, K. Tuyls, "Multi-robot collision avoidance with localization uncertainty", AAMAS
-    /// 2012, section 3: bodies grow by the localization error.)
+    /// Smaller: overlaps. Larger: crowds stop. (D. Hennes, D. Claes, W. Meeussen, K. Tuyls,
+    /// "Multi-robot collision avoidance with localization uncertainty", AAMAS 2012, section 3.)
     pub margin: S,
-    /// Time after which a robot without beacons that is out of sight is forgotten. Such a robot is
-    /// occluded or out of view, so its silence does not mean that it is near. Longer: a robot that
-    /// reappears is known sooner, and its last position stays blocked for longer. Above
+    /// Time after which a robot without beacons that is out of sight is forgotten. Longer: a robot
+    /// that reappears is known sooner, and its last position stays blocked. Above
     /// [`Ages::stale_after`](super::Ages::stale_after) it counts as silent meanwhile.
     pub forget: Duration,
 }
@@ -88,18 +78,15 @@ pub struct Sighted {
     pub known: u16,
     /// Started a new track.
     pub new: u16,
-    /// Repeated detections of one robot: with an id already seen in this step, or inside the body
-    /// of a robot already seen.
+    /// Repeated: an id already seen in this step, or inside the body of a robot already seen.
     pub repeated: u16,
-    /// Invalid: a value that is not a number, a deviation of 0 or less, a negative age, the own id,
-    /// or an id that no robot can have.
+    /// Invalid: not a number, deviation of 0 or less, negative age, own or impossible id.
     pub refused: u16,
-    /// Dropped because all detections or tracks of the fixed buffers are in use.
+    /// Dropped: all detections or tracks of the fixed buffers are in use.
     pub no_room: u16,
 }
 
 impl<S: Scalar> Sighting<S> {
-    /// Returns whether this can be a detection by robot `own`.
     pub(super) fn is_sound(&self, own: RobotId) -> bool {
         let Self { offset_m, deviation_m, age, radius_m, id, velocity_mps } = self;
         let is_size = |x: S| x.is_finite() && x >= S::ZERO;

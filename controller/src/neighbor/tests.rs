@@ -9,8 +9,7 @@ fn at(micros: u32) -> Instant {
     Instant::from_micros(micros)
 }
 
-/// A robot `x` metres east of the origin. If `x` is NaN, its velocity is NaN and its position
-/// unknown.
+/// `x` metres east of the origin; if `x` is NaN, the velocity is NaN.
 fn standing(id: u32, x: f32, heard: Instant) -> Neighbor<f32> {
     let beacon = Beacon::default();
     let mut neighbor = Neighbor::from_beacon(RobotId(id), &beacon, heard);
@@ -25,7 +24,6 @@ fn place(x: f32, y: f32) -> Option<Position> {
     Position::ORIGIN.moved(Vec3::new(x, y, 0.0))
 }
 
-/// The ids of the nearest robots, nearest first.
 fn nearest_ids<const N: usize, const K: usize>(table: &NeighborTable<f32, N>, own: Position) -> StdVec<u32> {
     let nearest = nearest::<f32, K>(table.as_slice(), 0, own, 0.0, at(0), &AGES, &INFLATION);
     nearest.iter().map(|near| near.id.0).collect()
@@ -47,7 +45,6 @@ fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> S
     lost
 }
 
-/// A table whose robots 1, 2, ... are at 1 m, 2 m, ...
 fn full<const N: usize>(now: Instant) -> NeighborTable<f32, N> {
     let mut table = NeighborTable::new(AGES);
     for i in 1..=N as u32 {
@@ -93,7 +90,7 @@ fn full_table_evicts_the_stalest_expired_one_even_for_a_far_newcomer() {
     let _ = put(&mut table, standing(2, 2.0, at(100)), at(100));
     let _ = put(&mut table, standing(4, 4.0, at(9_000_000)), at(9_000_000));
     let now = at(9_000_000);
-    // Robots 1 and 3 are equally old: the larger id is removed.
+    // 1 and 3 are equally old: the larger id is removed.
     assert_eq!(put(&mut table, standing(8, 800.0, now), now), Put::Evicted(RobotId(3)));
     assert_eq!(put(&mut table, standing(9, 900.0, now), now), Put::Evicted(RobotId(1)));
     assert_eq!(put(&mut table, standing(7, 700.0, now), now), Put::Evicted(RobotId(2)));
@@ -104,7 +101,6 @@ fn full_table_evicts_the_stalest_expired_one_even_for_a_far_newcomer() {
 fn full_table_evicts_the_farthest_for_a_nearer_one_only() {
     let mut table = full::<4>(at(0));
     assert_eq!(put(&mut table, standing(9, 4.5, at(0)), at(0)), Put::Refused);
-    // At equal distance the smaller id stays.
     assert_eq!(put(&mut table, standing(9, -4.0, at(0)), at(0)), Put::Refused);
     assert_eq!(put(&mut table, standing(9, -3.5, at(0)), at(0)), Put::Evicted(RobotId(4)));
     assert_eq!(ids(&table), [1, 2, 3, 9]);
@@ -123,7 +119,6 @@ fn protected_robots_stay_and_come_in() {
     let old = at(9_000_000);
     let far = |id| standing(id, 1000.0, old);
     let protect = |id: RobotId| id.0 >= 3;
-    // All are expired, but the protected robot 3 stays; after that no robot can be removed.
     assert_eq!(table.put(far(4), Position::ORIGIN, old, protect), Put::Evicted(RobotId(2)));
     assert_eq!(table.put(far(5), Position::ORIGIN, old, protect), Put::Evicted(RobotId(1)));
     assert_eq!(table.put(far(6), Position::ORIGIN, old, protect), Put::Refused);
@@ -168,10 +163,8 @@ fn the_ball_of_a_silent_neighbour_grows_until_it_expires() {
     };
     assert_eq!(look(0, 0.5), Some((10.0, -2.0, 0.25, true)));
     assert_eq!(look(1_000, 0.5), Some((8.0, -2.0, 0.25, true)));
-    // The growth is half a metre per second, at most a metre.
     assert_eq!(look(2_000, 0.5), Some((8.0, 0.0, 0.75, false)));
     assert_eq!(look(5_000, 0.5), Some((8.0, 0.0, 1.25, false)));
-    // The ball never grows over the own one, even if they already overlap.
     assert_eq!(look(5_000, 7.5), Some((8.0, 0.0, 0.5, false)));
     assert_eq!(look(5_000, 9.0), Some((8.0, 0.0, 0.25, false)));
     assert_eq!(look(5_001, 0.5), None);
@@ -198,7 +191,6 @@ fn knowledge_ages_from_fresh_to_stale_to_unknown() {
     assert!(matches!(get(5_000_000), Knowledge::Stale(_)));
     assert_eq!(get(5_000_001), Knowledge::Unknown);
     assert_eq!(get(i32::MAX), Knowledge::Unknown);
-    // After half of the clock's range the difference is negative.
     assert_eq!(get(i32::MIN), Knowledge::Unknown);
     assert_eq!(table.get(RobotId(2), heard), Knowledge::Unknown);
 }
@@ -217,7 +209,7 @@ fn expiry_reports_each_lost_robot_once_in_order() {
 fn lost_robots_are_remembered_until_they_are_received_or_too_old() {
     let mut table = full::<4>(at(0));
     let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
-    // Robot 2 is not fresh any more, so it does not determine the radio range.
+    // Robot 2 is not fresh, so it does not determine the radio range.
     let remember = Duration::from_millis(20_000);
     let lost = |table: &NeighborTable<f32, 4>| table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>();
     let mut told = StdVec::new();
@@ -230,8 +222,7 @@ fn lost_robots_are_remembered_until_they_are_received_or_too_old() {
     let now = at(6_000_000);
     assert_eq!(put(&mut table, standing(3, 3.0, now), now), Put::Inserted, "found again");
     assert_eq!((ids(&table), lost(&table)), ([2, 3].into(), [1, 4].into()));
-    // The table is full: the farthest robot is removed, even if lost. A reported loss is not
-    // reported again.
+    // The farthest is removed, even if lost; a reported loss is not reported again.
     assert_eq!(put(&mut table, standing(9, 1.5, now), now), Put::Inserted);
     assert_eq!((ids(&table), lost(&table)), ([2, 3, 9].into(), [1].into()));
     table.expire(Position::ORIGIN, at(20_000_001), (Duration::MAX, remember), |_| {});
@@ -249,7 +240,6 @@ fn a_robot_lost_beyond_all_fresh_ones_is_not_remembered() {
     assert_eq!(table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>(), [1, 2]);
 }
 
-/// A flock on its way soon reaches the last position of a robot that left it.
 #[test]
 fn a_robot_that_drives_out_of_range_is_not_remembered() {
     let mut table = NeighborTable::<f32, 4>::new(AGES);
@@ -266,7 +256,6 @@ fn a_robot_that_drives_out_of_range_is_not_remembered() {
     assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 4]));
 }
 
-/// Earlier losses at the edge of the radio range prove that the radio works.
 #[test]
 fn the_last_robot_out_of_range_is_remembered_unless_others_left_earlier() {
     let left = |others: &[(u32, f32)]| {
@@ -292,7 +281,6 @@ fn the_last_robot_out_of_range_is_remembered_unless_others_left_earlier() {
 #[test]
 fn silence_beyond_half_the_clock_expires() {
     let mut table = full::<2>(at(0));
-    // 40 minutes: the wrapped difference is negative.
     assert_eq!(expired(&mut table, at(2_400_000_000)), [1, 2]);
 }
 
@@ -336,7 +324,7 @@ fn a_beacon_is_converted_to_metres_and_the_own_clock() {
     assert_eq!((n.heading, n.slot, n.mode), (Dir::North, 3, Mode::Cruise));
 }
 
-/// One robot per id, at small whole distances so that ties occur.
+/// Small whole distances, so that ties occur.
 fn robots() -> impl Strategy<Value = StdVec<(u32, i8, i8)>> {
     proptest::collection::btree_map(1..60u32, (-4..4i8, -4..4i8), 0..40)
         .prop_map(|map| map.into_iter().map(|(id, (x, y))| (id, x, y)).collect())
@@ -352,7 +340,6 @@ fn fill(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool) -> Neighbor
     table
 }
 
-/// The expected content of the table, by sorting all robots.
 fn expected(robots: &[(u32, i8, i8)], protect: impl Fn(RobotId) -> bool, k: usize) -> StdVec<u32> {
     let mut sorted = robots.to_vec();
     sorted.sort_by_key(|&(id, x, y)| {

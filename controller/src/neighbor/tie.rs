@@ -1,5 +1,3 @@
-//! The direction in which each of two robots at an identical position moves.
-
 use crate::geom::Vec2;
 use crate::rand::Rng;
 use crate::robot::RobotId;
@@ -8,11 +6,8 @@ use crate::scalar::Scalar;
 const PURPOSE: u32 = 0x7469_6573; // "ties"
 
 /// Returns the direction in which robot `own` moves if `other` is at exactly the same position: a
-/// unit vector in the plane. The other robot gets the opposite direction, so the two separate
-/// without communication. Zero if both ids are equal.
-///
-/// The direction depends on the pair, so several robots at one position do not form a line.
-/// Constant work.
+/// unit vector in the plane, opposite for the other robot; zero if both ids are equal. It depends
+/// on the pair, so several robots at one position do not form a line. Constant work.
 #[must_use]
 pub fn tie<S: Scalar>(own: RobotId, other: RobotId) -> Vec2<S> {
     const STEPS: i32 = 1 << 15;

@@ -1,5 +1,3 @@
-//! The track of one neighbour that sensors detect: a Kalman filter.
-
 use super::sighting::{Sighting, TrackParams};
 use crate::geom::{Position, Vec3};
 use crate::robot::RobotId;
@@ -7,19 +5,15 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
-/// Smallest variance of a measured position, 10^-6 m^2: (4 mm)^2. Positions are whole millimetres,
-/// and fixed point has no smaller square.
+/// Smallest variance of a position, 10^-6 m^2: (4 mm)^2, as positions are whole millimetres.
 const LEAST_VARIANCE: i32 = 16;
 
-/// Estimate of the position and velocity of one neighbour, from detections and beacons.
+/// Kalman filter for the position and velocity of one neighbour, from detections and beacons.
 ///
-/// A Kalman filter for constant velocity with white noise of the acceleration (Y. Bar-Shalom, X. R.
-/// Li, T. Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section
-/// 6.3.2: the discrete model). Errors are equal along all axes, so one 2 x 2 covariance serves all
-/// axes. A measurement older than the last one is first extrapolated to the time of the track,
-/// together with its error.
-///
-/// 80 bytes (`f32`); constant work.
+/// Constant velocity with white noise of the acceleration (Y. Bar-Shalom, X. R. Li, T. Kirubarajan,
+/// "Estimation with Applications to Tracking and Navigation", 2001, section 6.3.2: the discrete
+/// model), with one 2 x 2 covariance for all axes. A late measurement is first extrapolated to the
+/// time of the track, together with its error. 80 bytes (`f32`); constant work.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Track<S> {
     /// Id, or a number that only the own robot knows ([`RobotId::is_local`]).
@@ -28,7 +22,6 @@ pub struct Track<S> {
     pub at: Instant,
     /// World position.
     pub position: Position,
-    /// The part of the position below a millimetre, metres.
     rest_m: Vec3<S>,
     /// World velocity, m/s.
     pub velocity_mps: Vec3<S>,
@@ -42,7 +35,7 @@ pub struct Track<S> {
     pub radius_m: S,
     pub(super) seen: Option<Instant>,
     pub(super) heard: Option<Instant>,
-    /// The entry of the neighbour table that is already part of this estimate.
+    /// The table entry that is already part of this estimate.
     pub(super) known: Option<(Instant, Position)>,
 }
 
@@ -55,7 +48,6 @@ fn seconds<S: Scalar>(span: Duration) -> S {
 }
 
 impl<S: Scalar> Track<S> {
-    /// Starts a track at a position, with an unknown velocity.
     pub(super) fn new(id: RobotId, at: Instant, position: Position, deviation_m: S, params: &TrackParams<S>) -> Self {
         Self {
             id,
@@ -73,7 +65,6 @@ impl<S: Scalar> Track<S> {
         }
     }
 
-    /// Sets the velocity of a new track and its standard deviation, m/s.
     pub(super) fn goes(&mut self, velocity_mps: Vec3<S>, deviation_mps: S) {
         (self.velocity_mps, self.velocity_variance) = (velocity_mps, variance(deviation_mps));
     }
@@ -84,12 +75,12 @@ impl<S: Scalar> Track<S> {
         self.position_variance.sqrt()
     }
 
-    /// Its offset from `from` at the time of the estimate, metres.
+    /// Offset at the time of the estimate, metres.
     pub(super) fn offset_m(&self, from: Position) -> Vec3<S> {
         self.position.since(from) + self.rest_m
     }
 
-    /// Returns the estimate at a later time; unchanged for an earlier time.
+    /// An earlier time leaves the estimate unchanged.
     #[must_use]
     pub(super) fn predicted(mut self, to: Instant, params: &TrackParams<S>) -> Self {
         let span = to.since(self.at);
@@ -115,7 +106,6 @@ impl<S: Scalar> Track<S> {
         }
     }
 
-    /// Updates the estimate with a detection at `place` at time `at`.
     pub(super) fn see(&mut self, sighting: &Sighting<S>, place: Position, at: Instant, params: &TrackParams<S>) {
         let off = self.off(place, sighting.deviation_m, at, params);
         *self = self.predicted(at, params);
@@ -137,7 +127,7 @@ impl<S: Scalar> Track<S> {
         self.seen = Some(self.seen.filter(|seen| at.is_before(*seen)).unwrap_or(at));
     }
 
-    /// Updates the estimate with a beacon: the position at `at`, and the velocity since then.
+    /// Updates the position at `at` and the velocity since then.
     pub(super) fn hear(&mut self, position: Position, velocity_mps: Vec3<S>, at: Instant, params: &TrackParams<S>) {
         *self = self.predicted(at, params);
         let late = seconds::<S>(self.at.since(at));
@@ -147,8 +137,7 @@ impl<S: Scalar> Track<S> {
         self.heard = Some(at);
     }
 
-    /// Updates with a measured position, `way_m` away from `place`, of a variance in m^2. The
-    /// measurement and the estimate are weighted by their inverse variances.
+    /// The position is `way_m` away from `place`; the variance is in m^2.
     fn correct_position(&mut self, place: Position, way_m: Vec3<S>, variance: S) {
         let known = self.position_variance;
         let gain = |of: S| of.checked_div(known + variance);
@@ -177,9 +166,8 @@ impl<S: Scalar> Track<S> {
         self.velocity_variance = known * left;
     }
 
-    /// Returns the distance, in standard deviations, between the estimate and a measured position
-    /// of a body of `radius_m`. `None` if it is beyond the gate and the two bodies would not
-    /// overlap.
+    /// Distance between the estimate and a measured position of a body of `radius_m`, in standard
+    /// deviations. `None` beyond the gate, unless the two bodies would overlap.
     pub(super) fn fit(
         &self,
         place: Position,
@@ -192,8 +180,6 @@ impl<S: Scalar> Track<S> {
         (surprise <= params.gate || off_m < self.radius_m + radius_m).then_some(surprise)
     }
 
-    /// Distance between a measured position and the estimate, in metres and in standard deviations;
-    /// `None` if it cannot be computed.
     fn off(&self, place: Position, deviation_m: S, at: Instant, params: &TrackParams<S>) -> Option<(S, S)> {
         let then = self.predicted(at, params);
         // The displacement since a late measurement is only as certain as the velocity.
@@ -204,7 +190,6 @@ impl<S: Scalar> Track<S> {
     }
 }
 
-/// The square of a standard deviation, at least [`LEAST_VARIANCE`].
 fn variance<S: Scalar>(deviation: S) -> S {
     square(deviation).max(S::from_micro(LEAST_VARIANCE))
 }

@@ -1,7 +1,4 @@
-//! Tracks robots that sensors detect (camera, UWB, motion capture) and merges these tracks with
-//! received beacons.
-//!
-//! Start with [`Tracker`].
+//! Merges tracks of robots that sensors detect with received beacons ([`Tracker`]).
 
 use super::sighting::{Sighted, Sighting, TrackParams};
 use super::track::Track;
@@ -23,7 +20,6 @@ pub const TRACKS: usize = 16;
 /// Detections of a step that are processed; further ones are counted in [`Sighted::no_room`].
 pub const SIGHTINGS: usize = 32;
 
-/// The cell of a robot in an unknown cell: the corner of all maps.
 const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 
 /// Assigns detections and beacons to tracks, and writes each track into the neighbour table.
@@ -34,32 +30,27 @@ const NO_CELL: Cell = Cell::new(i16::MIN, i16::MIN);
 /// | detection without an id | the closest track; a new track |
 /// | beacon | the track with that id; the closest matching anonymous track; a new track |
 ///
-/// - An anonymous track adopts the id of the detection or beacon that is assigned to it.
-/// - Detections without an id are assigned best pairs first, one detection per track and step
-///   (greedy nearest neighbour: S. Blackman, R. Popoli, "Design and Analysis of Modern Tracking
-///   Systems", 1999, section 6.4). One inside the body of a robot already detected in this step
-///   does not start a track.
-/// - A detection matches a track inside the gate. Outside the gate it still matches if the two
-///   bodies would overlap: two robots cannot be there, so it must be one robot after an unexpected
-///   turn.
+/// - An anonymous track adopts the id of a detection or beacon that is assigned to it.
+/// - Detections without an id are assigned best pairs first, one per track and step (greedy nearest
+///   neighbour: S. Blackman, R. Popoli, "Design and Analysis of Modern Tracking Systems", 1999,
+///   section 6.4). One inside the body of a robot already detected starts no track.
+/// - A detection matches a track inside the gate, or if the two bodies would overlap: then it must
+///   be one robot after an unexpected turn.
 ///
-/// Measurements are weighted by their error, which grows with their age ([`Track`]). A tracked
-/// neighbour has the fused position, the time of its last measurement, and a radius enlarged by
-/// [`margin`](TrackParams::margin) standard deviations. A neighbour known from beacons alone is
-/// stored unchanged. A neighbour known from detections alone has no leader, no cell and no payload;
-/// it counts as a member of the own flock that gives way.
-///
-/// Memory: 16 tracks of 80 bytes (`f32`).
+/// A tracked neighbour has the fused position, the time of its last measurement, and a radius
+/// enlarged by [`margin`](TrackParams::margin) standard deviations. A neighbour known from beacons
+/// alone is stored unchanged. One known from detections alone has no leader, no cell and no
+/// payload; it counts as a member of the own flock that gives way. 16 tracks of 80 bytes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Tracker<S> {
     params: TrackParams<S>,
     tracks: Vec<Track<S>, TRACKS>,
     displaced: Vec<Displaced, TRACKS>,
-    /// Number of anonymous tracks so far; wraps.
+    /// Anonymous tracks so far; wraps.
     nameless: u16,
 }
 
-/// A detected robot whose track was replaced by a nearer one.
+/// A robot whose track was replaced by a nearer one.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Displaced {
     id: RobotId,
@@ -67,7 +58,6 @@ struct Displaced {
     known: Option<(Instant, Position)>,
 }
 
-/// A detection with its position and time in the world.
 struct Placed<'a, S> {
     sighting: &'a Sighting<S>,
     place: Position,
@@ -95,9 +85,7 @@ impl<S: Scalar> Tracker<S> {
     }
 
     /// Processes the detections of robot `own`, at `position` with `velocity_mps`, at time `now`.
-    ///
-    /// O(SIGHTINGS * TRACKS) predictions, then one pass over all pairs per track; 3 KiB of stack
-    /// (`f32`).
+    /// O(SIGHTINGS * TRACKS) predictions, and a pass over all pairs per track; 3 KiB of stack.
     pub fn see(
         &mut self,
         sightings: &[Sighting<S>],
@@ -126,7 +114,6 @@ impl<S: Scalar> Tracker<S> {
                 add(&mut count.repeated);
                 continue;
             }
-            // Cannot fail: it has the capacity of `all`.
             let _ = named.push(id);
             let place = self.place_of(id, |track, params| placed.fit(track, params));
             match place.and_then(|place| self.tracks.get_mut(place)) {
@@ -142,7 +129,6 @@ impl<S: Scalar> Tracker<S> {
         count
     }
 
-    /// Assigns detections without an id, best pairs first.
     fn see_nameless(&mut self, all: &[Placed<'_, S>], own: Position, count: &mut Sighted) {
         let Self { params, tracks, .. } = self;
         let fits = all
@@ -191,7 +177,6 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Returns the index of the track with that id, or of the closest anonymous track by `fit`.
     fn place_of(&self, id: RobotId, fit: impl Fn(&Track<S>, &TrackParams<S>) -> Option<S>) -> Option<usize> {
         self.tracks.iter().position(|track| track.id == id).or_else(|| {
             let nameless = self.tracks.iter().enumerate().filter(|(_, track)| track.id.is_local());
@@ -214,8 +199,7 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Adds a track. If all are in use, it replaces the farthest one, if that one is farther.
-    /// Returns whether it was added.
+    /// Replaces the farthest track if all are in use. Returns whether the track was added.
     fn insert(&mut self, track: Track<S>, own: Position) -> bool {
         if self.tracks.is_full() {
             let key = |track: &Track<S>| (track.offset_m(own).length_key(), track.id);
@@ -224,8 +208,7 @@ impl<S: Scalar> Tracker<S> {
                 Some(farthest) if key(&track) < key(farthest) => {
                     if farthest.seen.is_some() && farthest.known.is_some() {
                         let Track { id, heard, known, .. } = *farthest;
-                        // Cannot fail: at most the tracks that existed before the step are
-                        // replaced.
+                        // At most the tracks before the step are replaced.
                         let _ = self.displaced.push(Displaced { id, heard, known });
                     }
                     *farthest = track;
@@ -242,7 +225,7 @@ impl<S: Scalar> Tracker<S> {
         for entry in table.iter().filter(|entry| !entry.id.is_local()) {
             let news = Some((entry.heard, entry.position));
             if self.displaced.iter().any(|gone| gone.id == entry.id && gone.known == news) {
-                // The entry is an earlier estimate of this tracker, not a beacon.
+                // An earlier estimate of this tracker, not a beacon.
                 continue;
             }
             let params = self.params;
@@ -266,11 +249,9 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Removes outdated tracks and their table entries. O(N TRACKS).
-    ///
-    /// A track is removed if its robot is neither in sight nor in `table`. A detected robot whose
+    /// Removes tracks whose robots are neither in sight nor in `table`. A detected robot whose
     /// track ended is removed from `table` unless its last beacon is younger than
-    /// [`Ages::expire_after`](super::Ages::expire_after). `gone` receives the ids of these robots.
+    /// [`Ages::expire_after`](super::Ages::expire_after); `gone` receives its id. O(N TRACKS).
     pub fn forget<const N: usize, P: Copy>(
         &mut self,
         table: &mut NeighborTable<S, N, P>,
@@ -298,8 +279,7 @@ impl<S: Scalar> Tracker<S> {
             }
         }
         self.tracks.retain(|track| track.seen.is_some() || table.get(track.id, now).known().is_some());
-        // An anonymous robot that has an id now, or whose track was replaced, must not stay in the
-        // table under its old number.
+        // An anonymous robot with a new id or a replaced track must not keep its old entry.
         for n in (0..table.len()).rev() {
             let id = table.as_slice().get(n).map(|known| known.id).filter(|id| id.is_local());
             if let Some(id) = id.filter(|id| !self.tracks.iter().any(|track| track.id == *id))
@@ -310,9 +290,8 @@ impl<S: Scalar> Tracker<S> {
         }
     }
 
-    /// Returns the detected robots as neighbours, to be stored in `table`. Fields that detections
-    /// do not determine are copied from `table`. A robot without beacons belongs to `flock`.
-    /// O(TRACKS log N).
+    /// Returns the detected robots as neighbours to store in `table`, which gives the fields that
+    /// detections do not determine. A robot without beacons belongs to `flock`. O(TRACKS log N).
     pub fn seen<const N: usize, P: Copy + Default>(
         &mut self,
         table: &NeighborTable<S, N, P>,
@@ -335,9 +314,8 @@ impl<S: Scalar> Tracker<S> {
         list::collect(seen)
     }
 
-    /// Returns an unused number for an anonymous track.
     fn new_number(&mut self) -> RobotId {
-        // One more number than there are tracks: one is unused.
+        // One more number than there are tracks.
         for _ in 0..=TRACKS {
             self.nameless = self.nameless.wrapping_add(1);
             if !self.tracks.iter().any(|track| track.id == RobotId::local(self.nameless)) {
@@ -348,7 +326,6 @@ impl<S: Scalar> Tracker<S> {
     }
 }
 
-/// A neighbour known from detections alone.
 fn stranger<S: Scalar, P: Default>(track: &Track<S>, flock: u8) -> Neighbor<S, P> {
     Neighbor {
         id: track.id,

@@ -1,10 +1,8 @@
-//! One step of ORCA for one robot, in the plane or in space, like RVO2's
-//! `Agent::computeNewVelocity`.
+//! One step of ORCA for one robot, in the plane or in space (RVO2's `Agent::computeNewVelocity`).
 //!
-//! [`Avoider::velocity`] collects the constraints of the nearest obstacles and robots, lets the
-//! rule against [deadlocks](super::deadlock) bend the preferred velocity where ORCA alone would
-//! stand still forever, and [solves](super::linear_program) within the velocities that the body can
-//! reach.
+//! [`Avoider::velocity`] collects the constraints of the nearest obstacles and robots, bends the
+//! preferred velocity against [deadlocks](super::deadlock), and [solves](super::linear_program)
+//! within the velocities that the body can reach.
 
 use super::dimension::{Dimension, HalfPlane, HalfSpace, MovingBall, Situation};
 use super::linear_program::{Solution, solve};
@@ -27,8 +25,7 @@ mod space;
 #[cfg(test)]
 mod tests;
 
-/// The space in which robots avoid each other, and the method that computes the constraint of a
-/// moving neighbour.
+/// The space in which robots avoid each other, and the constraint of a moving neighbour.
 pub trait HalfSpaces<S: Scalar> {
     /// Velocities: [`Vec2`] in the plane, [`Vec3`] in space.
     type Velocity: Dimension<Scalar = S>;
@@ -68,11 +65,10 @@ impl<S: Scalar> HalfSpaces<S> for Analytic {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InSpace<S> {
-    /// Ratio of vertical to horizontal distance that robots keep from each other, the same for all;
-    /// 1 or more (less counts as 1). 1 is a ball, more an ellipsoid that is higher than wide by
-    /// this factor. Rotors blow downwards, and a robot that flies through the stream of another
-    /// sinks. Use 2.5 (W. Hönig et al. 2018) or more for small quadrotors. A larger value closes
-    /// gaps between layers; a smaller one lets robots fall onto each other.
+    /// Ratio of vertical to horizontal distance between robots, the same for all; at least 1.
+    ///
+    /// Rotors blow downwards, and a robot that flies through the stream of another sinks. Use 2.5
+    /// (W. Hönig et al. 2018) or more for small quadrotors. A larger value closes gaps.
     pub downwash: S,
 }
 
@@ -96,8 +92,7 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
         if !is_higher {
             return half_space(own_velocity_mps, ball, params);
         }
-        // In a space scaled down by this factor the ellipsoid is a ball. Half-spaces remain
-        // half-spaces on the way back.
+        // In a scaled space the ellipsoid is a ball, and half-spaces remain half-spaces.
         let lowered = |v: Vec3<S>| Some(Vec3::new(v.x, v.y, v.z.checked_div(high)?));
         let ball = MovingBall { offset_m: lowered(ball.offset_m)?, velocity_mps: lowered(ball.velocity_mps)?, ..*ball };
         let HalfSpace { point, normal } = half_space(lowered(own_velocity_mps)?, &ball, params)?;
@@ -107,12 +102,11 @@ impl<S: Scalar> HalfSpaces<S> for InSpace<S> {
     }
 }
 
-/// Collision avoidance of one robot, with at most `K` constraints. `P` selects the space and the
-/// method: [`Analytic`] or [`VoxelTable2k`](super::VoxelTable2k) in the plane, [`InSpace`] in
-/// space.
+/// Collision avoidance of one robot, with at most `K` constraints.
 ///
-/// Memory: [`AvoidParams`] and a few bytes for the rule against deadlocks; 16 K bytes of stack
-/// (`f32`; in space 24 K), three times that if no velocity is permitted.
+/// `P` is the space and method: [`Analytic`] or [`VoxelTable2k`](super::VoxelTable2k) in the plane,
+/// [`InSpace`] in space. Memory: [`AvoidParams`], the state of the rule against deadlocks, and 16 K
+/// bytes of stack (`f32`; 24 K in space), three times that if no velocity is permitted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound(
     deserialize = "P: serde::Deserialize<'de>, <P::Velocity as Dimension>::Memory: serde::Deserialize<'de>"
@@ -165,17 +159,16 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
 
     /// The velocity to take until the next step. Call it once per [`Body::step_s`].
     ///
-    /// It is the permitted velocity nearest to `wish_mps` as bent by the rule against deadlocks. If
-    /// robots and obstacles permit none, it is the one that violates them least, obstacles first.
+    /// The result is the permitted velocity nearest to `wish_mps` as bent by the rule against
+    /// deadlocks; if none is permitted, the one with the least violation, obstacles first. `goal_m`
+    /// is the vector to the goal, if any; near it robots do not turn aside. `nearby` is sorted,
+    /// nearest first. Obstacles count before robots, nearest first (ties: slice order), but robots
+    /// get up to half of the `K` places.
     ///
-    /// `goal_m` is the vector to the goal, if there is one; near the goal robots do not turn aside.
-    /// `nearby` is sorted, nearest first. Obstacles count before robots, the nearest first (of
-    /// equally near ones the earlier in the slice), but robots get up to half of the `K` places.
-    ///
-    /// A body with inertia gets the best of the velocities that it can [reach](Body::reach) within
-    /// the step. It may violate a constraint that appeared faster than it can brake, so choose
-    /// horizons longer than speed / acceleration. Values that are not finite count as absent (a
-    /// wish: as zero). Work: that of [`solve`], at most twice, and O(obstacles x K + `nearby`).
+    /// A body with inertia gets the best velocity that it can [reach](Body::reach) within the step.
+    /// It may violate a constraint that appeared faster than it can brake, so choose horizons
+    /// longer than speed / acceleration. Values that are not finite count as absent (a wish: as
+    /// zero). Work: [`solve`] at most twice, and O(obstacles x K + `nearby`).
     #[must_use]
     pub fn velocity(
         &mut self,
@@ -221,7 +214,6 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         obstacles: &[Obstacle<S>],
         constraints: &mut Vec<HalfSpace<P::Velocity>, K>,
     ) -> usize {
-        // Half for each kind; either may use what the other leaves.
         let room = K.saturating_sub(nearby.len().min(K >> 1));
         nearest_obstacles(&self.params, body, obstacles, room, constraints);
         let hard = constraints.len();
@@ -229,8 +221,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
         hard
     }
 
-    /// Adds constraints of robots as far as there is space. Not inlined, so that the solver can
-    /// reuse its stack.
+    /// Not inlined, so that the solver can reuse its stack.
     #[inline(never)]
     fn robots(&self, body: &Body<S>, nearby: &[Nearby<S>], constraints: &mut Vec<HalfSpace<P::Velocity>, K>) {
         let own = own_velocity(body);
@@ -256,14 +247,13 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
     }
 }
 
-/// The own velocity; zero if it is not finite.
 fn own_velocity<V: Dimension>(body: &Body<V::Scalar>) -> V {
     let own = V::from(body.velocity_mps);
     if own.is_finite() { own } else { V::ZERO }
 }
 
-/// Writes the constraints of the at most `room` nearest obstacles, nearest first, into the empty
-/// `constraints`. Not inlined, so that the solver can reuse its stack.
+/// Writes the at most `room` nearest obstacles, nearest first, into the empty `constraints`. Not
+/// inlined, so that the solver can reuse its stack.
 #[inline(never)]
 fn nearest_obstacles<V: Dimension, const K: usize>(
     params: &AvoidParams<V::Scalar>,
@@ -276,7 +266,6 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
     // A separate list: pairs would need both lists twice on the stack.
     let mut distances = Vec::<V::Scalar, K>::new();
     for obstacle in obstacles {
-        // A ball whose centre the robot is exactly in is nearest of all.
         let nearest_point = obstacle.nearest_point();
         let distance = nearest_point.map_or(-V::Scalar::MAX, |(_, distance)| distance);
         let Some(constraint) = static_obstacle(params, body, own, obstacle) else {
@@ -293,7 +282,7 @@ fn nearest_obstacles<V: Dimension, const K: usize>(
         if distances.push(distance).is_err() || constraints.push(constraint).is_err() {
             continue;
         }
-        // Moves both lists in step by slice patterns; `swap` would leave a panic in the firmware.
+        // Slice patterns instead of `swap`, which would leave a panic in the firmware.
         let mut at = distances.len().saturating_sub(1);
         while let Some(before) = at.checked_sub(1)
             && let Some([nearer, farther]) = distances.get_mut(before..=at)
@@ -326,14 +315,13 @@ fn static_obstacle<V: Dimension>(
                 offset_m: center_m.into(),
                 velocity_mps: V::ZERO,
                 radii_m: body.radius_m + radius_m + params.margin_m,
-                // Out of its exact centre: up, in the plane east.
                 tie: Vec3::new(zero, zero, V::Scalar::ONE).into(),
             };
             let params = Params { horizon_s, separation_s: body.step_s, share: V::Scalar::ONE };
             V::half_space(own, &ball, &params)
         }
         Obstacle::Plane { normal, distance_m } => {
-            // The part within the robots' space: a floor has no effect in the plane.
+            // A floor has no effect in the plane.
             let normal = V::from(normal);
             let length = normal.norm();
             let normal = normal.normalized()?;
@@ -345,11 +333,8 @@ fn static_obstacle<V: Dimension>(
     }
 }
 
-/// The best velocity that the body can have after one step.
-///
-/// With inertia the reachable velocities are a disc (ball) around its velocity, so this is the same
-/// problem with that origin; a result that is too fast is [shortened](Body::reach). Moves
-/// `constraints` to that origin.
+/// With inertia the reachable velocities are a disc (ball) around the current velocity, so this
+/// moves `constraints` to that origin; a result that is too fast is [shortened](Body::reach).
 fn reachable<V: Dimension, const K: usize>(
     body: &Body<V::Scalar>,
     constraints: &mut [HalfSpace<V>],

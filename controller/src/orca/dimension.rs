@@ -1,5 +1,4 @@
-//! The elements of ORCA in any dimension (half-spaces and balls), and everything in which the plane
-//! differs from space.
+//! Half-spaces and balls in any dimension, and all differences of the plane and space.
 
 use super::{AvoidParams, Params};
 use crate::body::Body;
@@ -51,8 +50,7 @@ pub struct MovingBall<V: Vector> {
     pub velocity_mps: V,
     /// Sum of both radii, metres; more than 0.
     pub radii_m: V::Scalar,
-    /// The direction to take if both are in the same place with the same velocity: any vector,
-    /// which must be opposite on the other robot. East if zero.
+    /// Direction to leave one common place and velocity, opposite on the other robot; zero: east.
     pub tie: V,
 }
 
@@ -66,33 +64,31 @@ pub enum Aim<V> {
 /// The input of the rule against deadlocks.
 pub struct Situation<'a, V: Vector> {
     pub(super) body: &'a Body<V::Scalar>,
-    /// Preferred velocity, finite and within the speed limit.
+    /// Finite and within the speed limit.
     pub(super) wish: V,
-    /// Vector to the goal, finite.
     pub(super) goal: Option<V>,
     pub(super) nearby: &'a [Nearby<V::Scalar>],
     pub(super) obstacles: &'a [Obstacle<V::Scalar>],
 }
 
-/// Velocities in the plane ([`Vec2`]) or in space ([`Vec3`]): the geometry of one constraint,
-/// linear programming on one border, and the rule against deadlocks. All other code is the same for
-/// both.
+/// Velocities in the plane ([`Vec2`]) or in space ([`Vec3`]), with the operations that differ: the
+/// geometry of one constraint, linear programming on one border, and the rule against deadlocks.
 pub trait Dimension: Vector + From<Vec3<<Self as Vector>::Scalar>> {
     /// State of the rule against deadlocks between steps.
     type Memory: Clone + Debug + PartialEq + Serialize;
     /// The initial state.
     const FRESH: Self::Memory;
 
-    /// What to do if the obstacles together forbid every velocity. If true, the constraints of
-    /// obstacles and robots are all violated as little as possible. If false, the nearest obstacles
-    /// are obeyed as far as possible, and later constraints are ignored (as in RVO2).
+    /// The policy for obstacles that together forbid every velocity. If true, all constraints are
+    /// violated as little as possible. If false, the nearest obstacles are obeyed as far as
+    /// possible and later constraints ignored (as in RVO2).
     const SHARES_CONTRADICTIONS: bool;
 
     /// Converts to a vector in space; a vector in the plane gets this height.
     fn at_height(self, height: Self::Scalar) -> Vec3<Self::Scalar>;
 
-    /// The velocities that avoid `ball` for the time horizon, provided that the neighbour does its
-    /// share (ORCA section 4). `None` if an input is invalid.
+    /// The velocities that avoid `ball` for the time horizon if the neighbour does its share (ORCA
+    /// section 4). `None` if an input is invalid.
     fn half_space(
         own_velocity_mps: Self,
         ball: &MovingBall<Self>,
@@ -120,8 +116,8 @@ pub trait Dimension: Vector + From<Vec3<<Self as Vector>::Scalar>> {
     fn waits_for_turn(memory: &Self::Memory) -> bool;
 }
 
-/// The change from `w`, relative to the ball's centre, to the ball's border: its length and the
-/// outward normal; `otherwise` is the normal at the centre.
+/// Length and outward normal of the change from `w`, relative to the ball's centre, to its border;
+/// `otherwise` is the normal at the centre.
 pub(super) fn leave_ball<V: Vector>(w: V, radius: V::Scalar, otherwise: V) -> (V::Scalar, V) {
     let normal = w.normalized().unwrap_or(otherwise);
     (radius - w.norm(), normal)

@@ -1,5 +1,4 @@
-//! The accuracy of ORCA's half-planes with `Fast32`, which takes a fifth fewer instructions on a
-//! Cortex-M4F (`docs/firmware.md`).
+//! Accuracy of half-planes with `Fast32`, which saves a fifth of the instructions on a Cortex-M4F.
 
 use super::{MovingBall, Params, half_plane};
 use crate::geom::Vec2;
@@ -8,7 +7,6 @@ use crate::scalar::{Fast32, Scalar};
 use core::f64::consts::PI;
 use std::println;
 
-/// A half-plane's angle in degrees and the change that it demands, m/s.
 fn asked<S: Scalar>(own: [f64; 2], offset: [f64; 2], velocity: [f64; 2], radii: f64) -> [f64; 2] {
     let number = |x: f64| S::from_f64(x).unwrap();
     let vector = |v: [f64; 2]| Vec2::new(number(v[0]), number(v[1]));

@@ -1,5 +1,4 @@
-//! Shared by ORCA's tests: robots of radius 0.15 m and speed up to 0.5 m/s that decide 20 times per
-//! second.
+//! Robots of ORCA's tests: radius 0.15 m, speed up to 0.5 m/s, 20 decisions per second.
 
 use super::{HalfSpace, MovingBall, Params};
 use crate::body::Body;
@@ -26,14 +25,12 @@ pub fn ball<V: Vector>(offset_m: V, velocity_mps: V, radii_m: V::Scalar) -> Movi
     MovingBall { offset_m, velocity_mps, radii_m, tie: V::ZERO }
 }
 
-/// How far a velocity lies on the wrong side of the constraint that it violates most; 0 if it
-/// violates none.
+/// Greatest penetration of any constraint; 0 if none is violated.
 pub fn worst<V: Vector<Scalar = f64>>(constraints: &[HalfSpace<V>], at: V) -> f64 {
     let depths = constraints.iter().map(|one| one.penetration(at));
     depths.fold(0.0, f64::max)
 }
 
-/// A robot without inertia.
 pub fn body<S: Scalar, const D: usize>(id: u32, velocity_mps: [f64; D]) -> Body<S> {
     Body {
         id: RobotId(id),
@@ -45,7 +42,6 @@ pub fn body<S: Scalar, const D: usize>(id: u32, velocity_mps: [f64; D]) -> Body<
     }
 }
 
-/// A robot that gives way.
 pub fn robot<S: Scalar, const D: usize>(id: u32, offset_m: [f64; D], velocity_mps: [f64; D]) -> Nearby<S> {
     Nearby {
         id: RobotId(id),
@@ -64,7 +60,6 @@ pub fn vector<S: Scalar, const D: usize>(components: [f64; D]) -> Vec3<S> {
     Vec3::new(at(0), at(1), at(2))
 }
 
-/// The random generator of a robot in a step.
 pub fn rng_of(robot: u32, tick: u32) -> Rng {
     Rng::keyed(1, 5, robot, tick)
 }

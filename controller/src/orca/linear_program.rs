@@ -1,9 +1,8 @@
 //! Finds the best permitted velocity (ORCA section 5) by incremental linear programming (de Berg et
 //! al., "Computational geometry", section 4.4), in the plane and in space.
 //!
-//! In RVO2 [`optimum`] is `linearProgram2` and [`least_penetration`] is `linearProgram3`; in
-//! RVO2-3D they are `linearProgram3` and `linearProgram4`. The step below, on one border, is
-//! [`Dimension::best_on_border`].
+//! [`optimum`] is RVO2's `linearProgram2` (RVO2-3D: `3`), [`least_penetration`] its
+//! `linearProgram3` (`4`); [`Dimension::best_on_border`] is the step on one border.
 
 use super::dimension::{Aim, Dimension, HalfSpace};
 use crate::geom::Vector;
@@ -16,8 +15,7 @@ use heapless::Vec;
 pub struct Solution<V: Vector> {
     /// The velocity, m/s; within the speed limit.
     pub velocity_mps: V,
-    /// How far it lies on the forbidden side of the constraint that it violates most, m/s; 0 if it
-    /// violates none.
+    /// Penetration of the constraint that it violates most, m/s; 0 if it violates none.
     pub penetration_mps: V::Scalar,
 }
 
@@ -28,16 +26,15 @@ impl<V: Dimension> Solution<V> {
     }
 }
 
-/// The velocity nearest to `preferred_mps` that all constraints permit and that does not exceed
-/// `max_speed_mps`.
+/// The velocity nearest to `preferred_mps` that all constraints and `max_speed_mps` permit.
 ///
 /// If there is none, the result violates the first `hard` constraints (static obstacles) not at all
 /// if possible, and the others as little as possible. If the hard constraints alone forbid every
 /// velocity, see [`Dimension::SHARES_CONTRADICTIONS`].
 ///
 /// The result is within rounding of the best; a preferred velocity that is not finite counts as
-/// zero. At most `N` constraints count. Work in the plane: O(n) in most cases, O(n^2) in the worst
-/// case, O(n^3) without a solution; in space O(n), O(n^3) and O(n^4).
+/// zero. At most `N` constraints count. Work in the plane: O(n) mostly, O(n^2) at worst, O(n^3)
+/// without a solution; in space O(n), O(n^3) and O(n^4).
 #[must_use]
 pub fn solve<V: Dimension, const N: usize>(
     constraints: &[HalfSpace<V>],
@@ -58,8 +55,7 @@ pub fn solve<V: Dimension, const N: usize>(
     }
 }
 
-/// The best velocity that all constraints and the speed permit. If there is none, the best for the
-/// constraints before the first one that leaves no velocity, with the index of that one.
+/// Without a permitted velocity, the best before the first impossible constraint, and its index.
 fn optimum<V: Dimension>(constraints: &[HalfSpace<V>], speed: V::Scalar, aim: Aim<V>) -> (V, Option<usize>) {
     let mut best = match aim {
         Aim::Near(goal) => goal.clamp_norm(speed),
@@ -77,8 +73,8 @@ fn optimum<V: Dimension>(constraints: &[HalfSpace<V>], speed: V::Scalar, aim: Ai
     (best, None)
 }
 
-/// The velocity of least penetration. From the constraint `from` on, each constraint that is
-/// violated more than those before is moved back together with them until a velocity is permitted.
+/// From the constraint `from` on, each constraint that is violated more than those before is moved
+/// back together with them until a velocity is permitted.
 fn least_penetration<V: Dimension, const N: usize>(
     constraints: &[HalfSpace<V>],
     hard: usize,
@@ -92,8 +88,7 @@ fn least_penetration<V: Dimension, const N: usize>(
         if constraint.penetration(best) <= depth {
             continue;
         }
-        // Velocities that violate this constraint no more than another lie on one side of their
-        // bisector.
+        // Velocities that violate this constraint less lie on one side of a bisector.
         let mut bisectors = Vec::<HalfSpace<V>, N>::new();
         for (other_index, other) in constraints.iter().enumerate().take(index) {
             let bisector = if other_index < hard { Some(*other) } else { bisector(constraint, other) };
@@ -101,8 +96,7 @@ fn least_penetration<V: Dimension, const N: usize>(
                 let _ = bisectors.push(bisector);
             }
         }
-        // A failure is due to rounding or to contradictory hard constraints: keep the previous
-        // result.
+        // Rounding or contradictory hard constraints: keep the previous result.
         if let (better, None) = optimum(&bisectors, speed, Aim::Along(constraint.normal)) {
             best = better;
         }
@@ -113,7 +107,7 @@ fn least_penetration<V: Dimension, const N: usize>(
 
 /// The velocities that violate `other` no more than `one`; `None` if that holds for all.
 fn bisector<V: Dimension>(one: &HalfSpace<V>, other: &HalfSpace<V>) -> Option<HalfSpace<V>> {
-    // penetration_one(v) >= penetration_other(v)  <=>  v . (n_o - n) >= c_o - c with c = point . n.
+    // penetration_one(v) >= penetration_other(v) <=> v . (n_o - n) >= c_o - c with c = point . n.
     let difference = other.normal - one.normal;
     let normal = difference.normalized()?;
     let offset = other.point.dot(other.normal) - one.point.dot(one.normal);

@@ -14,17 +14,12 @@
 //! | `dimension.rs` | half-spaces, balls; differences of plane and space | |
 //! | `deadlock/` | the preferred velocity that avoids deadlocks | not included |
 //!
-//! Two parts come from the functional voxel model (FVM: A. Tolok et al.): [`VelocityObstacle`] is
-//! its analytic form of the velocity obstacle, and [`half_plane_from_table`] looks half-planes up
-//! in its voxel template instead of computing them.
+//! [`VelocityObstacle`] and [`half_plane_from_table`] come from the functional voxel model (FVM: A.
+//! Tolok et al.): the analytic velocity obstacle, and half-planes from its voxel template.
 //!
-//! All positions and velocities are relative to the robot, so that the result is the same 1000 km
-//! from the origin. Differences to the reference implementation (RVO2):
-//!
-//! - Two robots in the same place still have a half-plane.
-//! - Values that are not finite give no constraint, and never spread.
-//! - Nothing is allocated, even if there is no solution.
-//! - A body with inertia chooses among the velocities that it can reach.
+//! Positions and velocities are relative to the robot, so that the result is the same 1000 km from
+//! the origin. Differences to RVO2: two robots in one place have a half-plane, values that are not
+//! finite give no constraint, and a body with inertia chooses among reachable velocities.
 
 mod avoider;
 mod deadlock;

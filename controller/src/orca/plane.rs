@@ -31,8 +31,7 @@ impl<S: Scalar> Dimension for Vec2<S> {
         best_on_line(constraint, before, speed, aim)
     }
 
-    /// In narrow places robots take turns. Elsewhere they pass each other on the right, and a robot
-    /// that is stuck backs off.
+    /// In narrow places robots take turns; elsewhere they pass on the right or back off.
     #[inline(never)] // Its stack is free again for the solver.
     fn break_deadlock(
         memory: &mut Self::Memory,
@@ -47,8 +46,7 @@ impl<S: Scalar> Dimension for Vec2<S> {
         let patience = params.deadlock.patience_radii;
         let at_gap = right_of_way.wish(situation, goal, patience, rng);
         let wish = at_gap.unwrap_or_else(|| lean(params, situation, goal));
-        // A robot that waits for its turn must not back off; the other robots ensure that its turn
-        // comes.
+        // A robot that waits for its turn must not back off: its turn comes.
         if right_of_way.takes_turns() { wish } else { stuck.wish(situation, wish, patience, rng) }
     }
 
@@ -57,10 +55,9 @@ impl<S: Scalar> Dimension for Vec2<S> {
     }
 }
 
-/// The velocities that avoid a disc for the time horizon, provided that the neighbour does its
-/// share.
+/// The velocities that avoid a disc for the time horizon if the neighbour does its share.
 ///
-/// The truncated velocity obstacle VO of relative velocities is a cone whose tip is cut off by the
+/// The truncated velocity obstacle of relative velocities is a cone whose tip is cut off by the
 /// disc of radius r / tau around p / tau. The least change u moves the relative velocity to its
 /// border. The border of the half-plane passes through the own velocity plus the own share of u.
 ///
@@ -90,8 +87,7 @@ pub fn half_plane<S: Scalar>(
             // With floating-point numbers, only discs that touch within rounding reach this branch.
             Some(ahead) if !S::IS_FLOATING && p.norm() > r => leave_cone_by_angle(v, p, ahead, r, params.horizon_s)?,
             _ => {
-                // Overlapping: separate within the separation time; directly away from each other
-                // if no other direction follows.
+                // Overlapping: separate, directly if no other direction follows.
                 let tip = Vec2::new(p.x.checked_div(params.separation_s)?, p.y.checked_div(params.separation_s)?);
                 let away = (-p).normalized().or_else(|| tie.normalized());
                 let away = away.unwrap_or(Vec2::new(S::ONE, S::ZERO));
@@ -103,12 +99,11 @@ pub fn half_plane<S: Scalar>(
     point.is_finite().then_some(HalfPlane { point, normal })
 }
 
-/// The change from the relative velocity `v` to the border of the cone around `p` (with its squared
-/// length) whose tip is cut off at `rate` times `p`: its length and the outward normal.
+/// Length and outward normal of the change from the relative velocity `v` to the border of the cone
+/// around `p` (with its squared length) whose tip is cut off at `rate` times `p`.
 ///
-/// Takes one root and one reciprocal. It selects values instead of branching, since a branch
-/// predictor cannot know whether the disc or a leg is nearer, or which leg. Squares must be as
-/// precise as lengths.
+/// It selects values instead of branching, since a branch predictor cannot know which border is the
+/// nearest. Squares must be as precise as lengths.
 #[inline(always)]
 fn leave_cone<S: Scalar>(v: Vec2<S>, p: Vec2<S>, squared: S, r: S, rate: S) -> Option<(S, Vec2<S>)> {
     let w = v - p * rate;
@@ -118,8 +113,7 @@ fn leave_cone<S: Scalar>(v: Vec2<S>, p: Vec2<S>, squared: S, r: S, rate: S) -> O
     let is_disc = is_back & (w_squared > tiny());
     let choose = |disc: S, leg: S| if is_disc { disc } else { leg };
     let root = choose(w_squared, squared - r * r).sqrt();
-    // Project on the left or the right leg: the tangent is p turned by the angle with this sine and
-    // cosine.
+    // Left or right leg: the tangent is p turned by the angle with this sine and cosine.
     let signed = if p.det(w) > S::ZERO { root } else { -root };
     let across = Vec2::new(choose(w.x, -(p.y * signed + p.x * r)), choose(w.y, p.x * signed - p.y * r));
     let scale = S::ONE.checked_div(choose(root, squared))?;
@@ -146,8 +140,6 @@ fn leave_cone_by_angle<S: Scalar>(v: Vec2<S>, p: Vec2<S>, ahead: Vec2<S>, r: S, 
     Some((-(v.dot(normal)), normal))
 }
 
-/// The best velocity on the border of a half-plane that the half-planes before it and the speed
-/// disc permit.
 fn best_on_line<S: Scalar>(
     plane: &HalfPlane<S>,
     before: &[HalfPlane<S>],
@@ -155,7 +147,6 @@ fn best_on_line<S: Scalar>(
     aim: Aim<Vec2<S>>,
 ) -> Option<Vec2<S>> {
     let direction = plane.direction();
-    // The point of the border nearest to the origin, and half of the chord that the disc cuts out.
     let distance = plane.point.dot(plane.normal);
     let foot = plane.normal * distance;
     if distance.abs() > speed {
@@ -163,8 +154,7 @@ fn best_on_line<S: Scalar>(
     }
     let half_chord = ((speed - distance) * (speed + distance)).sqrt();
     let (mut low, mut high) = (-half_chord, half_chord);
-    // Selects values instead of branching: a branch predictor cannot know which side a plane cuts
-    // off.
+    // Values are selected: a branch predictor cannot know which side a plane cuts off.
     let mut is_shut = false;
     for other in before {
         let slope = direction.dot(other.normal);
@@ -172,8 +162,7 @@ fn best_on_line<S: Scalar>(
         let crossing = gap.checked_div(slope);
         let t = crossing.unwrap_or(S::ZERO);
         let is_crossed = crossing.is_some() & (slope.abs() > S::EPSILON * S::from_i32(64));
-        // Parallel: the whole border is permitted, or none of it. Rounding between two copies of
-        // one half-plane (walls that share a corner) must not exclude it.
+        // Parallel. Rounding between copies of one half-plane must not exclude the border.
         is_shut |= !is_crossed & (gap > rounding(speed, other));
         let rises = slope > S::ZERO;
         low = if is_crossed & rises & (t > low) { t } else { low };

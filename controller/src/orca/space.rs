@@ -1,11 +1,9 @@
-//! ORCA in space, for flying robots: the half-space of one neighbour (ORCA section 4, whose
-//! geometry holds in any dimension), and linear programming on one border (RVO2-3D's
-//! `linearProgram2`, on a line `linearProgram1`).
+//! ORCA in space: the half-space of one neighbour (ORCA section 4, whose geometry holds in any
+//! dimension), and linear programming on one border (RVO2-3D's `linearProgram2` and `1`).
 //!
-//! If all robots, velocities and the preferred velocity lie in one horizontal plane, the result
-//! lies in it too and equals that of the plane. The differences to RVO2-3D are those listed in
-//! [`super`], and one more: robots that fly exactly at each other turn right, or to opposite sides
-//! if one is above the other. The reference has no direction in this case.
+//! If everything lies in one horizontal plane, the result equals that of the plane. Robots that fly
+//! exactly at each other turn right, or to opposite sides if one is above the other (RVO2-3D:
+//! undefined).
 
 use super::deadlock::spread;
 use super::dimension::{Aim, Dimension, HalfSpace, MovingBall, Situation, leave_ball};
@@ -58,8 +56,8 @@ impl<S: Scalar> Dimension for Vec3<S> {
     }
 }
 
-/// The velocities that avoid a ball for the time horizon, provided that the neighbour does its
-/// share: like [`half_plane`](super::half_plane), with a ball instead of the disc.
+/// The velocities that avoid a ball for the time horizon if the neighbour does its share: like
+/// [`half_plane`](super::half_plane).
 ///
 /// `None` if an input is not finite, or r or a time is not above 0. Constant work.
 #[must_use]
@@ -83,8 +81,7 @@ pub fn half_space<S: Scalar>(
             if w.dot(ahead) < -(sin * w.norm()) {
                 leave_ball(w, r.checked_div(params.horizon_s)?, -ahead)
             } else {
-                // Nearest to the side of the cone, on the own side of its axis. The rest happens in
-                // the plane of axis and velocity.
+                // The side of the cone, in the plane of axis and velocity.
                 let cos = (S::ONE - sin * sin).sqrt();
                 let side = (w - ahead * w.dot(ahead)).normalized();
                 let normal = side.unwrap_or_else(|| right_of(ahead)) * cos - ahead * sin;
@@ -119,8 +116,6 @@ struct Line<S> {
     direction: Vec3<S>,
 }
 
-/// The best velocity on the border of `space`, a plane, that the half-spaces before it and the
-/// speed ball permit.
 fn best_on_plane<S: Scalar>(
     space: &HalfSpace<Vec3<S>>,
     before: &[HalfSpace<Vec3<S>>],
@@ -133,9 +128,8 @@ fn best_on_plane<S: Scalar>(
     let mut best = foot
         + match aim {
             Aim::Near(goal) => in_border(goal - foot).clamp_norm(radius),
-            // If the direction is perpendicular to the border, all points of the border are equally
-            // good. If little of the direction remains in the border, rounding has turned it out of
-            // the border; project it back.
+            // Perpendicular to the border, all its points are equally good. If little of the
+            // direction remains in the border, rounding has turned it out: project it back.
             Aim::Along(way) => in_border(in_border(way).normalized().unwrap_or(Vec3::ZERO)) * radius,
         };
     for (index, other) in before.iter().enumerate() {
@@ -148,7 +142,6 @@ fn best_on_plane<S: Scalar>(
     Some(best)
 }
 
-/// The best velocity on a line that the half-spaces and the speed ball permit.
 fn best_on_line<S: Scalar>(
     line: &Line<S>,
     before: &[HalfSpace<Vec3<S>>],
@@ -183,13 +176,11 @@ fn best_on_line<S: Scalar>(
     Some(line.foot + line.direction * t)
 }
 
-/// The point of the border nearest to the origin.
 fn foot<S: Scalar>(space: &HalfSpace<Vec3<S>>) -> Vec3<S> {
     space.normal * space.point.dot(space.normal)
 }
 
-/// Half the width that the speed ball cuts out of a line or plane whose point nearest to the origin
-/// is `foot`; `None` if it is out of reach.
+/// Half the width that the speed ball cuts out of a line or plane with this `foot`.
 fn half_width<S: Scalar>(foot: Vec3<S>, speed: S) -> Option<S> {
     let distance = foot.norm();
     (distance <= speed).then(|| ((speed - distance) * (speed + distance)).sqrt())
@@ -202,7 +193,6 @@ fn intersection<S: Scalar>(space: &HalfSpace<Vec3<S>>, other: &HalfSpace<Vec3<S>
         return None;
     }
     let direction = cross.normalized()?;
-    // Within the first border, perpendicular to the line, to the second border.
     let across = direction.cross(space.normal);
     let foot = foot(space);
     let t = other.penetration(foot).checked_div(across.dot(other.normal))?;

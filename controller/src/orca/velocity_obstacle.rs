@@ -1,34 +1,26 @@
-//! The truncated velocity obstacle as one function of the velocity (Tolok et al., FVM, eqs. 1 to 4,
-//! 13 and 15).
+//! The truncated velocity obstacle as one function of the velocity (FVM, eqs. 1 to 4, 13 and 15).
 
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
 
-/// The relative velocities that lead to a collision within a time horizon: a cone whose tip is cut
-/// off by a disc.
+/// The relative velocities that collide within a time horizon: a cone whose tip a disc cuts off.
 ///
-/// Differences to the paper: its lines are y = x tg(angle), which fail for vertical lines and, with
-/// alpha = arctg(y / x), for everything with x < 0 (the inequalities are reversed). Here each
-/// predicate is the signed distance to its line, computed from the vector to the neighbour without
-/// an angle. Eq. 13 places the disc's centre at -(p_B - p_A) / tau; it is at +(p_B - p_A) / tau, as
-/// in the paper's figure 4. Eq. 3 is headed Pr1 but means Pr3.
+/// Differences to the paper: its lines y = x tg(angle) fail for vertical lines and for x < 0. Here
+/// each predicate is the signed distance to its line. Eq. 13 places the disc's centre at -(p_B -
+/// p_A) / tau; it is at +(p_B - p_A) / tau, as in figure 4. Eq. 3 is headed Pr1 but means Pr3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VelocityObstacle<S> {
     ahead: Vec2<S>,
     tip_mps: Vec2<S>,
     radius_mps: S,
-    /// Sine of the angle between the legs and `ahead`.
     sin: S,
     cos: S,
 }
 
 impl<S: Scalar> VelocityObstacle<S> {
-    /// The velocity obstacle of a neighbour at `offset_m` from the robot, with the sum of both
-    /// radii.
-    ///
-    /// `None` if the robots overlap (then every velocity leads to a collision), or if an input is
-    /// not finite or not above 0.
+    /// The velocity obstacle of a neighbour at `offset_m`, with the sum of both radii. `None` if
+    /// the robots overlap (every velocity collides), or an input is not finite or not above 0.
     #[must_use]
     pub fn new(offset_m: Vec2<S>, radii_m: S, horizon_s: S) -> Option<Self> {
         let sound = offset_m.is_finite() && radii_m > S::ZERO && horizon_s > S::ZERO;
@@ -65,8 +57,8 @@ impl<S: Scalar> VelocityObstacle<S> {
     }
 
     /// The predicates, m/s: Pr1, Pr2 (right of the left leg, left of the right one), Pr3, Pr4
-    /// (beyond the perpendiculars from the disc's centre to the left and the right leg) and Disc.
-    /// Each is the signed distance to its line or circle, positive inside.
+    /// (beyond the perpendiculars from the disc's centre to the legs) and Disc. Each is the signed
+    /// distance to its line or circle, positive inside.
     #[must_use]
     pub fn predicates(&self, velocity_mps: Vec2<S>) -> [S; 5] {
         let [left, right] = self.legs();
@@ -83,11 +75,9 @@ impl<S: Scalar> VelocityObstacle<S> {
     /// Pr1 and Pr2 and (Pr3 or Pr4) or Disc, with the R-functions min for "and" and max for "or":
     /// positive inside the velocity obstacle, negative outside, zero on its border.
     ///
-    /// The sign is exact. The value is the distance to the border only outside the tip: beyond the
-    /// perpendiculars the greatest term may be Pr3 or Pr4, whose gradient runs along the leg. So
-    /// the gradient of an R-function leads out of the obstacle, but not always by the shortest
-    /// path. Therefore the [table](super::half_plane_from_table) stores the normal to the nearest
-    /// border.
+    /// The sign is exact. The value is the distance to the border only outside the tip, so the
+    /// gradient does not always lead out by the shortest path. Therefore the
+    /// [table](super::half_plane_from_table) stores the normal to the nearest border.
     #[must_use]
     pub fn value(&self, velocity_mps: Vec2<S>) -> S {
         let [pr1, pr2, pr3, pr4, disc] = self.predicates(velocity_mps);

@@ -1,31 +1,21 @@
-//! Half-planes by table lookup: the voxel template of the velocity obstacle (Tolok et al., FVM,
-//! conclusion: "the functional voxel model is a template that holds the local geometry in each
-//! point").
+//! Half-planes by table lookup: the voxel template of the velocity obstacle (FVM, conclusion).
 //!
 //! Turned so that the neighbour is on the x axis and divided by (R_A + R_B) / tau, a velocity
-//! obstacle depends on one number: the sine (R_A + R_B) / distance of the cone's half angle. Around
-//! the centre of its disc it is a unit disc with two tangents. Therefore one table serves every
-//! pair of robots. It stores the normal (cos, sin) to the nearest border, for |y| only, since the
-//! other half is the mirror image.
+//! obstacle depends only on the sine (R_A + R_B) / distance of the cone's half angle. So one table
+//! of normals (cos, sin) to the nearest border, for |y|, serves every pair of robots.
 //!
-//! Differences to the paper, and why:
+//! Differences to the paper:
 //!
-//! - Legs and disc are all tangent to the unit disc, so the local equation of every voxel is cos x
-//!   + sin y = 1. The distance to the border is cos x + sin y - 1 and need not be stored.
-//! - For the same reason the normal is constant along a ray from the disc's centre, and behind the
-//!   centre it is that of the leg. So voxels over (sine, x, |y|) add nothing to those over (sine,
-//!   direction), with directions in front of the centre only. No velocity is outside the sampled
-//!   range, and the dimension saved leaves bytes for finer steps: in 2 KiB, voxels over (sine, x,
-//!   |y|) have a mean angle error of 0.18 degrees, those over (sine, direction) 0.03.
-//! - The normal is that of the nearest border instead of the R-function's gradient (see
-//!   [`VelocityObstacle::value`]).
-//! - Each lookup interpolates four nodes. The nearest node alone has a mean angle error at least 40
-//!   times as large (shown by a test), which no table size compensates.
+//! - Legs and disc are tangent to the unit disc, so the distance to the border is cos x + sin
+//!   y - 1.
+//! - The normal is constant along a ray from the disc's centre. So voxels over (sine, direction)
+//!   suffice: in 2 KiB their mean angle error is 0.03 degrees, that of (sine, x, |y|) 0.18.
+//! - The normal is not the R-function's gradient ([`VelocityObstacle::value`]).
+//! - Each lookup interpolates four nodes. The nearest node alone has at least 40 times the error.
 //!
-//! **A half-plane from the table is always safe.** Any normal between those of the two legs gives a
-//! line that touches the disc and has the whole obstacle behind it, and the looked-up normal always
-//! lies between them. The table's error only makes the demanded change of velocity longer than
-//! necessary. Both robots of a pair read the same nodes, so their half-planes remain opposite.
+//! **A half-plane from the table is always safe.** The looked-up normal lies between those of the
+//! two legs, so its line touches the disc and has the whole obstacle behind it. An error only makes
+//! the demanded change longer. The half-planes of a pair are opposite.
 //!
 //! [`VelocityObstacle::value`]: super::VelocityObstacle::value
 
@@ -43,9 +33,8 @@ use table::ONE;
 
 /// Like [`half_plane`], with the normal from [`VoxelTable2k`].
 ///
-/// Overlapping robots get the analytic half-plane, since there is no cone then. `None` if an input
-/// is not finite, or r or a time is not above 0. Bounded work: one search among the levels (20),
-/// four nodes.
+/// Overlapping robots get the analytic half-plane. `None` if an input is not finite, or r or a time
+/// is not above 0. Bounded work: a search among 20 levels, and four nodes.
 #[must_use]
 #[inline(never)]
 pub fn half_plane_from_table<S: Scalar>(
@@ -65,13 +54,11 @@ pub fn half_plane_from_table<S: Scalar>(
     };
     let sine = r.checked_div(distance)?;
     let rate = S::ONE.checked_div(params.horizon_s)?;
-    // Relative to the disc's centre, on the axes along and across the line to the neighbour.
     let w = v - p * rate;
     let (along, across) = (w.dot(ahead), ahead.det(w));
     let Some(normal) = VoxelTable2k::TABLE.normal(sine, Vec2::new(along, across.abs())) else {
         return analytic();
     };
-    // On the axis: to the right, as in the analytic form.
     let side = if across > S::ZERO { normal.y } else { -normal.y };
     let normal = ahead.rotate(normal.x, side);
     let u = r * rate - w.dot(normal);
@@ -79,7 +66,6 @@ pub fn half_plane_from_table<S: Scalar>(
     point.is_finite().then_some(HalfPlane { point, normal })
 }
 
-/// Half-planes by table lookup, for an [`Avoider`](super::Avoider).
 impl<S: Scalar> HalfSpaces<S> for VoxelTable2k {
     type Velocity = Vec2<S>;
 
@@ -96,9 +82,8 @@ impl<S: Scalar> HalfSpaces<S> for VoxelTable2k {
 impl VelocityObstacleTable {
     /// The outward unit normal at the border nearest to the point `w`, w.y >= 0.
     ///
-    /// The velocity obstacle has this sine of its half angle and its disc's centre in the origin;
-    /// the radius of the disc does not matter. `None` if an input is not finite. The x component is
-    /// at most -sine: the normal never turns past that of the leg.
+    /// The velocity obstacle has this sine of its half angle and the disc's centre as origin; the
+    /// radius does not matter. `None` if an input is not finite. The x component is at most -sine.
     #[must_use]
     pub fn normal<S: Scalar>(&self, sine: S, w: Vec2<S>) -> Option<Vec2<S>> {
         let (level, up) = self.level(sine)?;
@@ -113,7 +98,6 @@ impl VelocityObstacleTable {
         Some(Vec2::new(-found.x, found.y))
     }
 
-    /// The level below a sine, and the fraction of the way to the next level.
     fn level<S: Scalar>(&self, sine: S) -> Option<(usize, S)> {
         let whole = (sine * S::from_i32(ONE)).floor_to_i32()?;
         let above = self.sines.partition_point(|&s| i32::from(s) <= whole);
@@ -124,8 +108,7 @@ impl VelocityObstacleTable {
         Some((level, (sine - at(low)).checked_div(at(high) - at(low))?))
     }
 
-    /// The direction at or before that of `w`, and the fraction of the way to the next one. Points
-    /// behind the centre, and the centre itself, count as beside it.
+    /// Directions behind the centre, and the centre itself, count as beside it.
     fn direction<S: Scalar>(&self, w: Vec2<S>) -> Option<(usize, S)> {
         let before = (-w.x).max(S::ZERO);
         let share = before.checked_div(before + w.y).unwrap_or(S::ZERO);
@@ -135,7 +118,6 @@ impl VelocityObstacleTable {
         Some((usize::try_from(node).ok()?, steps - S::from_i32(node)))
     }
 
-    /// Interpolates between a node and the next one.
     fn between<S: Scalar>(&self, node: usize, on: S) -> Option<Vec2<S>> {
         let [one, next] = *self.normals.get(node..)?.first_chunk::<2>()?;
         let vector = |[x, y]: [i16; 2]| Vec2::new(S::from_i32(x.into()), S::from_i32(y.into()));
@@ -147,8 +129,7 @@ fn mix<S: Scalar>(from: Vec2<S>, to: Vec2<S>, share: S) -> Vec2<S> {
     from + (to - from) * share
 }
 
-/// The unit vector, without a root if the length is nearly 1; it is, except between distant
-/// directions.
+/// Takes no root if the length is nearly 1, as it is except between distant directions.
 fn unit<S: Scalar>(v: Vec2<S>) -> Option<Vec2<S>> {
     let short = S::ONE - v.norm_squared();
     if short.abs() > S::from_ratio(1, 32) {

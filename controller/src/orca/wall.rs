@@ -1,27 +1,22 @@
-//! The constraint of a static obstacle (ORCA section 5.4). A wall is a segment; a polygon consists
-//! of several.
+//! The constraint of a static obstacle (ORCA section 5.4): a segment; a polygon has several.
 
 use super::dimension::HalfPlane;
 use crate::geom::Vec2;
 use crate::scalar::Scalar;
 
-/// The nearest point on a part of the velocity obstacle's border, and its distance.
 struct Nearest<S> {
     distance: S,
     plane: HalfPlane<S>,
 }
 
 /// The velocities that keep a robot of `radius_m` off a wall for `horizon_s` seconds. The wall runs
-/// from `ends_m[0]` to `ends_m[1]`, relative to the robot's centre, metres. A wall does nothing to
-/// avoid, so the whole correction is the robot's.
+/// from `ends_m[0]` to `ends_m[1]`, relative to the robot's centre, metres.
 ///
 /// The wall widened by the robot is a capsule C. The velocities that meet it within the horizon are
 /// K = {c / t : c in C, 0 < t <= horizon}, a convex set bounded by two tangents from the origin and
-/// the near side of C / horizon. The half-plane touches K at the point nearest to the own velocity
-/// and hence forbids all of K. A robot that touches or overlaps the wall may not come nearer.
-///
-/// Difference to RVO2: segments are processed one by one instead of as chains of vertices. At a
-/// convex corner both segments forbid what the corner would; concave corners need no special case.
+/// the near side of C / horizon. The half-plane touches K at the point nearest to the own velocity.
+/// A robot that touches or overlaps the wall may not come nearer. RVO2 processes chains of vertices
+/// instead of single segments; at a convex corner both segments forbid what the corner would.
 ///
 /// `None` if an input is not finite, or radius or horizon is not above 0. Constant work.
 #[must_use]
@@ -39,12 +34,11 @@ pub fn wall<S: Scalar>(
     }
     let foot = nearest_on_segment(Vec2::ZERO, a, b);
     if foot.norm() <= radius_m {
-        // Touching. On the wall's centre line: perpendicular to it, to its left.
+        // On the wall's centre line: to its left.
         let normal = (-foot).normalized().or_else(|| (b - a).perp().normalized());
         let normal = normal.unwrap_or(Vec2::new(S::ONE, S::ZERO));
         return Some(HalfPlane { point: Vec2::ZERO, normal });
     }
-    // Seen from the robot, `left` is the end on the left.
     let (left, right) = if a.det(b) > S::ZERO { (b, a) } else { (a, b) };
     let rate = S::ONE.checked_div(horizon_s)?;
     let (near_left, near_right) = (left * rate, right * rate);
@@ -68,23 +62,19 @@ fn nearest_on_segment<S: Scalar>(at: Vec2<S>, a: Vec2<S>, b: Vec2<S>) -> Vec2<S>
     }
 }
 
-/// A point of the capsule's border with its outward normal; `None` unless it is on the near side,
-/// where the normal points back towards the origin.
+/// `None` unless the point is on the near side, where the normal points back towards the origin.
 fn near_side<S: Scalar>(v: Vec2<S>, point: Vec2<S>, normal: Vec2<S>) -> Option<Nearest<S>> {
     let is_near = normal.dot(point) <= S::ZERO;
     is_near.then(|| Nearest { distance: (v - point).norm(), plane: HalfPlane { point, normal } })
 }
 
-/// The half-circle around `end` of the segment from `other` to `end`.
 fn cap<S: Scalar>(v: Vec2<S>, end: Vec2<S>, other: Vec2<S>, reach: S) -> Option<Nearest<S>> {
-    // Exactly at the end: out on the robot's side.
     let normal = (v - end).normalized().or_else(|| (-end).normalized())?;
     // Both caps may claim the rounding gap between cap and side.
     let is_beyond = normal.dot(end - other) >= -(S::EPSILON * reach);
     is_beyond.then(|| near_side(v, end + normal * reach, normal)).flatten()
 }
 
-/// The straight side that faces the robot.
 fn side<S: Scalar>(v: Vec2<S>, left: Vec2<S>, right: Vec2<S>, reach: S) -> Option<Nearest<S>> {
     let along = (left - right).normalized()?;
     let across = along.perp();
@@ -94,7 +84,7 @@ fn side<S: Scalar>(v: Vec2<S>, left: Vec2<S>, right: Vec2<S>, reach: S) -> Optio
     is_beside.then(|| near_side(v, right + along * t + normal * reach, normal)).flatten()
 }
 
-/// One of the two tangents from the origin to the capsule, beyond the near side of the capsule.
+/// A tangent from the origin to the capsule, beyond its near side.
 fn leg<S: Scalar>(v: Vec2<S>, [left, right]: [Vec2<S>; 2], radius: S, rate: S, is_left: bool) -> Option<Nearest<S>> {
     // The outermost tangent of the two end discs: seen from outside, one disc may hide the other.
     let tangent = |end: Vec2<S>| {
@@ -102,7 +92,6 @@ fn leg<S: Scalar>(v: Vec2<S>, [left, right]: [Vec2<S>; 2], radius: S, rate: S, i
         let cos = (S::ONE - sin * sin).sqrt();
         let ahead = end.normalized()?;
         let direction = ahead.rotate(cos, if is_left { sin } else { -sin });
-        // The tangent point at the horizon.
         Some((direction, end.norm() * cos * rate))
     };
     let (one, other) = (tangent(left)?, tangent(right)?);

@@ -1,5 +1,3 @@
-//! Robots arrive wherever a path exists, for any visibility, memory and costs.
-
 use super::*;
 use crate::grid::{BLOCKED, Cell, Dir, Window};
 use proptest::prelude::*;
@@ -8,7 +6,7 @@ use std::vec::Vec;
 
 const SIDE: i16 = 20;
 
-/// Land of 20 x 20 cells within walls of 7 cells, wider than any view in these tests.
+/// 20 x 20 cells within walls of 7 cells, wider than any view in these tests.
 struct Land {
     cells: Vec<u8>,
 }
@@ -40,7 +38,6 @@ impl Land {
         })
     }
 
-    /// By flooding.
     fn can_reach(&self, from: Cell, to: Cell, corner_cutting: bool) -> bool {
         let mut known = vec![from];
         let mut next = 0;
@@ -52,7 +49,6 @@ impl Land {
         known.contains(&to)
     }
 
-    /// Number of moves until the robot arrives; `None` if it has not after very many.
     fn walk<const M: usize, const L: usize>(&self, params: &RouteParams, from: Cell, to: Cell) -> Option<usize> {
         let mut router = Router::<M, L>::new();
         let mut field = CostField::<225>::new();
@@ -98,7 +94,6 @@ proptest! {
     }
 }
 
-/// A dead end of 16 x 14 cells, open towards the robot inside it.
 fn dead_end() -> Land {
     let mut inside = vec![1; (SIDE * SIDE) as usize];
     for at in 2..18 {
@@ -115,7 +110,6 @@ fn wall_following_and_learning_leave_a_dead_end_larger_than_the_window() {
     let (from, to) = (Cell::new(15, 10), Cell::new(19, 10));
     let wall = dead_end().walk::<0, 0>(&params, from, to).unwrap();
     let learning = dead_end().walk::<0, 256>(&params, from, to).unwrap();
-    // Around the nearer end: some 40 moves.
     assert!(wall < 100 && learning < 200, "{wall} and {learning}");
 }
 
@@ -130,7 +124,6 @@ fn a_robot_pushed_off_the_wall_still_arrives() {
     while cell != to {
         router.observe(&params, cell, to);
         let weights = router.weights(&params, &mut field, &land.window(), cell, to, []).unwrap();
-        // Every 150th move is forced from outside.
         let pushed = land.moves(cell, false).last().filter(|_| moves % 150 == 149);
         cell = pushed.unwrap_or(cell + weights.best().unwrap().offset());
         moves += 1;

@@ -1,9 +1,9 @@
 //! The reverse search: cost to the exit from every cell of the window.
 //!
 //! A move's cost depends only on the cell that it enters, so settling a cell offers its eight
-//! predecessors one of two costs. The queue is a ring of buckets (`queue`); a bucket is no wider
-//! than the cheapest move, so that (Denardo and Fox 1979) a cell leaves the queue only once. All
-//! arrays have one cell of blocked border around the window: neighbours are plain index offsets.
+//! predecessors one of two costs. A bucket of the ring (`queue`) is at most as wide as the cheapest
+//! move, so a cell leaves the queue only once (Denardo and Fox 1979). All arrays have a blocked
+//! border of one cell, so that neighbours are index offsets.
 
 use super::{ExitRule, RouteParams, VisitMemory, ray_exit};
 use crate::cost::{Cost, EXCLUDED, Weights};
@@ -21,33 +21,29 @@ use queue::{MOST_CELLS, Queue, RING};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unreachable;
 
-/// Scratch memory of one search; 14 bytes per cell of the window with its border of one.
+/// Scratch memory of one search, without state between calls: many robots can share one.
 ///
-/// `CELLS` is at least (w + 2) * (h + 2) for the largest window used: 169 for r = 5. A larger
-/// window is cut to the rows that fit. It has no state between calls: many robots can share one.
+/// 14 bytes per cell. `CELLS` is at least (w + 2) * (h + 2) for the largest window used: 169 for
+/// r = 5. A larger window is cut to the rows that fit.
 #[derive(Clone, Debug)]
 pub struct CostField<const CELLS: usize> {
-    /// South-west cell of the window, its size, and the index distance of two rows.
     origin: Cell,
     width: u16,
     height: u16,
     stride: usize,
     impassability: [u8; CELLS],
-    /// Costs of entering a cell in addition to crossing it: other robots and earlier visits. In a
-    /// search that learns: a lower bound of the cost from the cell.
+    /// Additional costs of entering a cell; in a search that learns, a lower bound of its cost.
     extra: [Cost; CELLS],
-    /// Least known cost to the exit. 0 in cells that routes must not use, so that no cost is lower.
+    /// Cost to the exit; 0 in cells that routes must not use, so that no cost is lower.
     cost: [Cost; CELLS],
     queue: Queue<CELLS>,
     /// log2 of a bucket's width.
     shift: u32,
-    /// Impassability of the easiest land in the window, and whether there are walls.
     easiest: u8,
     has_walls: bool,
     learns: bool,
-    /// The robot's own cell, which routes must not use.
     closed: usize,
-    /// The next bucket to process, in an endless numbering of the ring: costs below it are final.
+    /// The next bucket, in an endless numbering of the ring: costs below it are final.
     at: u32,
 }
 
@@ -57,7 +53,6 @@ impl<const CELLS: usize> Default for CostField<CELLS> {
     }
 }
 
-/// The window as the search sees it, between [`CostField::load`] and the end of a query.
 #[derive(Clone, Copy)]
 struct Query<'a> {
     params: &'a RouteParams,
@@ -92,15 +87,15 @@ impl<const CELLS: usize> CostField<CELLS> {
     /// Weights of the eight moves out of `from` towards `target` (alg. 3): the least cost of the
     /// routes that begin with the move, stay in the window and do not return to `from`.
     ///
-    /// The window is `window` cut to radius r around `from`. With the target inside, routes end
-    /// there; otherwise (or if no way inside leads to it) on the border by [`ExitRule`]. `others`
-    /// are the cells of other robots.
+    /// The window is `window` cut to radius r around `from`. Routes end at the target; if it is
+    /// outside or no way inside leads to it, on the border by [`ExitRule`]. `others` are the cells
+    /// of other robots.
     ///
     /// # Errors
     /// [`Unreachable`] when no exit can be reached, or `from` is not in the window.
     ///
     /// Work: at most three searches, each O(w h) while costs lie within 64 times the cheapest move
-    /// of each other, as they do with sensible gains, and never more than O((w h)^2).
+    /// of each other, and never more than O((w h)^2).
     pub fn weights<const M: usize>(
         &mut self,
         params: &RouteParams,
@@ -113,8 +108,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.weights_knowing(params, window, (from, target), others, visits, &Beyond::default())
     }
 
-    /// [`CostField::weights`] of a robot that knows something of the land beyond the window.
-    /// Additional O(w + h) for each learned cell.
+    /// [`Self::weights`] with knowledge of land beyond the window; O(w + h) more per learned cell.
     pub(super) fn weights_knowing<const M: usize>(
         &mut self,
         params: &RouteParams,
@@ -135,7 +129,7 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.solve(params, from, target, beyond)
     }
 
-    /// [`Self::weights`] on the loaded window. Not inlined: firmware contains it once.
+    /// Not inlined: firmware contains it once.
     #[inline(never)]
     fn solve(
         &mut self,
@@ -173,21 +167,18 @@ impl<const CELLS: usize> CostField<CELLS> {
         weights.best().map(|_| weights).ok_or(Unreachable)
     }
 
-    /// Impassability of the easiest land of the loaded window, 255 if all of it is wall, and
-    /// whether it contains walls.
+    /// Impassability of the easiest land (255: all wall), and whether there are walls.
     pub(super) const fn land(&self) -> (u8, bool) {
         (self.easiest, self.has_walls)
     }
 
-    /// Continues the search of the last query until every cell of the window has its cost; the
-    /// query itself stops as soon as the robot's next moves are priced. Work: O(w h).
+    /// Completes the last search, which stops once the next moves are priced. O(w h).
     pub fn complete(&mut self, params: &RouteParams) {
         self.advance(params, None);
     }
 
-    /// Cost to the exit of the last query from `cell`; `None` if it has none, or one too high to
-    /// have been searched ([`CostField::complete`] finds those too). The robot's own cell counts as
-    /// blocked.
+    /// Cost to the exit of the last query from `cell`; `None` without a route, or if it was not
+    /// searched that far ([`CostField::complete`]). The robot's own cell is blocked.
     #[must_use]
     pub fn cost(&self, cell: Cell) -> Option<Cost> {
         let cost = *self.cost.get(self.index(cell)?)?;
@@ -196,15 +187,14 @@ impl<const CELLS: usize> CostField<CELLS> {
         (open && is_final && cost != EXCLUDED).then_some(cost)
     }
 
-    /// The first move of the cheapest route from `cell` under the last query; `None` at an exit and
-    /// if no route starts there.
+    /// The first move of the cheapest route from `cell` under the last query; `None` without one.
     #[must_use]
     pub fn descend(&self, params: &RouteParams, cell: Cell) -> Option<Dir> {
         let here = self.cost(cell)?;
         let at = self.index(cell)?;
         let weights = self.outgoing(&Query { params, from: at, from_cell: cell, target: cell });
         let dir = weights.best()?;
-        // The price of an exit itself may be lower than every route onwards from it.
+        // An exit may be cheaper than every route onwards from it.
         (weights.get(dir) <= here).then_some(dir)
     }
 
@@ -247,8 +237,7 @@ impl<const CELLS: usize> CostField<CELLS> {
             let (Some(source), Some(sink)) = (source, sink) else {
                 continue;
             };
-            // Not `copy_from_slice`: the compiler does not see that the lengths are equal, and
-            // keeps its panic.
+            // Not `copy_from_slice`, whose panic the compiler would keep.
             for (sink, u) in sink.iter_mut().zip(source) {
                 *sink = *u;
             }
@@ -266,7 +255,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Before a search: no exit yet; the robot's own cell is closed.
     #[inline(never)]
     fn begin(&mut self, query: &Query<'_>) {
         let used = (usize::from(self.height) + 2) * self.stride;
@@ -292,7 +280,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         self.advance(query.params, Some(query.from));
     }
 
-    /// Processes bucket after bucket until nothing is left, or all cells around a cell are final.
     #[inline(never)]
     fn advance(&mut self, params: &RouteParams, around: Option<usize>) {
         let mut idle = 0;
@@ -303,7 +290,6 @@ impl<const CELLS: usize> CostField<CELLS> {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
                 let due = cost >> self.shift;
                 if due > at {
-                    // Was farther away than the length of the ring.
                     self.queue.link(cell, due.min(at.saturating_add(RING - 1)));
                 } else {
                     self.settle(params, cell, cost, at);
@@ -318,11 +304,9 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Skips to the next cell if a whole turn of the ring settled none: with extreme gains, costs
-    /// are so far apart that turning would take too long. O(w h), and then a cell is settled.
+    /// Skips to the next cell if a whole turn of the ring settled none, which extreme gains cause.
     fn skip(&mut self) {
         self.at = self.lowest_offer();
-        // Beyond the window are leftovers of a search of a larger one.
         let used = (usize::from(self.height) + 2) * self.stride;
         for cell in 0..used {
             if self.queue.holds(cell) {
@@ -334,7 +318,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         }
     }
 
-    /// Whether the costs of all cells around `at` are final: their buckets are already empty.
     fn has_settled_around(&self, at: usize) -> bool {
         let s = self.stride;
         let rows = [at.wrapping_sub(s + 1), at.wrapping_sub(1), at + s - 1];
@@ -344,13 +327,11 @@ impl<const CELLS: usize> CostField<CELLS> {
         })
     }
 
-    /// Number of the first bucket in use, in an endless numbering of the ring.
     fn lowest_offer(&self) -> u32 {
         let costs = self.queue.iter().filter_map(|cell| self.cost.get(cell).copied());
         costs.min().unwrap_or(0) >> self.shift
     }
 
-    /// Updates the predecessors of a settled cell with the route through it.
     fn settle(&mut self, params: &RouteParams, cell: usize, cost: Cost, at: u32) {
         let u = u32::from(self.impassability.get(cell).copied().unwrap_or(BLOCKED));
         let extra = if self.learns { 0 } else { self.extra.get(cell).copied().unwrap_or(0) };
@@ -366,7 +347,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         for beside in [east, west, north, south] {
             self.relax(beside, axis, at);
         }
-        // Each side is read once, although two corners need it.
         let open = |side| params.corner_cutting || self.is_passable(side);
         let [e, w, n, s] = [east, west, north, south].map(open);
         let corners = [
@@ -417,10 +397,9 @@ impl<const CELLS: usize> CostField<CELLS> {
         rows.chain(columns).map(move |(x, y)| origin + Cell::new(x, y))
     }
 
-    /// The border cell nearest to `exit` (then in the order of [`Cell`]) that the robot can reach.
+    /// The border cell nearest to `exit` (ties by [`Cell`]) that the robot can reach.
     fn nearest_reachable_border(&mut self, query: &Query<'_>, exit: Cell) -> Option<usize> {
-        // Moves are symmetric in the cells that they may enter, so a search from the open
-        // neighbours of the own cell finds all reachable cells.
+        // Moves are symmetric: a search from the own cell finds all reachable cells.
         let open = self.outgoing_with(query, |_| Some(0));
         self.begin(query);
         for (dir, cost) in open.iter() {

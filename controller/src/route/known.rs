@@ -1,30 +1,24 @@
-//! Observed differences from the map, for land out of sight.
+//! Observed differences from the map, for land out of sight (KUZ section 3).
 //!
-//! KUZ section 3: land changes with time and is not fully scouted. A robot with a map plans on a
-//! window wider than its view. The caller fills that window: with the map ([`supposed`]), then with
-//! remembered differences ([`LandMemory::overlay`]), then with the present view. The search treats
-//! it as any other window, and an invalid plan is replaced when the robot sees the difference. Maps
-//! can lie in flash; only differences take memory.
+//! A robot with a map plans on a window wider than its view. The caller fills it with the map
+//! ([`supposed`]), then with remembered differences ([`LandMemory::overlay`]), then with the view.
+//! Maps can lie in flash; only differences take memory.
 
 use crate::grid::{BLOCKED, Cell, Window};
 use crate::list::{SparseVec, sink_last};
 use serde::{Deserialize, Serialize};
 
-/// Ticks that a cell takes if it is only assumed to be closed. No route crosses it while there is
-/// another one, but a route is not given up because of a wall that was never observed.
+/// Ticks of a cell that is only assumed to be closed: any other route is preferred.
 pub const SUPPOSED_CLOSED: u8 = u8::MAX;
 
-/// The class to plan with for a cell out of sight that was last seen, or is mapped, with this
-/// class.
+/// The class to plan with for a cell out of sight that was last seen, or is mapped, as `class`.
 #[must_use]
 pub const fn supposed(class: u8) -> u8 {
     if class == BLOCKED { SUPPOSED_CLOSED } else { class }
 }
 
-/// The classes of up to `N` cells that differ from the map.
-///
-/// When full, the cell farthest from the robot is forgotten, and has the map's class again. Memory:
-/// 6 bytes per cell.
+/// The classes of up to `N` cells that differ from the map; a full memory forgets the cell farthest
+/// from the robot. 6 bytes per cell.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LandMemory<const N: usize> {
     cells: SparseVec<(Cell, u8), N>,
@@ -50,7 +44,7 @@ impl<const N: usize> LandMemory<N> {
     }
 
     /// Stores all cells that the robot `here` sees; `map` returns their class on the map. O(cells
-    /// of `seen` x log N), and O(N) for each cell that has changed since it was last seen.
+    /// of `seen` x log N), and O(N) for each changed cell.
     pub fn observe(&mut self, here: Cell, seen: &Window<'_>, map: impl Fn(Cell) -> u8) {
         for (cell, class) in seen.iter() {
             if class == map(cell) {
@@ -80,8 +74,7 @@ impl<const N: usize> LandMemory<N> {
         }
     }
 
-    /// Writes the remembered cells into a window of known land whose south-west cell is `origin`,
-    /// row by row from there, each `width` cells long. O(N).
+    /// Writes the remembered cells into a window of this south-west cell and `width`. O(N).
     pub fn overlay(&self, origin: Cell, width: u16, cells: &mut [u8]) {
         for &(cell, class) in &self.cells {
             let [dx, dy] = [(cell.x, origin.x), (cell.y, origin.y)].map(|(at, from)| i32::from(at) - i32::from(from));

@@ -1,13 +1,10 @@
-//! Learned lower bounds of the cost to the target.
-
 use crate::cost::Cost;
 use crate::grid::Cell;
 use crate::list::SparseVec;
 use serde::{Deserialize, Serialize};
 
-/// Least costs to the target of up to `L` cells, each more than the straight path would cost.
-///
-/// When full, the cell farthest from the robot is forgotten. Memory: 8 bytes per cell.
+/// Least costs to the target of up to `L` cells that cost more than the straight path; a full
+/// memory forgets the cell farthest from the robot. 8 bytes per cell.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LearnedCosts<const L: usize> {
     costs: SparseVec<(Cell, Cost), L>,

@@ -1,17 +1,14 @@
 //! Windowed routing: the cheapest route out of the robot's view, towards its target.
 //!
 //! Source: A. V. Kuznetsov 2017 (KUZ), sections 3 and 5, algorithms 1 and 3, equations 7 to 10.
-//! Read section 3 first. Costs are integers, see [`crate::cost`], so that host and device agree bit
-//! for bit.
+//! Costs are integers ([`crate::cost`]), so that host and device agree bit for bit.
 //!
 //! Differences to the paper:
 //!
 //! - The direction of algorithm 3, line 7 is (target - cell); the listing has it reversed.
 //! - One reverse search from the exits serves all directions.
-//! - Besides the listing's single exit ([`ExitRule::Ray`]), every border cell may be the exit,
-//!   priced by equation 10 ([`ExitRule::Best`]).
-//! - A robot that does not approach its target learns costs and, as a last resort, follows the wall
-//!   ([`Router`]).
+//! - Every border cell may be the exit ([`ExitRule::Best`]).
+//! - A robot that does not approach its target learns or follows the wall ([`Router`]).
 
 mod escape;
 mod field;
@@ -43,19 +40,17 @@ named! {
         /// The border cell with the least path cost + a3 * distance to the target (eq. 10).
         #[default]
         Best = "best",
-        /// The border cell where the ray to the target crosses the border (alg. 3, line 8); if it
-        /// is blocked, the nearest border cell that can be reached.
+        /// The border cell on the ray to the target (alg. 3, line 8), or the nearest reachable one.
         Ray = "ray",
     }
 }
 
-/// Parameters of the route cost T(r) = a0 sum |d| u + a1 #occupied + a2 sum visits + a3 |exit -
-/// target|.
+/// Parameters of the route cost a0 sum |d| u + a1 #occupied + a2 sum visits + a3 |exit - target|.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RouteParams {
     /// Radius r of the window in cells (KUZ: 5). A larger one shows dead ends earlier and costs
-    /// O(r^2) time and memory; 1 is plain greedy descent.
+    /// O(r^2) time and memory; 1 is greedy descent.
     pub radius: u8,
     /// Which border cells end a route.
     pub exit: ExitRule,
@@ -63,28 +58,24 @@ pub struct RouteParams {
     pub norm: Norm,
     /// Whether a diagonal move may pass a blocked orthogonal neighbour.
     pub corner_cutting: bool,
-    /// Weight of travel time, ticks (eq. 7). 0 makes land free, which is only useful for special
-    /// purposes.
+    /// Weight of travel time, ticks (eq. 7). 0 makes land free.
     pub a0: Gain,
     /// Additional ticks for a cell occupied by another robot (eq. 7). With 0 the robot queues
-    /// behind others; large values lead to long detours around a crowd.
+    /// behind others; large values lead to long detours.
     pub a1: Gain,
-    /// Ticks per earlier visit of a cell (eq. 9). With 0 the robot can circle in a dead end larger
-    /// than the window until [`Router`] takes another route; a value too large keeps it away from
-    /// good land that it used before.
+    /// Ticks per earlier visit of a cell (eq. 9). With 0 the robot can circle in a dead end until
+    /// [`Router`] takes another route; a large value keeps it off land that it used.
     pub a2: Gain,
-    /// Ticks per cell of distance between exit and target (eq. 10). It should be near the time that
-    /// a cell takes on a good route over the land. Below half of that the robot wanders and may not
-    /// arrive at all; with larger values it moves straighter over bad ground.
+    /// Ticks per cell of distance between exit and target (eq. 10), near the time that a cell takes
+    /// on a good route. Below half of that it may not arrive; with more it moves straighter.
     pub a3: Gain,
 }
 
 impl Default for RouteParams {
     /// r = 5, best exit, Euclidean, no corner cutting, a = (1, 2, 3, 3).
     ///
-    /// On random natural land a3 = 3 loses the least time against the optimum, or almost the least
+    /// On random natural land a3 = 3 loses almost the least time against the optimum
     /// (`staya experiment route --sweep a3`); a1 and a2 hardly matter there unless they are 0.
-    /// [`Router`] leaves dead ends larger than the window with any gains.
     fn default() -> Self {
         Self {
             radius: 5,
@@ -107,8 +98,7 @@ impl RouteParams {
         corners && passable(x, y)
     }
 
-    /// Every move that the land permits from `cell`, regardless of its destination: for a robot
-    /// that only moves aside.
+    /// Every move that the land permits from `cell`, for a robot that only moves aside.
     pub(crate) fn open_moves(&self, window: &Window<'_>, cell: Cell) -> Weights {
         Weights::new(Dir::MOVES.map(|dir| if self.opens(window, cell, dir) { TICK } else { EXCLUDED }))
     }
@@ -118,7 +108,6 @@ fn ray_exit(radius: u8, from: Cell, target: Cell) -> Cell {
     let (dx, dy) = (i64::from(target.x) - i64::from(from.x), i64::from(target.y) - i64::from(from.y));
     let longest = dx.abs().max(dy.abs());
     let scale = |d: i64| {
-        // Rounded to nearest, away from 0 at one half.
         let half = if d < 0 { -longest } else { longest };
         (2 * d * i64::from(radius) + half).checked_div(2 * longest).unwrap_or(0)
     };

@@ -1,5 +1,3 @@
-//! The routing state of one robot between steps.
-
 use super::escape::Escape;
 use super::field::Beyond;
 use super::{CostField, LearnedCosts, RouteParams, Unreachable, VisitMemory};
@@ -10,13 +8,12 @@ use crate::list::SparseVec;
 use crate::names::named;
 use serde::{Deserialize, Serialize};
 
-/// Moves in a plan; a longer route is planned again after this many.
+/// Most moves in a plan.
 pub const PLAN: usize = 32;
 
-/// Number of moves without a new least distance to the target after which the robot follows the
-/// wall, if it cannot learn.
+/// Moves without a new least distance to the target until the robot follows the wall.
 const IDLE: u8 = 20;
-/// The same limit for a robot that learns; higher, as learning is usually the shorter solution.
+/// The same for a robot that learns, which is usually shorter.
 const IDLE_LEARNING: u8 = 100;
 
 named! {
@@ -26,39 +23,34 @@ named! {
         /// Whenever the robot is free to leave its cell (alg. 1): O((2r + 1)^2) per cell.
         #[default]
         EachCell = "each_cell",
-        /// At the end of the planned chain or when something changed on it (KUZ section 3): fewer
-        /// searches, but slower reactions to changes beside the chain.
+        /// At the end of the planned chain or when something on it changed (KUZ section 3): fewer
+        /// searches, slower reactions to changes beside the chain.
         UntilChanged = "until_changed",
     }
 }
 
-/// One robot's routing state: visits (`M` cells), the planned chain, and the state that leads it
-/// out of dead ends larger than its window.
+/// One robot's routing state: visits (`M` cells), the planned chain, and the way out of dead ends.
 ///
 /// While each move brings the robot closer to its target than ever before, the paper's rule
-/// decides. When a move does not, and walls are in sight (or many moves do not), the robot
-/// *learns*: it searches the window for the costs from all cells, and stores those that are higher
-/// than assumed, for up to `L` cells (LSS-LRTA*, S. Koenig and X. Sun, "Comparing real-time and
-/// incremental heuristic search for real-time situated agents", JAAMAS 18, 2009; here at each move,
-/// and the costs from the window's inner cells never decrease either). Other robots are not walls:
-/// with one in sight nothing is learned, and the paper's rule decides.
+/// decides. Otherwise, if walls are in sight (or for many moves), the robot *learns*: it stores the
+/// costs that are higher than assumed, for up to `L` cells (LSS-LRTA*, S. Koenig and X. Sun,
+/// "Comparing real-time and incremental heuristic search for real-time situated agents", JAAMAS 18,
+/// 2009). With another robot in sight nothing is learned.
 ///
 /// Dead ends that `L` cells cannot represent (any with `L` = 0) are left along the wall: after 20
 /// moves (100 with a memory) the robot follows it until it is closer than ever. So it arrives
-/// wherever a path exists that it may follow undisturbed, with any gains, `M` and `L`.
+/// wherever an undisturbed path exists, with any gains, `M` and `L`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Router<const M: usize, const L: usize = 0> {
     visits: VisitMemory<M>,
     here: Option<Cell>,
     target: Option<Cell>,
-    /// The next moves, last one first, each with the impassability that it was planned for.
+    /// Last move first, each with the impassability that it was planned for.
     plan: SparseVec<(Dir, u8), PLAN>,
     learned: LearnedCosts<L>,
-    /// Impassability of the easiest land seen on the route to this target.
     easiest: u8,
     /// Least squared distance to the target so far.
     least: u64,
-    /// Moves since then.
     idle: u8,
     escape: Option<Escape>,
 }
@@ -92,14 +84,12 @@ impl<const M: usize, const L: usize> Router<M, L> {
         &self.visits
     }
 
-    /// Moves since it was nearest to its target, up to 255.
     pub(crate) const fn idle(&self) -> u8 {
         self.idle
     }
 
     /// Updates the robot's cell and target; call it at each step. A changed cell counts as a visit
-    /// and as a move of the planned chain. A target that moves by more than the window clears the
-    /// visits.
+    /// and a move of the plan. A target that moves by more than the window clears the visits.
     pub fn observe(&mut self, params: &RouteParams, cell: Cell, target: Cell) {
         if self.target.is_some_and(|old| old.chebyshev(target) > u32::from(params.radius)) {
             self.visits.clear();
@@ -123,7 +113,6 @@ impl<const M: usize, const L: usize> Router<M, L> {
         }
         let distance = cell.distance_squared(target);
         if distance == 0 {
-            // A robot that is pushed off its target plans a new route back.
             self.forget_route();
         } else if distance < self.least {
             self.least = distance;
@@ -132,7 +121,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         }
     }
 
-    /// Clears the knowledge of the route, for example while other robots lead this one.
+    /// Clears the knowledge of the route.
     pub fn forget_route(&mut self) {
         self.learned.clear();
         self.easiest = u8::MAX;
@@ -141,8 +130,8 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.escape = None;
     }
 
-    /// Weights of the eight moves by a new search; see [`CostField::weights`]. While following a
-    /// wall, the move along it has weight zero. Work: three searches, and O(L w h) while learning.
+    /// Weights of the eight moves by a new search ([`CostField::weights`]); along a wall that is
+    /// followed, zero. Work: three searches, and O(L w h) while learning.
     ///
     /// # Errors
     /// [`Unreachable`] if no exit of the window can be reached.
@@ -158,9 +147,8 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.weights_over(params, field, window, (from, target), others, None)
     }
 
-    /// Like [`Router::weights`] for a robot that may know `land` beyond its window, and prices the
-    /// exits by it instead of learning. Without known tiles the prices are unchanged. Additional
-    /// work: [`FarLand::look`].
+    /// Like [`Router::weights`], with exits priced by the known `land` beyond the window instead of
+    /// learning, if any tile is known. Additional work: [`FarLand::look`].
     ///
     /// # Errors
     /// [`Unreachable`] if no exit of the window can be reached.
@@ -205,8 +193,8 @@ impl<const M: usize, const L: usize> Router<M, L> {
         })
     }
 
-    /// The next move of the planned chain, which is planned again if there is none or something on
-    /// it changed. [`Router::observe`] detects whether the robot makes it.
+    /// The next move of the planned chain, which is planned again when it ends or something on it
+    /// changed. [`Router::observe`] detects whether the robot makes it.
     ///
     /// # Errors
     /// [`Unreachable`] if no exit of the window can be reached.
@@ -219,7 +207,6 @@ impl<const M: usize, const L: usize> Router<M, L> {
         target: Cell,
         others: impl IntoIterator<Item = Cell> + Clone,
     ) -> Result<Dir, Unreachable> {
-        // A path out of a dead end is planned again in each cell.
         let is_restarted = self.escapes() || L > 0 && self.idle > 0;
         if is_restarted || !self.plan_holds(params, window, from, others.clone()) {
             let weights = self.weights(params, field, window, from, target, others)?;
@@ -237,16 +224,14 @@ impl<const M: usize, const L: usize> Router<M, L> {
         self.escape.is_some() || self.idle > patience
     }
 
-    /// Removes the first move of the plan once the robot has made it; drops a plan that the robot
-    /// left.
+    /// Drops a plan that the robot left.
     fn advance(&mut self, made: Dir) {
         if self.plan.pop().is_some_and(|(dir, _)| dir != made) {
             self.plan.clear();
         }
     }
 
-    /// Whether the land on the chain is as planned, as far as the window shows it, no corner beside
-    /// it has closed, and no robot is in the way.
+    /// Land and corners are as planned, as far as visible, and no robot is in the way.
     fn plan_holds(
         &self,
         params: &RouteParams,

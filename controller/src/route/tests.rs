@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 const NO_VISITS: Option<&VisitMemory<0>> = None;
 
-/// Reads a picture, north up: digits are impassabilities, `#` is blocked.
+/// North up: digits are impassabilities, `#` is blocked.
 fn land(rows: &[&str]) -> (Vec<u8>, u16, u16) {
     let digit = |c: u8| if c == b'#' { BLOCKED } else { c - b'0' };
     let cells = rows.iter().rev().flat_map(|row| row.bytes().map(digit)).collect();
@@ -24,7 +24,7 @@ fn weights_on(rows: &[&str], params: &RouteParams, from: (i16, i16), to: (i16, i
 fn cheapest_way_to_a_target_inside_avoids_bad_land() {
     let params = RouteParams { a3: Gain::ZERO, ..RouteParams::default() };
     let weights = weights_on(&["11111", "19991", "11111"], &params, (0, 1), (4, 1)).unwrap();
-    // Around: two diagonal and two straight moves; once on bad land, off it again by a diagonal.
+    // Two diagonal and two straight moves; once on bad land, off it by a diagonal.
     assert_eq!(weights.get(Dir::East), 10 * TICK + 2 * Gain::ONE.of(DIAGONAL));
     assert_eq!(weights.get(Dir::NorthEast), 2 * TICK + 2 * Gain::ONE.of(DIAGONAL));
     assert_eq!(weights.get(Dir::NorthEast), weights.get(Dir::SouthEast));
@@ -127,7 +127,6 @@ fn plan_is_followed_until_something_changes_on_it() {
     };
     assert_eq!(follow(&mut router, &cells, here, &[]), Dir::East);
     here = Cell::new(4, 3);
-    // A cell beside the chain does not matter; one on it does.
     cells[0] = 9;
     assert_eq!(follow(&mut router, &cells, here, &[Cell::new(5, 5)]), Dir::East);
     cells[3 * 7 + 5] = 9;
@@ -151,8 +150,6 @@ fn plan_does_not_hold_when_a_corner_beside_it_closes() {
     assert_eq!(follow(&mut router, &cells, Cell::new(4, 4)), Dir::North);
 }
 
-/// Gains at their limits: costs that are extremely far apart take no longer and give the same
-/// result.
 #[test]
 fn extreme_gains_neither_close_a_route_nor_take_long() {
     let cells = [1; 121];
@@ -169,7 +166,6 @@ fn extreme_gains_neither_close_a_route_nor_take_long() {
                 let found = field.weights(&params, &window, Cell::default(), target, others, Some(&visits));
                 let best = found.unwrap().best().unwrap();
                 assert!(a3 == Gain::ZERO || best.offset().x >= 0, "{a0:?} {a3:?} {best:?}");
-                // A smaller window next, while the larger one's search is not complete.
                 let small = RouteParams { radius: 2, ..params };
                 let found = field.weights(&small, &window, Cell::default(), target, others, Some(&visits));
                 assert!(found.is_ok());

@@ -1,12 +1,9 @@
-//! The robot's memory of its own path (eq. 9).
-
 use crate::grid::Cell;
 use crate::list::SparseVec;
 use serde::{Deserialize, Serialize};
 
-/// How often the robot entered each of the last `M` different cells.
-///
-/// When full, the cell that was entered longest ago is forgotten. Memory: 6 bytes per cell.
+/// How often the robot entered each of the last `M` different cells (eq. 9); a full memory forgets
+/// the cell that was entered longest ago. 6 bytes per cell.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct VisitMemory<const M: usize> {
     visits: SparseVec<(Cell, u8), M>,
@@ -28,7 +25,7 @@ impl<const M: usize> VisitMemory<M> {
             self.visits.pop()
         });
         let count = gone.filter(|&(at, _)| at == cell).map_or(0, |(_, count)| count);
-        // Fails only for M = 0, a memory without capacity.
+        // Fails only for M = 0.
         let _ = self.visits.push((cell, count.saturating_add(1)));
     }
 
@@ -49,8 +46,6 @@ impl<const M: usize> VisitMemory<M> {
     }
 }
 
-/// Moves the item at `at` to the end; those behind it move up. Nothing happens if it does not
-/// exist.
 fn to_end<T>(items: &mut [T], at: usize) {
     let mut rest = items.get_mut(at..).unwrap_or_default();
     while let [item, next, ..] = rest {

@@ -25,7 +25,7 @@ pub const VERSION: u16 = 1;
 pub const HEADER_LEN: usize = 48;
 const MAGIC: [u8; 4] = *b"FVM\0";
 const CHECKED: usize = 44;
-/// Without a table: slower once, instead of 1 KiB of flash permanently.
+/// Without a table: slower, but 1 KiB of flash less.
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// The header of a model, before its components.
@@ -55,7 +55,7 @@ pub enum FileError {
         /// Actual length in bytes.
         found: usize,
     },
-    /// The beginning is not that of a model.
+    /// The bytes do not begin like a model.
     NotAModel,
     /// Another version of the format.
     Version(u16),
@@ -128,8 +128,7 @@ impl Header {
         self.count().saturating_mul(node).saturating_add(HEADER_LEN)
     }
 
-    /// The header as bytes, with a checksum of zero. Compute the [`checksum`] of the whole model
-    /// and write it to bytes 44 to 47.
+    /// The header with a checksum of zero: write the [`checksum`] of the model to bytes 44 to 47.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; HEADER_LEN] {
         let mut bytes = [0; HEADER_LEN];

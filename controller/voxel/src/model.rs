@@ -1,21 +1,16 @@
 //! Evaluates a function from its local geometric characteristics (A. Tolok 2016, "The functional
 //! voxel method in computer modelling"; Tolok et al., FVM, eqs. 16 and 17).
 //!
-//! In each node the model stores the unit vector (cos alpha, cos beta, [..] cos gamma, cos delta)
-//! of the plane that touches the function's graph there: cos alpha x + cos beta y + cos gamma z =
-//! cos delta (eq. 16; one more at the front for three variables). Value, gradient and half-plane
-//! follow by a few products and one division.
+//! Each node stores the unit vector of the plane that touches the function's graph there: cos alpha
+//! x + cos beta y + cos gamma z = cos delta (eq. 16; one more at the front for three variables).
 //!
-//! Differences to the literature, and why:
+//! Differences to the literature:
 //!
-//! - Coordinates are relative to the node, in units of half of the extent along each axis; values
-//!   are in the model's unit. With coordinates from one origin, cos delta would also contain the
-//!   position, and far from the origin it would take the bits that the value needs.
-//! - Components are signed integers, so that 0 is exactly 0; an M-image has 256 greys, or 65,536,
-//!   and none of them is 0.
-//! - Besides the plane of the nearest node ([`Model::nearest`], the original method) there is the
-//!   blend of the surrounding planes ([`Model::blend`]): continuous, and with errors that decrease
-//!   with the square of the step.
+//! - Coordinates are relative to the node, in units of half of the extent; with one origin, cos
+//!   delta loses bits.
+//! - Components are signed integers, so that 0 is exactly 0; none of an M-image's greys is 0.
+//! - [`Model::blend`] of the surrounding planes is continuous, with errors of the square of the
+//!   step; [`Model::nearest`] is the original method.
 
 use crate::file::{FileError, HEADER_LEN, Header};
 use core::array;
@@ -33,8 +28,7 @@ pub struct Local<S, const V: usize> {
 }
 
 impl<S: Scalar> Local<S, 2> {
-    /// Unit vector of the steepest increase: eq. 17, (cos, sin) of the angle. `None` where the
-    /// function is level.
+    /// Unit vector of the steepest increase (eq. 17); `None` where the function is level.
     #[must_use]
     pub fn direction(&self) -> Option<Vec2<S>> {
         let [x, y] = self.gradient;
@@ -50,16 +44,13 @@ impl<S: Scalar> Local<S, 2> {
     }
 }
 
-/// A function of `V` variables, 2 or 3, evaluated from borrowed bytes.
-///
-/// Size of the model itself: about 8 + 13 V bytes (`f32`); nothing is copied.
+/// A function of `V` variables, 2 or 3, in borrowed bytes. About 8 + 13 V bytes (`f32`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model<'a, S, const V: usize> {
     nodes: &'a [u8],
-    /// Length in bytes of a component, and of a node.
     component_len: usize,
     node_len: usize,
-    /// 1 as a component, in `S`: fixed point could not hold sums of products of whole components.
+    /// Fixed point could not hold sums of products of whole components.
     one: S,
     unit: S,
     axes: [Axis<S>; V],
@@ -71,11 +62,11 @@ struct Axis<S> {
     first: S,
     per_step: S,
     last: i32,
-    /// Index distance of neighbouring nodes along this axis.
+    /// Index distance of neighbouring nodes.
     stride: usize,
-    /// A step, in half of the extent.
+    /// In half of the extent.
     scale: S,
-    /// The model's unit of values in half of the extent.
+    /// Unit of values in half of the extent.
     slope: S,
     high: S,
 }
@@ -88,12 +79,10 @@ impl<S, const V: usize> Serialize for Model<'_, S, V> {
 }
 
 impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
-    /// Opens the model in these bytes, which `staya voxel build` writes. Checks all bytes:
-    /// O(length), once at the start.
+    /// Opens and checks the model in these bytes, written by `staya voxel build`: O(length).
     ///
     /// # Errors
-    /// [`FileError`], for the first error found; a number that `S` cannot represent counts as an
-    /// invalid field.
+    /// [`FileError`], for the first error found; `S` must represent all fields.
     pub fn from_bytes(bytes: &'a [u8]) -> Result<Self, FileError> {
         let header = Header::read(bytes)?;
         if usize::from(header.variables) != V {
@@ -158,7 +147,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
     }
 
     /// Evaluates the plane of the nearest node: the original functional voxel method. It jumps
-    /// between voxels; the error decreases with the step in gradients, with its square in values.
+    /// between voxels; errors decrease with the step in gradients, with its square in values.
     ///
     /// `None` outside the extent, for input that is not finite, and where the function is too steep
     /// for the depth. Work: one node.
@@ -177,9 +166,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
     }
 
     /// Evaluates the blended planes of the 2^V surrounding nodes: continuous, with errors of the
-    /// square of the step in values and in gradients.
-    ///
-    /// `None` as in [`Model::nearest`]. Work: 4 or 8 nodes.
+    /// square of the step. `None` as in [`Model::nearest`]. Work: 4 or 8 nodes.
     #[must_use]
     pub fn blend(&self, at: [S; V]) -> Option<Local<S, V>> {
         let (mut node, mut on) = (0_usize, [S::ZERO; V]);
@@ -203,8 +190,8 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         self.local(&sum)
     }
 
-    /// The components of a node, as in M-images, from -1 to 1: those of the variables, then that of
-    /// the function and the free one. `None` if the node does not exist.
+    /// The components of a node, from -1 to 1: those of the variables, then that of the function
+    /// and the free one. `None` if the node does not exist.
     #[must_use]
     pub fn node(&self, index: [u16; V]) -> Option<([S; V], [S; 2])> {
         let mut node = 0_usize;
@@ -214,7 +201,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
         self.components(node)
     }
 
-    /// Adds a node's plane, moved to the point at `offset` from it.
+    /// Adds the plane of a node, moved to the point at `offset`.
     #[inline]
     fn add(&self, sum: &mut Sum<S, V>, node: usize, weight: S, offset: &[S; V]) -> Option<()> {
         let (slopes, [own, free]) = self.components(node)?;
@@ -224,7 +211,7 @@ impl<'a, S: Scalar, const V: usize> Model<'a, S, V> {
             *sum += slope * weight;
         }
         sum.height += height * weight;
-        // If a plane is the graph of a function, this component is below 0.
+        // Below 0 for the graph of a function.
         sum.down -= own * weight;
         Some(())
     }
@@ -272,7 +259,6 @@ impl<S: Scalar> Axis<S> {
     }
 }
 
-/// A plane, or the weighted sum of several.
 struct Sum<S, const V: usize> {
     slopes: [S; V],
     height: S,

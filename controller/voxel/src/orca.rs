@@ -1,6 +1,6 @@
-//! ORCA on functional voxel models: constraints from a model of a velocity obstacle
-//! ([`velocity_half_plane`]), of any pair of robots ([`VoxelNeighbor`]), and of land or a room
-//! ([`obstacles`]). Functions are positive inside the forbidden region, as in the paper's eq. 15.
+//! ORCA on functional voxel models: of a velocity obstacle ([`velocity_half_plane`]), of any pair
+//! of robots ([`VoxelNeighbor`]), and of land or a room ([`obstacles`]). Functions are positive
+//! inside the forbidden region (FVM, eq. 15).
 
 use crate::model::{Local, Model};
 use heapless::Vec;
@@ -10,13 +10,11 @@ use staya_controller::obstacle::Obstacle;
 use staya_controller::orca::{HalfPlane, HalfSpaces, MovingBall, Params, half_plane};
 use staya_controller::scalar::Scalar;
 
-/// ORCA's half-plane from the model of a velocity obstacle over the plane of relative velocities,
-/// m/s (FVM, eqs. 12, 14 and 17): leaves the obstacle by the shortest path that the local plane
-/// gives; the robot makes `share` of it.
+/// ORCA's half-plane from the model of a velocity obstacle over relative velocities, m/s (FVM, eqs.
+/// 12, 14 and 17): the shortest path out by the local plane, of which the robot makes `share`.
 ///
 /// `None` where the model is undefined, or the function is level. Unlike [`VoxelNeighbor`] it
-/// trusts the function: whether the half-plane forbids the whole obstacle depends on the function.
-/// Work: [`Model::blend`].
+/// trusts the function to forbid the whole obstacle. Work: [`Model::blend`].
 #[must_use]
 pub fn velocity_half_plane<S: Scalar>(
     obstacle: &Model<'_, S, 2>,
@@ -30,19 +28,17 @@ pub fn velocity_half_plane<S: Scalar>(
     point.is_finite().then_some(HalfPlane { point, normal })
 }
 
-/// Half-planes of moving neighbours from a model of all velocity obstacles (`staya voxel build
-/// neighbor`), for an [`Avoider`](staya_controller::orca::Avoider).
+/// Half-planes of moving neighbours from a model of all velocity obstacles
+/// (`staya voxel build neighbor`), for an [`Avoider`](staya_controller::orca::Avoider).
 ///
-/// Turned so that the neighbour is on the x axis, with the disc's centre in the origin and its
-/// radius as unit, a velocity obstacle depends on one number: its half angle. The model's variables
-/// are the velocity along and beside that axis (its mirror image is not stored), and the tangent of
-/// half of the half angle, in which the legs turn evenly. The sine is available without
-/// computation, but over it the legs turn ever faster up to the end, and errors are twice as large.
+/// Turned so that the neighbour is on the x axis, with the disc as unit disc, a velocity obstacle
+/// depends only on its half angle. The model's variables are the velocity along and beside that
+/// axis (without its mirror image), and the tangent of half of the half angle, in which the legs
+/// turn evenly; over the sine, errors are twice as large.
 ///
-/// **Each half-plane is safe for any content of the model**: only the model's normal is used (eq.
-/// 17), limited to lie between those of the two legs, and the border touches the disc. Then the
-/// whole obstacle is behind it. The model's error only makes the demanded change of velocity
-/// longer. Both robots of a pair read the same nodes, so that their half-planes are opposite.
+/// **Each half-plane is safe for any content of the model**: the model's normal (eq. 17) is limited
+/// to lie between those of the two legs, and the border touches the disc. An error only makes the
+/// demanded change of velocity longer. The half-planes of a pair are opposite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VoxelNeighbor<'a, S: Scalar> {
     model: Model<'a, S, 3>,
@@ -61,14 +57,12 @@ impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
         &self.model
     }
 
-    /// The normal out of the obstacle at the border nearest to `w`, in disc radii from the disc's
-    /// centre, `w.y >= 0`.
+    /// The normal at the border nearest to `w`, in disc radii from the disc's centre, `w.y >= 0`.
     fn normal(&self, w: Vec2<S>, sine: S) -> Option<Vec2<S>> {
         let cos = (S::ONE - sine * sine).sqrt();
         let opening = sine.checked_div(S::ONE + cos)?;
         let [[_, right], [_, top], _] = self.model.extent();
-        // A point outside is moved straight to the centre: along that line the nearest border's
-        // normal is constant.
+        // Along the line to the centre the normal is constant.
         let times = w.x.abs().checked_div(right)?.max(w.y.checked_div(top)?);
         let w = if times > S::ONE { w * S::ONE.checked_div(times)? } else { w };
         let Local { gradient: [x, y, _], .. } =
@@ -85,7 +79,7 @@ impl<'a, S: Scalar> VoxelNeighbor<'a, S> {
 impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
     type Velocity = Vec2<S>;
 
-    /// Uses the formula where the model has no result: overlapping robots have no cone.
+    /// Overlapping robots have no cone: use the formula.
     #[inline(never)]
     fn half_space(
         &self,
@@ -105,7 +99,6 @@ impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
             let w = v - p * rate;
             let across = ahead.det(w);
             let normal = self.normal(Vec2::new(w.dot(ahead), across.abs()) * per_radius, r.checked_div(distance)?)?;
-            // On the axis: to the right, as in the formula.
             let side = if across > S::ZERO { normal.y } else { -normal.y };
             let normal = ahead.rotate(normal.x, side);
             let point = own_velocity_mps + normal * ((radius - w.dot(normal)) * params.share);
@@ -118,14 +111,12 @@ impl<S: Scalar> HalfSpaces<S> for VoxelNeighbor<'_, S> {
 /// Number of directions that [`obstacles`] probes, in addition to the robot's own position.
 pub const PROBES: usize = 8;
 
-/// The obstacles around a robot from a model of land or a room, metres: planes that touch the
-/// nearest borders, for ORCA, nearest first.
+/// The obstacles around a robot from a model of land or a room, metres: planes, nearest first.
 ///
-/// The plane at the robot's own position is that of the nearest border alone, but in a corner the
-/// other wall matters too. So the model is also evaluated at [`PROBES`] points at the distance
-/// `reach_m` (the distance that the robot covers in a step or two, plus its radius; a larger value
-/// detects corners sooner). A plane found there counts unless it is nearer than the nearest border:
-/// then it only touches something round beside the robot, and would forbid free space.
+/// In a corner the nearest border is not enough, so the model is also evaluated at [`PROBES`]
+/// points at the distance `reach_m` (the distance covered in a step or two, plus the radius; a
+/// larger value detects corners sooner). A plane found there that is nearer than the nearest border
+/// is ignored: it only touches something round, and would forbid free space.
 ///
 /// `None` where the model is undefined: stop, or use a larger model. Work: nine times
 /// [`Model::blend`].
@@ -138,7 +129,6 @@ pub fn obstacles<S: Scalar>(
     let plane = |offset: Vec2<S>| {
         let at = position_m + offset;
         let local = model.blend([at.x, at.y])?;
-        // Out of the obstacle, and how far the robot is in front.
         let normal = -local.direction()?;
         let distance = -local.distance()? - offset.dot(normal);
         Some((normal, distance))
@@ -174,8 +164,7 @@ pub fn obstacles<S: Scalar>(
     Some(planes)
 }
 
-/// Inserts a plane behind those that are nearer; there is space. By slice patterns: `swap` and
-/// `sort` would leave panics in firmware.
+/// Inserts a plane behind nearer ones. `swap` and `sort` would leave panics in firmware.
 fn insert<S: Scalar, const N: usize>(found: &mut Vec<(Vec2<S>, S), N>, plane: (Vec2<S>, S)) {
     let _ = found.push(plane);
     let mut at = found.len().saturating_sub(1);

@@ -1,6 +1,3 @@
-//! Boundaries and faults on models made by hand; the tests of `staya-fvm` cover the creation of
-//! models.
-
 use crate::*;
 use proptest::prelude::*;
 use staya_controller::geom::Vec2;
@@ -10,8 +7,7 @@ use staya_controller::scalar::{Q16, Scalar};
 use std::string::ToString as _;
 use std::vec::Vec;
 
-/// A model with the same plane in each node except for the free component: a linear function with
-/// the value 0 in the first node.
+/// The same plane in each node: a linear function with the value 0 in the first node.
 fn linear(variables: u8, depth: u8, nodes: [u16; 3], slopes: [f64; 3]) -> Vec<u8> {
     let axes = usize::from(variables);
     let mut step = [0.0; 3];
@@ -135,7 +131,7 @@ fn a_level_function_has_no_direction_and_no_distance() {
 
 #[test]
 fn a_straight_wall_is_one_plane() {
-    // Positive to the east of x = 0: the robot is 0.3 m inside the wall.
+    // Positive to the east of x = 0: 0.3 m inside the wall.
     let bytes = linear(2, 16, [5, 3, 1], [1.0, 0.0, 0.0]);
     let model = Model::<f32, 2>::from_bytes(&bytes).unwrap();
     let found = obstacles(&model, Vec2::new(0.3, 0.5), 0.1).unwrap();
@@ -158,12 +154,10 @@ fn overlapping_neighbors_and_invalid_input_use_the_formula() {
 }
 
 proptest! {
-    /// Any bytes are a model or an error, and a model returns a value or `None`.
     #[test]
     fn damaged_bytes_never_panic(mut bytes in prop::collection::vec(any::<u8>(), 0..400), is_sealed: bool) {
         let whole = plane(8);
         let length = bytes.len().min(40);
-        // Half of them with a valid beginning.
         if is_sealed && bytes.len() > 48 {
             bytes[..length].copy_from_slice(&whole[..length]);
             bytes[40..44].copy_from_slice(&whole[40..44]);

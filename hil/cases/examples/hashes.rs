@@ -1,5 +1,4 @@
-//! Prints `case number hash steps` for each case and number format: the table that every target
-//! must reproduce.
+//! Prints the table that every target must reproduce: `case number hash steps`.
 
 fn main() {
     staya_cases::every(|name, number, summary| {

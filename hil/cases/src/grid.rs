@@ -1,5 +1,3 @@
-//! Swarms on the grid, whose bodies move from cell to cell.
-
 use crate::hash::Hash;
 use crate::land::{Land, WINDOW};
 use crate::medium::{Faults, INBOX, Medium};
@@ -17,8 +15,7 @@ use staya_controller::scalar::Scalar;
 use staya_controller::time::{Duration, Instant};
 use staya_controller::wire::{Postcard, Wire};
 
-/// Neighbours in the table of an agent in the plane; on the grid, the table has room for all
-/// robots.
+/// Table size in the plane; on the grid the table holds all robots.
 pub(crate) const KNOWN: usize = 8;
 const VISITS: usize = 32;
 const TEMPLATE: usize = ROBOTS;
@@ -28,20 +25,18 @@ pub(crate) type Route = RouteGuidance<CELLS, VISITS>;
 pub(crate) type Formation = FormationGuidance<CELLS, VISITS, TEMPLATE>;
 pub(crate) type GridAgent<S, G, W = Postcard> = Agent<S, G, ROBOTS, Unguarded, W>;
 
-/// Duration of a tick. With [`UNIT`] milliseconds, crossing times need no division.
+/// With [`UNIT`] milliseconds, crossing times need no division.
 pub(crate) const TICK: Duration = Duration::from_millis(UNIT.cast_signed());
 
 pub(crate) struct Walker<S: Scalar, G: Guidance<S>, W = Postcard> {
     pub(crate) agent: GridAgent<S, G, W>,
     pub(crate) cell: Cell,
-    /// Time at which the robot may leave its cell, milliseconds after the start.
     pub(crate) free_at_ms: u32,
 }
 
 pub(crate) struct Scene {
     pub(crate) land: Land,
     pub(crate) faults: Faults,
-    /// Limit after which the case ends even if not all robots have arrived.
     pub(crate) ticks: u32,
 }
 
@@ -55,8 +50,7 @@ pub(crate) fn workspace() -> GridWorkspace<CELLS> {
     GridWorkspace::new()
 }
 
-/// Runs `walkers` until all have arrived. `commander` writes an operator's packets of a tick;
-/// robots receive them like each other's packets. All use wire format `wire`.
+/// `commander` writes an operator's packets of a tick, which robots receive like each other's.
 #[inline(never)]
 pub(crate) fn run<S, G, W, P>(
     scene: &Scene,
@@ -151,7 +145,6 @@ where
     probe.step(&mut walker.agent, &inputs, instant(tick), workspace)
 }
 
-/// Moves one body by its first preferred move that leads into a free cell (KUZ algorithm 4).
 fn advance<S: Scalar, G: Guidance<S>, W>(
     scene: &Scene,
     walkers: &mut [Walker<S, G, W>],
@@ -180,8 +173,7 @@ fn advance<S: Scalar, G: Guidance<S>, W>(
     if let Some(walker) = walkers.get_mut(index)
         && walker.free_at_ms <= now_ms
     {
-        // A body that leaves in the first tick after it became free carries the rest of that tick
-        // over (KUZ eq. 6).
+        // A body that leaves in its first free tick keeps the rest of that tick (KUZ eq. 6).
         let is_going_on = now_ms.saturating_sub(walker.free_at_ms) < UNIT;
         let start_ms = if is_going_on { walker.free_at_ms } else { now_ms };
         walker.free_at_ms = start_ms.saturating_add(crossing_ms);

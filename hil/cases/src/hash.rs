@@ -1,10 +1,8 @@
-//! Hash of everything that a swarm did.
-
 use staya_controller::agent::{Command, Outputs};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::scalar::Scalar;
 
-/// 64-bit FNV-1a: depends on the order and is cheap on a processor without a wide multiplier.
+/// 64-bit FNV-1a: cheap without a wide multiplier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hash(u64);
 
@@ -39,7 +37,7 @@ impl Hash {
         }
     }
 
-    /// Hashes all outputs of a step except events, which follow from the rest of the state.
+    /// Hashes all outputs except events, which follow from the rest of the state.
     pub(crate) fn outputs<S: Scalar>(&mut self, out: &Outputs<S>) {
         self.command(&out.command);
         self.bytes(&out.received.to_le_bytes());

@@ -1,4 +1,4 @@
-//! Terrain from a formula: it takes no flash, and host and device have identical terrain.
+//! Terrain from a formula: it takes no flash and is identical on host and device.
 
 use heapless::Vec;
 use staya_controller::grid::{BLOCKED, Cell, Window};
@@ -9,11 +9,10 @@ pub(crate) const WINDOW: usize = 121;
 /// A square map with one corner at (0, 0), surrounded by walls.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Land {
-    /// Cells along each side.
     pub(crate) size: i16,
-    /// Binary logarithm of the largest impassability; the smallest is 1.
+    /// Binary logarithm of the largest impassability.
     pub(crate) roughness_log2: u8,
-    /// Walls in north-south direction: column, first and last row.
+    /// North-south walls: column, first and last row.
     pub(crate) walls: &'static [(i16, i16, i16)],
 }
 
@@ -25,7 +24,6 @@ impl Land {
         if !is_inside || self.walls.iter().any(is_wall) {
             return BLOCKED;
         }
-        // Two rounds of multiplication and folding leave no visible pattern.
         let mut bits = (u32::from(x.cast_unsigned()) << 16) | u32::from(y.cast_unsigned());
         for _ in 0..2 {
             bits = (bits ^ (bits >> 15)).wrapping_mul(0x9E37_79B1);

@@ -1,13 +1,9 @@
 //! Canned swarms, one for each behaviour, to compare targets with each other.
 //!
-//! A case runs a few agents in one program. They receive each other's packets and move simulated
-//! bodies on terrain from a formula. The same code runs on a host and on a microcontroller. A hash
-//! of all outputs shows whether both computed the same.
-//!
-//! Nothing here allocates or panics. Functions marked `inline(never)` keep the cases from sharing
-//! one large stack frame: the largest case runs in the 16 KiB of RAM of a micro:bit. Bodies move by
-//! [`Scalar`] arithmetic and integers only, so that hashes are equal if the controller's results
-//! are bitwise equal.
+//! A case runs a few agents that receive each other's packets and move simulated bodies on terrain
+//! from a formula. The same code runs on a host and on a microcontroller; equal hashes of all
+//! outputs show that both computed the same. Nothing here allocates or panics. `inline(never)`
+//! keeps the cases from sharing one large stack frame: the largest runs in 16 KiB of RAM.
 #![no_std]
 
 #[cfg(test)]
@@ -33,8 +29,7 @@ use staya_controller::time::Instant;
 use staya_controller::wire::{Postcard, Wire};
 use staya_mavlink::wire::Mavlink;
 
-/// Wrapper around each [`Agent::step`] of a case, in which firmware measures instructions and
-/// stack.
+/// Wrapper around each [`Agent::step`] of a case, in which firmware measures it.
 pub trait Probe<S: Scalar> {
     /// Calls `agent.step(inputs, now, workspace)`.
     fn step<G: Guidance<S>, A: Safety<S>, W: Wire, const N: usize>(
@@ -79,8 +74,7 @@ impl<S: Scalar> Probe<S> for Opaque {
     }
 }
 
-/// Runs every case with every number format used on parts, in the order of the golden table. Passes
-/// name, number format and result to `done`.
+/// Runs every case with every number format of parts, in the order of the golden table.
 pub fn every(mut done: impl FnMut(&'static str, &'static str, &Summary)) {
     each::<f32>("f32", &mut done);
     each::<Q16>("Q16", &mut done);
@@ -97,8 +91,7 @@ fn each<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'s
     }
 }
 
-/// Runs [`Case::Packets`] in each wire format. Reports the hash of each format, followed by the
-/// hash of the course, which is equal for all formats.
+/// Runs [`Case::Packets`] in each wire format; the hash of the course is equal for all.
 pub fn in_each_format<S: Scalar>(number: &'static str, done: &mut impl FnMut(&'static str, &'static str, &Summary)) {
     let course = |summary: Summary| Summary { hash: summary.course, ..summary };
     let postcard = packets_over::<S, _, _>(Postcard, &mut Unmeasured);
@@ -116,10 +109,9 @@ pub fn packets_over<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -> 
 /// Result of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// Hash of all outputs of the agents and all positions of the bodies, in each tick.
+    /// Hash of all outputs of the agents and all positions, in each tick.
     pub hash: u64,
-    /// Like `hash`, but without transmitted bytes and the count of accepted frames; 0 for cases
-    /// that run in one wire format only.
+    /// Like `hash`, without transmitted bytes and accepted frames; 0 for cases of one wire format.
     pub course: u64,
     /// Ticks until all robots had arrived, or the case's limit.
     pub ticks: u32,

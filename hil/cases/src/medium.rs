@@ -1,29 +1,23 @@
-//! The radio medium between the robots of a case. Packets sent in one tick arrive at all other
-//! robots in the next, unless they are lost.
+//! Packets sent in one tick arrive at all other robots in the next, unless they are lost.
 
 use heapless::Vec;
 use staya_controller::rand::Rng;
 use staya_controller::wire::Wire;
 
-/// Bytes that one robot can send in a tick: its beacon and some requests. Further frames are
-/// dropped.
+/// A beacon and some requests; further frames are dropped.
 const SAID: usize = 144;
 pub(crate) const INBOX: usize = 576;
-/// Random number stream for this module.
 const PURPOSE: u32 = u32::from_be_bytes(*b"cair");
 
-/// Faults of the medium: probabilities per frame as Q0.32.
+/// Probabilities per frame as Q0.32.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Faults {
     pub(crate) seed: u64,
     pub(crate) loss: u32,
-    /// One bit is flipped.
     pub(crate) flip: u32,
-    /// The frame arrives twice.
     pub(crate) twice: u32,
 }
 
-/// A medium shared by `R` senders that holds the frames of the last tick, in wire format `W`.
 pub(crate) struct Medium<W, const R: usize> {
     wire: W,
     said: [Vec<u8, SAID>; R],
@@ -37,7 +31,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         Self { wire, said: [const { Vec::new() }; R], next: [const { Vec::new() }; R], faults }
     }
 
-    /// Takes the frames that `sender` sends in this tick, as long as they fit.
     pub(crate) fn send(&mut self, sender: usize, bytes: &[u8]) {
         if let Some(said) = self.next.get_mut(sender) {
             let mut rest = bytes;
@@ -47,7 +40,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// Ends the tick: its frames become receivable.
     pub(crate) fn turn(&mut self) {
         core::mem::swap(&mut self.said, &mut self.next);
         for said in &mut self.next {
@@ -55,8 +47,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// Fills `inbox` with the frames that arrive at `receiver` in tick `tick`, in the order of the
-    /// senders.
     pub(crate) fn hear(&self, receiver: usize, tick: u32, inbox: &mut Vec<u8, INBOX>) {
         inbox.clear();
         for (sender, said) in self.said.iter().enumerate() {
@@ -72,8 +62,7 @@ impl<W: Wire, const R: usize> Medium<W, R> {
         }
     }
 
-    /// Carries one packet, a frame of `len` bytes. Each packet draws equally many random numbers,
-    /// so that the fate of one does not affect the next.
+    /// Each packet draws equally many random numbers, so that its fate does not affect the next.
     fn carry(&self, len: usize, packet: &[u8], rng: &mut Rng, inbox: &mut Vec<u8, INBOX>) {
         let Faults { loss, flip, twice, .. } = self.faults;
         let (is_lost, is_wrong) = (rng.chance_q32(loss), rng.chance_q32(flip));
@@ -94,8 +83,6 @@ impl<W: Wire, const R: usize> Medium<W, R> {
     }
 }
 
-/// Removes the next frame from `rest`. Returns its length, and its bytes with its delimiter if the
-/// format has one.
 fn next_packet<'a>(wire: &impl Wire, rest: &mut &'a [u8]) -> Option<(usize, &'a [u8])> {
     let before = *rest;
     let len = wire.next_frame(rest)?.len();

@@ -1,4 +1,4 @@
-//! Swarms in the plane and in space, whose bodies follow their commands at once.
+//! Bodies that follow their commands at once.
 
 use crate::grid::KNOWN;
 use crate::hash::Hash;
@@ -32,23 +32,21 @@ pub(crate) struct Mover<S: Scalar, G: Guidance<S>, A> {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid {
-    /// A wall between two points of the plane, millimetres.
+    /// Ends, millimetres.
     Wall([[i32; 2]; 2]),
-    /// A ball with its centre and radius, millimetres.
+    /// Centre and radius, millimetres.
     Ball([i32; 3], i32),
-    /// The floor at this height, millimetres.
+    /// Height, millimetres.
     Floor(i32),
 }
 
 pub(crate) struct Scene<S> {
     pub(crate) solids: &'static [Solid],
-    /// Cells with walls, for guidance laws that need a grid.
     pub(crate) land: Option<Land>,
     pub(crate) max_speed_mps: S,
-    /// Two bodies overlap if their centres are nearer than this, millimetres.
+    /// Bodies whose centres are nearer than this overlap.
     pub(crate) apart_mm: i32,
     pub(crate) faults: Faults,
-    /// Limit after which the case ends even if not all robots have arrived.
     pub(crate) ticks: u32,
 }
 
@@ -75,7 +73,7 @@ where
     let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
     let mut inbox = Vec::<u8, INBOX>::new();
     for tick in 0..scene.ticks {
-        // Bodies move after all have decided, so that packets and positions belong to one moment.
+        // After all have decided, so that packets and positions belong to one moment.
         for (index, mover) in movers.iter_mut().enumerate() {
             medium.hear(index, tick, &mut inbox);
             let out = step(scene, mover, tick, &inbox, workspace, probe);
@@ -131,7 +129,6 @@ where
     }
     let frame = GridFrame { origin_m: Vec2::ZERO, cell_m: S::from_milli(CELL_MM) };
     let place_m = mover.position.since::<S>(Position::ORIGIN).xy();
-    // Scenes lie around the origin, so that every place is in a cell.
     let cell = frame.cell(place_m).unwrap_or_default();
     let window = scene.land.and_then(|land| land.window(cell, &mut cells));
     if let Some(window) = &window {
@@ -169,7 +166,6 @@ fn overlaps<S: Scalar, G: Guidance<S>, A>(scene: &Scene<S>, movers: &[Mover<S, G
     pairs(movers).filter(|squared| *squared < least * least).count() as u32
 }
 
-/// Smallest and largest distance of two bodies, millimetres.
 fn apart<S: Scalar, G: Guidance<S>, A>(movers: &[Mover<S, G, A>]) -> [u32; 2] {
     let millimetres = |squared: Option<u64>| squared.unwrap_or(0).isqrt() as u32;
     [pairs(movers).min(), pairs(movers).max()].map(millimetres)

@@ -1,5 +1,3 @@
-//! The cases: their robots, tasks and controllers.
-
 mod flocks;
 pub(crate) mod on_grid;
 mod waypoints;
@@ -12,16 +10,13 @@ use staya_controller::wire::Postcard;
 /// A canned swarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Case {
-    /// Independent robots cross rough terrain with walls to the opposite corner (A. V. Kuznetsov
-    /// 2017, KUZ, algorithm 1).
+    /// Independent robots cross rough terrain with walls (A. V. Kuznetsov 2017, KUZ, algorithm 1).
     Route,
     /// Two rows of two keep formation across rough terrain (KUZ algorithm 2).
     Formation,
-    /// Like [`Case::Formation`], with reflexive prediction: each robot predicts the others by
-    /// evaluating its own law in their place.
+    /// Like [`Case::Formation`], with reflexive prediction.
     FormationReflexive,
-    /// Like [`Case::FormationReflexive`], over a radio that loses, damages and repeats packets. The
-    /// robots receive places, goal, "stop" and "resume" from an operator.
+    /// Like [`Case::FormationReflexive`], over a bad radio and with an operator's orders.
     Packets,
     /// The grid's route law for bodies that move in the plane, with ORCA.
     RouteInPlane,
@@ -37,8 +32,7 @@ pub enum Case {
     PushOut,
     /// An alpha flock follows a reference past a ball.
     Lattice,
-    /// A goal flock moves to the middle of its goals and splits up, and each robot moves to its
-    /// goal.
+    /// A goal flock moves to the middle of its goals and splits up.
     GoalFlock,
     /// Boids align their headings.
     Boids,
@@ -82,10 +76,7 @@ impl Case {
         }
     }
 
-    /// Runs the case to its end.
-    ///
-    /// Stack: agents, radio and workspace, about 12 KiB for the largest case, plus the stack of a
-    /// step.
+    /// Runs the case to its end. Stack: at most about 12 KiB, plus the stack of a step.
     pub fn run<S: Scalar, P: Probe<S>>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::route(probe),

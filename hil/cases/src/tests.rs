@@ -1,4 +1,4 @@
-//! Shows that the swarms do their tasks, so that equal hashes mean more than idle robots.
+//! The swarms do their tasks, so that equal hashes mean more than idle robots.
 
 use super::*;
 use staya_controller::scalar::Q16;
@@ -46,14 +46,13 @@ fn alpha_flock_forms_its_lattice_and_boids_stay_together() {
     each(
         |name, summary| {
             let [nearest, farthest] = summary.apart_mm;
-            // Five robots 1 m from their neighbours: a row would be 4 m long.
+            // A row would be 4 m long.
             assert!((800..1100).contains(&nearest), "{name}: {summary:?}");
             assert!(farthest < 2600 && summary.overlaps == 0, "{name}: {summary:?}");
         },
         &[Case::Lattice],
     );
-    // Their headings differ by up to 127 degrees at first, which would separate them by 35 m in 40
-    // s.
+    // Without alignment they would separate by 35 m in 40 s.
     each(|name, summary| assert!(summary.apart_mm[1] < 12_000, "{name}: {summary:?}"), &[Case::Boids]);
 }
 

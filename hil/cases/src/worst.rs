@@ -1,8 +1,5 @@
-//! One agent of full size under heavy load, to estimate the time of a step.
-//!
-//! In each step it has a full table of near neighbours with random velocities, and other ones than
-//! in the step before. This is not a proof of the worst case, but a firmware should have time for
-//! it.
+//! One agent of full size under heavy load: a full table of near neighbours with random velocities,
+//! other ones in each step. Not a proof of the worst case.
 
 use crate::hash::Hash;
 use crate::land::WINDOW;
@@ -40,7 +37,7 @@ const STEPS: u32 = 64;
 const OBSTACLES: usize = 4;
 const PURPOSE: u32 = u32::from_be_bytes(*b"wrst");
 const RADIUS_MM: i32 = 150;
-/// The agent's id: in the middle, so that templates name robots on both sides of it.
+/// A number in the middle, so that templates name robots on both sides.
 const OWN: RobotId = RobotId(5);
 
 type Inbox = Vec<u8, { 16 * Beacon::MAX_FRAME_LEN }>;
@@ -52,8 +49,7 @@ pub enum WorstCase {
     Route,
     /// Formation among eight neighbours of the template.
     Formation,
-    /// Like [`WorstCase::Formation`], with a search for the prediction of each of the eight
-    /// neighbours.
+    /// Like [`WorstCase::Formation`], with a search for the prediction of each neighbour.
     FormationReflexive,
     /// ORCA in a crowd in which mostly no velocity is permitted, half-planes by formula.
     OrcaAnalytic,
@@ -109,8 +105,7 @@ impl WorstCase {
         }
     }
 
-    /// Runs 64 steps with `N` neighbours and at most `K` half-planes; on the grid with at most
-    /// eight neighbours.
+    /// Runs 64 steps with `N` neighbours (at most eight on the grid) and at most `K` half-planes.
     pub fn run<S: Scalar, P: Probe<S>, const N: usize, const K: usize>(self, probe: &mut P) -> Summary {
         match self {
             Self::Route => on_grid::<S, _, P, N>(RouteGuidance::<CELLS, VISITS>::new(RouteParams::default()), probe),
@@ -173,7 +168,7 @@ fn say<const N: usize>(step: u32, inbox: &mut Inbox, mut beacon: impl FnMut(u32,
     let numbers = (1..).filter(|number| *number != OWN.0);
     for number in numbers.take(N) {
         let mut rng = Rng::keyed(2, PURPOSE, number, step);
-        // Sequence numbers skip many frames, so that a sender may have moved anywhere.
+        // A sender may have moved anywhere meanwhile.
         let header = Header { boot: 0, sender: RobotId(number), sequence: step as u16 * 64 };
         let _ = encode(header, &Message::Beacon(beacon(number, &mut rng)), inbox);
     }
@@ -225,7 +220,6 @@ where
     summary.finish(hash, STEPS)
 }
 
-/// Rows 1 2 3, 4 5 6, 7 8 9, with robot 1 in front and the agent in the middle.
 const PLACES: [Cell; 9] = [
     Cell::new(0, 0),
     Cell::new(-3, 0),
@@ -246,7 +240,7 @@ const MIDDLE: usize = 4;
 
 fn formation(prediction: Prediction) -> FormationGuidance<CELLS, VISITS, TEMPLATE> {
     let params = FormationParams { prediction, ..FormationParams::default() };
-    // The graph is valid: a test counts its robots.
+    // A test counts its robots.
     let template = Template::from_graph(&PLACES, &EDGES, MIDDLE, 2).unwrap_or_default();
     FormationGuidance::new(RouteParams::default(), params, template)
 }
@@ -276,7 +270,7 @@ where
             let index = number.saturating_sub(1) as usize;
             let place = PLACES.get(index).copied().unwrap_or_default();
             Beacon {
-                // Each robot is off its place, so that prediction must search its route.
+                // Off its place, so that prediction must search.
                 cell: TOP + place + Cell::new(about(rng, 1) as i16, i16::from(number != 1)),
                 heading: Dir::NorthEast,
                 leader: RobotId(LEADERS.get(index).copied().unwrap_or(0)),

@@ -1,16 +1,16 @@
-//! State that survives a reset, in RAM that no start-up code touches.
+//! State in RAM that survives a reset: no start-up code touches it.
 
 use core::mem::MaybeUninit;
 use core::ptr::addr_of_mut;
 
-/// Distinguishes the state from the contents of RAM after power-up. ASCII "STAY".
+/// "STAY": not the contents of RAM after power-up.
 const MAGIC: u32 = 0x5354_4159;
 
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct Kept {
     boots: u32,
-    /// Not 0 if a semihosting call raised a fault, because no debugger or emulator serves it.
+    /// Not 0 if nothing serves semihosting calls.
     is_mute: u32,
     /// Exclusive or of the previous two and [`MAGIC`].
     check: u32,
@@ -20,8 +20,8 @@ struct Kept {
 static mut KEPT: MaybeUninit<Kept> = MaybeUninit::uninit();
 
 fn read() -> Option<Kept> {
-    // SAFETY: the section is RAM that belongs to this static alone. The read is volatile, so that
-    // it takes the contents after power-up as they are, and any bits are a valid u32.
+    // SAFETY: the section is RAM of this static alone. The read is volatile, so that it takes the
+    // contents after power-up as they are, and any bits are a valid u32.
     let kept = unsafe { addr_of_mut!(KEPT).cast::<Kept>().read_volatile() };
     (kept.check == kept.boots ^ kept.is_mute ^ MAGIC).then_some(kept)
 }
@@ -34,8 +34,7 @@ fn write(boots: u32, is_mute: u32) {
     }
 }
 
-/// Counts this start and returns the number of starts, 1 after power-up. Call it once, at the
-/// start.
+/// Returns the number of starts, 1 after power-up. Call it once, at the start.
 pub fn count() -> u32 {
     let (boots, is_mute) = read().map_or((0, 0), |kept| (kept.boots, kept.is_mute));
     let boots = boots.wrapping_add(1).max(1);
@@ -43,17 +42,16 @@ pub fn count() -> u32 {
     boots
 }
 
-/// Number of this start, 1 after power-up.
 pub fn current() -> u32 {
     read().map_or(1, |kept| kept.boots)
 }
 
-/// Whether semihosting must not be used.
+/// Semihosting must not be used.
 pub fn is_mute() -> bool {
     read().is_some_and(|kept| kept.is_mute != 0)
 }
 
-/// Records for the next start that semihosting is not served, and does not count the current start.
+/// Records this for the next start, and does not count the current one.
 pub fn mute() {
     write(current().wrapping_sub(1), 1);
 }

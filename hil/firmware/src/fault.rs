@@ -1,7 +1,6 @@
-//! Handling of panics and processor exceptions: report the reason, then reset or stop.
-//!
-//! A program selects a handler with [`faults_go_over_the_link!`](crate::faults_go_over_the_link) or
-//! [`faults_are_printed!`](crate::faults_are_printed), or has its own panic handler.
+//! Panics and processor exceptions: report the reason, then reset or stop. Select a handler with
+//! [`faults_go_over_the_link!`](crate::faults_go_over_the_link) or
+//! [`faults_are_printed!`](crate::faults_are_printed).
 
 use crate::{boots, runtime};
 use core::fmt::{self, Display};
@@ -23,8 +22,7 @@ pub fn printed(reason: impl Display) -> ! {
     runtime::exit(101)
 }
 
-/// Message of a panic with the file name but not its folders, because a fault holds 80 bytes of
-/// text.
+/// Message of a panic with the file name but not its folders: a fault holds 80 bytes of text.
 pub struct Panic<'a>(pub &'a PanicInfo<'a>);
 
 impl Display for Panic<'_> {
@@ -48,8 +46,7 @@ impl Display for Trap {
     }
 }
 
-/// Creates the report of an exception at this address. An unserved semihosting call is recorded
-/// instead, and the part resets.
+/// Creates the report of an exception; after an unserved semihosting call, resets instead.
 #[must_use]
 pub fn trap(address: u32) -> Trap {
     if is_semihosting(address) {
@@ -59,8 +56,7 @@ pub fn trap(address: u32) -> Trap {
     Trap(address)
 }
 
-/// Whether the instruction is a semihosting call: BKPT 0xAB, or EBREAK between two shifts that do
-/// nothing.
+/// BKPT 0xAB, or EBREAK between two shifts that do nothing.
 fn is_semihosting(address: u32) -> bool {
     unsafe extern "C" {
         static __stext: u8;

@@ -13,8 +13,7 @@
 
 pub mod ring;
 
-// Used by the macros. The macro of cortex-m-rt needs that crate itself in the caller's
-// dependencies.
+// For the macros; cortex-m-rt's macro needs that crate in the caller's dependencies.
 #[doc(hidden)]
 #[cfg(target_os = "none")]
 pub use staya_link as link;
@@ -37,13 +36,12 @@ pub mod runtime;
 #[cfg(target_os = "none")]
 pub mod stack;
 
-/// Makes `$run`, a `fn() -> !`, the part's program after reset. On the host, the program gets a
-/// `main` that prints how to build it for a part, and `$run` may be missing.
+/// Makes `$run`, a `fn() -> !`, the part's program after reset. On the host, the program prints how
+/// to build it, and `$run` may be missing.
 #[macro_export]
 macro_rules! entry {
     ($run:path) => {
-        // SAFETY: `main` is the symbol that cortex-m-rt and riscv-rt call once the stack and the
-        // statics are set up; no other function of the program has this name.
+        // SAFETY: `main` is called once stack and statics are set up; the name is unique.
         #[cfg(target_os = "none")]
         #[unsafe(export_name = "main")]
         extern "C" fn start_of_program() -> ! {
@@ -62,9 +60,9 @@ macro_rules! entry {
 /// `staya hil` and its library step over the part's serial line.
 ///
 /// The law is a `LinkedLaw` of `staya_link::own` in the part's number format (`f32`; `Q16` on the
-/// nRF51). On Arm the crate needs the dependency `cortex-m-rt` (with its feature `device`). The
-/// firmware's name and version are those of the calling package. It links only if no panic is
-/// reachable, except in debug builds.
+/// nRF51). On Arm the crate needs the dependency `cortex-m-rt` (with its feature `device`). Name
+/// and version are those of the calling package. It links only if no panic is reachable, except in
+/// debug builds.
 ///
 /// ```text
 /// #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -81,16 +79,14 @@ macro_rules! lockstep {
     };
 }
 
-/// Like `lockstep!`, for any robot with a `const fn new()`: frames of at most `$content` bytes of
+/// Like `lockstep!`, for any robot with a `const fn new()`, frames of at most `$content` bytes of
 /// content, and the name `$firmware`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! lockstep_as {
     ($robot:ty, $content:expr, $firmware:expr) => {
         $crate::entry!(staya_program::run);
-        // In optimised firmware the linker proves that no panic is reachable, in start-up,
-        // interrupts, logs and exceptions too. A debug build contains the panics of its debug
-        // checks.
+        // The linker proves that no panic is reachable. A debug build contains its debug checks.
         #[cfg(debug_assertions)]
         $crate::faults_go_over_the_link!();
         #[cfg(not(debug_assertions))]
@@ -105,14 +101,12 @@ macro_rules! lockstep_as {
 
             const FIRMWARE: &str = $firmware;
 
-            // SAFETY: no other section has this name; the linker script excludes it from the loaded
-            // image.
+            // SAFETY: no other section has this name; the linker script keeps it out of the image.
             #[unsafe(link_section = ".staya")]
             #[used]
             static NOTE: $crate::lockstep::Note = $crate::lockstep::note(FIRMWARE);
 
-            /// A static, because it is too large for the stack. The description of the part follows
-            /// at runtime.
+            /// Too large for the stack. The description of the part follows at runtime.
             static mut SESSION: $crate::link::session::Session<$robot, { $content }> =
                 $crate::link::session::Session::unnamed(<$robot>::new());
 
@@ -141,8 +135,7 @@ macro_rules! exceptions_go_over_the_link {
     };
 }
 
-/// Prints panics and processor exceptions, and ends the emulator with exit code 101. A board prints
-/// them over RTT and stops.
+/// Prints panics and processor exceptions, then ends the emulator with code 101 or stops a board.
 #[macro_export]
 macro_rules! faults_are_printed {
     () => {
@@ -150,8 +143,7 @@ macro_rules! faults_are_printed {
     };
 }
 
-/// Makes linking fail if a panic is reachable: the panic handler calls an undefined function, so
-/// the program links only if the optimiser has removed the handler.
+/// Makes linking fail if a panic is reachable: the panic handler calls an undefined function.
 #[macro_export]
 macro_rules! panics_do_not_link {
     () => {
@@ -159,11 +151,9 @@ macro_rules! panics_do_not_link {
         #[panic_handler]
         fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
             unsafe extern "C" {
-                /// Not defined anywhere.
                 fn staya_panic_is_reachable() -> !;
             }
-            // SAFETY: never executed, because a program that still contains this call does not
-            // link.
+            // SAFETY: never executed, because a program with this call does not link.
             unsafe { staya_panic_is_reachable() }
         }
     };
@@ -195,8 +185,7 @@ macro_rules! on_exception {
             $report($crate::fault::trap(frame.pc()))
         }
 
-        // SAFETY: name and argument are those of riscv-rt's handler for exceptions without a
-        // handler of their own.
+        // SAFETY: name and argument are those of riscv-rt's default exception handler.
         #[cfg(all(target_os = "none", target_arch = "riscv32"))]
         #[unsafe(export_name = "ExceptionHandler")]
         extern "C" fn exception(_: &$crate::riscv_rt::TrapFrame) -> ! {

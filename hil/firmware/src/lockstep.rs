@@ -1,6 +1,5 @@
-//! The device's end of the link as a whole program: a robot that steps on request of the host.
-//! `lockstep!` defines such a firmware for a user-defined guidance law; `src/bin/lockstep.rs` is
-//! the one for all built-in laws.
+//! A robot that steps on request of the host, as a whole program. `lockstep!` defines such a
+//! firmware for a user-defined guidance law.
 
 use crate::fault;
 use crate::runtime::{self, Start};
@@ -89,13 +88,11 @@ impl Meter for Gauge {
     }
 }
 
-/// Identification of a firmware in its ELF file, from which a host identifies it without starting
-/// it. It takes no flash. Contents: `staya`, the link's version, the part's name and the firmware's
-/// name, padded with zeros.
+/// Identification of a firmware in its ELF file, without flash: `staya`, the link's version, the
+/// part's name and the firmware's name, padded with zeros.
 pub type Note = [u8; 62];
 
-/// Creates the note of a firmware. Longer names are cut as in
-/// [`Hello`](staya_link::message::Hello).
+/// Creates the note; longer names are cut as in [`Hello`](staya_link::message::Hello).
 #[must_use]
 pub const fn note(firmware: &str) -> Note {
     let note = write([0; 62], 0, 5, "staya");

@@ -1,17 +1,17 @@
-//! Output of logs and prints: semihosting in the emulator, RTT on a board. Logs are `defmt` frames.
+//! Output of logs (`defmt` frames) and prints: semihosting in the emulator, RTT on a board.
 
 use core::fmt;
 use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
-/// Output channels. Until one is selected, bytes are dropped.
+/// Until a channel is selected, bytes are dropped.
 const NONE: u8 = 0;
 const SEMIHOSTING: u8 = 1;
 const RTT: u8 = 2;
 static CHANNEL: AtomicU8 = AtomicU8::new(NONE);
-/// Handle of the host's console plus one; 0 while it is not open.
+/// The host's console plus one; 0 while it is not open.
 static CONSOLE: AtomicU32 = AtomicU32::new(0);
 
-/// Selects the channel. An emulator without semihosting gets no output.
+/// An emulator without semihosting gets no output.
 pub fn choose(emulated: bool, is_mute: bool) {
     if emulated {
         if is_mute {
@@ -24,8 +24,7 @@ pub fn choose(emulated: bool, is_mute: bool) {
     }
 }
 
-/// Writes bytes to the selected channel. RTT drops bytes when its buffer is full, because there may
-/// be no reader.
+/// RTT drops bytes when its buffer is full, since a reader may be absent.
 fn write(bytes: &[u8]) {
     match CHANNEL.load(Ordering::Relaxed) {
         SEMIHOSTING => console::write(bytes),
@@ -55,7 +54,6 @@ mod console {
         };
         // SAFETY: it was opened above and is never closed.
         let console = unsafe { BorrowedFd::borrow_raw(raw) };
-        // Output errors of the host must not affect the robot.
         let _ = sys_write_orig(console, bytes);
     }
 }
@@ -68,8 +66,6 @@ mod rtt {
     use rtt_target::rtt::{RttChannel, RttHeader};
     use rtt_target::{ChannelMode, UpChannel};
 
-    /// Control block that a debugger searches for in memory: the header and the channels that it
-    /// counts.
     #[repr(C)]
     struct Block {
         header: RttHeader,
@@ -83,8 +79,8 @@ mod rtt {
     static mut UP: Option<UpChannel> = None;
 
     pub fn start() {
-        // SAFETY: runs once, at the start, before any write. Zeros are a block without channels.
-        // The header is written last because a debugger may read at any time.
+        // SAFETY: runs once, before any write. Zeros are a block without channels; the header comes
+        // last because a debugger may read at any time.
         unsafe {
             let block = addr_of_mut!(BLOCK).cast::<Block>();
             block.write_bytes(0, 1);
@@ -111,7 +107,7 @@ mod rtt {
     pub fn write(_: &[u8]) {}
 }
 
-/// Line buffer, so that the emulator stops once per line and not once per piece.
+/// Line buffer: the emulator stops once per line and not once per piece.
 pub struct Text {
     bytes: [u8; 96],
     used: usize,
@@ -152,7 +148,6 @@ mod frames {
     use core::cell::UnsafeCell;
     use critical_section::RestoreState;
 
-    /// State while one `defmt` frame is written, with interrupts disabled.
     struct Frame {
         restore: RestoreState,
         encoder: defmt::Encoder,

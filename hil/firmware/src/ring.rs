@@ -2,16 +2,15 @@
 
 use core::sync::atomic::{AtomicU8, AtomicU32, AtomicUsize, Ordering};
 
-/// First-in first-out queue of at most `N - 1` bytes for one writer and one reader. One of them may
-/// be an interrupt handler of the other. It uses loads and stores only, because a Cortex-M0 has no
-/// other atomic operations.
+/// First-in first-out queue of at most `N - 1` bytes for one writer and one reader, of which one
+/// may be an interrupt handler. Loads and stores only: a Cortex-M0 has no other atomic operations.
 pub struct Ring<const N: usize> {
     bytes: [AtomicU8; N],
-    /// Next index to write; stored by the writer only.
+    /// Stored by the writer only.
     head: AtomicUsize,
-    /// Next index to read; stored by the reader only.
+    /// Stored by the reader only.
     tail: AtomicUsize,
-    /// Bytes lost because the queue was full; stored by the writer only.
+    /// Stored by the writer only.
     lost: AtomicU32,
 }
 

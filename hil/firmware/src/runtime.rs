@@ -1,7 +1,5 @@
-//! Services of a part for its program.
-//!
-//! Call [`start`] once, before anything else. The watchdog runs only after [`start_watchdog`]; from
-//! then on the main loop has to call [`feed_watchdog`], which no interrupt does.
+//! Services of a part for its program. Call [`start`] once, before anything else. After
+//! [`start_watchdog`] the main loop has to call [`feed_watchdog`].
 
 use crate::{boots, log, part};
 use core::fmt;
@@ -11,8 +9,8 @@ use core::fmt;
 pub struct Start {
     /// `stm32f405`, `nrf51` or `riscv32`.
     pub part: &'static str,
-    /// Rate of [`ticks`], per second. In an emulator with `-icount shift=0`, where one instruction
-    /// takes 1 ns, `ticks * (1e9 / tick_hz)` is the number of instructions.
+    /// Rate of [`ticks`], per second. In an emulator with `-icount shift=0`,
+    /// `ticks * (1e9 / tick_hz)` is the number of instructions.
     pub tick_hz: u32,
     /// The processor's clock as far as known, hertz.
     pub clock_hz: u32,
@@ -22,8 +20,7 @@ pub struct Start {
     pub boots: u32,
 }
 
-/// Sets up clocks, the tick counter and the UART. Waits for oscillators are bounded: without an
-/// oscillator the part runs slower, see [`Start::clock_hz`].
+/// Sets up clocks, tick counter and UART. Without an oscillator the part runs slower.
 pub fn start() -> Start {
     let boots = boots::count();
     let clocks = part::start();
@@ -31,8 +28,7 @@ pub fn start() -> Start {
     Start { part: part::NAME, tick_hz: clocks.tick_hz, clock_hz: clocks.clock_hz, emulated: part::is_emulated(), boots }
 }
 
-/// Tick counter that advances by [`Start::tick_hz`] per second and wraps, at 168 MHz after 25 s.
-/// Use differences only.
+/// Tick counter, [`Start::tick_hz`] per second; wraps, at 168 MHz after 25 s. Use differences only.
 #[must_use]
 pub fn ticks() -> u32 {
     part::ticks()
@@ -48,14 +44,13 @@ pub fn receive() -> Option<u8> {
     byte
 }
 
-/// Received bytes since the start that were lost because they were not taken in time.
+/// Received bytes that were lost because they were not taken in time.
 #[must_use]
 pub fn lost() -> u32 {
     part::RECEIVED.lost()
 }
 
-/// Sends bytes over the UART. Returns once the UART has the last byte. Drops bytes that the UART
-/// does not take within a bounded wait.
+/// Sends bytes over the UART, until it has the last one. Drops bytes that it does not take in time.
 pub fn send(bytes: &[u8]) {
     for &byte in bytes {
         if !part::send(byte) {
@@ -64,14 +59,13 @@ pub fn send(bytes: &[u8]) {
     }
 }
 
-/// Sleeps until an interrupt, unless a byte is waiting. The tick counter wakes the part several
-/// times per second, so that the main loop can feed the watchdog.
+/// Sleeps until an interrupt (several times per second), unless a byte is waiting.
 pub fn sleep() {
     part::sleep_unless(|| !part::RECEIVED.is_empty());
 }
 
-/// Starts the watchdog, which cannot be stopped again: the part resets after about four seconds
-/// without [`feed_watchdog`]. The emulator has none.
+/// Starts the watchdog for good: the part resets after about four seconds without
+/// [`feed_watchdog`]. The emulator has none.
 pub fn start_watchdog() {
     part::start_watchdog();
 }
@@ -84,7 +78,6 @@ pub fn feed_watchdog() {
 /// Prints text: in the emulator over semihosting, on a board over RTT. Whole lines are cheapest.
 pub fn print(text: fmt::Arguments<'_>) {
     let mut out = log::Text::new();
-    // Writing to the buffer never fails; output errors are ignored.
     let _ = fmt::write(&mut out, text);
     out.flush();
 }

@@ -3,15 +3,13 @@
 use core::ptr::addr_of;
 
 const PAINT: u32 = 0xC5C5_C5C5;
-/// Most bytes below the caller that are painted; greater depths are not distinguished. More costs
-/// two instructions per word painted and three per word checked.
+/// Most bytes that are painted; two instructions per word painted, three per word checked.
 const WINDOW: usize = 16 * 1024;
-/// Bytes right below the frame of the painting function that are not painted.
+/// Not painted, below the frame of the painting function.
 const MARGIN: usize = 64;
 
 unsafe extern "C" {
-    /// Lowest address of the stack, and the address above its highest; defined by the linker
-    /// script.
+    /// Lowest address, and the one above the highest; defined by the linker script.
     static _stack_end: u32;
     static _stack_start: u32;
 }
@@ -33,8 +31,8 @@ pub fn paint() -> Painted {
     let mut at = low;
     while at < high {
         // SAFETY: memory from the end of the statics to below this frame is unused: an interrupt
-        // that occurs meanwhile has returned. The write is volatile, so that it does not become a
-        // call of memset, whose frame would lie there.
+        // meanwhile has returned. Volatile, so that it does not become memset, whose frame would
+        // lie there.
         unsafe { (at as *mut u32).write_volatile(PAINT) };
         at = at.wrapping_add(4);
     }
@@ -42,25 +40,24 @@ pub fn paint() -> Painted {
 }
 
 impl Painted {
-    /// Most bytes of stack in use since, counted from the start of the stack, including interrupts.
-    /// If all paint was overwritten, the depth of its end. O(bytes).
+    /// Most bytes of stack in use since, including interrupts, within the painted range. O(bytes).
     #[must_use]
     pub fn deepest(&self) -> u32 {
         let mut at = self.low;
-        // SAFETY: the words that `paint` wrote, possibly overwritten since.
+        // SAFETY: the words that `paint` wrote.
         while at < self.high && unsafe { (at as *const u32).read_volatile() } == PAINT {
             at = at.wrapping_add(4);
         }
         u32::try_from(top().saturating_sub(at)).unwrap_or(u32::MAX)
     }
 
-    /// Stack depth at the call of [`paint`], to within the frame of [`paint`].
+    /// Stack depth at the call of [`paint`].
     #[must_use]
     pub fn began(&self) -> u32 {
         u32::try_from(top().saturating_sub(self.high)).unwrap_or(u32::MAX)
     }
 
-    /// Whether the last word of the stack still has its paint; if not, the stack has probably
+    /// Whether the last word of the stack still has its paint, else the stack has probably
     /// overwritten the statics. Always true if the painted range ends above the stack's end.
     #[must_use]
     pub fn has_room(&self) -> bool {

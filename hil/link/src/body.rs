@@ -1,5 +1,4 @@
-//! Memory for one agent, whatever its guidance law, and the conversion of a step from link inputs
-//! to a link result.
+//! Memory for one agent, and the conversion of a step from link inputs to a link result.
 
 use crate::capacities::Capacities;
 use crate::message::{NumberFormat, StepInputs, StepResult};
@@ -20,12 +19,10 @@ pub(crate) const fn number<S: Scalar>() -> NumberFormat {
     if S::IS_FLOATING { NumberFormat::F32 } else { NumberFormat::Q16 }
 }
 
-/// Converts a capacity to its wire type; larger values saturate.
 pub(crate) fn count(n: usize) -> u16 {
     u16::try_from(n).unwrap_or(u16::MAX)
 }
 
-/// Capacities of a robot without a grid search.
 pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize) -> Capacities {
     Capacities {
         neighbors: count(neighbors),
@@ -37,7 +34,7 @@ pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize)
     }
 }
 
-/// Checks that a setup has a robot id and that the firmware speaks its packet format.
+/// Checks the robot id and the packet format.
 pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
     if setup.agent.id == RobotId::NONE {
         return Err(Refusal::NoRobot);
@@ -45,8 +42,7 @@ pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// An `Option` whose `None` is all zeros, so that an unconfigured robot lies in `.bss` and takes no
-/// flash.
+/// `None` is all zeros, so that an unconfigured robot lies in `.bss` and takes no flash.
 #[derive(Clone, Debug)]
 #[repr(u8)]
 enum Slot<A> {
@@ -70,7 +66,6 @@ impl<A> Slot<A> {
     }
 }
 
-/// Memory for one agent and for the decoded inputs and the result of its step.
 #[derive(Clone, Debug)]
 pub(crate) struct Body<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> {
     agent: Slot<Agent<S, G, N, A, W>>,
@@ -87,8 +82,7 @@ impl<S: Scalar, G: Guidance<S>, A, W, const N: usize, const O: usize> Body<S, G,
             obstacles: Vec::new(),
             outputs: Outputs {
                 command: Command::Hold,
-                // Not read before the robot is configured; `None` would be the only byte here that
-                // is not zero.
+                // Not read before the robot is configured; `None` is not zero.
                 wait: Some(Wait::Team),
                 received: 0,
                 rejected: 0,
@@ -117,8 +111,7 @@ where
     A: Safety<S> + Serialize,
     W: Wire + Serialize,
 {
-    /// Replaces the agent by the one that `make` builds, gives it `task`, and returns the digest of
-    /// its state. Inlined, so that the agent is built in place.
+    /// Returns the digest of the agent's state. Inlined, so that the agent is built in place.
     #[inline(always)]
     pub(crate) fn start(
         &mut self,
@@ -177,7 +170,6 @@ where
         Ok(())
     }
 
-    /// Result of the last step; `None` before the robot is configured.
     pub(crate) fn result(&self) -> Option<StepResult> {
         let agent = self.agent.as_ref()?;
         Some(StepResult {

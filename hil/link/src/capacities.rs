@@ -4,8 +4,7 @@ use crate::frame;
 use crate::surroundings::OBSTACLE_BYTES;
 use serde::{Deserialize, Serialize};
 
-/// Bytes of an encoded step without terrain, obstacles and inbox, at most; includes the frame
-/// overhead. A test fills one.
+/// Most bytes of an encoded step without terrain, obstacles and inbox. A test fills one.
 const FIXED: usize = 104;
 
 /// Largest inputs and tables that a device can hold.
@@ -25,8 +24,7 @@ pub struct Capacities {
     pub inbox_bytes: u16,
 }
 
-/// Cells of the largest terrain window that a search of `search_cells` uses. The outermost ring of
-/// the search lies outside the window.
+/// Cells of the largest terrain window that a search of `search_cells` uses.
 #[must_use]
 pub const fn window_cells(search_cells: usize) -> usize {
     let side = search_cells.isqrt().saturating_sub(2);

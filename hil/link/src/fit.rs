@@ -18,8 +18,7 @@ pub struct Cut {
     pub obstacles: usize,
 }
 
-/// The terrain window has more cells than the device can hold. Terrain is never cut, because
-/// cutting it would change the route.
+/// The terrain window has too many cells; cutting it would change the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WindowTooLarge {
     /// Cells of the window.
@@ -38,17 +37,13 @@ impl core::fmt::Display for WindowTooLarge {
 impl core::error::Error for WindowTooLarge {}
 
 impl Capacities {
-    /// Converts inputs to a step that fits the device.
+    /// Converts inputs to a step that fits the device; every host cuts them in the same way:
     ///
-    /// Every host that fits the same inputs to the same capacities cuts them in the same way:
+    /// - Inbox: the newest whole frames, split in the robot's wire format.
+    /// - Obstacles: the nearest ones, in their original order; of equally near ones the first.
     ///
-    /// - Inbox: the newest whole frames that fit are kept. Frames are split in the robot's wire
-    ///   format.
-    /// - Obstacles: the nearest ones are kept, in their original order. Of two equally near
-    ///   obstacles, the first one is kept.
-    ///
-    /// `packed` is scratch memory of at least 17 bytes per obstacle; a shorter buffer keeps fewer
-    /// obstacles. O(obstacles^2) if some have to be removed, otherwise O(obstacles).
+    /// `packed` is scratch memory of at least 17 bytes per obstacle; a shorter buffer keeps fewer.
+    /// O(obstacles^2) if some have to be removed, otherwise O(obstacles).
     ///
     /// # Errors
     /// [`WindowTooLarge`]: terrain is not cut.
@@ -106,8 +101,7 @@ impl Capacities {
     }
 }
 
-/// Number of obstacles nearer than `obstacles[index]`. An obstacle without a nearest point counts
-/// as the farthest.
+/// Number of nearer obstacles. One without a nearest point is the farthest.
 fn rank(obstacles: &[Obstacle<f32>], index: usize) -> usize {
     let distance = |obstacle: &Obstacle<f32>| {
         let nearest = obstacle.nearest_point();
@@ -118,7 +112,6 @@ fn rank(obstacles: &[Obstacle<f32>], index: usize) -> usize {
     others.filter(|(other, obstacle)| distance(obstacle).order(own).then(other.cmp(&index)).is_lt()).count()
 }
 
-/// Returns the newest whole frames of `inbox` that fit into `room` bytes.
 fn newest<'a>(inbox: &'a [u8], room: usize, wire: &impl Wire) -> &'a [u8] {
     let mut rest = inbox;
     while rest.len() > room && wire.next_frame(&mut rest).is_some() {}

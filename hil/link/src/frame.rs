@@ -5,16 +5,13 @@
 //! content = version:u8 kind:u8 body:postcard crc:u32
 //! ```
 //!
-//! - COBS, the version in front and the CRC at the end are the same in every version of the link. A
-//!   receiver can therefore tell a frame of another version from a damaged frame.
-//! - The leading zero ends any noise or boot text before the frame, so that noise does not cost a
-//!   frame.
-//! - CRC-32C (Castagnoli; iSCSI) covers everything before it. It detects every error of 1 to 5 bits
-//!   in contents of up to 655 bytes and every error of 1 to 3 bits in longer ones; other errors
-//!   pass with a probability of 1 in 4 * 10^9. Integers are little-endian.
+//! - COBS, version and CRC are the same in every version of the link, so that a frame of another
+//!   version is not taken for a damaged one. Integers are little-endian.
+//! - The leading zero ends any noise or boot text before the frame.
+//! - CRC-32C (Castagnoli; iSCSI) detects every error of 1 to 5 bits in contents of up to 655 bytes
+//!   and of 1 to 3 bits in longer ones; others pass with a probability of 1 in 4 * 10^9.
 //! - COBS (Cheshire, Baker 1999, "Consistent overhead byte stuffing", section 3) with blocks of 254
-//!   bytes, processed byte by byte in both directions. It needs no second buffer and cannot panic.
-//!   The controller's radio packets fit one block; frames of the link do not.
+//!   bytes, byte by byte: no second buffer, no panic.
 
 use crc::{CRC_32_ISCSI, Crc, Digest, Table};
 use heapless::Vec;
@@ -28,7 +25,7 @@ pub const VERSION: u8 = 9;
 pub const OVERHEAD: usize = 1 + 1 + CRC_LEN;
 const CRC_LEN: usize = 4;
 const BLOCK: usize = 254;
-/// COBS code of a full block, which is not followed by a zero.
+/// Code of a full block, without a zero after it.
 const FULL: u8 = 0xFF;
 
 static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISCSI);
@@ -36,7 +33,7 @@ static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISCSI);
 /// Largest length of a frame with `content` bytes of content.
 #[must_use]
 pub const fn frame_len(content: usize) -> usize {
-    // Two delimiters, one code per block, and one code after a last block that is full.
+    // Two delimiters, a code per block, and one after a full last block.
     2 + content + content.div_ceil(BLOCK) + 1
 }
 
@@ -47,7 +44,7 @@ pub enum FrameError {
     TooLong,
     /// The last COBS block does not end at the end of the frame.
     Cobs,
-    /// The CRC does not match, or the frame is too short to have one: damaged or truncated.
+    /// The CRC does not match or is missing: damaged or truncated.
     Crc,
     /// An intact frame of another link version.
     Version(u8),
@@ -115,12 +112,11 @@ impl<const N: usize> Frame<N> {
     }
 }
 
-/// Encoder: updates the CRC and applies COBS to each byte of the content.
+/// Updates the CRC and applies COBS to each byte of the content.
 struct Stuffer<'a, const N: usize> {
     out: &'a mut Vec<u8, N>,
-    /// Index of the open block's code.
     code_at: usize,
-    /// Code of the open block so far: distance to the next byte.
+    /// Distance to the next byte.
     code: u8,
     crc: Digest<'static, u32, Table<1>>,
 }
@@ -183,7 +179,6 @@ pub struct Deframer<const N: usize> {
     zero_follows: bool,
     has_begun: bool,
     is_too_long: bool,
-    /// The content was returned to the caller; the next byte starts a new frame.
     is_over: bool,
 }
 
@@ -201,7 +196,7 @@ impl<const N: usize> Deframer<N> {
     }
 
     /// Takes one byte. At the end of a frame, returns its kind and body, or the reason for
-    /// rejecting it. O(1), at the end of a frame O(`N`).
+    /// rejecting it. O(1), then O(`N`).
     pub fn push(&mut self, byte: u8) -> Option<Result<(u8, &[u8]), FrameError>> {
         if self.is_over {
             self.content.clear();

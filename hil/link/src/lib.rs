@@ -2,9 +2,8 @@
 //! Start with [`session`].
 //!
 //! In each tick the host sends [`message::Step`] (sensor readings and received packets). The device
-//! answers with [`message::Stepped`] (command, packets to send, and a digest of its entire state).
-//! Both ends are state machines without I/O: [`session::Session`] on the device takes and returns
-//! bytes; [`port::Port`] on the host takes the time as well.
+//! answers with [`message::Stepped`] (command, packets to send, digest of its state). Both ends are
+//! state machines without I/O: [`session::Session`] on the device and [`port::Port`] on the host.
 //!
 //! ```text
 //! host                                   device
@@ -16,10 +15,10 @@
 //!                               <-       Stepped { seq + 1, outputs, digest, cost }
 //! ```
 //!
-//! There is one outstanding request at a time, and the host resends it until it is answered. The
-//! device answers a repeated `seq` with identical bytes and does not execute the request again. A
-//! line that loses, duplicates, delays, reorders or damages frames therefore changes no result. A
-//! device that cannot execute a request answers with a [`message::Fault`] and its reason.
+//! The host resends its one outstanding request until it is answered. The device answers a repeated
+//! `seq` with identical bytes and does not execute the request again, so a line that loses,
+//! duplicates, delays, reorders or damages frames changes no result. A device that cannot execute a
+//! request answers with a [`message::Fault`].
 #![no_std]
 // Code that may panic is forbidden in firmware, but allowed in tests.
 #![cfg_attr(

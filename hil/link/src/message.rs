@@ -1,9 +1,8 @@
 //! The messages. Order and types of the fields are the wire format (postcard): any change needs a
 //! new [`VERSION`](crate::frame::VERSION).
 //!
-//! Numbers on the wire are `f32` in SI units. A device converts them to and from its own number
-//! format, and the host's shadow of the device does the same. Digests cover the state in the
-//! device's own number format, so equal digests show that both decided alike.
+//! Numbers on the wire are `f32` in SI units; a device, and the host's shadow of it, convert them
+//! to and from its own number format, which digests cover.
 
 use crate::capacities::Capacities;
 use crate::surroundings::{PackedSurroundings, TerrainWindow};
@@ -69,8 +68,7 @@ pub struct Configure {
     pub seq: u16,
     /// Configuration of the agent.
     pub setup: Setup,
-    /// Initial task, if any. The rest of the frame is the guidance law if it is an
-    /// [own](crate::own) one.
+    /// Initial task, if any. The rest of the frame is an [own](crate::own) guidance law, if any.
     pub task: Option<Task>,
 }
 
@@ -84,8 +82,7 @@ pub struct Step<'a> {
     pub inputs: StepInputs<'a>,
 }
 
-/// Inputs of one step: [`Inputs`](staya_controller::agent::Inputs) in wire format. Terrain and
-/// inbox borrow from the receive buffer.
+/// Inputs of one step: [`Inputs`](staya_controller::agent::Inputs), borrowed from the receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepInputs<'a> {
     /// The host's step count, for reports only.
@@ -115,12 +112,10 @@ pub enum NumberFormat {
     Q16,
 }
 
-/// Device: introduces itself. Sent in answer to a greeting and, without a token, once after each
-/// start.
+/// Device: introduces itself, in answer to a greeting and, without a token, once after each start.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hello {
-    /// Token of the greeting that this answers; `None` if the device has not been greeted since its
-    /// start.
+    /// Token of the greeting that this answers; `None` if there was none since the start.
     pub token: Option<Token>,
     /// Start number. Differs after each start if the part's memory allows.
     pub boot: u32,

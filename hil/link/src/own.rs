@@ -1,7 +1,4 @@
-//! Robots with a user-defined guidance law.
-//!
-//! Such a firmware contains exactly one law. The host sends the law's initial state in postcard
-//! format: the device steps the value that the simulation built with `|index| MyLaw { .. }`.
+//! Robots with a user-defined guidance law: the host sends its initial state in postcard format.
 
 use crate::body::{Body, capacities, check, number};
 use crate::capacities::Capacities;
@@ -31,8 +28,7 @@ impl<S: Scalar, G> LinkedLaw<S> for G where
 {
 }
 
-/// A robot with law `G` behind a configurable safety layer: `N` neighbours, `K` half-planes, `O`
-/// obstacles, wire format `W`.
+/// A robot with law `G`: `N` neighbours, `K` half-planes, `O` obstacles, wire format `W`.
 #[derive(Clone, Debug)]
 pub struct Own<S: Scalar, G: LinkedLaw<S>, const N: usize, const K: usize, const O: usize, W> {
     body: Body<S, AnyWorld<G>, AnySafety<S, K>, W, N, O>,

@@ -1,8 +1,8 @@
 //! The host's end of the link: which frame to send, and when to call again. Start with
 //! [`Port::poll`] and [`Port::receive`].
 //!
-//! There is one outstanding request at a time. It is resent until it is answered or times out, so
-//! that no request waits forever. Time is an argument, in microseconds of any monotonic clock.
+//! The one outstanding request is resent until it is answered or times out. Time is an argument, in
+//! microseconds of any monotonic clock.
 
 use crate::frame::{Deframer, Frame, FrameError, TooLong, VERSION};
 use crate::message::{
@@ -17,31 +17,29 @@ use staya_controller::agent::{Setup, Task};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Longest time before a request is resent, microseconds; must exceed the line's time for a
-    /// request and its answer. Steps are resent sooner, by the measured round trips (see [`Port`]).
+    /// request and its answer. Steps are resent sooner (see [`Port`]).
     pub resend_after_us: u64,
-    /// Time without an answer after which the device counts as silent, microseconds. The request is
-    /// sent at least once.
+    /// Time without an answer after which the device counts as silent, microseconds.
     pub give_up_after_us: u64,
 }
 
-/// Shortest time before a step is resent: no host polls more often.
+/// No host polls more often.
 const LEAST_RESEND_US: u64 = 1000;
 const MOST_DOUBLINGS: u32 = 10;
 
-/// Round-trip times of steps: the retransmission timer of RFC 6298 (section 2), in microseconds.
+/// Retransmission timer of RFC 6298 (section 2) for steps.
 #[derive(Clone, Copy, Debug, Default)]
 struct RoundTrip {
-    /// Smoothed mean with a gain of 1/8; 0 before the first measurement.
+    /// Smoothed mean with gain 1/8; 0 before the first measurement.
     mean_us: u64,
-    /// Smoothed mean deviation with a gain of 1/4.
+    /// Mean deviation, gain 1/4.
     deviation_us: u64,
     /// Doublings since the last step that was answered without a resend (section 5.5).
     doublings: u32,
 }
 
 impl RoundTrip {
-    /// Records the round trip of a step that was sent once. A resent step is not recorded, because
-    /// its answer may belong to either copy (Karn's algorithm).
+    /// Omits resent steps: their answers may belong to either copy (Karn's algorithm).
     fn note(&mut self, took_us: u64) {
         let Self { mean_us, deviation_us, doublings } = self;
         *doublings = 0;
@@ -54,7 +52,6 @@ impl RoundTrip {
         *mean_us = mean_us.saturating_sub(*mean_us >> 3).saturating_add(took_us >> 3).max(1);
     }
 
-    /// Time to wait for the next answer, at most `most_us`.
     fn patience_us(self, most_us: u64) -> u64 {
         if self.mean_us == 0 {
             return most_us;
@@ -164,8 +161,7 @@ pub enum Event {
     Configured(Configured),
     /// Answer to a step.
     Stepped(Stepped),
-    /// The device has restarted, requested or not: greet and configure it. There is no outstanding
-    /// request.
+    /// The device has restarted: greet and configure it. There is no outstanding request.
     Restarted,
 }
 
@@ -188,9 +184,8 @@ pub struct Counts {
 
 /// The host's end of the link to one device, with requests of at most `N` bytes.
 ///
-/// A lost frame costs about one round trip. A step is resent after the mean round trip plus four
-/// times its deviation; the wait then doubles up to [`Limits::resend_after_us`]. The device answers
-/// a repeated step with identical bytes.
+/// A step is resent after the mean round trip plus four times its deviation; the wait then doubles
+/// up to [`Limits::resend_after_us`].
 #[derive(Clone, Debug)]
 pub struct Port<const N: usize> {
     deframer: Deframer<MAX_ANSWER>,
@@ -213,8 +208,7 @@ struct Waiting {
 }
 
 impl<const N: usize> Port<N> {
-    /// Creates a port to an unknown device; call [`Port::greet`] first. `run` distinguishes this
-    /// run of the host from others that have used the same device.
+    /// Creates a port to an unknown device; call [`Port::greet`] first. `run` differs between runs.
     #[must_use]
     pub const fn new(run: u32, limits: Limits) -> Self {
         Self {
@@ -251,7 +245,7 @@ impl<const N: usize> Port<N> {
     pub fn greet(&mut self, now_us: u64) {
         self.token.number = self.token.number.wrapping_add(1);
         let token = self.token;
-        // A greeting always fits: `N` exceeds a dozen bytes.
+        // `N` exceeds a dozen bytes.
         let _ = self.request.fill(kind::GREETING, &Greeting { token });
         self.ask(Asked::Hello, now_us);
     }
@@ -277,8 +271,7 @@ impl<const N: usize> Port<N> {
         Ok(())
     }
 
-    /// Requests a step. Replaces an outstanding request, which the device will report as a gap:
-    /// wait for each answer.
+    /// Requests a step. Wait for each answer: the device reports a replaced request as a gap.
     ///
     /// # Errors
     /// [`TooLong`] if the request exceeds `N` bytes; then there is no outstanding request. Inputs
@@ -298,8 +291,7 @@ impl<const N: usize> Port<N> {
         self.waiting = Some(Waiting { asked, attempts: 0, since_us: now_us, due_us: now_us });
     }
 
-    /// Returns the next action. Call it after each request, after each event, and at the time that
-    /// it returned.
+    /// Returns the next action. Call it after requests and events, and at the returned time.
     ///
     /// # Errors
     /// [`PortError::Silent`] on a timeout; then there is no outstanding request.
@@ -339,8 +331,7 @@ impl<const N: usize> Port<N> {
     /// end of a frame O(its bytes).
     ///
     /// # Errors
-    /// A fault or version mismatch reported by the device, see [`PortError`]; then there is no
-    /// outstanding request.
+    /// [`PortError`]: a fault or version mismatch; then there is no outstanding request.
     pub fn receive(&mut self, byte: u8, now_us: u64) -> Result<Option<Event>, PortError> {
         self.counts.received_bytes = self.counts.received_bytes.wrapping_add(1);
         let said = match self.deframer.push(byte) {
@@ -369,7 +360,7 @@ impl<const N: usize> Port<N> {
         Ok(event)
     }
 
-    /// Interprets a message in the current state; `None` if it is stale.
+    /// `None` if it is stale.
     fn understand(&mut self, said: Said, now_us: u64) -> Result<Option<Event>, PortError> {
         let asked = self.asked();
         let is_step = matches!(asked, Some(Asked::Step(_)));
@@ -383,8 +374,7 @@ impl<const N: usize> Port<N> {
                 let is_answer = fault.seq == self.seq && asked.is_some();
                 match fault.kind {
                     FaultKind::NotConfigured if is_answer && is_step => Some(Event::Restarted),
-                    // Only a step needs a configuration: this is a late answer to a request that
-                    // was sent twice.
+                    // Only a step needs a configuration: a late answer.
                     FaultKind::NotConfigured => None,
                     FaultKind::Panic | FaultKind::Version => {
                         self.waiting = None;
@@ -408,13 +398,12 @@ impl<const N: usize> Port<N> {
             return is_answer.then_some(Event::Hello(hello));
         }
         match (asked, &mut self.waiting) {
-            // The device has just started and may have missed the greeting.
+            // It has just started and may have missed the greeting.
             (Some(Asked::Hello), Some(waiting)) => {
                 waiting.due_us = now_us;
                 None
             }
             (Some(Asked::Restart), _) => Some(Event::Restarted),
-            // A delayed hello of the current start.
             _ if self.boot == Some(hello.boot) => None,
             _ => {
                 self.boot = Some(hello.boot);

@@ -29,8 +29,7 @@ pub enum Refusal {
         /// Obstacles that fit.
         room: usize,
     },
-    /// A window whose cell count does not match its sides, an obstacle of unknown shape, or inputs
-    /// with neither a cell nor surroundings.
+    /// Inconsistent inputs: a window's size, an unknown shape, neither cell nor surroundings.
     Nonsense,
 }
 

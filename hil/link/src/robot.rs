@@ -21,7 +21,7 @@ pub const LARGE_INBOX: usize = 8192;
 /// Inbox of a [`Small`], bytes.
 pub const SMALL_INBOX: usize = 1024;
 
-/// The deciding part of a device. Object-safe, so that a host can hold shadows of different parts.
+/// The deciding part of a device. Object-safe: a host holds shadows of different parts.
 pub trait Controller {
     /// Number format of the arithmetic.
     fn number(&self) -> NumberFormat;
@@ -29,20 +29,17 @@ pub trait Controller {
     /// Capacities; the inbox depends on the owner of the receive buffer.
     fn capacities(&self) -> Capacities;
 
-    /// Replaces the robot by a new one in its initial state and returns the digest of that state.
-    /// `law` is a user-defined guidance law in postcard format; it is empty if [`Setup::guidance`]
-    /// names a built-in law.
+    /// Replaces the robot by a new one and returns the digest of its initial state. `law` is a
+    /// user-defined guidance law in postcard format, empty for a built-in law.
     ///
     /// # Errors
     /// See [`Refusal`]; the controller is then not configured.
     fn configure(&mut self, setup: &Setup, task: Option<&Task>, law: &[u8]) -> Result<u64, Refusal>;
 
-    /// Executes one step. The result is kept for [`Controller::result`], because returning it would
-    /// cost stack.
+    /// Executes one step; the result stays in [`Controller::result`] to save stack.
     ///
     /// # Errors
-    /// [`Refusal::NotConfigured`], or inputs that do not fit or are inconsistent; the robot's state
-    /// is unchanged.
+    /// [`Refusal::NotConfigured`], or inputs that do not fit; the robot's state is unchanged.
     fn step(&mut self, inputs: &StepInputs<'_>) -> Result<(), Refusal>;
 
     /// Result of the last step; `None` before the robot is configured.

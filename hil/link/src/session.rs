@@ -36,8 +36,7 @@ use postcard::take_from_bytes;
 /// Largest frame other than answers to requests, bytes. A test fills one.
 const MAX_NOTE: usize = 128;
 
-/// Computes `CONTENT` of a [`Session`] for a search of `search_cells`, this number of obstacles and
-/// an inbox of `inbox_bytes`.
+/// Computes `CONTENT` of a [`Session`] for this search, number of obstacles and inbox.
 #[must_use]
 pub const fn content_bytes(search_cells: usize, obstacles: usize, inbox_bytes: usize) -> usize {
     let step = capacities::step_bytes(search_cells, obstacles, inbox_bytes);
@@ -49,8 +48,7 @@ pub trait Meter {
     /// Called right before the step: paints the free stack and reads the clock.
     fn start(&mut self);
 
-    /// Called right after the step: reads the clock and finds how far the stack paint was
-    /// overwritten.
+    /// Called right after the step: reads the clock and the overwritten stack paint.
     fn finish(&mut self) -> Cost;
 }
 
@@ -101,8 +99,8 @@ pub struct Counts {
     pub damaged: u32,
 }
 
-/// The device's end of the link, with controller `C` and frames of at most `CONTENT` bytes of
-/// content; see [`content_bytes`].
+/// The device's end of the link, with controller `C` and `CONTENT` bytes per frame
+/// ([`content_bytes`]).
 #[derive(Clone, Debug)]
 pub struct Session<C, const CONTENT: usize> {
     deframer: Deframer<CONTENT>,
@@ -114,21 +112,19 @@ struct Core<C, const CONTENT: usize> {
     controller: C,
     about: Option<About>,
     token: Option<Token>,
-    /// Number of the request that `answer` answers; `None` if no robot is configured.
+    /// The request that `answer` answers; `None` if no robot is configured.
     last: Option<u16>,
     answer: Frame<MAX_ANSWER>,
-    /// Any other frame; `answer` must be kept for a repeated request.
+    /// Any other frame: `answer` is kept for a repeated request.
     note: Frame<MAX_NOTE>,
     counts: Counts,
 }
 
-/// Order of a request relative to the last one.
 enum Freshness {
     Repeated,
     Stale,
     Next,
     Ahead,
-    /// There was no previous request.
     First,
 }
 
@@ -141,9 +137,8 @@ impl<C: Controller, const CONTENT: usize> Session<C, CONTENT> {
         session
     }
 
-    /// Creates a session without a description, for a device that does not yet know its clock and
-    /// start number. Call [`Session::introduce`] before [`Session::hello`]. All zeros if
-    /// `controller` is, so that a static session lies in `.bss` and takes no flash.
+    /// Creates a session without a description; call [`Session::introduce`] before
+    /// [`Session::hello`]. All zeros if `controller` is, so that a static session takes no flash.
     #[must_use]
     pub const fn unnamed(controller: C) -> Self {
         const { assert!(CONTENT >= MAX_CONFIGURE, "no room for a setup") };
@@ -230,8 +225,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
                 Err(_) => self.malformed(0),
             },
             kind::CONFIGURE | kind::STEP => {
-                // Both messages start with the number, so the rest of a repeated or stale one is
-                // not parsed.
+                // The rest of a repeated or stale message is not parsed.
                 let Ok((seq, rest)) = take_from_bytes::<u16>(body) else {
                     return self.malformed(0);
                 };
@@ -369,7 +363,6 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
         let _ = self.note.fill(kind::HELLO, &hello);
     }
 
-    /// The rest of the frame buffer is available to the inbox.
     fn capacities(controller: &C) -> Capacities {
         let capacities = controller.capacities();
         let (cells, obstacles) = (capacities.search_cells, capacities.obstacles);
@@ -379,15 +372,15 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     }
 }
 
-/// [`Configure`](crate::message::Configure) without its number and without the law after it.
+/// [`Configure`](crate::message::Configure) without its number and the law after it.
 #[derive(serde::Deserialize)]
 struct Setting {
     setup: staya_controller::agent::Setup,
     task: Option<staya_controller::agent::Task>,
 }
 
-/// Builds a fault frame for a panic handler, which has no session. Text beyond 80 bytes is cut.
 #[must_use]
+/// Builds a fault frame for a panic handler, which has no session. Text beyond 80 bytes is cut.
 pub fn fault_frame(kind: FaultKind, text: impl Display) -> Frame<MAX_NOTE> {
     let mut frame = Frame::new();
     fill_fault(&mut frame, 0, kind, text);
@@ -401,7 +394,7 @@ fn fill_fault(frame: &mut Frame<MAX_NOTE>, seq: u16, kind: FaultKind, text: impl
     let _ = frame.fill(kind::FAULT, &Fault { seq, kind, text });
 }
 
-/// Writer that keeps the text that fits and drops the rest.
+/// Keeps the text that fits.
 struct Cut<const N: usize>(String<N>);
 
 impl<const N: usize> Write for Cut<N> {

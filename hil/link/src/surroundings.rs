@@ -1,5 +1,4 @@
-//! Wire format of a robot's surroundings: terrain borrows from the receive buffer; obstacles are
-//! packed.
+//! Wire format of a robot's surroundings.
 
 use serde::{Deserialize, Serialize};
 use staya_controller::agent::InCell;
@@ -51,8 +50,8 @@ pub struct PackedSurroundings<'a> {
 }
 
 impl PackedSurroundings<'_> {
-    /// Unpacks the obstacles into the device's number format; yields `None` for an unknown shape.
-    /// Trailing bytes are ignored; check [`PackedSurroundings::is_whole`].
+    /// Unpacks the obstacles into the device's number format; `None` for an unknown shape. Ignores
+    /// trailing bytes; check [`PackedSurroundings::is_whole`].
     pub fn obstacles<S: Scalar>(&self) -> impl Iterator<Item = Option<Obstacle<S>>> {
         let (packed, _) = self.obstacles.as_chunks();
         packed.iter().map(unpack)

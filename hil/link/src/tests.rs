@@ -1,5 +1,3 @@
-//! Tests of the whole link, and their common parts.
-
 mod channel;
 mod fit;
 mod frames;
@@ -35,7 +33,6 @@ pub fn small() -> Session<Small, SMALL> {
     Session::new(Small::new(), About { part, ..ABOUT })
 }
 
-/// A robot in the plane with ORCA that moves to a waypoint.
 pub fn in_plane() -> Setup {
     Setup {
         agent: AgentConfig {
@@ -73,7 +70,6 @@ pub fn frame<T: serde::Serialize>(kind: u8, body: &T) -> Vec<u8> {
     frame.bytes().to_vec()
 }
 
-/// All frames that a session returns for these bytes.
 pub fn answers<B: crate::robot::Controller, const N: usize>(session: &mut Session<B, N>, bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut answers = Vec::new();
     for byte in bytes {

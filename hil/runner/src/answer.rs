@@ -1,5 +1,3 @@
-//! Results of a step on the devices of a fleet.
-
 use crate::channel::OpenError;
 use crate::device::DeviceError;
 use crate::mismatch::Mismatch;

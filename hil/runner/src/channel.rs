@@ -1,5 +1,3 @@
-//! Byte streams to devices.
-
 use crate::device::Device;
 use crate::emulator::{self, Emulator, EmulatorError};
 use crate::part::Part;
@@ -8,7 +6,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// Timeout of a read, which is then repeated, and of a write, whose bytes then count as lost.
+/// After this time a read is repeated, and the bytes of a write count as lost.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Reason why a device cannot be opened.
@@ -23,8 +21,8 @@ pub enum OpenError {
 
 /// A bidirectional byte stream to a device.
 pub struct Channel {
-    /// Bytes from the device. An error of kind `TimedOut`, `WouldBlock` or `Interrupted` means that
-    /// there are none yet; the end of the stream means that the device is gone.
+    /// Bytes from the device. Errors of kind `TimedOut`, `WouldBlock` or `Interrupted` mean none
+    /// yet; the end of the stream means that the device is gone.
     pub read: Box<dyn Read + Send>,
     /// Bytes to the device.
     pub write: Box<dyn Write + Send>,
@@ -41,8 +39,7 @@ impl fmt::Debug for Channel {
 }
 
 impl Channel {
-    /// Creates a channel over any reader and writer, for instance a socket to a device on another
-    /// machine.
+    /// Creates a channel over any reader and writer, for instance a socket.
     #[must_use]
     pub fn new(read: impl Read + Send + 'static, write: impl Write + Send + 'static) -> Self {
         Self { read: Box::new(read), write: Box::new(write), per_byte: Duration::ZERO, emulator: None, part: None }

@@ -1,5 +1,3 @@
-//! Configuration of a fleet.
-
 use crate::line::LineFaults;
 use staya_controller::agent::{Setup, Task};
 use staya_link::robot::{Controller, Large, Small};
@@ -30,8 +28,7 @@ pub struct DeviceConfig {
 pub struct Reset {
     /// The step that the reset replaces.
     pub tick: u32,
-    /// Steps in which the robot is stationary; at least 1. It does not depend on how long the
-    /// device really takes, so that runs are reproducible.
+    /// Steps in which the robot is stationary, at least 1. Fixed, so that runs are reproducible.
     pub down_ticks: u32,
 }
 
@@ -45,13 +42,12 @@ pub struct Options {
     pub firmware: PathBuf,
     /// Name that the firmware of all devices must have, such as `lockstep 0.1.0`; `None`: any.
     pub program: Option<String>,
-    /// Candidate shadows, chosen by number format and capacities. The default is the robots with
-    /// all built-in laws.
+    /// Candidate shadows, chosen by number format and capacities; by default all built-in laws.
     pub shadows: Shadows,
     /// Folder for the logs of emulated devices, one file per robot; `None`: no logs.
     pub logs: Option<PathBuf>,
-    /// Longest time before a request is resent, plus its transmission time. Steps are resent
-    /// sooner, by the measured round trips ([`Port`](staya_link::port::Port)).
+    /// Longest time before a request is resent, plus its transmission time
+    /// ([`Port`](staya_link::port::Port)).
     pub resend_after: Duration,
     /// Timeout of a step.
     pub step_limit: Duration,
@@ -59,14 +55,13 @@ pub struct Options {
     pub start_limit: Duration,
     /// Distinguishes this run from others that have used the same devices.
     pub run: u32,
-    /// When this becomes true, [`Fleet::collect`](crate::Fleet::collect) returns at once with
+    /// Makes [`Fleet::collect`](crate::Fleet::collect) return at once with
     /// [`Cause::Stopped`](crate::Cause::Stopped) for all robots.
     pub stop: Arc<AtomicBool>,
 }
 
 impl Options {
-    /// Creates the defaults: requests are resent after 0.5 s; timeouts are 10 s for a step and 20 s
-    /// for a start.
+    /// Requests are resent after 0.5 s; timeouts are 10 s for a step and 20 s for a start.
     #[must_use]
     pub fn new(firmware: PathBuf) -> Self {
         Self {

@@ -1,11 +1,9 @@
-//! Textual notation of devices: `qemu:stm32f405`, `serial:/dev/ttyACM0,baud=115200`.
-
 use crate::part::Part;
 use staya_serial::SerialPort;
 use std::fmt;
 use std::str::FromStr;
 
-/// The place where a robot's controller runs.
+/// The place of a robot's controller: `qemu:stm32f405`, `serial:/dev/ttyACM0,baud=115200`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Device {
     /// In an emulator process of its own.

@@ -1,9 +1,6 @@
-//! An emulated part: one QEMU process with its UART on a socket.
-//!
-//! The socket is the process's standard input (`-chardev socket,fd=0`), so that it needs neither a
-//! file name nor a network port. Semihosting, which carries the firmware's logs, uses the standard
-//! output. Unix socket pairs, named Unix sockets and FIFOs are equally fast, because the emulator
-//! transfers one byte at a time.
+//! An emulated part: one QEMU process with its UART on a socket. The socket is the standard input
+//! (`-chardev socket,fd=0`), which needs neither a file name nor a network port. Semihosting, for
+//! the firmware's logs, uses the standard output.
 
 use crate::note::{Note, NoteError};
 use crate::part::Part;
@@ -16,9 +13,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Bytes of an emulator's error output that are stored.
 const COMPLAINTS: usize = 2048;
-/// Kills the emulator when the thread that started it ends for any reason; part of util-linux.
+/// Kills the emulator when the thread that started it ends; part of util-linux.
 const GUARD: &str = "/usr/bin/setpriv";
 
 /// Reason why an emulator cannot be started.
@@ -46,12 +42,10 @@ pub struct Emulator {
     complaints: Arc<Mutex<String>>,
 }
 
-/// Command line of the emulator `program` for a part with this firmware. One instruction takes 1 ns
-/// of the emulated clock.
+/// One instruction takes 1 ns of the emulated clock.
 pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
     let (_, machine, _) = part.machine();
-    // Its own process group, so that Ctrl-C in a terminal reaches the runner alone, which shuts it
-    // down.
+    // Its own process group: Ctrl-C reaches the runner alone, which shuts it down.
     let mut command = if Path::new(GUARD).is_file() {
         let mut command = Command::new(GUARD);
         command.args(["--pdeathsig", "KILL"]).arg(program);
@@ -69,7 +63,7 @@ pub fn command(part: Part, program: &Path, elf: &Path) -> Command {
     command
 }
 
-/// Starts the emulator of a part; its logs go to the file `log`, if given.
+/// Logs go to the file `log`, if given.
 pub fn start(part: Part, elf: &Path, log: Option<&Path>) -> Result<(Emulator, UnixStream), EmulatorError> {
     let (program, _, package) = part.machine();
     if !elf.is_file() {
@@ -101,8 +95,8 @@ pub fn start(part: Part, elf: &Path, log: Option<&Path>) -> Result<(Emulator, Un
     Ok((Emulator { child, complaints }, ours))
 }
 
-/// Finds an emulator in the `PATH` or in the folder where `cargo xtask qemu` unpacks it, which is
-/// beside the folder of this program (`target/release/staya`, `target/debug/deps/a-test`).
+/// Finds an emulator in the `PATH` or where `cargo xtask qemu` unpacks it, beside the folder of
+/// this program (`target/release/staya`, `target/debug/deps/a-test`).
 #[must_use]
 pub fn find_emulator(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -130,7 +124,7 @@ impl Emulator {
         self.child.id()
     }
 
-    /// Exit status and error output, as text; `None` while it runs.
+    /// Exit status and error output; `None` while it runs.
     pub fn epitaph(&mut self) -> Option<String> {
         // The socket closes shortly before the process can be waited for.
         for _ in 0..50 {
@@ -146,7 +140,7 @@ impl Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // Kills by the own process id; errors mean that it has already ended.
+        // Errors mean that it has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

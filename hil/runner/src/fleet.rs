@@ -1,7 +1,5 @@
-//! All devices of a run, in parallel. Start with [`Fleet::send`] and [`Fleet::collect`].
-//!
-//! Each device has a reader thread; everything else runs in the caller's thread. Each wait has a
-//! timeout, and each error names the robot, the device, the request and the waiting time.
+//! All devices of a run, in parallel. Each has a reader thread; everything else runs in the
+//! caller's. Each wait has a timeout.
 
 use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
@@ -43,8 +41,7 @@ impl std::fmt::Debug for Fleet {
 }
 
 impl Fleet {
-    /// Starts all devices and configures their robots. Call it from a thread that outlives the
-    /// fleet, because emulators end with the thread that started them.
+    /// Starts all devices and configures their robots. Emulators end with the calling thread.
     ///
     /// # Errors
     /// The first device that cannot be opened, does not answer or refuses its configuration.
@@ -117,9 +114,8 @@ impl Fleet {
 
     /// Requests a step from device `index` and steps its shadow, without waiting for the device.
     /// Inputs beyond its capacities are cut by
-    /// [`Capacities::fit`](staya_link::capacities::Capacities::fit) for both and counted.
-    ///
-    /// Errors are returned by [`Fleet::collect`]. An `index` out of range is ignored.
+    /// [`Capacities::fit`](staya_link::capacities::Capacities::fit) for both. Errors are returned
+    /// by [`Fleet::collect`]; an `index` out of range is ignored.
     pub fn send(&mut self, index: usize, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>) {
         let now_us = self.now_us();
         if let Some(unit) = self.units.get_mut(index) {
@@ -128,10 +124,9 @@ impl Fleet {
     }
 
     /// Assigns another robot, or the same one in its initial state, to device `index` and waits
-    /// until it is configured. A device that ran another robot before gets a new boot number, so
-    /// that receivers do not take its packets for repeated ones.
-    ///
-    /// Errors are returned by [`Fleet::collect`]. An `index` out of range is ignored.
+    /// until it is configured. A device that ran another robot gets a new boot number, so that its
+    /// packets do not count as repeated. Errors come by [`Fleet::collect`]; an `index` out of range
+    /// is ignored.
     pub fn assign(&mut self, index: usize, setup: Setup, task: Option<Task>) {
         let now_us = self.now_us();
         if let Some(unit) = self.units.get_mut(index) {
@@ -146,9 +141,9 @@ impl Fleet {
         self.units.get(index).is_some_and(Unit::is_down)
     }
 
-    /// Waits for all devices, within the timeouts of the [`Options`]. Returns one answer for each
-    /// step requested since the last call, in the order of the devices. A device that restarted by
-    /// itself is configured again before this returns.
+    /// Waits for all devices, within the timeouts of the [`Options`], and returns one answer for
+    /// each step requested since the last call, in the order of the devices. A device that
+    /// restarted by itself is configured again first.
     pub fn collect(&mut self) -> Vec<Answer> {
         self.settle();
         self.units.iter_mut().filter_map(Unit::answer).collect()
@@ -169,7 +164,6 @@ impl Fleet {
         micros(self.epoch.elapsed())
     }
 
-    /// Works until no device is busy.
     fn settle(&mut self) {
         loop {
             let now_us = self.now_us();
@@ -177,7 +171,6 @@ impl Fleet {
             for unit in &mut self.units {
                 let due_us = unit.advance(now_us);
                 if !unit.is_settled() {
-                    // Without a due time, the unit has more to do at once.
                     let due_us = due_us.unwrap_or(now_us);
                     next_us = Some(next_us.map_or(due_us, |next: u64| next.min(due_us)));
                 }
@@ -189,7 +182,6 @@ impl Fleet {
                 }
                 return;
             }
-            // The stop flag is checked at least every 100 ms.
             let patience = next_us.saturating_sub(self.now_us()).min(100_000);
             match self.arrivals.recv_timeout(Duration::from_micros(patience)) {
                 Ok(first) => {

@@ -1,13 +1,10 @@
-//! Simulated line faults: the effects of a bad cable, or of a radio in its place, on frames.
-
 use staya_controller::rand::Rng;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Random number streams of the two directions.
 const PURPOSES: [u32; 2] = [u32::from_be_bytes(*b"to d"), u32::from_be_bytes(*b"from")];
 
-/// Faults of a line, equal in both directions. The default is a perfect line.
+/// Faults of a line, such as a bad cable or a radio, equal in both directions; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineFaults {
     /// Probability that a frame is lost.
@@ -27,13 +24,12 @@ pub struct Line {
     robot: u32,
     /// Frames so far; each has its own random numbers.
     frames: u32,
-    /// The incomplete frame at the end.
     open: Vec<u8>,
     on_the_way: VecDeque<(u64, Vec<u8>)>,
 }
 
 impl Line {
-    /// Creates the direction to the device (0) or from it (1).
+    /// `direction` is to the device (0) or from it (1).
     pub fn new(faults: LineFaults, direction: usize, robot: u32) -> Self {
         Self {
             faults,
@@ -45,7 +41,7 @@ impl Line {
         }
     }
 
-    /// Takes bytes; complete frames are put in transit.
+    /// Complete frames are put in transit.
     pub fn push(&mut self, bytes: &[u8], now_us: u64) {
         let is_perfect = self.faults.loss <= 0.0 && self.faults.bit_errors <= 0.0;
         let due_us = now_us.saturating_add(micros(self.faults.delay));
@@ -96,7 +92,6 @@ impl Line {
     }
 }
 
-/// Converts a probability to the format of the controller's generator.
 fn q32(probability: f64) -> u32 {
     (probability * 4_294_967_296.0) as u32
 }

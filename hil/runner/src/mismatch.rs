@@ -1,10 +1,8 @@
-//! The first step at which device and shadow differ.
-
 use staya_controller::robot::RobotId;
 use staya_link::message::StepResult;
 use std::fmt;
 
-/// Different results of a device and of its shadow.
+/// First different results of a device and of its shadow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
     /// The robot.

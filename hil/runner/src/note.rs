@@ -1,15 +1,12 @@
-//! Identification of a firmware in its ELF file, so that it need not be started to be identified.
-
 use crate::part::Part;
 use staya_link::frame::VERSION;
 use std::path::{Path, PathBuf};
 
-/// ELF section of the note. Its bytes: `staya`, the link's version, the names of the part (24) and
-/// of the firmware (32), padded with zeros.
+/// Content: `staya`, link version, names of part (24) and firmware (32), padded with zeros.
 const SECTION: &[u8] = b".staya\0";
 const MAGIC: &[u8] = b"staya";
 
-/// The note of a firmware with a session; written by `note` in hil/firmware/src/lockstep.rs.
+/// The identification of a firmware in its ELF file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// Version of the link.
@@ -65,8 +62,7 @@ impl Note {
         section(&elf).and_then(Self::parse).ok_or(NoteError::NoSession { path })
     }
 
-    /// Reads the note of the firmware `elf` and checks its part, its link version and, if given,
-    /// its name `program`.
+    /// Reads the note of the firmware `elf` and checks part, link version and `program`.
     ///
     /// # Errors
     /// Those of [`Note::read`], and any mismatch.
@@ -97,7 +93,6 @@ impl Note {
     }
 }
 
-/// Finds the contents of the note's section through the section headers.
 fn section(elf: &[u8]) -> Option<&[u8]> {
     let half = |at: usize| Some(usize::from(u16::from_le_bytes(elf.get(at..)?.first_chunk().copied()?)));
     let word = |at: usize| usize::try_from(u32::from_le_bytes(elf.get(at..)?.first_chunk().copied()?)).ok();

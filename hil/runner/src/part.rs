@@ -1,5 +1,3 @@
-//! The parts that can be emulated.
-
 use std::path::{Path, PathBuf};
 
 /// A microcontroller that can be emulated.
@@ -43,8 +41,7 @@ impl Part {
         self.machine().0
     }
 
-    /// The emulator's program name, its machine and further arguments, and the Debian package of
-    /// the program.
+    /// Program, machine and arguments, and the Debian package.
     pub(crate) const fn machine(self) -> (&'static str, &'static [&'static str], &'static str) {
         match self {
             Self::Stm32f405 => ("qemu-system-arm", &["-machine", "netduinoplus2"], "qemu-system-arm"),
@@ -53,8 +50,8 @@ impl Part {
         }
     }
 
-    /// Path of the part's firmware in a folder written by `cargo xtask firmware`; or `folder`
-    /// itself if it is a file.
+    /// Path of the part's firmware in `folder` (from `cargo xtask firmware`), or `folder` if a
+    /// file.
     #[must_use]
     pub fn elf(self, folder: &Path) -> PathBuf {
         if folder.is_file() {

@@ -1,5 +1,3 @@
-//! Statistics of a device.
-
 use serde::Serialize;
 
 /// Quantiles of a set of values.
@@ -27,7 +25,6 @@ impl Spread {
         Some(Self { median: quantile(50)?, p99: quantile(99)?, max: quantile(100)? })
     }
 
-    /// Applies a monotonic function to each quantile.
     fn map(self, of: impl Fn(u64) -> u64) -> Self {
         Self { median: of(self.median), p99: of(self.p99), max: of(self.max) }
     }
@@ -73,7 +70,7 @@ pub struct Statistics {
     pub ticks: Option<Spread>,
     /// Rate of that clock, per second.
     pub ticks_per_second: u32,
-    /// Instructions per step; for emulated devices, where an instruction takes 1 ns of their clock.
+    /// Instructions per step, for emulated devices (1 ns each).
     pub instructions: Option<Spread>,
     /// Most stack that a step touched, bytes.
     pub stack_bytes: u32,
@@ -93,7 +90,6 @@ pub struct Statistics {
     pub received_bytes: u64,
 }
 
-/// Counters and samples of a running device.
 #[derive(Clone, Debug, Default)]
 pub struct Collector {
     pub steps: u64,
@@ -108,19 +104,16 @@ pub struct Collector {
 }
 
 impl Collector {
-    /// Records the ticks of a step.
     pub fn took(&mut self, ticks: u32) {
         self.ticks.push(ticks);
         self.most_ticks = self.most_ticks.max(ticks);
     }
 
-    /// Instructions per step of an emulated device.
     pub fn instructions(&self, ticks_per_second: u32) -> Option<Spread> {
         Some(Spread::of(&self.ticks)?.map(|ticks| instructions(ticks, ticks_per_second)))
     }
 
-    /// Cost of the last steps. Instructions are given for an emulated device, whose clock rate is
-    /// known.
+    /// Instructions only for an emulated device, whose clock rate is known.
     pub fn load(&self, emulated_ticks_per_second: Option<u32>) -> Load {
         let ticks = self.ticks.last().copied();
         let of = |ticks: u32| Some(instructions(ticks.into(), emulated_ticks_per_second?));
@@ -136,7 +129,6 @@ impl Collector {
     }
 }
 
-/// Converts ticks of an emulated device's clock to instructions, each of which takes 1 ns.
 fn instructions(ticks: u64, ticks_per_second: u32) -> u64 {
     let scaled = u128::from(ticks) * 1_000_000_000 / u128::from(ticks_per_second.max(1));
     u64::try_from(scaled).unwrap_or(u64::MAX)
@@ -172,7 +164,6 @@ mod tests {
         let load = tally.load(Some(168_000_000));
         assert_eq!((load.ticks, load.instructions, load.most_instructions), (Some(336), Some(2000), Some(100_000)));
         assert_eq!((load.stack_bytes, load.mismatches), (900, 1));
-        // On a board, only the clock is known.
         let load = tally.load(None);
         assert_eq!((load.ticks, load.instructions, load.most_instructions), (Some(336), None, None));
     }

@@ -1,5 +1,3 @@
-//! One device: its port, its shadow, and its phase.
-
 use crate::answer::{Answer, Cause, FleetError};
 use crate::channel::Channel;
 use crate::config::{DeviceConfig, Options, Shadows};
@@ -18,7 +16,7 @@ use staya_mavlink::any::AnyWire;
 use std::io::Write;
 use std::time::Duration;
 
-/// Largest request, bytes: 1.5 times the frame length of the largest device.
+/// 1.5 times the frame length of the largest device.
 const REQUEST: usize = 16_384;
 
 #[derive(Debug)]
@@ -26,7 +24,7 @@ enum Phase {
     Greeting,
     Configuring,
     Ready,
-    /// Stepping; the shadow has already decided.
+    /// The shadow has already decided.
     Stepping(Box<Expected>),
     Restarting,
     Failed,
@@ -50,10 +48,9 @@ pub struct Unit {
     there: Line,
     back: Line,
     phase: Phase,
-    /// Steps for which the robot stays down after a scheduled reset.
+    /// Steps for which the robot stays down after a reset.
     down: u32,
     answer: Option<Answer>,
-    /// How the device ended, if it has.
     gone: Option<String>,
     tally: Collector,
     packed: Vec<u8>,
@@ -122,7 +119,7 @@ impl Unit {
         self.greet(now_us);
     }
 
-    /// Requests a step; the shadow steps at once.
+    /// The shadow steps at once.
     pub fn send(&mut self, tick: u32, now: Instant, inputs: &AnyInputs<'_, f32>, now_us: u64) {
         if matches!(self.phase, Phase::Failed) {
             self.answer = Some(self.failed(Cause::GivenUp));
@@ -168,7 +165,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Takes bytes that the reader received at this time; empty if the device is gone.
+    /// `bytes` is empty if the device is gone.
     pub fn arrived(&mut self, bytes: &[u8], at_us: u64) {
         if bytes.is_empty() {
             let emulator = self.channel.emulator.as_mut();
@@ -179,11 +176,9 @@ impl Unit {
         self.back.push(bytes, at_us);
     }
 
-    /// Does everything that is due. Returns when to call again; `None` if there is nothing to wait
-    /// for.
+    /// Returns when to call again; `None` if there is nothing to wait for.
     pub fn advance(&mut self, now_us: u64) -> Option<u64> {
         self.hear(now_us);
-        // Bytes received before the device was gone still count.
         if !self.is_settled()
             && self.back.next_us().is_none()
             && let Some(why) = self.gone.take()
@@ -210,8 +205,7 @@ impl Unit {
         }
     }
 
-    /// Sends frames that are due. Returns when to call again; `None` without an outstanding
-    /// request.
+    /// Returns when to call again; `None` without an outstanding request.
     fn pump(&mut self, now_us: u64) -> Option<u64> {
         let due = loop {
             match self.port.poll(now_us) {
@@ -225,8 +219,7 @@ impl Unit {
             }
         };
         while let Some(bytes) = self.there.pop(now_us) {
-            // Bytes that cannot be written in time count as lost; a lost device is detected by the
-            // reader.
+            // Bytes that cannot be written in time are lost; the reader detects a lost device.
             let _ = self.channel.write.write_all(&bytes);
             let _ = self.channel.write.flush();
         }
@@ -265,8 +258,7 @@ impl Unit {
                         self.tally.resets += 1;
                         self.down = self.down.max(1);
                     }
-                    // A scheduled reset is already counted, and so is one whose recovery was
-                    // interrupted by another.
+                    // Already counted: a scheduled reset, or one whose recovery was interrupted.
                     Phase::Restarting | Phase::Greeting | Phase::Configuring | Phase::Failed => {}
                 }
                 self.config.setup.agent.boot = self.config.setup.agent.boot.wrapping_add(1);
@@ -275,7 +267,6 @@ impl Unit {
         }
     }
 
-    /// Checks the device's identity and configures it.
     fn meet(&mut self, hello: Hello, now_us: u64) -> Result<(), Cause> {
         if let Some(part) = self.channel.part
             && hello.part != part.firmware_name()
@@ -344,12 +335,10 @@ impl Unit {
         })
     }
 
-    /// Whether the robot is down in the next step because of a reset.
     pub const fn is_down(&self) -> bool {
         self.down > 0
     }
 
-    /// Whether there is nothing to wait for.
     pub fn is_settled(&self) -> bool {
         matches!(self.phase, Phase::Ready | Phase::Failed)
     }
@@ -394,12 +383,11 @@ impl Unit {
     }
 }
 
-/// Resends until the timeout.
 fn limits(resend_after: Duration, limit: Duration) -> Limits {
     Limits { resend_after_us: micros(resend_after).max(1), give_up_after_us: micros(limit) }
 }
 
-/// Finds the shadow that computes like the device: equal number format and capacities.
+/// Finds the shadow with equal number format and capacities.
 fn shadow(shadows: Shadows, hello: &Hello) -> Option<Box<dyn Controller + Send>> {
     let is_same = |controller: &dyn Controller| {
         let inbox_bytes = hello.capacities.inbox_bytes;

@@ -1,9 +1,5 @@
-//! Fleets of emulated parts. `cargo xtask test` builds the firmware and runs these tests on two
-//! parts, `cargo xtask test --all` on all parts. By hand: `cargo xtask firmware`, then
-//! `cargo test -p staya-runner --test emulated`.
-//!
-//! Firmware is expected in `$STAYA_FIRMWARE`, or in `firmware` beside the build folder of this
-//! test.
+//! Fleets of emulated parts, with the firmware of `cargo xtask firmware` in `$STAYA_FIRMWARE`, or
+//! in `firmware` beside the build folder. `cargo xtask test` runs two parts, with `--all` all.
 
 mod common;
 
@@ -18,14 +14,12 @@ fn firmware() -> PathBuf {
     if let Some(folder) = std::env::var_os("STAYA_FIRMWARE") {
         return folder.into();
     }
-    // target/debug/deps/emulated-...
     let program = std::env::current_exe().expect("this test's path");
     let target = program.ancestors().nth(3).expect("a target folder");
     target.join("firmware")
 }
 
-/// The parts in `$STAYA_PARTS`, named by their firmware folders (`stm32f405,nrf51`); all if it is
-/// unset.
+/// `$STAYA_PARTS` (`stm32f405,nrf51`); all if it is unset.
 fn parts() -> Vec<Part> {
     let wanted = std::env::var("STAYA_PARTS");
     let is_wanted = |part: &Part| match &wanted {
@@ -48,7 +42,6 @@ fn send(fleet: &mut Fleet, tick: u32) {
     }
 }
 
-/// Steps all robots and returns in how many steps each was down.
 fn run(fleet: &mut Fleet, ticks: u32) -> Vec<u32> {
     let mut down = vec![0; fleet.len()];
     for tick in 0..ticks {
@@ -78,7 +71,7 @@ fn print(statistics: &Statistics) {
     );
 }
 
-/// Whether a process with this id runs the emulator; a zombie process does not count.
+/// A zombie process does not count.
 fn is_alive(process: u32) -> bool {
     let state = std::fs::read_to_string(Path::new("/proc").join(process.to_string()).join("stat"));
     state.is_ok_and(|state| state.contains("(qemu") && !state.contains(") Z"))
@@ -177,7 +170,7 @@ fn killed_emulator_is_named_in_the_error() {
 fn killed_runner_leaves_no_emulator() {
     const WAITS: &str = "STAYA_RUNNER_WAITS";
     if std::env::var_os(WAITS).is_some() {
-        // This process is the runner to be killed; it ends by itself if that does not happen.
+        // The runner to be killed; it ends by itself otherwise.
         let fleet = Fleet::start(vec![config(1, "qemu:microbit")], options()).expect("it starts");
         println!("\nemulator {}", fleet.processes()[0]);
         std::thread::sleep(Duration::from_secs(120));

@@ -34,7 +34,6 @@ fn one(config: DeviceConfig, channel: Channel) -> Fleet {
     Fleet::over(vec![(config, channel)], options()).expect("it starts")
 }
 
-/// Robots 1 to 4, two of each kind.
 fn four(change: impl Fn(&mut DeviceConfig)) -> Fleet {
     let lines = (1..=4).map(|robot| {
         let mut config = config(robot, "thread");
@@ -45,7 +44,6 @@ fn four(change: impl Fn(&mut DeviceConfig)) -> Fleet {
     Fleet::over(lines.collect(), options()).expect("they start")
 }
 
-/// Steps the whole fleet once; robot ids start at 1.
 fn tick(fleet: &mut Fleet, tick: u32) -> Vec<Answer> {
     for index in 0..fleet.len() {
         let scene = Scene::new(index as u32 + 1, tick);
@@ -86,7 +84,7 @@ fn devices_of_two_kinds_decide_like_their_shadows_and_are_counted() {
     }
 }
 
-/// A pair of pseudo-terminals replaces the board's port.
+/// Pseudo-terminals replace the board's port.
 #[test]
 fn robot_behind_a_serial_port_decides_like_its_shadow() {
     let (board, port) = serialport::TTYPort::pair().expect("pseudo-terminals");
@@ -165,7 +163,7 @@ fn device_that_resets_by_itself_is_down_for_a_step_and_rejoins() {
             answer => drop(decided(answer)),
         }
     }
-    // The answer to step 29 was sent, and step 30 finds the device without its state.
+    // Step 30 finds the device without its state.
     assert_eq!(down, [30]);
     let statistics = &fleet.statistics()[0];
     assert_eq!((statistics.resets, statistics.steps), (1, 59));
@@ -249,12 +247,10 @@ fn silent_device_error_names_the_step_and_the_waiting_time() {
     .expect("they start");
     run(&mut fleet, 7);
     let mut answers = tick(&mut fleet, 7);
-    // The others are not delayed.
     let _ = decided(answers.pop().expect("two"));
     let text = cause(answers);
     let known = "robot 1 on qemu:microbit: no answer to step 7 within ";
     assert!(text.starts_with(known) && text.ends_with(" attempts)"), "{text}");
-    // The failed device stays out.
     let mut answers = tick(&mut fleet, 8);
     let _ = decided(answers.pop().expect("two"));
     assert_eq!(cause(answers), "robot 1 on qemu:microbit: it was given up before");

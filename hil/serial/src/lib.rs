@@ -1,5 +1,4 @@
-//! Serial ports in textual notation, opened as a reader and a writer. Used for hardware in the loop
-//! and for MAVLink.
+//! Serial ports in textual notation, opened as a reader and a writer.
 //!
 //! ```ignore
 //! use std::io::{Read, Write};

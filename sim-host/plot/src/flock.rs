@@ -159,13 +159,8 @@ pub enum View {
     Plan,
     /// From the south: x and height.
     Elevation,
-<<<<<<< HEAD
-    /// From the south-east and above: east to the right, north to the upper right at half its
-    /// length, height up.
-=======
     /// From the south-east and above: east right, north to the upper right (half length), height
     /// up.
->>>>>>> com5
     Oblique,
 }
 

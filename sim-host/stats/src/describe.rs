@@ -44,13 +44,8 @@ impl Summary {
         })
     }
 
-<<<<<<< HEAD
-    /// The 95 % interval of the mean by Student's t: exact for normal values, and for others as
-    /// good as the normality of their mean. Both ends are the mean when there is one value.
-=======
     /// The 95 % interval of the mean by Student's t: exact for normal values, else approximate. For
     /// one value, both ends are the mean.
->>>>>>> com5
     #[must_use]
     pub fn mean_interval95(&self) -> [f64; 2] {
         let error = self.mean_error95.unwrap_or(0.0);
@@ -107,14 +102,7 @@ impl Histogram {
     /// whole numbers have whole widths and edges halfway between numbers, so that each has equally
     /// many.
     ///
-<<<<<<< HEAD
-    /// Whole numbers get bins of whole width with edges halfway between them, so that no bin
-    /// catches more of the lattice than its neighbour. `None` if there are no values, one is not
-    /// finite, or
-    /// `max_bins` is 0.
-=======
     /// `None` if there are no values, one is not finite, or `max_bins` is 0.
->>>>>>> com5
     #[must_use]
     pub fn new(values: &[f64], max_bins: usize) -> Option<Self> {
         let sorted = sorted(values)?;

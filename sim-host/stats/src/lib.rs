@@ -1,10 +1,5 @@
-<<<<<<< HEAD
-//! Statistics: summaries with confidence intervals, the curve of figure 6 of A. V. Kuznetsov 2017
-//! (KUZ), and the Norton-Rice law of KUZ section 5 with its fit and test.
-=======
 //! Statistics: summaries with confidence intervals, and two models of A. V. Kuznetsov 2017 (KUZ):
 //! the curve of figure 6, and the Norton-Rice law of section 5 with its fit and test.
->>>>>>> com5
 //!
 //! All functions use `libm` and sum in the order of the samples, so equal samples give equal bits
 //! on every machine. If a value is NaN or infinite, they return `None` or an error.

@@ -1,12 +1,4 @@
 //! The Norton-Rice law of arrival times (KUZ section 5), its fit and its test.
-<<<<<<< HEAD
-//!
-//! p(x) = (alpha m / beta^2) (x / alpha)^m exp(-m (alpha^2 + x^2) / (2 beta^2))
-//! I_{m-1}(m x alpha / beta^2) for x > 0: with sigma^2 = beta^2 / m, (X / sigma)^2 is a noncentral
-//! chi-square with 2m degrees of freedom and noncentrality (alpha / sigma)^2. m = 1 is Rice's law,
-//! alpha -> 0 Nakagami's.
-=======
->>>>>>> com5
 
 use super::describe::sorted;
 use super::optimize::minimize;
@@ -116,15 +108,9 @@ impl NortonRice {
         self.mass(0.0, x).min(1.0)
     }
 
-<<<<<<< HEAD
-    /// The probability of a value between `a` and `b`, by Gauss-Legendre quadrature over panels
-    /// half a sigma wide. At most about 40 panels of 8 points: X is the length of a normal vector,
-    /// so all but 1e-17 of its probability lies within 10 sigma of the root of the mean square.
-=======
     /// Probability of a value between `a` and `b`, by Gauss-Legendre quadrature over panels half a
     /// sigma wide. At most about 40 panels of 8 points: X is the length of a normal vector, so all
     /// but 1e-17 of its probability lies within 10 sigma of the root of the mean square.
->>>>>>> com5
     fn mass(&self, a: f64, b: f64) -> f64 {
         let sigma = self.beta / sqrt(self.m);
         let center = sqrt(self.mean_square());
@@ -157,13 +143,8 @@ impl NortonRice {
         self.alpha * self.alpha + 2.0 * self.beta * self.beta
     }
 
-<<<<<<< HEAD
-    /// Coordinates in which the likelihood is round: ln of mean and variance of X^2, and the logit
-    /// of r = alpha^2 / mean square, which goes from Nakagami (0) to ever smaller m (1).
-=======
     /// Coordinates in which the likelihood is round: ln of mean A and variance V of X^2, and the
     /// logit of r = alpha^2 / mean square, from Nakagami (0) to ever smaller m (1).
->>>>>>> com5
     ///
     /// alpha^2 = A r, beta^2 = A (1 - r) / 2, m = (1 - r^2) A^2 / V. Any real coordinates are a
     /// law, so the search needs no bounds.
@@ -185,16 +166,8 @@ impl NortonRice {
     /// Maximum-likelihood fit: Nelder-Mead from the sample's moments and three shapes. O(n), some
     /// hundred passes.
     ///
-<<<<<<< HEAD
-    /// Nelder-Mead over `Self::coordinates` from the sample's moments and three shapes; the samples
-    /// are scaled to a mean square of 1 first. O(n), some hundred passes.
-    ///
-    /// For samples whose deviation is small against their mean the law is nearly normal and m
-    /// hardly shows in it: then the density is well determined, m alone is not.
-=======
     /// If the deviation is small compared with the mean, the law is nearly normal: the density is
     /// well determined, m alone is not.
->>>>>>> com5
     ///
     /// # Errors
     /// See [`FitError`].
@@ -235,21 +208,12 @@ impl NortonRice {
 
     /// Pearson's chi-square test of the family, valid after a fit. `self` is the fitted law.
     ///
-<<<<<<< HEAD
-    /// The bins have about equal expected counts under `self`, the fitted law: 2 n^(2/5) of them,
-    /// but at least 8 expected samples in each. Their edges lie halfway between neighbouring
-    /// samples, so that whole ticks cannot fall on an edge. A fit to the single samples does not
-    /// minimise chi-square, and its chi-square follows no chi-square law (Chernoff and Lehmann
-    /// 1954). So chi-square is minimised over the three parameters from `self` on, which makes bins
-    /// - 1 - 3 the right degrees of freedom (Fisher 1924).
-=======
     /// The bins have about equal expected counts under `self`: 2 n^(2/5) bins, with at least 8
     /// expected samples each. Their edges lie halfway between neighbouring samples, so that whole
     /// ticks are never on an edge. A maximum-likelihood fit does not minimise chi-square, which
     /// therefore has no chi-square law (Chernoff and Lehmann 1954). This test minimises it over the
     /// three parameters, starting at `self`, which gives bins - 1 - 3 degrees of freedom (Fisher
     /// 1924).
->>>>>>> com5
     ///
     /// `None` if a sample is not finite, or if the samples fill fewer than 5 bins (fewer than 40
     /// samples, or very few different values).

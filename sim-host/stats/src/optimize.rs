@@ -6,15 +6,9 @@ type Vertex<const N: usize> = ([f64; N], f64);
 
 /// Returns the point where `f` is smallest, and its value there.
 ///
-<<<<<<< HEAD
-/// Starts from a simplex around `start` with the edge lengths `step`; ends when the values of the
-/// simplex differ by at most `tolerance` and a fresh simplex around the answer finds nothing
-/// better, or after about `max_evals` evaluations. NaN counts as infinitely bad.
-=======
 /// Starts from a simplex around `start` with edges `step`. Ends if the values of the simplex differ
 /// by at most `tolerance` and a fresh simplex around the answer finds no better one, or after about
 /// `max_evals` evaluations. NaN counts as infinitely bad.
->>>>>>> com5
 #[must_use]
 pub fn minimize<const N: usize>(
     mut f: impl FnMut([f64; N]) -> f64,

@@ -1,5 +1,3 @@
-//! Two driven wheels on one axle, and how they follow a velocity in any direction.
-
 use super::twist::{Kinematics, Twist};
 use staya_controller::agent::KinematicState;
 use staya_controller::geom::{Vec2, Vec3};
@@ -14,8 +12,7 @@ pub struct Differential<S> {
 }
 
 impl<S: Scalar> Differential<S> {
-    /// `track_m`: distance between the contact points of the wheels; `None` unless more than 0 and
-    /// finite.
+    /// `track_m`: distance between the wheels' contact points; `None` unless above 0 and finite.
     #[must_use]
     pub fn new(track_m: S) -> Option<Self> {
         let per_track = S::ONE.checked_div(track_m)?;
@@ -34,36 +31,27 @@ impl<S: Scalar> Kinematics<S, 2> for Differential<S> {
     }
 }
 
-/// Lets a robot that can only roll ahead and turn follow any velocity, by controlling a point ahead
-/// of its axle.
+/// Lets a robot that rolls ahead and turns follow any velocity: controls a point ahead of its axle.
 ///
 /// A point at distance D ahead of the axle's middle moves with v ahead and with D w to the side, so
-/// any velocity of the point corresponds to a pair (v, w): the usual feedback linearisation. J.
+/// any velocity of the point corresponds to a pair (v, w): the usual feedback linearisation (J.
 /// Snape, J. van den Berg, S. Guy, D. Manocha 2010, "Smooth and collision-free navigation for
-/// multiple robots under differential-drive constraints" use it for ORCA. For the controller this
-/// "effective centre" is the robot, and it behaves exactly as ORCA assumes. Therefore:
+/// multiple robots under differential-drive constraints"). Therefore:
 ///
-/// - Give the controller the state of that point ([`Self::state`]) instead of the axle's, and goals
-///   for that point.
-/// - The radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is that of the disc around
-///   the point that holds the body at any heading: [`Self::radius`], the body's own plus D.
+/// - Give the controller the state of that point ([`Self::state`]) and goals for it.
+/// - The radius in [`AgentConfig`](staya_controller::agent::AgentConfig) is [`Self::radius`].
 /// - The top speed is that of the wheels in the worst direction: [`Self::max_speed`].
 ///
-/// D trades space for speed. Half the track leaves 71 % of the wheels' speed. A small D takes
-/// little space, but the robot turns on the spot at the slightest change, and its top speed
-/// approaches zero. Reversing leads through a turn: a robot sent straight back drives in reverse
-/// until any disturbance, and then swings round.
-///
-/// The alternative keeps the centre, and enlarges the radius by how far the robot strays from the
-/// preferred path while it turns: J. Alonso-Mora, A. Breitenmoser, M. Rufli, P. Beardsley, R.
-/// Siegwart 2010, "Optimal reciprocal collision avoidance for multiple non-holonomic robots"
-/// (NH-ORCA). It must forbid velocities with a larger error, which Staya's safety layer does not,
-/// so it is not available.
+/// D trades space for speed. Half the track leaves 71 % of the wheels' speed. With a small D the
+/// robot turns on the spot at the slightest change, and its top speed approaches zero. A robot sent
+/// straight back drives in reverse until any disturbance, and then swings round.
 ///
 /// The radius still needs a margin for latency and acceleration. With acceleration a of the point
 /// and a command delay t, allow for speed * t + speed^2 / (2 a) in directions that change at once.
-/// If the controller knows a as its `max_acceleration_mps2`, it accounts for the second term
-/// itself.
+/// With a as its `max_acceleration_mps2`, the controller accounts for the second term.
+///
+/// The alternative, NH-ORCA (J. Alonso-Mora, A. Breitenmoser, M. Rufli, P. Beardsley, R. Siegwart
+/// 2010), keeps the centre but must forbid velocities with a larger tracking error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LookAhead<S> {
@@ -79,8 +67,8 @@ impl<S: Scalar> LookAhead<S> {
         (ahead_m > S::ZERO && ahead_m.is_finite()).then_some(Self { ahead_m, per_ahead })
     }
 
-    /// The motion of the robot at `heading_rad` (counter-clockwise from east) that moves the point
-    /// with `velocity_mps` in the world.
+    /// The motion that moves the point with `velocity_mps` in the world, at `heading_rad`
+    /// (counter-clockwise from east).
     #[must_use]
     pub fn twist(&self, velocity_mps: Vec2<S>, heading_rad: S) -> Twist<S> {
         let wish = Twist::holonomic(velocity_mps, heading_rad, S::ZERO);
@@ -88,7 +76,7 @@ impl<S: Scalar> LookAhead<S> {
     }
 
     /// The state of the point, for the controller, from the axle's state and its turn rate
-    /// `turn_radps`. If the position is not a number, it remains the axle's.
+    /// `turn_radps`. A position that is not a number remains the axle's.
     #[must_use]
     pub fn state(&self, axle: &KinematicState<S>, heading_rad: S, turn_radps: S) -> KinematicState<S> {
         let (sin, cos) = heading_rad.sin_cos();
@@ -100,18 +88,17 @@ impl<S: Scalar> LookAhead<S> {
         }
     }
 
-    /// Radius of the disc around the point that holds a body of `body_radius_m` around the axle's
-    /// middle at any heading, metres.
+    /// Radius of the disc around the point that holds the body at any heading, metres;
+    /// `body_radius_m` is around the axle's middle.
     #[must_use]
     pub fn radius(&self, body_radius_m: S) -> S {
         body_radius_m + self.ahead_m
     }
 
-    /// The speed that the point can have in any direction if the wheels can have `wheel_mps` at
-    /// `track_m`, m/s. Its ratio to the wheels' speed also applies to accelerations.
+    /// The speed of the point in any direction if the wheels can have `wheel_mps` at `track_m`,
+    /// m/s. The ratio also applies to accelerations.
     ///
-    /// In a direction at angle t to the nose the faster wheel moves at u (cos t + k sin t) with k =
-    /// track / (2 D), at most u sqrt(1 + k^2).
+    /// At angle t to the nose the faster wheel moves at u (cos t + k sin t), k = track / (2 D).
     #[must_use]
     pub fn max_speed(&self, wheel_mps: S, track_m: S) -> S {
         let k = track_m * S::HALF * self.per_ahead;

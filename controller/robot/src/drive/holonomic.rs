@@ -1,15 +1,11 @@
-//! Wheels that let a robot move in any direction: omni wheels on a circle, and mecanum wheels at
-//! the corners.
-
 use super::twist::{Kinematics, Twist};
 use staya_controller::scalar::Scalar;
 
-/// `W` omni wheels at equal angles on a circle, each rolling along it, numbered counter-clockwise;
-/// three or four.
+/// Three or four omni wheels at equal angles on a circle, each rolling along it, counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Omni<S, const W: usize> {
-    /// Cosine and sine of each wheel's angle, seen from the centre.
+    /// Cosine and sine of each wheel's angle.
     places: [(S, S); W],
     radius_m: S,
     per_radius: S,
@@ -50,7 +46,7 @@ impl<S: Scalar, const W: usize> Kinematics<S, W> for Omni<S, W> {
             sum.left_mps += *cos * *rim;
             sum.turn_radps += *rim;
         }
-        // Over equal angles the squares of the sines add up to W/2, as do those of the cosines.
+        // The squares of the sines add up to W/2, as do those of the cosines.
         Twist {
             forward_mps: sum.forward_mps * S::from_ratio(2, W as i32),
             left_mps: sum.left_mps * S::from_ratio(2, W as i32),
@@ -59,8 +55,7 @@ impl<S: Scalar, const W: usize> Kinematics<S, W> for Omni<S, W> {
     }
 }
 
-/// Four mecanum wheels: front left, front right, rear left, rear right. The rollers that touch the
-/// ground point to the middle (seen from above, the visible rollers form an X).
+/// Four mecanum wheels: front left, front right, rear left, rear right; the rollers form an X.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Mecanum<S> {
@@ -70,7 +65,7 @@ pub struct Mecanum<S> {
 }
 
 impl<S: Scalar> Mecanum<S> {
-    /// `wheel_base_m`: between the axles; `track_m`: between left and right wheels; `None` unless
+    /// `wheel_base_m` is between the axles, `track_m` between left and right wheels; `None` unless
     /// their sum is more than 0 and finite.
     #[must_use]
     pub fn new(wheel_base_m: S, track_m: S) -> Option<Self> {

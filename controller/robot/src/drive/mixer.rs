@@ -1,5 +1,3 @@
-//! Converts a body's motion to rim speeds that the motors can follow.
-
 use super::twist::{Kinematics, Twist};
 use staya_controller::scalar::Scalar;
 use staya_controller::time::Duration;
@@ -8,19 +6,16 @@ use staya_controller::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits<S> {
-    /// Top rim speed, m/s. Use that of the slowest motor under load with an old battery; otherwise
-    /// the controller's model of the robot is wrong.
+    /// Top rim speed, m/s: that of the slowest motor under load with an old battery.
     pub speed_mps: S,
-    /// How fast a rim may change its speed, m/s^2, before it slips or the supply fails;
-    /// [`Scalar::MAX`]: at once.
+    /// How fast a rim may change its speed, m/s^2; [`Scalar::MAX`]: at once.
     pub acceleration_mps2: S,
 }
 
 /// Keeps rim speeds within limits without distorting the motion.
 ///
-/// - Too fast: all wheels slow down by the same factor, so that a holonomic robot keeps its
-///   direction, and any other keeps its curve.
-/// - Too sudden: all wheels make the same fraction of their change, the largest that all can make.
+/// - Too fast: all wheels slow down by one factor, which keeps the direction or the curve.
+/// - Too sudden: all wheels make the same fraction of their change, the largest possible.
 /// - A motion that is not finite counts as a stop, which respects the acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixer<S, K, const W: usize> {
@@ -30,8 +25,7 @@ pub struct Mixer<S, K, const W: usize> {
 }
 
 impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
-    /// Starts with a stationary robot; `None` unless both limits are more than 0 and the speed is
-    /// finite.
+    /// Starts with a stationary robot; `None` unless both limits are above 0 and the speed finite.
     #[must_use]
     pub fn new(kinematics: K, limits: Limits<S>) -> Option<Self> {
         let Limits { speed_mps: speed, acceleration_mps2: acceleration } = limits;
@@ -61,8 +55,7 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         self.rims_mps
     }
 
-    /// Sets all speeds to 0 at once, regardless of the limits: for emergencies, and when the motors
-    /// were off.
+    /// Sets all speeds to 0 at once, for emergencies, and when the motors were off.
     pub fn stop(&mut self) {
         self.rims_mps = [S::ZERO; W];
     }
@@ -79,7 +72,6 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
         match rims.try_fold(S::ZERO, |most, rim| finite_max(most, *rim)) {
             Some(most) if most <= top => rims_mps,
             Some(most) => match top.checked_div(most) {
-                // Rounding must not exceed the limit.
                 Some(factor) => rims_mps.map(|rim| (rim * factor).clamp(-top, top)),
                 None => [S::ZERO; W],
             },
@@ -88,7 +80,6 @@ impl<S: Scalar, K: Kinematics<S, W>, const W: usize> Mixer<S, K, W> {
     }
 }
 
-/// The larger magnitude; `None` if the new one is not finite.
 fn finite_max<S: Scalar>(most: S, value: S) -> Option<S> {
     value.is_finite().then(|| most.max(value.abs()))
 }

@@ -6,10 +6,9 @@
 //!   --Wheels (Calibration)--> signed duty --Motor--> embedded-hal's PWM and pins
 //! ```
 //!
-//! Directions: x ahead, y to the left, turns counter-clockwise seen from above. A wheel's speed is
-//! that of its rim, positive when it drives the robot ahead (omni wheels: counter-clockwise around
-//! the robot). This module does not measure speeds. To keep the wheels' speed under load, close a
-//! loop around each motor with the mixer's speeds as set points.
+//! Directions: x ahead, y to the left, turns counter-clockwise seen from above. Rim speeds are
+//! positive when they drive the robot ahead (omni wheels: counter-clockwise). To keep speeds under
+//! load, close a loop around each motor with the mixer's speeds as set points.
 
 mod differential;
 mod holonomic;

@@ -1,5 +1,3 @@
-//! One motor driven by a bridge.
-
 use core::fmt;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::pwm::SetDutyCycle;
@@ -15,7 +13,7 @@ pub trait Motor {
     /// Sets the duty; [`FULL`] is full power ahead.
     ///
     /// # Errors
-    /// That of the pins; the duty is then unknown.
+    /// The error of the pins; the duty is then unknown.
     fn set(&mut self, duty: i16) -> Result<(), Self::Error>;
 }
 
@@ -23,9 +21,9 @@ pub trait Motor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum MotorError<P, D> {
-    /// Of the PWM channel.
+    /// Error of the PWM channel.
     Pwm(P),
-    /// Of a direction pin.
+    /// Error of a direction pin.
     Pin(D),
 }
 
@@ -40,8 +38,7 @@ impl<P: fmt::Debug, D: fmt::Debug> fmt::Display for MotorError<P, D> {
 
 impl<P: fmt::Debug, D: fmt::Debug> core::error::Error for MotorError<P, D> {}
 
-/// A PWM channel for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN
-/// mode), TB9051, Cytron MDD.
+/// PWM for the power and a pin for the direction (high: ahead), as on DRV8835 (PH/EN) and TB9051.
 #[derive(Clone, Debug)]
 pub struct SignMagnitude<P, D> {
     pwm: P,
@@ -67,8 +64,7 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
 
     fn set(&mut self, duty: i16) -> Result<(), Self::Error> {
         let power = scaled(duty, self.pwm.max_duty_cycle());
-        // Power must be off while the direction changes: half a period in the wrong direction is a
-        // jerk.
+        // Half a period in the wrong direction is a jerk.
         let pwm = |result: Result<(), P::Error>| result.map_err(MotorError::Pwm);
         pwm(self.pwm.set_duty_cycle(0))?;
         self.direction.set_state((duty >= 0).into()).map_err(MotorError::Pin)?;
@@ -76,8 +72,7 @@ impl<P: SetDutyCycle, D: OutputPin> Motor for SignMagnitude<P, D> {
     }
 }
 
-/// A PWM channel for the power and two pins for the direction (high, low: ahead; both low: coast),
-/// as on L298N and TB6612.
+/// PWM for the power and two pins for the direction (both low: coast), as on L298N and TB6612.
 #[derive(Clone, Debug)]
 pub struct TwoPins<P, A, B> {
     pwm: P,
@@ -134,7 +129,7 @@ impl<P: SetDutyCycle> Motor for HBridge<P> {
 
     fn set(&mut self, duty: i16) -> Result<(), P::Error> {
         let (used, idle) = if duty < 0 { (&mut self.back, &mut self.ahead) } else { (&mut self.ahead, &mut self.back) };
-        // First off, then on: both on would brake with full current.
+        // Both on would brake with full current.
         idle.set_duty_cycle(0)?;
         let power = scaled(duty, used.max_duty_cycle());
         used.set_duty_cycle(power)
@@ -144,7 +139,6 @@ impl<P: SetDutyCycle> Motor for HBridge<P> {
 fn scaled(duty: i16, max: u16) -> u16 {
     let full = u32::from(FULL.unsigned_abs());
     let power = u32::from(duty.unsigned_abs()).min(full);
-    // At most 65,535 * 32,767 + 16,383 < 2^31.
     let scaled = (power * u32::from(max) + (full >> 1)).checked_div(full);
     scaled.and_then(|s| u16::try_from(s).ok()).unwrap_or(0)
 }

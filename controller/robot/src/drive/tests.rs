@@ -30,8 +30,6 @@ fn wheels_turn_in_the_expected_directions() {
     assert_eq!(four.wheels(&twist([1.0, 0.0, 0.0])), [1.0; 4]);
     assert_eq!(four.wheels(&twist([0.0, 1.0, 0.0])), [-1.0, 1.0, 1.0, -1.0]);
     assert_eq!(four.wheels(&twist([0.0, 0.0, 1.0])), [-0.25, 0.25, -0.25, 0.25]);
-    // The first of three is at the nose: it turns the robot, and does not contribute to moving
-    // ahead.
     let three = Omni::<f64, 3>::new(0.0, 0.1).unwrap();
     let [nose, left, right] = three.wheels(&twist([1.0, 0.0, 0.0]));
     let half = 3f64.sqrt() / 2.0;
@@ -110,7 +108,6 @@ fn speed_builds_up_within_the_acceleration_and_the_emergency_stop_does_not_wait(
     assert_eq!(mixer.mix(&ahead, Duration::ZERO), [0.2, 0.2]);
     assert_eq!(mixer.mix(&ahead, Duration::from_millis(-9)), [0.2, 0.2]);
     assert_eq!(mixer.mix(&ahead, Duration::MAX), [1.0, 1.0]);
-    // A motion that is not a number brakes as hard as permitted.
     let nonsense = twist::<f32>([0.0; 3]);
     let nonsense = Twist { turn_radps: f32::NAN, ..nonsense };
     let rims = mixer.mix(&nonsense, tenth);
@@ -199,7 +196,6 @@ proptest! {
         let rims = mixer.mix(&wish, SPAN);
         prop_assert!(rims.iter().all(|rim| rim.abs() <= top));
         let got = mixer.kinematics().twist(&rims);
-        // The same motion, slower by one factor.
         let length = |t: &Twist<f64>| t.forward_mps.abs() + t.left_mps.abs() + t.turn_radps.abs();
         let factor = if length(&wish) > 0.0 { length(&got) / length(&wish) } else { 1.0 };
         prop_assert!(factor <= 1.0 + 1e-12);
@@ -251,7 +247,6 @@ proptest! {
 
     #[test]
     fn the_point_ahead_has_exactly_the_demanded_velocity(angle in -3.2f64..3.2, heading in -3.2f64..3.2, d in 0.03f64..0.5) {
-        // At the promised speed no direction saturates, and the point has the demanded velocity.
         let ahead = LookAhead::new(d).unwrap();
         let speed = ahead.max_speed(0.6, 0.2);
         let (sin, cos) = Scalar::sin_cos(angle);
@@ -370,7 +365,6 @@ mod pins {
         let steps = |steps: &[PwmStep]| Pwm::new(steps);
         let max = || PwmStep::max_duty_cycle(100);
         let set = PwmStep::set_duty_cycle;
-        // Left: turns, then stops. Right: fails, and fails again. Third: stops.
         let left = HBridge::new(steps(&[max(), set(50), max(), set(0)]), steps(&[set(0), set(0)]));
         let broken = || steps(&[set(0).with_error(failed()), set(0).with_error(failed())]);
         let right = HBridge::new(steps(&[]), broken());

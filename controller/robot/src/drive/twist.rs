@@ -1,5 +1,3 @@
-//! The motion of a body, and its relation to the wheels.
-
 use staya_controller::agent::Command;
 use staya_controller::geom::Vec2;
 use staya_controller::scalar::Scalar;
@@ -17,8 +15,8 @@ pub struct Twist<S> {
 }
 
 impl<S: Scalar> Twist<S> {
-    /// For holonomic robots: world velocity `velocity_mps` at `heading_rad` (of the robot's nose,
-    /// counter-clockwise from east), while it turns at `turn_radps`, which the caller may choose.
+    /// The motion of a holonomic robot with `velocity_mps` in the world, at `heading_rad`
+    /// (counter-clockwise from east), while it turns at `turn_radps`.
     #[must_use]
     pub fn holonomic(velocity_mps: Vec2<S>, heading_rad: S, turn_radps: S) -> Self {
         let (sin, cos) = heading_rad.sin_cos();
@@ -33,11 +31,10 @@ impl<S: Scalar> Twist<S> {
     }
 }
 
-/// The world velocity that a command demands, m/s; zero for [`Command::Hold`].
+/// The world velocity that a command demands, m/s; zero for [`Command::Hold`] and
+/// [`Command::Move`].
 ///
-/// Also zero for [`Command::Move`], which names cells. Robots with wheels use
-/// [`CellFollower`](staya_controller::agent::CellFollower) to convert a guidance law of the grid to
-/// velocities.
+/// [`CellFollower`](staya_controller::agent::CellFollower) converts moves to velocities.
 #[must_use]
 pub fn wished_velocity<S: Scalar>(command: &Command<S>) -> Vec2<S> {
     match command {
@@ -50,7 +47,7 @@ pub fn wished_velocity<S: Scalar>(command: &Command<S>) -> Vec2<S> {
 #[must_use]
 pub fn wrap_angle<S: Scalar>(angle_rad: S) -> S {
     let turn = S::PI + S::PI;
-    // Most angles are in range already, and keep their bits.
+    // Angles in range keep their bits.
     if angle_rad > -S::PI && angle_rad <= S::PI {
         return angle_rad;
     }
@@ -58,7 +55,7 @@ pub fn wrap_angle<S: Scalar>(angle_rad: S) -> S {
     match turns.and_then(S::floor_to_i32) {
         Some(turns) => {
             let wrapped = angle_rad + S::from_i32(turns) * turn;
-            // Rounding may leave the interval by a bit.
+            // Rounding may leave the interval.
             if wrapped > -S::PI { wrapped.min(S::PI) } else { S::PI }
         }
         None => angle_rad,
@@ -67,11 +64,9 @@ pub fn wrap_angle<S: Scalar>(angle_rad: S) -> S {
 
 /// An arrangement of `W` wheels. Both directions are linear, so it applies to speeds and distances.
 pub trait Kinematics<S, const W: usize> {
-    /// The rim speeds for a motion of the body, m/s. Components that the body cannot have are
-    /// ignored.
+    /// The rim speeds for a motion of the body, m/s, without components that the body cannot have.
     fn wheels(&self, twist: &Twist<S>) -> [S; W];
 
-    /// The motion of the body for given rim speeds, in the least-squares sense if they contradict
-    /// each other.
+    /// The motion of the body for given rim speeds, in the least-squares sense if they contradict.
     fn twist(&self, rims_mps: &[S; W]) -> Twist<S>;
 }

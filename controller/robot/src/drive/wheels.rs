@@ -1,23 +1,19 @@
-//! All motors of a robot, and the conversion of rim speeds to duties.
-
 use super::motor::{FULL, Motor};
 use staya_controller::scalar::Scalar;
 
-/// The relation of a motor's duty to its rim speed, measured on the robot.
-///
-/// duty = `dead_duty` + (1 - `dead_duty`) * speed / `full_mps`, with the sign of the speed; zero
-/// below `still_mps`.
+/// The relation of a motor's duty to its rim speed, measured on the robot: duty = `dead_duty` +
+/// (1 - `dead_duty`) * speed / `full_mps`, with the sign of the speed; zero below `still_mps`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Calibration<S> {
     /// Rim speed at full duty under the robot's weight, m/s ([`rim_speed`]); more than 0.
     pub full_mps: S,
-    /// The largest part of the full duty, in [0, 1), at which the wheel does not turn yet. If it is
-    /// too large, the robot jerks at low speed.
+    /// The largest part of the full duty, in [0, 1), at which the wheel does not turn yet. A value
+    /// that is too large makes the robot jerk at low speed.
     pub dead_duty: S,
-    /// The dead band: lower speeds are not worth a motor's noise, m/s.
+    /// The dead band, m/s.
     pub still_mps: S,
-    /// The motor is mounted so that its forward direction drives the robot back.
+    /// The motor's forward direction drives the robot back.
     pub is_inverted: bool,
 }
 
@@ -42,7 +38,6 @@ impl<S: Scalar> Calibration<S> {
         if !(speed > self.still_mps && speed > S::ZERO && rim_mps.is_finite()) {
             return None;
         }
-        // A quotient out of range is more than the motor can do.
         let part = speed.min(self.full_mps).checked_div(self.full_mps)?;
         let dead = self.dead_duty.clamp(S::ZERO, S::ONE);
         let power = dead + (S::ONE - dead) * part;
@@ -52,8 +47,7 @@ impl<S: Scalar> Calibration<S> {
     }
 }
 
-/// The rim speed, m/s, of a wheel of `radius_m` that turns `turns` times in `span_s` seconds; 0 if
-/// it is undefined.
+/// Rim speed, m/s, of a wheel of `radius_m` that turns `turns` times in `span_s`; 0 if undefined.
 #[must_use]
 pub fn rim_speed<S: Scalar>(radius_m: S, turns: S, span_s: S) -> S {
     let way = (S::PI + S::PI) * radius_m * turns;
@@ -76,8 +70,7 @@ impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
     /// Drives the rims at these speeds, m/s.
     ///
     /// # Errors
-    /// That of the first motor that failed. The others are then stopped, because a robot with one
-    /// driven wheel spins.
+    /// The error of the first motor that failed. All others are stopped, or the robot would spin.
     pub fn turn(&mut self, rims_mps: &[S; W]) -> Result<(), M::Error> {
         let motors = self.motors.iter_mut().zip(rims_mps);
         for ((motor, calibration), rim) in motors {
@@ -92,7 +85,7 @@ impl<S: Scalar, M: Motor, const W: usize> Wheels<S, M, W> {
     /// Switches off all motors; tries each of them.
     ///
     /// # Errors
-    /// That of the first motor that failed.
+    /// The error of the first motor that failed.
     pub fn stop(&mut self) -> Result<(), M::Error> {
         let mut result = Ok(());
         for (motor, _) in &mut self.motors {

@@ -1,5 +1,3 @@
-//! The link over asynchronous lines.
-
 use super::link::PIECE;
 use super::{Framing, PacketLink};
 use core::convert::Infallible;
@@ -7,14 +5,10 @@ use core::future::pending;
 use embassy_futures::{select, yield_now};
 use embedded_io_async::{Read, Write};
 
-/// Over the two halves of an asynchronous line, for example `PacketLink::<_>::new((rx, tx))`.
 impl<R: Read, W: Write, F: Framing, const IN: usize, const OUT: usize> PacketLink<(R, W), F, IN, OUT> {
-    /// Moves bytes both ways until it is cancelled. Run it beside the wait for the next step, for
-    /// example `select(ticker.next(), link.serve()).await`. Errors of the line are counted, damaged
-    /// bytes are dropped, and after each error other tasks may run.
-    ///
-    /// Reading and writing must be cancellable without losing bytes, as in buffered UARTs (with a
-    /// ring that an interrupt or a DMA fills).
+    /// Moves bytes both ways until it is cancelled, for example by
+    /// `select(ticker.next(), link.serve()).await`. Line errors are counted. Reading and writing
+    /// must be cancellable without losing bytes, as in buffered UARTs.
     pub async fn serve(&mut self) -> Infallible {
         let Self { line: (reader, writer), receiver, sender } = self;
         let hear = async {

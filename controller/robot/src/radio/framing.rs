@@ -1,11 +1,7 @@
-//! The properties of a wire format that receiver and sender need.
-
 use staya_controller::wire::{MAX_FRAME_LEN, Postcard, decode};
 
-/// How the frames of a wire format follow each other on a line.
-///
-/// An agent and its link name the same format. Frames sealed with a key have the framing of
-/// [`Postcard`], signed ones that of MAVLink.
+/// How the frames of a wire format follow each other on a line. Frames sealed with a key have the
+/// framing of [`Postcard`], signed ones that of MAVLink.
 pub trait Framing {
     /// The byte that ends each frame and does not occur elsewhere, if the format has one.
     const DELIMITER: Option<u8>;
@@ -27,9 +23,9 @@ pub enum Piece {
     Frame(usize),
     /// Nothing, or intact data for other receivers.
     Other(usize),
-    /// Noise, damage, another version of the format.
+    /// Noise, damage or another version of the format.
     Noise(usize),
-    /// The beginning of a frame, or no byte at all: the rest has yet to arrive.
+    /// The beginning of a frame, or no byte at all.
     Begun,
 }
 
@@ -46,7 +42,6 @@ impl Framing for Postcard {
         match piece.split_last() {
             Some((_, frame)) if decode(frame).is_ok() => Piece::Frame(len),
             Some((_, [_, ..])) => Piece::Noise(len),
-            // Two zero bytes in a row.
             _ => Piece::Other(len),
         }
     }
@@ -66,8 +61,6 @@ mod mavlink {
     use staya_mavlink::frame::{MAX_FRAME_LEN, Scan, next_frame, scan};
     use staya_mavlink::wire::{Mavlink, decode};
 
-    /// These frames have no delimiter: their headers hold their length. MAVLink messages that are
-    /// not the swarm's are [`Piece::Other`].
     impl Framing for Mavlink {
         const DELIMITER: Option<u8> = None;
         const LONGEST: usize = MAX_FRAME_LEN;

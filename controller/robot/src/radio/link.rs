@@ -1,23 +1,17 @@
-//! Frames over a blocking or an asynchronous line.
-
 use super::{Counts, Framing, Receiver, Sender};
 use embedded_io::{Read, ReadReady, Write, WriteReady};
 use staya_controller::wire::Postcard;
 
 pub(super) const PIECE: usize = 32;
 
-/// Frames of the wire format `F` over a line `U`. `IN` and `OUT` are the buffer sizes in bytes for
-/// reception between two steps and for transmission; `OUT` is at least
-/// [`OUTBOX`](staya_controller::agent::OUTBOX).
+/// Frames of the wire format `F` over a line `U`. `IN` and `OUT` are the buffer sizes in bytes;
+/// `OUT` is at least [`OUTBOX`](staya_controller::agent::OUTBOX).
 ///
-/// Call [`Self::take`] once for each step and [`Self::send`] after it. In between, the bytes must
-/// be moved:
+/// Call [`Self::take`] once for each step and [`Self::send`] after it. In between, move the bytes:
 ///
-/// - over a line that reports whether it is ready (`embedded-io`), by [`Self::pump`], which never
-///   waits. Call it at least as often as the HAL's own buffer fills up (at 115,200 baud a byte
-///   arrives every 87 µs);
-/// - over the two halves of an asynchronous line (`embedded-io-async`, feature `async`), by
-///   `serve`, beside the wait for the next step.
+/// - over a line that reports whether it is ready (`embedded-io`), by [`Self::pump`], at least as
+///   often as the HAL's own buffer fills up (at 115,200 baud a byte arrives every 87 µs);
+/// - over two halves of an asynchronous line (`embedded-io-async`, feature `async`), by `serve`.
 ///
 /// If the HAL's UART has neither, use a [`Receiver`] and a [`Sender`] directly.
 #[derive(Clone, Debug)]
@@ -34,8 +28,7 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
         Self { line, receiver: Receiver::new(), sender: Sender::new() }
     }
 
-    /// The frames received since the last call, for
-    /// [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
+    /// The frames received since the last call, for [`Inputs`](staya_controller::agent::Inputs).
     #[must_use]
     pub fn take(&mut self) -> &[u8] {
         self.receiver.take()
@@ -52,7 +45,7 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
         (self.receiver.counts(), self.sender.counts())
     }
 
-    /// The line itself, for setting it up again; the link does not see bytes read or written here.
+    /// The line itself; the link does not see bytes read or written here.
     #[must_use]
     pub const fn line_mut(&mut self) -> &mut U {
         &mut self.line
@@ -69,12 +62,10 @@ impl<U, F: Framing, const IN: usize, const OUT: usize> PacketLink<U, F, IN, OUT>
 where
     U: Read + ReadReady + Write + WriteReady,
 {
-    /// Moves all bytes that can be moved without waiting. It reads at most `IN` bytes (more would
-    /// evict each other), and writes all queued bytes.
+    /// Moves all bytes that can be moved without waiting; reads at most `IN`.
     ///
     /// # Errors
-    /// The line's first error. It is counted, the damaged frame is dropped, and the link continues
-    /// at the next call, so a caller may ignore it.
+    /// The line's first error. It is counted, and the next call continues.
     pub fn pump(&mut self) -> Result<(), U::Error> {
         let heard = self.hear();
         if heard.is_err() {

@@ -2,12 +2,9 @@
 //!
 //! The agent's packets are frames of its wire format: postcard's, which a zero byte ends
 //! ([`staya_controller::wire`]), or MAVLink's (feature `mavlink`). A [`Receiver`] extracts frames
-//! from bytes; a [`Sender`] holds frames until the line accepts them. Neither depends on hardware,
-//! so they also work with a radio that has its own packets (ESB, LoRa). [`PacketLink`] moves their
-//! bytes over `embedded-io` without ever waiting, or over `embedded-io-async` (feature `async`).
-//!
-//! When a buffer is full, the oldest whole frames are dropped: of two beacons of a robot the later
-//! one is worth more, and requests are repeated.
+//! from bytes; a [`Sender`] holds frames until the line accepts them; both also work with a radio
+//! that has its own packets. [`PacketLink`] moves their bytes over `embedded-io` without waiting,
+//! or over `embedded-io-async` (feature `async`). A full buffer drops the oldest whole frames.
 
 #[cfg(feature = "async")]
 mod asynchronous;
@@ -32,7 +29,7 @@ use heapless::Vec;
 pub struct Counts {
     /// Frames passed on.
     pub frames: u32,
-    /// Pieces that were not an intact frame: noise, damage, another version of the format.
+    /// Pieces that were not an intact frame: noise, damage or another version of the format.
     pub refused: u32,
     /// Intact frames that were dropped because the buffer was full.
     pub dropped: u32,
@@ -48,7 +45,6 @@ fn count(counter: &mut u32, more: usize) {
     *counter = counter.saturating_add(u32::try_from(more).unwrap_or(u32::MAX));
 }
 
-/// Removes `count` bytes from `start` on. O(N).
 fn remove<const N: usize>(bytes: &mut Vec<u8, N>, start: usize, count: usize) {
     let cells = Cell::from_mut(bytes.as_mut_slice()).as_slice_of_cells();
     let count = count.min(cells.len().saturating_sub(start));

@@ -1,23 +1,18 @@
-//! Extracts frames from bytes.
-
 use super::{Counts, Framing, Piece, count, remove};
 use core::marker::PhantomData;
 use heapless::Vec;
 
 /// Collects the swarm's frames from a byte stream until the next step takes them.
 ///
-/// Only intact frames are kept. Noise, damaged pieces and other versions of the format are counted
-/// and dropped; frames for others are skipped. The agent judges the rest: late, repeated, its own.
-/// If `N` bytes cannot hold all frames between two steps and the incoming one, the oldest are
-/// dropped. `N` is at least [`Framing::LONGEST`]: 60 bytes for postcard, 280 for MAVLink. A beacon
-/// takes some 50, so 1024 bytes hold the beacons of twenty robots.
+/// Only intact frames are kept; noise, damage and other versions of the format are counted. A full
+/// buffer drops the oldest frames. `N` is at least [`Framing::LONGEST`]: 60 bytes for postcard, 280
+/// for MAVLink. A beacon takes some 50, so 1024 bytes hold the beacons of twenty robots.
 #[derive(Clone, Debug)]
 pub struct Receiver<F, const N: usize> {
     /// Whole frames, then the incoming bytes.
     bytes: Vec<u8, N>,
-    /// Length of the whole frames.
     whole: usize,
-    /// Length of those that the last step took.
+    /// Length of the frames that the last step took.
     given: usize,
     /// Bytes up to the next delimiter are unusable.
     is_skipping: bool,
@@ -48,7 +43,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
                 continue;
             }
             if self.bytes.len() == self.whole && F::DELIMITER == rest.first().copied() {
-                // This delimiter does not end a frame.
                 rest = rest.get(1..).unwrap_or_default();
                 continue;
             }
@@ -65,23 +59,21 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// Adds a packet of a radio that has its own packets: frames whose last delimiter may be
-    /// missing. An incomplete frame before it is dropped.
+    /// Adds a packet of a radio that has its own packets; the last delimiter may be missing. An
+    /// incomplete frame before it is dropped.
     pub fn push_packet(&mut self, packet: &[u8]) {
         self.end();
         self.push(packet);
         self.end();
     }
 
-    /// Reports that the line lost bytes (an overrun, a framing error): the incomplete frame is
-    /// unusable.
+    /// Reports that the line lost bytes (an overrun, a framing error): drops the incomplete frame.
     pub fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
         self.cut_short();
     }
 
-    /// The frames received since the last call, for
-    /// [`Inputs::inbox`](staya_controller::agent::Inputs::inbox).
+    /// The frames received since the last call, for [`Inputs`](staya_controller::agent::Inputs).
     pub fn take(&mut self) -> &[u8] {
         self.forget_given();
         self.given = self.whole;
@@ -94,7 +86,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         self.counts
     }
 
-    /// Drops the incomplete frame, since its rest will not arrive.
     fn end(&mut self) {
         match F::DELIMITER {
             Some(delimiter) => self.push(&[delimiter]),
@@ -102,7 +93,7 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// Drops the incomplete frame, and skips to its delimiter if the format has one.
+    /// Skips to its delimiter if the format has one.
     fn cut_short(&mut self) {
         let is_begun = self.bytes.len() > self.whole;
         self.bytes.truncate(self.whole);
@@ -113,7 +104,6 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// Removes the frames of the last step, which is over when new bytes arrive.
     fn forget_given(&mut self) {
         let given = core::mem::take(&mut self.given);
         if given > 0 {
@@ -122,7 +112,7 @@ impl<F: Framing, const N: usize> Receiver<F, N> {
         }
     }
 
-    /// Drops the oldest frame. The incoming frame is never longer than the longest frame.
+    /// The incoming frame is never longer than the longest frame.
     fn make_room(&mut self) {
         let mut rest = self.bytes.get(..self.whole).unwrap_or_default();
         match F::next_frame(&mut rest) {

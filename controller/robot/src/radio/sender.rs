@@ -1,21 +1,18 @@
-//! Frames that wait for the line.
-
 use super::{Counts, Framing, count, remove};
 use core::marker::PhantomData;
 use heapless::Vec;
 
 /// Holds frames until the line accepts them.
 ///
-/// If `N` bytes cannot hold all frames, the oldest are dropped, but never the rest of a frame that
-/// was partly sent. In formats with a delimiter, one is sent before the first frame after a pause,
-/// so that noise on the receivers' idle lines does not damage the frame.
+/// A full buffer drops the oldest, but never the rest of a frame that was partly sent. In formats
+/// with a delimiter, one is sent after a pause, so that noise on idle lines does not damage the
+/// frame.
 #[derive(Clone, Debug)]
 pub struct Sender<F, const N: usize> {
     bytes: Vec<u8, N>,
     /// Remaining bytes of a frame that was partly sent.
     begun: usize,
-    /// The remaining bytes are not a whole frame: a single delimiter, or the end of a frame that
-    /// failed.
+    /// The rest is not a whole frame: a single delimiter, or the end of a frame that failed.
     is_cut: bool,
     counts: Counts,
     framing: PhantomData<F>,
@@ -30,8 +27,8 @@ impl<F: Framing, const N: usize> Sender<F, N> {
         Self { bytes: Vec::new(), begun: 0, is_cut: false, counts: Counts::NONE, framing: PhantomData }
     }
 
-    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox). O(outbox
-    /// + `N`) per frame.
+    /// Queues the frames of [`Outputs::outbox`](staya_controller::agent::Outputs::outbox).
+    /// O(outbox + `N`) per frame.
     pub fn send(&mut self, outbox: &[u8]) {
         let mut rest = outbox;
         while let Some(frame) = F::next_frame(&mut rest) {
@@ -67,11 +64,9 @@ impl<F: Framing, const N: usize> Sender<F, N> {
         remove(&mut self.bytes, 0, at);
     }
 
-    /// Reports that the line failed: only the delimiter of a partly sent frame is kept, which ends
-    /// it for the receivers.
+    /// Reports that the line failed: of a partly sent frame only the delimiter is kept.
     pub fn line_error(&mut self) {
         count(&mut self.counts.line_errors, 1);
-        // If only the delimiter is left, the frame has been sent.
         if self.begun > Self::END {
             remove(&mut self.bytes, 0, self.begun.saturating_sub(Self::END));
             self.begun = Self::END;

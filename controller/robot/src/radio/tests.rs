@@ -1,5 +1,3 @@
-//! Tests of all wire formats, then of single ones.
-
 mod lines;
 
 use self::lines::*;
@@ -12,7 +10,6 @@ use staya_controller::wire::{Ack, Header, Message, Postcard, Wire};
 use staya_mavlink::wire::Mavlink;
 use std::vec::Vec;
 
-/// An intact frame with its delimiter, identified by `sequence`.
 fn frame<F: Format>(sequence: u16) -> Vec<u8> {
     let mut out = heapless::Vec::<u8, 64>::new();
     let header = Header { boot: 1, sender: RobotId(7), sequence };
@@ -25,7 +22,6 @@ fn stream<F: Format>(sequences: impl IntoIterator<Item = u16>) -> Vec<u8> {
     sequences.into_iter().flat_map(frame::<F>).collect()
 }
 
-/// The sequence numbers of the frames in an inbox; all must be intact.
 fn sequences<F: Format>(mut inbox: &[u8]) -> Vec<u16> {
     let (mut format, mut found) = (F::default(), Vec::new());
     while let Some(frame) = format.next_frame(&mut inbox) {
@@ -109,13 +105,12 @@ mod each {
         let most = ROOM / frame::<F>(0).len();
         receiver.push(&stream::<F>(0..100));
         let kept = sequences::<F>(receiver.take());
-        // One frame may have been dropped for the last one.
+        // One may have been dropped for the last one.
         assert!(kept.len() + 1 >= most, "{} of {most}", kept.len());
         let newest: Vec<u16> = (100 - kept.len() as u16..100).collect();
         assert_eq!(kept, newest);
         let counts = receiver.counts();
         assert_eq!((counts.frames, counts.dropped as usize), (100, 100 - kept.len()));
-        // Frames already taken are removed without counting as dropped.
         receiver.push(&frame::<F>(100));
         assert_eq!(sequences::<F>(receiver.take()), [100]);
         assert_eq!(receiver.counts().dropped, counts.dropped);
@@ -148,7 +143,6 @@ mod each {
         let len = frame::<F>(0).len();
         let mut sender = Sender::<F, ROOM>::new();
         sender.send(&stream::<F>([0, 1]));
-        // The leading delimiter, if any, and three bytes of frame 0.
         sender.sent(usize::from(F::DELIMITER.is_some()) + 3);
         let rest = frame::<F>(0)[3..].to_vec();
         for sequence in 2..9 {
@@ -235,8 +229,6 @@ mod each {
         assert_eq!(sequences::<F>(peer.take()), [5]);
     }
 
-    /// For any bytes in any pieces, only intact frames are returned, as many as were counted, and
-    /// the next frame is received.
     pub fn any_bytes_leave_the_inbox_intact<F: Format>() {
         let piece = prop_oneof![
             2 => proptest::collection::vec(any::<u8>(), 0..40),
@@ -280,7 +272,6 @@ mod each {
                     sender.line_error();
                 }
             }
-            // The last one, with a working line.
             let last = takes.len() as u16;
             sender.send(&frame::<F>(last));
             drain(&mut sender, &mut receiver, usize::MAX);
@@ -293,7 +284,6 @@ mod each {
             prop_assert!((got.len()..=got.len() + most_lost).contains(&(counts.frames as usize)));
             prop_assert!(!is_exact || got.last() == Some(&last));
             prop_assert_eq!(counts.frames + counts.dropped, takes.len() as u32 + 1);
-            // Only a frame during which the line failed arrives cut.
             prop_assert!(refused == 0 || fails < takes.len());
         });
     }
@@ -312,7 +302,6 @@ mod each {
         link.send(&stream::<F>([4, 5]));
         let mut context = Context::from_waker(Waker::noop());
         for _ in 0..9 {
-            // Cancelled and restarted, as at each step.
             let mut serving = pin!(link.serve());
             let poll = serving.as_mut().poll(&mut context);
             assert!(matches!(poll, Poll::Pending));
@@ -345,7 +334,6 @@ fn a_zero_byte_is_sent_after_a_pause_and_not_between_frames() {
     assert_eq!(sender.counts().frames, 3);
     sender.send(&[]);
     assert!(sender.unsent().is_empty(), "nothing to say, nothing sent");
-    // A single delimiter is not counted as a lost frame.
     let mut sender = Sender::<Postcard, 64>::new();
     for sequence in 0..10 {
         sender.send(&frame::<Postcard>(sequence));

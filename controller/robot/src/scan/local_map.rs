@@ -1,9 +1,7 @@
-//! The land nearby as seen by range scans, in cells.
-//!
-//! Source of the rule: J. Borenstein, Y. Koren 1991, "Histogramic in-motion mapping for mobile
-//! robot obstacle avoidance" (HIMM): a hit adds 3 to its cell, a beam that crosses a cell subtracts
-//! 1, on 0..=15. Additions: a cell counts once per scan regardless of the number of beams, a hit
-//! wins over crossing beams, and evidence fades while it is not renewed.
+//! The land nearby as seen by range scans (J. Borenstein, Y. Koren 1991, "Histogramic in-motion
+//! mapping for mobile robot obstacle avoidance", HIMM): a hit adds 3 to its cell, a beam that
+//! crosses a cell subtracts 1, on 0..=15. Here a cell counts once per scan, a hit wins over
+//! crossing beams, and evidence fades.
 
 use super::Scan;
 use staya_controller::geom::Vec2;
@@ -15,22 +13,18 @@ use staya_controller::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct MapParams {
-    /// Added by a scan with a hit in the cell. With a larger value single wrong ranges become
-    /// obstacles.
+    /// Added by a scan with a hit in the cell. A larger value makes obstacles of wrong ranges.
     pub hit: u8,
-    /// Subtracted by a scan with a beam through the cell and no hit in it. With a smaller value
-    /// obstacles that left remain longer.
+    /// Subtracted by a scan with a beam through the cell and no hit.
     pub free: u8,
-    /// The maximum evidence; divided by `free`, the maximum number of scans that clear a cell.
+    /// The maximum evidence; divided by `free`, the number of scans that clear a cell.
     pub ceiling: u8,
     /// Evidence from which the cell is blocked; more than 0.
     pub blocked_at: u8,
-    /// Period after which a cell loses one point, so that a single observation fades after at most
-    /// `ceiling` periods. More than 0. A longer period remembers what is behind the robot; a
-    /// shorter one forgets robots that left unseen.
+    /// Period after which a cell loses one point; above 0. A longer period remembers what is behind
+    /// the robot; a shorter one forgets robots that left unseen.
     pub fade_every: Duration,
-    /// Impassability of unknown land, 1..=255. With [`BLOCKED`] the robot would never enter cells
-    /// that it has not seen.
+    /// Impassability of unknown land, 1..=255; the robot avoids unseen cells with [`BLOCKED`].
     pub ground: u8,
 }
 
@@ -43,11 +37,8 @@ impl Default for MapParams {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Known {
-    /// Evidence of an obstacle.
     evidence: u8,
-    /// Impassability of the ground; [`BLOCKED`] for a cliff.
     ground: u8,
-    /// The observation of this scan.
     news: News,
 }
 
@@ -58,15 +49,12 @@ enum News {
     Hit,
 }
 
-/// A square of `SIDE` by `SIDE` cells around the robot, which moves with it. Odd sides have the
-/// robot in the middle; route guidance of default capacity uses 11.
-///
-/// Four bytes per cell. Cells that leave the square are forgotten.
+/// A square of `SIDE` by `SIDE` cells that moves with the robot, in its middle if `SIDE` is odd;
+/// route guidance of default capacity uses 11. Four bytes per cell. It forgets all other cells.
 #[derive(Clone, Debug)]
 pub struct LocalMap<const SIDE: usize = 11> {
     params: MapParams,
     origin: Cell,
-    /// From the south-west corner, row by row.
     known: [[Known; SIDE]; SIDE],
     window: [[u8; SIDE]; SIDE],
     own: Cell,
@@ -94,13 +82,12 @@ impl<const SIDE: usize> LocalMap<SIDE> {
     }
 
     /// Adds a scan made at `now` by a robot whose reference point is at `place_m` in the world, at
-    /// `heading_rad`. Hits for which `is_robot` (position relative to the robot, metres along the
-    /// world's axes) returns true clear their beam but mark nothing.
+    /// `heading_rad`. Hits for which `is_robot` (relative position, metres along the world's axes)
+    /// returns true clear their beam but mark nothing.
     ///
-    /// Beams are followed in steps of half a cell up to the square's edge, so a cell that a beam
-    /// crosses only at a corner may be unchanged. Returns false without any change if the robot is
-    /// off the grid. Bounded work: O(SIDE^2) for the cells, O(SIDE) and one call of `is_robot` for
-    /// each range.
+    /// Beams are followed in steps of half a cell up to the square's edge. Returns false without
+    /// any change if the robot is off the grid. Bounded work: O(SIDE^2) for the cells, O(SIDE) and
+    /// one call of `is_robot` for each range.
     pub fn observe<S: Scalar>(
         &mut self,
         frame: &GridFrame<S>,
@@ -116,8 +103,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         };
         self.follow(own);
         self.fade(now);
-        // From here on in cells from the square's corner: small numbers, at any position in the
-        // world.
+        // Cells from the corner are small numbers at any position.
         let half = frame.cell_m * S::HALF;
         let corner_m = frame.center(self.origin) - Vec2::new(half, half);
         let robot = (place_m - corner_m) * per_cell;
@@ -134,9 +120,8 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         true
     }
 
-    /// Sets the ground in `cell` from another sensor: impassability, or [`BLOCKED`] for a cliff.
-    /// The value is kept until it is set again or the cell leaves the square, since ranges do not
-    /// show the ground. Returns whether the cell is in the square.
+    /// Sets the ground in `cell` from another sensor: impassability, or [`BLOCKED`] for a cliff,
+    /// until it is set again or the cell leaves the square. Returns false outside the square.
     pub fn set_ground(&mut self, cell: Cell, ground: u8) -> bool {
         let Some(known) = self.at_mut(cell) else {
             return false;
@@ -170,9 +155,8 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         self.show();
     }
 
-    /// For [`OnGrid::window`](staya_controller::agent::OnGrid::window), and for walls by
-    /// [`grid_walls`](staya_controller::obstacle::grid_walls). The robot's own cell is always
-    /// passable, since the robot is there.
+    /// The cells, for [`OnGrid::window`](staya_controller::agent::OnGrid::window) and
+    /// [`grid_walls`](staya_controller::obstacle::grid_walls). The own cell is passable.
     #[must_use]
     pub fn window(&self) -> Option<Window<'_>> {
         let side = Self::SIDE_CELLS.cast_unsigned();
@@ -190,11 +174,9 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         self.known.get_mut(y)?.get_mut(x)
     }
 
-    /// Marks the cells that a beam crosses as free; all in cells from the corner. `step` is half a
-    /// cell long.
+    /// Lengths are in cells from the corner; `step` is half a cell long.
     fn clear<S: Scalar>(&mut self, from: Vec2<S>, step: Vec2<S>, length: S) {
         let (mut place, mut gone) = (from, S::ZERO);
-        // A beam that continues after this many steps has left the square.
         for _ in 0..SIDE.saturating_mul(4) {
             if !(gone < length && self.set(place, News::Free)) {
                 return;
@@ -204,8 +186,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         }
     }
 
-    /// Stores this scan's observation of the cell at `place`, in cells from the corner; false
-    /// outside the square.
+    /// `place` is in cells from the corner; false outside the square.
     fn set<S: Scalar>(&mut self, place: Vec2<S>, news: News) -> bool {
         let along = |at: S| usize::try_from(at.floor_to_i32()?).ok();
         let Some((x, y)) = along(place.x).zip(along(place.y)) else {
@@ -233,7 +214,6 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         }
     }
 
-    /// Subtracts one point from each cell for each period that has passed.
     fn fade(&mut self, now: Instant) {
         let Some(mut last) = self.faded else {
             self.faded = Some(now);
@@ -241,7 +221,6 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         };
         let every = self.params.fade_every;
         let mut loss: u8 = 0;
-        // After `ceiling` periods nothing is left to fade.
         while every > Duration::ZERO && now.since(last) >= every && loss < self.params.ceiling {
             last = last + every;
             loss = loss.saturating_add(1);
@@ -249,7 +228,7 @@ impl<const SIDE: usize> LocalMap<SIDE> {
         if loss == 0 && now.since(last) >= Duration::ZERO {
             return;
         }
-        // After a long pause, or if the clock was set back, the period restarts.
+        // The period restarts after a long pause, or if the clock was set back.
         self.faded = Some(if loss == self.params.ceiling || loss == 0 { now } else { last });
         for known in self.known.as_flattened_mut() {
             known.evidence = known.evidence.saturating_sub(loss);

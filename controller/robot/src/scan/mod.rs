@@ -61,16 +61,15 @@ pub struct Scan<'a, S> {
     pub first_rad: S,
     /// Angle from one to the next; negative if the sensor turns clockwise.
     pub step_rad: S,
-    /// Metres. Ranges below [`Self::min_m`] or not a number are invalid; those of [`Self::max_m`]
-    /// or more (also infinite ones) show that nothing is nearer than `max_m`.
+    /// Metres. Ranges below [`Self::min_m`] or not a number are invalid; [`Self::max_m`] or more
+    /// shows that nothing is nearer than that.
     pub ranges_m: &'a [S],
     /// The least valid range.
     pub min_m: S,
     /// The range within which the sensor reliably detects objects.
     pub max_m: S,
-    /// Position of the sensor relative to the robot's reference point (for two wheels with
-    /// [`LookAhead`](crate::drive::LookAhead): to the point ahead): x to the nose, y to the left,
-    /// metres.
+    /// Sensor minus reference point ([`LookAhead`](crate::drive::LookAhead): the point ahead): x to
+    /// the nose, y to the left, metres.
     pub mount_m: Vec2<S>,
 }
 
@@ -97,8 +96,7 @@ impl<S: Scalar> Ray<S> {
 }
 
 impl<'a, S: Scalar> Scan<'a, S> {
-    /// Converts each range for a robot at `heading_rad`; `None` for invalid ranges. O(1) each: one
-    /// sine and cosine.
+    /// Converts each range for a robot at `heading_rad`; `None` for invalid ranges. O(1) each.
     pub fn rays(&self, heading_rad: S) -> impl Iterator<Item = Option<Ray<S>>> + 'a {
         let scan = *self;
         let (sin, cos) = heading_rad.sin_cos();
@@ -113,12 +111,11 @@ impl<'a, S: Scalar> Scan<'a, S> {
     }
 }
 
-/// Whether an object seen at `place_m`, relative to the robot at `own`, is a known neighbour:
-/// within `margin_m` of its ball, extrapolated from its last packet to `now`, but at most by
-/// `longest`. The margin covers the error of this extrapolation.
+/// Whether an object at `place_m`, relative to the robot at `own`, is a known neighbour: within
+/// `margin_m` of its ball, extrapolated from its last packet to `now` by at most `longest`.
 ///
-/// For [`LocalMap::observe`] and [`outline`]: `|place| is_neighbor(agent.neighbors(), own, now,
-/// longest, place, margin)`. O(neighbours).
+/// For [`LocalMap::observe`] and [`outline`]:
+/// `|place| is_neighbor(agent.neighbors(), own, now, longest, place, margin)`. O(neighbours).
 #[must_use]
 pub fn is_neighbor<S: Scalar, P>(
     neighbors: &[Neighbor<S, P>],

@@ -1,8 +1,6 @@
-//! Walls and balls from one scan, for collision avoidance.
-//!
-//! Source: sleeve fitting, Z. Zhao, A. Saalfeld 1997, "Linear-time sleeve-fitting polyline
-//! simplification algorithms". From the first point of a wall, the directions that pass all later
-//! points within the tolerance form an angle that only shrinks, so each point takes constant work.
+//! Walls and balls from one scan by sleeve fitting (Z. Zhao, A. Saalfeld 1997, "Linear-time
+//! sleeve-fitting polyline simplification algorithms"): the directions from the first point of a
+//! wall that pass all later points within the tolerance form an angle that only shrinks.
 
 use super::{Ray, Scan};
 use heapless::Vec;
@@ -14,20 +12,16 @@ use staya_controller::scalar::Scalar;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct OutlineParams<S> {
-    /// Maximum distance between a wall and its hits, metres: a few times the sensor's noise. A
-    /// smaller value gives more walls for the same land.
+    /// Maximum distance between a wall and its hits, metres: a few times the sensor's noise.
     pub tolerance_m: S,
-    /// Hits of neighbouring beams that are farther apart belong to different objects, metres. At
-    /// most the width that the robot fits through.
+    /// Hits farther apart belong to different objects, metres; at most the robot's width.
     pub gap_m: S,
-    /// Radius of the ball for a single hit, metres: half the distance of beams at the relevant
-    /// range. More than 0.
+    /// Radius of the ball for a single hit, metres; above 0, half the distance of beams.
     pub point_m: S,
 }
 
-/// Converts a scan to obstacles relative to the robot, nearest first, at most `K`; the farthest are
-/// omitted. Hits for which `is_robot` (position relative to the robot, metres along the world's
-/// axes) returns true are omitted, too.
+/// Converts a scan to obstacles relative to the robot, nearest first, at most `K`. Hits for which
+/// `is_robot` (relative position, metres along the world's axes) returns true are omitted.
 ///
 /// The first and the last beam of a full turn are not joined. Bounded work: O(1) and one call of
 /// `is_robot` for each range, O(K) for each wall.
@@ -43,7 +37,6 @@ pub fn outline<S: Scalar, const K: usize>(
     for ray in scan.rays(heading_rad) {
         let end = ray.filter(|ray| ray.is_hit).map(|ray: Ray<S>| ray.end_m());
         let Some(end) = end.filter(|end| !is_robot(*end)) else {
-            // An invalid or free beam separates the hits on its left and right.
             if let Some(wall) = wall.take() {
                 add(&mut nearest, wall.obstacle(params));
             }
@@ -57,7 +50,6 @@ pub fn outline<S: Scalar, const K: usize>(
                     sleeve
                 } else {
                     add(&mut nearest, sleeve.obstacle(params));
-                    // A wall that continues around a corner begins at the corner.
                     if is_near {
                         let mut next = Sleeve::at(sleeve.last);
                         let _ = next.extend(end, params.tolerance_m);
@@ -74,7 +66,7 @@ pub fn outline<S: Scalar, const K: usize>(
     }
     let mut obstacles = Vec::new();
     for (_, obstacle) in &nearest {
-        // It fits: both hold `K`. (`collect` would contain a panic for the other case.)
+        // Both hold `K`; `collect` would contain a panic.
         let _ = obstacles.push(*obstacle);
     }
     obstacles
@@ -83,10 +75,8 @@ pub fn outline<S: Scalar, const K: usize>(
 struct Sleeve<S> {
     first: Vec2<S>,
     last: Vec2<S>,
-    /// The rightmost and the leftmost direction that pass all points; `None` while all are at the
-    /// first one.
+    /// Rightmost and leftmost direction; `None` while all points are at the first one.
     bounds: Option<[Vec2<S>; 2]>,
-    /// Distance of the farthest point from the first.
     reach: S,
 }
 
@@ -95,8 +85,7 @@ impl<S: Scalar> Sleeve<S> {
         Self { first, last: first, bounds: None, reach: S::ZERO }
     }
 
-    /// Extends the wall to `point` if the result passes all points between within `tolerance`;
-    /// returns whether it did.
+    /// Succeeds if the wall passes all points between within `tolerance`.
     fn extend(&mut self, point: Vec2<S>, tolerance: S) -> bool {
         let way = point - self.first;
         let length = way.norm();
@@ -131,7 +120,6 @@ impl<S: Scalar> Sleeve<S> {
     }
 }
 
-/// Inserts an obstacle by its distance; a full list drops the farthest.
 fn add<S: Scalar, const K: usize>(nearest: &mut Vec<(S, Obstacle<S>), K>, obstacle: Obstacle<S>) {
     let Some((_, distance)) = obstacle.nearest_point() else {
         return;

@@ -12,7 +12,6 @@ fn scan(first_rad: f64, step_rad: f64, ranges_m: &[f64]) -> Scan<'_, f64> {
     Scan { first_rad, step_rad, ranges_m, min_m: 0.05, max_m: 4.0, mount_m: Vec2::ZERO }
 }
 
-/// The middle of the robot's cell (10, 10).
 fn middle() -> Vec2<f64> {
     FRAME.center(Cell::new(10, 10))
 }
@@ -66,7 +65,6 @@ fn bearings_start_at_the_nose_and_wrap() {
     for (heading, bearing, cell) in cases {
         let mut map = map();
         for _ in 0..2 {
-            // The second range of a sensor in this orientation.
             look(&mut map, heading, &scan(0.0, bearing, &[f64::NAN, 1.5]));
         }
         assert_eq!(blocked(&map), [cell], "{heading} {bearing}");
@@ -98,7 +96,6 @@ fn invalid_ranges_change_nothing() {
 #[test]
 fn a_hit_wins_over_the_beams_that_cross_its_cell() {
     let mut map = map();
-    // Two beams of almost equal direction: one ends in the cell, one continues.
     for _ in 0..2 {
         look(&mut map, 0.0, &scan(0.0, 0.01, &[1.5, 3.0]));
         look(&mut map, 0.0, &scan(0.01, -0.01, &[3.0, 1.5]));
@@ -148,7 +145,6 @@ fn unseen_evidence_fades_even_if_the_clock_wraps() {
     assert_eq!(blocked(&map), [(3, 0)]);
     wait(&mut map, 10_000);
     assert!(blocked(&map).is_empty(), "15 less 10 is below 6");
-    // A long pause clears everything, without a loop.
     for _ in 0..9 {
         look(&mut map, 0.0, &scan(0.0, 0.0, &[1.5]));
     }
@@ -179,8 +175,7 @@ fn the_sensor_may_be_mounted_off_centre() {
     for _ in 0..2 {
         look(&mut map, core::f64::consts::FRAC_PI_2, &scan);
     }
-    // The nose is north: half a metre north and half a metre west of the middle, then a metre
-    // north.
+    // The nose is north: half a metre north and west of the middle, then a metre north.
     assert_eq!(blocked(&map), [(-1, 3)]);
 }
 
@@ -209,7 +204,7 @@ fn other_sides_and_scalars_work_too() {
 
 const OUTLINE: OutlineParams<f64> = OutlineParams { tolerance_m: 0.02, gap_m: 0.3, point_m: 0.03 };
 
-/// Ranges of a full turn of `N` beams in a room with walls at x = 2, y = 1, x = -2, y = -1.
+/// Walls at x = 2, y = 1, x = -2, y = -1.
 fn room<const N: usize>() -> [f64; N] {
     core::array::from_fn(|beam| {
         let (sin, cos) = Scalar::sin_cos(core::f64::consts::TAU * beam as f64 / N as f64);
@@ -222,7 +217,7 @@ fn a_room_becomes_its_walls_nearest_first() {
     let ranges = room::<360>();
     let scan = scan(0.0, core::f64::consts::TAU / 360.0, &ranges);
     let walls = outline::<_, 16>(&scan, 0.0, &OUTLINE, |_| false);
-    // Five: the scan begins in the middle of the east wall. Each corner may add a short one.
+    // The scan begins in the middle of the east wall; each corner may add a short one.
     assert!((5..=9).contains(&walls.len()), "{walls:?}");
     let distances: Vec<f64> = walls.iter().map(|w| w.nearest_point().unwrap().1).collect();
     assert!(distances.is_sorted());
@@ -234,7 +229,6 @@ fn a_room_becomes_its_walls_nearest_first() {
 
 #[test]
 fn a_gap_separates_two_walls_and_a_single_hit_is_a_ball() {
-    // Ahead at 1 m: three beams, a gap, a single one.
     let ranges = [1.0, 1.0, 1.0, 4.0, f64::NAN, 1.0];
     let scan = scan(-0.2, 0.1, &ranges);
     let found = outline::<_, 8>(&scan, 0.0, &OUTLINE, |_| false);
@@ -248,8 +242,7 @@ fn a_gap_separates_two_walls_and_a_single_hit_is_a_ball() {
 
 #[test]
 fn a_wall_includes_its_farthest_point() {
-    // Beams a fifth of a degree apart, almost along a wall: the second hit lies 25 cm behind the
-    // first, the third 15 cm before it.
+    // Almost along a wall: the second hit lies 25 cm behind the first, the third 15 cm before it.
     let ranges = [1.0, 1.25, 1.1];
     let scan = scan(0.0, 0.0035, &ranges);
     let found = outline::<_, 8>(&scan, 0.0, &OUTLINE, |_| false);
@@ -282,7 +275,6 @@ fn neighbours_are_extrapolated_with_the_radius_they_sent() {
     assert!(!is_neighbor::<f32, ()>(&[], own, NOW, Duration::ZERO, Vec2::ZERO, 9.0));
 }
 
-/// The greatest distance of a hit from the obstacles found.
 fn misses(found: &[Obstacle<f64>], scan: &Scan<'_, f64>, heading: f64) -> f64 {
     let hits = scan.rays(heading).flatten().filter(|ray| ray.is_hit);
     let gap = |obstacle: &Obstacle<f64>, end: Vec2<f64>| match *obstacle {

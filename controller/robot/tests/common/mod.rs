@@ -1,11 +1,9 @@
-//! Pins that the simulated world can read.
-
 use core::convert::Infallible;
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// A PWM channel whose full duty is `MAX`; clones are the same channel.
+/// A PWM channel; clones are the same channel.
 #[derive(Clone, Default)]
 pub struct Channel<const MAX: u16>(pub Rc<Cell<u16>>);
 

@@ -20,7 +20,6 @@ fn cos_sin(angle: f64) -> [f64; 2] {
     [cos, sin]
 }
 
-/// A neighbour at this position that flies with speed 2 along `heading`.
 fn flying<S: Scalar>(id: u32, x: f64, y: f64, heading: f64) -> Nearby<S> {
     let [cos, sin] = cos_sin(heading);
     near(id, [x, y, 0.0], [2.0 * cos, 2.0 * sin, 0.0])
@@ -42,10 +41,10 @@ fn alone_a_boid_keeps_its_heading() {
 
 #[test]
 fn far_neighbours_turn_it_by_two_largest_turns_at_most() {
-    // They fly north and are in the north: 0.05 to their heading and 0.05 to them.
+    // 0.05 to their heading and 0.05 to them.
     let north = [flying(2, 0.0, 100.0, PI / 2.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &north), 0.1));
-    // Within reach it takes exactly the heading wanted: 0.03 from the mean, then to the middle.
+    // Within reach: 0.03 from the mean, then to the middle.
     let [x, y] = cos_sin(0.04);
     let ahead = [flying(2, 100.0 * x, 100.0 * y, 0.03)];
     assert!(is_close(paper().turn(OWN, 0.0, &ahead), 0.04));
@@ -55,8 +54,7 @@ fn far_neighbours_turn_it_by_two_largest_turns_at_most() {
 
 #[test]
 fn mean_of_headings_is_taken_on_the_circle() {
-    // +170 and -170 degrees have the mean 180, not 0; positions are symmetric, so that only the
-    // heading counts. The listing would also have turned left, from +175 down to 0.
+    // +170 and -170 degrees have the mean 180; the listing would have turned left, from +175 to 0.
     let both = [flying(2, 50.0, 0.0, 3.0), flying(3, -50.0, 0.0, -3.0)];
     assert!(is_close(paper().turn(OWN, 3.1, &both), PI));
     assert!(is_close(paper().turn(OWN, -3.1, &both), PI), "on (-pi, pi]");
@@ -68,11 +66,10 @@ fn cohesion_turns_to_the_middle_and_not_away() {
     assert!(is_close(paper().turn(OWN, 0.0, &left), 0.05));
     let right = [flying(2, 60.0, -100.0, 0.0), flying(3, -60.0, -50.0, 0.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &right), -0.05));
-    // Straight behind: to the left. In the middle of its neighbours: not at all.
+    // Straight behind: to the left.
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, -50.0, 0.0, 0.0)]), 0.05));
     let around = [flying(2, 50.0, 50.0, 0.0), flying(3, -50.0, -50.0, 0.0)];
     assert!(is_close(paper().turn(OWN, 0.0, &around), 0.0));
-    // A stationary neighbour has no heading, but a position.
     let stands = [near(2, [0.0, -90.0, 0.0], [0.0; 3])];
     assert!(is_close(paper().turn(OWN, 0.0, &stands), -0.05));
 }
@@ -84,7 +81,6 @@ fn crowded_boids_turn_away_from_the_heading_of_the_nearest() {
         assert!(is_close(paper().turn(OWN, 0.0, &order), -0.02));
     }
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 20.0, 0.0, -1.0)]), 0.02));
-    // Exactly at `crowded` is not crowded: it turns to the other.
     assert!(is_close(paper().turn(OWN, 0.0, &[flying(2, 30.0, 0.0, 1.0)]), 0.0));
     assert!(is_close(paper().turn(OWN, 0.0, &[near(2, [9.0, 0.0, 0.0], [-2.0, 0.0, 0.0])]), -0.02));
 }
@@ -94,7 +90,6 @@ fn boids_of_the_same_heading_turn_away_from_each_others_side() {
     let turn = |x, y| paper().turn(OWN, 0.0, &[near(2, [x, y, 0.0], [2.0, 0.0, 0.0])]);
     assert!(is_close(turn(3.0, 5.0), -0.02) && is_close(turn(-3.0, -5.0), 0.02));
     assert!(is_close(turn(5.0, 0.0), -0.02) && is_close(turn(-5.0, 0.0), 0.02));
-    // In one place: opposite directions, by `tie`.
     let other = [near(1, [0.0; 3], [2.0, 0.0, 0.0])];
     let theirs = paper().turn(RobotId(2), 0.0, &other);
     assert!(is_close(turn(0.0, 0.0), -theirs));
@@ -118,7 +113,6 @@ fn invalid_input_is_ignored_and_the_result_is_a_heading() {
     }
     assert_eq!(paper().steer(OWN, Vec2::ZERO, &[]), Vec2::new(1.0, 0.0));
     assert_eq!(paper().steer(OWN, Vec2::new(0.0, 9.0), &[]), Vec2::new(0.0, 1.0));
-    // Invalid parameters: no neighbour counts, nothing turns.
     for bad in [f64::NAN, -1.0, 0.0] {
         let params = BoidsParams::new(bad, bad, bad, bad);
         assert!(is_close(params.turn(OWN, 0.7, &[flying(2, 0.0, 0.0, 0.0)]), 0.7));
@@ -133,7 +127,6 @@ fn wide_turns_reach_the_direction_behind() {
     for (limit, expected) in [(3.0, 3.0), (PI, PI - 0.05), (9.0, PI - 0.05), (2.0, 2.0)] {
         let params = BoidsParams::new(1.0, 150.0, limit, 0.0);
         let [x, y] = cos_sin(PI - 0.05);
-        // Heading and position both point there: two turns of 2 reach it as well.
         let behind = [near(2, [90.0 * x, 90.0 * y, 0.0], [x, y, 0.0])];
         let got = params.turn(OWN, 0.0, &behind);
         let twice = if limit < PI - 0.05 { PI - 0.05 } else { expected };
@@ -180,9 +173,7 @@ fn others_are_seen_at_their_nearest_image() {
     for (other, own, seen) in [
         (place(5_000, 5_000), place(4_000, 9_000), place(5_000, 5_000)),
         (place(799_000, 1_000), place(1_000, 599_000), place(-1_000, 601_000)),
-        // As others see it from the image: a turn or more away.
         (place(-1_000, 2_401_000), place(1_000, 1_000), place(-1_000, 1_000)),
-        // Half a turn: each on its own side of the other.
         (place(500_000, 300_000), place(100_000, 0), place(500_000, 300_000)),
         (place(100_000, 0), place(500_000, 300_000), place(100_000, 0)),
         (place(i32::MAX, 0), place(i32::MIN, 0), place(i32::MAX, 0)),
@@ -195,7 +186,6 @@ fn others_are_seen_at_their_nearest_image() {
     }
 }
 
-/// Reference implementation of the rule with angles, which `steer` must match.
 fn by_angles(heading: f64, others: &[Nearby<f64>]) -> f64 {
     let wrapped = |angle: f64| {
         let (sin, cos) = Scalar::sin_cos(angle);
@@ -221,7 +211,7 @@ fn by_angles(heading: f64, others: &[Nearby<f64>]) -> f64 {
     wrapped(towards(aligned, angle(place)))
 }
 
-/// 60 boids on a small torus for 400 steps; the length of their mean heading at the end.
+/// The length of the mean heading of 60 boids after 400 steps.
 fn order<S: Scalar>() -> f64 {
     let torus = Torus { size_m: [number::<S>(400.0), number(300.0)] };
     let params = BoidsParams::<S>::new(number(10.0), number(80.0), number(0.05), number(0.02));
@@ -320,8 +310,7 @@ proptest! {
             let params = BoidsParams::<S>::paper(S::ONE);
             params.turn(OWN, number(heading), &others).to_f64()
         }
-        // Excludes cases that rounding decides: which neighbour is nearest or near enough, and what
-        // is straight behind.
+        // Excludes cases that rounding decides.
         let mut distances: Vec<_> = others.iter().map(|o| o.offset_m.norm()).collect();
         distances.sort_by(f64::total_cmp);
         prop_assume!(distances.iter().all(|d| (d - 150.0).abs() > 0.01 && (d - 30.0).abs() > 0.01));
@@ -374,7 +363,6 @@ fn strangers_are_avoided_but_not_followed() {
     assert!(is_close(paper().turn(OWN, 0.0, &[stranger(100.0)]), 0.0));
     let crowded = flying(2, 0.0, 20.0, PI / 2.0);
     assert!(is_close(paper().turn(OWN, 0.0, &[stranger(20.0)]), paper().turn(OWN, 0.0, &[crowded])));
-    // Nor does it affect the mean of the others.
     let friend = flying(3, 0.0, -100.0, -0.03);
     assert!(is_close(paper().turn(OWN, 0.0, &[stranger(100.0), friend]), paper().turn(OWN, 0.0, &[friend])));
 }

@@ -63,7 +63,6 @@ fn last_step_ends_on_the_goal() {
 
 #[test]
 fn middle_of_the_neighbours_within_sight_pulls() {
-    // Mean (12, 16): direction (0.6, 0.8).
     let seen = [at(30.0, 20.0), at(-6.0, 12.0), at(40.001, 0.0)];
     assert_close(wished([0.0, 0.5, 0.0], None, &seen), [0.6, 0.8, 0.0]);
     assert_close(wished([0.0, -0.5, 0.0], None, &seen), [-0.6, -0.8, 0.0]);
@@ -79,7 +78,6 @@ fn repulsion_grows_with_the_square_and_is_held_below_half_the_least_distance() {
     {
         assert!((push(distance) - expected).abs() < 1e-9, "{distance}");
     }
-    // Sums over neighbours; a negative gain attracts.
     let around = [at(10.0, 0.0), at(0.0, 10.0)];
     assert_close(wished([0.0, 0.0, 0.1], None, &around), [-0.2, -0.2, 0.0]);
     assert_close(wished([0.0, 0.0, -0.1], None, &around), [0.2, 0.2, 0.0]);
@@ -100,7 +98,6 @@ fn robots_in_one_place_separate_in_opposite_directions() {
 
 #[test]
 fn three_rules_add_up_before_the_cut() {
-    // r1 = (0.5, 0), r2 = (0, 0.2), r3 = (0, -0.1).
     let got = wished([0.5, 0.2, 0.1], goal(99.0, 0.0, 0.0), &[at(0.0, 10.0)]);
     assert_close(got, [1.0, 0.2, 0.0]);
 }
@@ -268,7 +265,6 @@ proptest! {
     fn the_result_turns_and_mirrors_with_the_world_and_ignores_order(
         gains in [-2.0..2.0_f64, -2.0..2.0, -1.0..1.0], way in [-99..99_i32, -99..99], seen in seen(),
     ) {
-        // A quarter turn and a mirror, so that the goal's millimetres turn exactly.
         let way = way.map(f64::from);
         let plain = answer::<f64>(gains, way, &seen);
         let turn = |[x, y]: [f64; 2]| [-y, x];
@@ -288,7 +284,6 @@ proptest! {
     fn f32_and_q16_agree_with_f64(
         gains in [0.1..1.0_f64, 0.1..1.0, 0.0..0.5], way in [1..99_i32, -99..99], seen in seen(),
     ) {
-        // The direction of a sum near 0 is arbitrary.
         let (x, y) = seen.iter().fold((0.0, 0.0), |(x, y), v| (x + v[0], y + v[1]));
         prop_assume!(x * x + y * y > 1.0);
         prop_assume!(seen.iter().all(|[x, y]| ((x * x + y * y).sqrt() - 40.0).abs() > 0.001));

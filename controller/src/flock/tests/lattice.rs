@@ -58,7 +58,6 @@ fn bump_is_one_then_falls_to_zero_and_stays() {
     }
     assert_eq!(bump(f64::NAN, 0.2), 0.0);
     assert_eq!((bump(0.99, 1.0), bump(1.0, 1.0)), (1.0, 0.0));
-    // Where Q16 and f32 round, it never leaves [0, 1].
     for k in 0..=1000 {
         let z = Q16::from_ratio(k, 1000);
         let value = bump(z, Q16::from_ratio(1, 5));
@@ -74,7 +73,6 @@ fn sigmoids_have_their_known_values_and_bounds() {
     assert_eq!(sigma_1(-Q16::MAX), -Q16::ONE);
     let c = sigmoid_shift(5.0, 10.0).unwrap();
     assert!(is_close(c, 0.353_553_390_593_273_8));
-    // Uneven: phi(0) is 0 nevertheless; bounds are -b and a.
     assert!(phi(0.0, 5.0, 10.0, c).abs() < 1e-12);
     assert!(is_close(phi(-2.0, 5.0, 10.0, c), -8.910_264_284_766_406));
     assert!((phi(-1e9, 5.0, 10.0, c) + 10.0).abs() < 1e-6);
@@ -99,8 +97,7 @@ fn action_functions_vanish_where_the_paper_says() {
     assert!(at(0.0) < -1.98 && at(0.0) > -2.0);
 }
 
-/// Distances and c phi_alpha n_ij, c phi_beta n^ with c = 1: the paper's formulas, computed
-/// separately.
+/// Distances, c phi_alpha n_ij, c phi_beta n^ with c = 1, computed separately.
 const ALPHA_KNOWN: [(f64, f64); 3] =
     [(1.0, -4.754_848_738_066_416), (3.5, -11.462_445_668_060_493), (7.7, 0.625_252_368_520_888)];
 const BETA_KNOWN: [(f64, f64); 3] =
@@ -117,7 +114,6 @@ fn force_between_two_robots_has_its_known_values() {
     assert!(pair(&params, [7.0, 0.0, 0.0]).norm() < 1e-12);
     assert_eq!(pair(&params, [0.0, 8.4, 0.0]), V::ZERO, "exactly at r");
     assert_eq!(pair(&params, [0.0, 8.400_001, 0.0]), V::ZERO);
-    // Velocities: a_ij (p_j - p_i), a_ij = 1 while near.
     let still = near(2, [1.0, 0.0, 0.0], [0.0, 3.0, 0.0]);
     let got = acceleration(&params, &body([0.0, 1.0, 0.0]), &[still], &[], None);
     assert!(is_close(got.y, 2.0));
@@ -143,7 +139,6 @@ fn force_of_an_obstacle_has_its_known_values() {
 #[test]
 fn beta_agents_have_the_positions_and_velocities_of_the_lemma() {
     let v = Vec3::new(2.0, 3.0, 1.0);
-    // A ball of radius 2 at distance 5: mu = 2/5, P keeps what is across.
     let agent = beta_agent(&ball(5.0, 2.0), v).unwrap();
     assert_eq!(agent.normal, Vec3::new(-1.0, 0.0, 0.0));
     assert!(is_close(agent.distance_m, 3.0));
@@ -151,7 +146,6 @@ fn beta_agents_have_the_positions_and_velocities_of_the_lemma() {
     let plane = Obstacle::Plane { normal: Vec3::new(0.0, 0.0, 1.0), distance_m: 4.0 };
     let agent = beta_agent(&plane, v).unwrap();
     assert_eq!((agent.distance_m, agent.velocity_mps), (4.0, Vec3::new(2.0, 3.0, 0.0)));
-    // Beside a wall like a plane, beyond its end like a post.
     let wall = |y| Obstacle::Wall([Vec2::new(2.0, y), Vec2::new(2.0, y + 5.0)]);
     let agent = beta_agent(&wall(-1.0), v).unwrap();
     assert_eq!(agent.velocity_mps, Vec3::new(0.0, 3.0, 1.0));
@@ -170,11 +164,9 @@ fn a_robot_inside_an_obstacle_is_pushed_out_along_its_normal() {
         let plane = Obstacle::Plane { normal: Vec3::new(0.0, 1.0, 0.0), distance_m: -depth };
         assert!(facing(&params, [0.0; 3], plane).y > 350.0);
     }
-    // In the exact centre: back where it came from.
     let got = facing(&params, [0.0, 1.0, 0.0], ball(0.0, 3.0));
     assert!(got.y < -300.0 && got.is_finite(), "{got:?}");
     assert!(facing(&params, [0.0; 3], ball(0.0, 3.0)).x > 350.0);
-    // On a wall: to its left; in a wall that is a point: east.
     let wall = Obstacle::Wall([Vec2::new(-1.0, 0.0), Vec2::new(1.0, 0.0)]);
     assert!(facing(&params, [0.0; 3], wall).y > 350.0);
     assert!(facing(&params, [0.0; 3], Obstacle::Wall([Vec2::ZERO; 2])).x > 350.0);
@@ -209,7 +201,7 @@ fn reference_pulls_without_bound_in_algorithm_two_and_with_bound_in_three() {
     assert!((pull(Algorithm::Three) - expected).norm() < 1e-12);
 }
 
-/// The distance of two robots over the lattice's, 20 s after they were stationary at this distance.
+/// The distance of two robots over the lattice's after 20 s.
 fn settled(params: &LatticeParams<f64>, start: f64) -> f64 {
     let spacing = params.spacing_m;
     let mut places = [V::ZERO, V::new(start * spacing, 0.0, 0.0)];
@@ -242,8 +234,6 @@ fn two_robots_settle_at_the_distance_of_the_lattice_at_any_size() {
             let distance = settled(&alone, start);
             assert!((distance - 1.0).abs() < 1e-6, "{start} {distance}");
         }
-        // From one place they leave each other's range; a reference brings them back, and its pull
-        // on both makes them a little closer.
         for start in [0.0, 0.3, 2.0] {
             let distance = settled(&params, start);
             assert!((0.95..1.01).contains(&distance), "{spacing} {start} {distance}");
@@ -278,7 +268,6 @@ fn robots_in_one_place_separate_in_opposite_directions() {
     };
     assert_eq!(force(1, 2), -force(2, 1));
     assert!(force(1, 2).norm() > 1.0 && force(1, 2).z == 0.0);
-    // In the direction of `tie`, as everywhere.
     let along = force(1, 2).normalized().unwrap().xy();
     assert!((along - tie(RobotId(1), RobotId(2))).norm() < 1e-12);
     assert_eq!(force(1, 1), V::ZERO, "a robot is not its own neighbour");
@@ -354,8 +343,6 @@ fn strangers_push_and_do_nothing_else() {
         let other = Nearby { is_stranger, ..near(2, [x, 0.0, 0.0], velocity) };
         acceleration(&params, &body([0.0; 3]), &[other], &[], None)
     };
-    // Too near: the same push; farther than the spacing: no pull; and at any velocity, no
-    // alignment.
     assert_eq!(of(true, 4.0, [0.0; 3]), of(false, 4.0, [0.0; 3]));
     assert!(of(false, 8.0, [0.0; 3]).x > 0.0);
     assert_eq!(of(true, 8.0, [0.0; 3]), V::ZERO);
@@ -378,17 +365,13 @@ fn strangers_in_the_way_turn_the_pull_of_the_reference_to_the_right() {
     }
     let [near, far] = [9.0, 20.0].map(|x| pulled([x, 0.0, 0.0]));
     assert!(near.y < far.y && far.y < 0.0 && near.x < far.x, "{near:?} {far:?}");
-    // A robot of the own flock does not cause a turn.
     let own = [super::near(2, [9.0, 0.0, 0.0], [0.0; 3])];
     assert_eq!(acceleration(&params, &body([0.0; 3]), &own, &[], Some(&reference)).y, 0.0);
-    // However many there are, at most a quarter turn.
     let crowd = [Nearby { is_stranger: true, ..super::near(2, [9.0, 0.0, 0.0], [0.0; 3]) }; 8];
     let turned = acceleration(&params, &body([0.0; 3]), &crowd, &[], Some(&reference));
     assert!(turned.x.abs() < 1e-9 && is_close(turned.y, -alone.x), "{turned:?}");
 }
 
-/// Two robots side by side before a gap: the one nearer to the reference is pulled, the other is
-/// not.
 #[test]
 fn with_turns_no_robot_pushes_one_nearer_to_the_reference() {
     let params = LatticeParams { algorithm: Algorithm::ThreeInTurn, ..LatticeParams::new(7.0) };
@@ -397,7 +380,6 @@ fn with_turns_no_robot_pushes_one_nearer_to_the_reference() {
         let with = acceleration(params, &body([0.0; 3]), others, &[], Some(reference));
         with - acceleration(params, &body([0.0; 3]), others, &[], None)
     };
-    // A robot behind does not hold it back: without turns it would pull.
     let behind = near(2, [-8.0, 0.0, 0.0], [0.0; 3]);
     assert!(acceleration(&params, &body([0.0; 3]), &[behind], &[], None).x < -1.0);
     assert_eq!(
@@ -408,7 +390,6 @@ fn with_turns_no_robot_pushes_one_nearer_to_the_reference() {
     let three = LatticeParams { algorithm: Algorithm::Three, ..params };
     assert_eq!(alone, pulled(&three, &[], &reference));
     for (other, share) in [
-        // Ahead, from one spacing down to four fifths of it.
         (near(2, [7.0, 0.0, 0.0], [0.0; 3]), 1.0),
         (near(2, [6.3, 0.0, 0.0], [0.0; 3]), 0.5),
         (near(2, [5.6, 0.0, 0.0], [0.0; 3]), 0.0),
@@ -421,12 +402,10 @@ fn with_turns_no_robot_pushes_one_nearer_to_the_reference() {
         assert!(is_turned || (got - alone * share).norm() < 1e-9, "{other:?} {got:?}");
         assert!(!is_turned || got.norm() > 0.9 * alone.norm(), "{got:?}");
     }
-    // As near as the own position: the smaller number goes first, and one of two always does.
     let beside = Reference { offset_m: Vec3::new(80.0, 1.5, 0.0), ..reference };
     let other = |id| near(id, [0.0, 3.0, 0.0], [0.0; 3]);
     assert!(pulled(&params, &[other(2)], &beside).norm() > 0.9 * alone.norm());
     assert!(pulled(&params, &[other(0)], &beside).norm() < 1e-9);
-    // Past the reference no robot waits.
     let past = Reference { offset_m: Vec3::new(-1.0, 0.0, 0.0), ..reference };
     assert_eq!(pulled(&params, &[other(2)], &past), pulled(&three, &[other(2)], &past));
 }

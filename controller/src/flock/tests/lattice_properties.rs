@@ -1,5 +1,3 @@
-//! Properties of the alpha flock over random cases.
-
 use super::super::lattice::{Algorithm, LatticeParams, Reference, acceleration};
 use super::{body, exact, near, number, vec3};
 use crate::body::Body;
@@ -13,7 +11,6 @@ use std::vec::Vec;
 
 type V = Vec3<f64>;
 
-/// A whole case in the plane or in space, positions over d.
 #[derive(Clone, Debug)]
 struct Case {
     own: [f64; 3],
@@ -35,7 +32,6 @@ fn case(height: f64) -> impl Strategy<Value = Case> {
     })
 }
 
-/// The result of the law for `case` seen through `view`, over d; computed in `S`.
 fn answer<S: Scalar>(spacing: f64, case: &Case, view: impl Fn([f64; 3]) -> [f64; 3]) -> V {
     let params = LatticeParams::new(number::<S>(spacing));
     let see = |v: [f64; 3]| view(v).map(|c| c * spacing);
@@ -71,7 +67,6 @@ proptest! {
         let mirror = |[x, y, z]: [f64; 3]| [x, -y, z];
         let plain = answer::<f64>(7.0, &case, |v| v);
         let scale = plain.norm().max(1.0);
-        // The reference's velocity turns along, since `view` is applied to it too.
         for got in [
             (answer::<f64>(7.0, &case, turn), turn([plain.x, plain.y, plain.z])),
             (answer::<f64>(7.0, &case, mirror), mirror([plain.x, plain.y, plain.z])),
@@ -108,7 +103,6 @@ proptest! {
             let (single, fixed) = (answer::<f32>(spacing, &case, |v| v), answer::<Q16>(spacing, &case, |v| v));
             prop_assert!(error(single) < 1e-4, "{:?} {:?}", single, plain);
             prop_assert!(error(fixed) < 0.02, "{:?} {:?}", fixed, plain);
-            // A root that is off by 0.2 % matters where the force of the obstacle sets in.
             let fast = answer::<Fast32>(spacing, &case, |v| v);
             prop_assert!((fast - plain).norm() < 0.3 * plain.norm().max(50.0), "{:?} {:?}", fast, plain);
         }

@@ -12,8 +12,6 @@ fn wanted(motion: ReferenceMotion<f64>, offset: [f64; 3]) -> f64 {
 #[test]
 fn only_behind_a_resting_reference_the_velocity_fades() {
     let resting = ReferenceMotion::Resting(70.0);
-    // Before and beside the reference the full velocity, behind it less, depending only on the
-    // distance along the velocity.
     let expected = [(50.0, 6.0), (0.0, 6.0), (-35.0, 3.0), (-69.3, 0.06), (-70.0, 0.0), (-1e9, 0.0)];
     for (offset, speed) in expected {
         for side in [0.0, -400.0] {

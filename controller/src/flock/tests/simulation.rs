@@ -24,7 +24,7 @@ struct Flock {
     reference: (V, V),
     reference_moves: bool,
     balls: Vec<Ball>,
-    /// Delay in steps, share of lost states, and the generator that decides which are lost.
+    /// Delay in steps, share of lost states.
     delay: usize,
     loss: f64,
     rng: Rng,
@@ -39,7 +39,6 @@ fn uniform(rng: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * f64::from(rng.unit_q32()) / 4_294_967_296.0
 }
 
-/// A sample of the normal distribution from twelve uniform ones.
 fn normal(rng: &mut Rng, deviation: f64) -> f64 {
     ((0..12).map(|_| uniform(rng, 0.0, 1.0)).sum::<f64>() - 6.0) * deviation
 }
@@ -72,8 +71,7 @@ impl Flock {
         }
     }
 
-    /// The robots in range of robot i, as far as it knows: each extrapolated from its last received
-    /// state.
+    /// Each robot in range, extrapolated from its last received state.
     fn nearby(&mut self, i: usize, step_s: f64) -> Vec<Nearby<f64>> {
         let (range, own) = (self.params.range_m(), self.places[i]);
         let now = self.past.len() - 1;
@@ -129,7 +127,6 @@ impl Flock {
         }
     }
 
-    /// Groups of robots connected by distances below `range`.
     fn components(&self, range: f64) -> usize {
         let mut group: Vec<usize> = (0..self.places.len()).collect();
         for i in 0..group.len() {
@@ -182,8 +179,7 @@ const SPLIT: [[f64; 3]; 6] = [
 ];
 const SQUEEZE: [[f64; 3]; 2] = [[150.0, 30.0, 25.0], [150.0, 100.0, 25.0]];
 
-/// 150 robots from the square [low, high]^2, at rest, through balls to beyond x = 230; the
-/// reference is static, as in the paper, and its velocity pulls them further.
+/// 150 robots at rest in [low, high]^2, through balls to beyond x = 230.
 fn course(seed: u64, square: [f64; 2], goal: [f64; 3], speed: f64, matrix: &[[f64; 3]]) {
     const STEP_S: f64 = 0.02;
     let mut rng = Rng::new(seed);
@@ -220,8 +216,6 @@ fn all_150_robots_pass_the_narrow_passage_without_contact() {
     }
 }
 
-/// A moving reference gathers behind the obstacles the robots that they separated. A static one
-/// leaves the parts side by side for long, since its bounded pull hardly has a lateral component.
 #[test]
 fn parts_of_a_split_flock_rejoin_behind_the_obstacles() {
     let mut rng = Rng::new(0);
@@ -243,9 +237,7 @@ fn parts_of_a_split_flock_rejoin_behind_the_obstacles() {
     assert!(flock.deviation(8.4) < 0.005 && flock.least_clearance > 0.5 * 7.0);
 }
 
-/// The paper's free flock: algorithm 2, normally distributed positions, a moving reference. The
-/// paper does not state its gains; with 50 and 1 the lattice is complete by iteration 150, and
-/// speeds agree to e2 some time later.
+/// The paper does not state the gains; with 50 and 1 the lattice is complete by iteration 150.
 #[test]
 fn free_flock_of_150_is_one_lattice_by_iteration_150() {
     for seed in 1..3 {
@@ -273,7 +265,7 @@ fn free_flock_of_150_is_one_lattice_by_iteration_150() {
     }
 }
 
-/// Forty robots that follow a reference and receive each other late: parts, K~ and E~ after 80 s.
+/// Forty robots with delayed beacons: parts, K~ and E~ after 80 s.
 fn late(params: LatticeParams<f64>, delay: usize, loss: f64, step_s: f64, seed: u64) -> (usize, f64, f64) {
     let mut rng = Rng::new(seed);
     let start = places(40, || uniform(&mut rng, 0.0, 44.0));
@@ -296,7 +288,6 @@ fn a_flock_tolerates_late_and_lost_beacons_only_with_reduced_gains() {
         assert_eq!(parts, 1, "{delay} {loss} {step_s}");
         assert!(mismatch < 0.05 && energy < 0.005, "K~ {mismatch}, E~ {energy} at {delay} {loss} {step_s}");
     }
-    // The case that the bound prevents.
     let (_, shaking, _) = late(params, 2, 0.0, 0.05, 3);
     assert!(shaking > 1.0, "K~ {shaking}");
 }
@@ -316,7 +307,6 @@ fn stable_gains_are_unchanged_and_others_become_stable() {
         assert!((softer.alpha.position / softer.gamma.position - 5.0).abs() < 1e-9);
         assert!(softer.beta == params.beta && softer.is_sound());
     }
-    // Without beacons there is no pull; without gains any age is tolerated.
     assert_eq!(params.stable_for(0.0, 0.0).alpha.position, 0.0);
     assert!(LatticeParams { alpha: Gain { position: 0.0, velocity: 0.0 }, ..params }.oldest_news_s() > 1e9);
 }
@@ -340,8 +330,7 @@ fn fifty_robots_meet_in_space() {
     assert!(high - low > 14.0, "a body in space, not a layer");
 }
 
-/// Two robots side by side before a gap for one, one more in their wedge and four behind, a jam:
-/// see the head of `lattice.rs`.
+/// One more robot in the wedge of the first two, and four behind: a jam without turns.
 #[test]
 fn robots_before_a_gap_for_one_pass_it_in_turn() {
     let jam = [(139.1, 57.1), (139.1, 62.9), (132.9, 60.0), (132.7, 54.1), (132.7, 65.9), (127.3, 49.9), (127.3, 70.1)];

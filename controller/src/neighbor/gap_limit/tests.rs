@@ -14,7 +14,6 @@ fn moment(step: i32) -> Instant {
     Instant::from_micros(1) + STEP.saturating_mul(step)
 }
 
-/// A robot of at most 1 m/s with its neighbour table.
 struct Mover<S> {
     table: NeighborTable<S, 4>,
     body: Body<S>,
@@ -45,7 +44,6 @@ impl<S: Scalar> Mover<S> {
         Neighbor { position: self.position(), velocity_mps, radius_m, ..heard }
     }
 
-    /// Limits a wish, with the beacons received in the previous step.
     fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
         let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
         let (own, now) = (self.position(), moment(step));
@@ -62,8 +60,7 @@ impl<S: Scalar> Mover<S> {
     }
 }
 
-/// Returns the least gap among robots with any wishes, while `is_lost` drops packets by step,
-/// sender and receiver.
+/// The least gap at any wishes; `is_lost` drops packets by step, sender and receiver.
 fn least_gap<S: Scalar>(
     mut movers: StdVec<Mover<S>>,
     steps: i32,
@@ -92,7 +89,7 @@ fn least_gap<S: Scalar>(
     least
 }
 
-/// Any wish up to twice the highest speed, constant for three steps, mostly towards the middle.
+/// Up to twice the highest speed, mostly towards the middle.
 fn wishes(seed: u32, size: f64, movers: usize) -> impl Fn(i32, usize) -> Vec3<f64> {
     move |step, robot| {
         let mut rng = Rng::keyed(7, seed, robot as u32, (step / 3) as u32);
@@ -114,8 +111,7 @@ fn lossy(seed: u32, percent: u32) -> impl FnMut(i32, usize, usize) -> bool {
 }
 
 proptest! {
-    /// Losses between 60 % and 100 % are excluded: a robot that only other robots receive is lost,
-    /// and taken to stand.
+    /// Losses from 60 to 100 % are excluded: a robot that only others receive is taken to stand.
     #[test]
     fn no_robots_touch_at_any_wishes_and_losses(
         seed in any::<u32>(), percent in prop_oneof![0..=60_u32, Just(100)], movers in 2..5_usize, radius_m in 0.25..1.5_f64, height in 0..2_u8,
@@ -127,7 +123,6 @@ proptest! {
         prop_assert!(gap > -1e-3, "fixed: {}", gap);
     }
 
-    /// The robots drive head on, since a body with inertia cannot turn at once.
     #[test]
     fn bodies_with_inertia_brake_for_each_other_at_any_loss(
         seed in any::<u32>(), percent in 0..101_u32, most in 0.3..4.0_f64, apart_m in 0.4..6.0_f64,
@@ -143,7 +138,6 @@ proptest! {
     }
 }
 
-/// The way aside leads into the wall.
 #[test]
 fn a_robot_turned_aside_is_not_turned_into_a_wall() {
     use crate::geom::Vec2;
@@ -168,7 +162,6 @@ fn a_robot_turned_aside_is_not_turned_into_a_wall() {
     assert!((0.0..=0.0101).contains(&(-beside.y * 0.1)), "{beside:?}");
 }
 
-/// The remaining gap between bodies must not be granted again in each step.
 #[test]
 fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
     use crate::geom::Vec2;

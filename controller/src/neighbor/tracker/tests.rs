@@ -1,5 +1,3 @@
-//! Tests of assignment, errors, capacities and invalid detections.
-
 use super::*;
 use crate::neighbor::Ages;
 use crate::rand::Rng;
@@ -29,7 +27,7 @@ fn at(step: i32) -> Instant {
     Instant::from_micros(0) + STEP.saturating_mul(step)
 }
 
-/// A detection at (x, y), metres, with a deviation of 5 cm.
+/// (x, y) in metres, with a deviation of 5 cm.
 fn sighting<S: Scalar>(x: f64, y: f64) -> Sighting<S> {
     let s = |x: f64| S::from_f64(x).unwrap();
     Sighting {
@@ -50,14 +48,12 @@ fn see<S: Scalar>(tracker: &mut Tracker<S>, sightings: &[Sighting<S>], step: i32
     tracker.see(sightings, OWN, Position::ORIGIN, Vec3::ZERO, at(step))
 }
 
-/// A beacon of robot `id` at rest at (x, y), metres, received in `step`.
 fn heard<S: Scalar>(id: u32, x: f64, y: f64, step: i32) -> Neighbor<S> {
     let position = Position::from_metres([x, y, 0.0]).unwrap();
     let track = Track::new(RobotId(id), at(step), position, S::ONE, &params());
     Neighbor { velocity_mps: Vec3::ZERO, radius_m: S::from_milli(150), ..stranger(&track, 0) }
 }
 
-/// Merges tracks and table as an agent does in a step.
 fn merge<S: Scalar>(tracker: &mut Tracker<S>, table: &mut Table<S>, step: i32) -> std::vec::Vec<RobotId> {
     let mut gone = std::vec::Vec::new();
     tracker.hear(table, Position::ORIGIN);
@@ -75,7 +71,6 @@ fn ids<S: Scalar>(tracker: &Tracker<S>) -> std::vec::Vec<RobotId> {
 fn goes_with_even_speed<S: Scalar>() -> (f64, f64) {
     let mut tracker = Tracker::<S>::new(params());
     let mut rng = Rng::keyed(7, 0, 0, 0);
-    // The sum of twelve uniform draws is nearly normal, with deviation 1.
     let mut error = || (0..12).map(|_| f64::from(rng.next_u32()) / f64::from(u32::MAX)).sum::<f64>() - 6.0;
     let mut off = (0.0_f64, 0.0_f64);
     for step in 0..200 {
@@ -281,7 +276,6 @@ proptest! {
         prop_assert!(track.deviation_m() <= both * (1.0 + 1e-12));
         track.hear(place, Vec3::ZERO, at(0), &params);
         prop_assert!(track.deviation_m() <= both.min(heard_m) * (1.0 + 1e-12));
-        // The result lies between its inputs.
         let x = track.offset_m(Position::ORIGIN).x;
         prop_assert!(x * off.signum() >= -1e-9 && x.abs() <= off.abs() + 1e-3);
     }

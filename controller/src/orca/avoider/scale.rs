@@ -6,15 +6,13 @@ use crate::robot::{Mode, RobotId};
 use proptest::prelude::*;
 use std::vec::Vec;
 
-/// The units, in metres and seconds. Robots have radius 0.15 and speed 0.5, decide 20 times per
-/// unit of time, and use horizons 2 and 1.
+/// Metres and seconds per unit. Robots have radius 0.15, speed 0.5, 20 decisions per unit of time.
 #[derive(Clone, Copy)]
 struct Units {
     length: f32,
     time: f32,
 }
 
-/// The positions of all robots (in units of length) after each of `steps` steps.
 fn trace(units: Units, ways: &[[Vec2<f32>; 2]], walls: &[[Vec2<f32>; 2]], steps: u32) -> Vec<Vec<Vec2<f32>>> {
     let Units { length, time } = units;
     let params =
@@ -74,8 +72,7 @@ proptest! {
         starts in proptest::collection::vec((0.4_f32..2.5, -2.0_f32..2.0), 4),
         is_at_door: bool,
     ) {
-        // Each robot goes to where the next one, mirrored, starts: all paths cross, in the open or
-        // through a door for one.
+        // All paths cross, in the open or through a door for one.
         let mirrored = |(x, y): (f32, f32), side: f32| Vec2::new(x * side, y);
         let ways: Vec<_> = (0..4)
             .map(|k| {

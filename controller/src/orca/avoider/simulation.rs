@@ -1,5 +1,4 @@
-//! Simulated swarms of avoiders with a perfect radio: current positions and velocities, rounded to
-//! millimetres.
+//! Simulated swarms of avoiders with a perfect radio, rounded to millimetres.
 
 use super::*;
 use crate::geom::{Position, Vec3};
@@ -13,13 +12,13 @@ struct Run {
     radius_m: f64,
     step_s: f64,
     walls: Vec<[V; 2]>,
-    /// Paths lead through this door if start and goal lie on different sides of it.
+    /// Paths lead through it if start and goal lie on different sides.
     door_x: Option<f64>,
     robots: Vec<Robot>,
     time_s: f64,
     clearance_m: f64,
     wall_clearance_m: f64,
-    /// The direction (eastwards?) of each passage through the door, in order.
+    /// Whether each passage was eastwards, in order.
     passed: Vec<bool>,
 }
 
@@ -75,7 +74,6 @@ impl Run {
         }
     }
 
-    /// Runs until all have arrived or the time is over; returns how many have arrived.
     fn until(&mut self, most_s: f64) -> usize {
         let arrived = |run: &Self| run.robots.iter().filter(|r| r.arrived_s.is_some()).count();
         let mut tick = 0;
@@ -170,8 +168,7 @@ fn noise(rng: &mut Rng, most: f64) -> f64 {
     (f64::from(rng.below(2001)) / 1000.0 - 1.0) * most
 }
 
-/// Robots on a circle swap with the opposite robot. Returns the time of the slowest over the free
-/// time.
+/// Robots on a circle swap places. Returns the slowest time over the free time.
 fn swap(count: u32, noise_m: f64, seed: u64) -> f64 {
     let circle_m = (0.1 * f64::from(count)).max(2.0);
     let mut rng = Rng::keyed(seed, 1, count, 0);
@@ -210,8 +207,6 @@ fn the_swap_does_not_depend_on_exact_positions() {
     }
 }
 
-/// Two rooms with a door of `width_m` in a wall of `depth_m` between them; `each` robots of radius
-/// 0.3 m on both sides.
 fn doorway(width_m: f64, depth_m: f64, each: u32, seed: u64) -> Run {
     let rows = each.div_ceil(4).max(5);
     let (far, half, side) = (8.0 + depth_m / 2.0, width_m / 2.0, f64::from(rows));

@@ -1,5 +1,3 @@
-//! Properties of space, and its agreement with the plane.
-
 use super::*;
 use crate::orca::fixtures::{RADIUS_M, SPEED_MPS, STEP_S, body, rng_of, robot, vector};
 use proptest::prelude::*;
@@ -41,8 +39,6 @@ fn obstacle(own: V, obstacle: &Obstacle<f64>, radius_m: f64, horizon_s: f64) -> 
     static_obstacle(&params, &body, own, obstacle)
 }
 
-/// All robots fly to the opposite point through the origin. Returns the time of the last one over
-/// the free time, and the least gap.
 fn swap(starts: &[V], most_s: f64) -> (Option<f64>, f64) {
     let goals: StdVec<_> = starts.iter().map(|&start| -start).collect();
     let (mut places, mut speeds) = (starts.to_vec(), std::vec![Vec3::ZERO; starts.len()]);
@@ -121,7 +117,6 @@ fn without_neighbours_the_wish_is_unchanged() {
 
 #[test]
 fn a_robot_that_does_not_give_way_gets_the_whole_correction() {
-    // It comes from the left and does not give way.
     let wish = v(0.5, 0.0, 0.0);
     let aside = |gives_way: bool| {
         let other = Nearby { gives_way, ..robot(2, [0.5, 0.6], [0.0, -0.5]) };
@@ -145,7 +140,6 @@ fn floors_balls_and_walls_limit_the_speed_towards_them() {
     // 2 m up with a radius of 0.5 m: at most 0.75 m/s down for 2 s.
     let above = obstacle(down, &floor(2.0), 0.5, 2.0).unwrap();
     assert_eq!((above.point, above.normal), (v(0.0, 0.0, -0.75), v(0.0, 0.0, 1.0)));
-    // On the floor or in it: no lower.
     for distance in [0.5, 0.1, -3.0] {
         let on = obstacle(down, &floor(distance), 0.5, 2.0).unwrap();
         assert_eq!(on.penetration(V::ZERO), 0.0);
@@ -159,7 +153,6 @@ fn floors_balls_and_walls_limit_the_speed_towards_them() {
     assert!(touching.penetration(V::ZERO).abs() < 1e-12);
     let inside = obstacle(V::ZERO, &ball(0.0), 0.5, 2.0).unwrap();
     assert_eq!(inside.normal, v(0.0, 0.0, 1.0));
-    // Climbing does not help: walls have no top.
     let wall = Obstacle::Wall([Vec2::new(2.0, -5.0), Vec2::new(2.0, 5.0)]);
     let space = obstacle(v(3.0, 0.0, 9.0), &wall, 0.5, 1.0).unwrap();
     assert!((space.point.dot(space.normal) + 1.5).abs() < 1e-9 && space.normal.z == 0.0);
@@ -167,8 +160,7 @@ fn floors_balls_and_walls_limit_the_speed_towards_them() {
 
 #[test]
 fn of_many_obstacles_the_nearest_count() {
-    // Full speed ahead. A ball 0.5 m ahead is the last of the slice; all others are behind and
-    // farther away.
+    // A ball 0.5 m ahead is the last of the slice; all others are behind and farther away.
     let east = v(SPEED_MPS, 0.0, 0.0);
     for (behind, others) in [(32, 0), (17, 16)] {
         let mut obstacles: StdVec<_> = (0..behind).map(|k| ball(-1.0 - 0.01 * f64::from(k), 0.2)).collect();
@@ -240,7 +232,6 @@ fn flat(most: f64) -> impl Strategy<Value = [f64; 2]> {
     [-most..most, -most..most]
 }
 
-/// Robots at the own height: some overlap, some do not give way.
 fn flat_robots() -> impl Strategy<Value = StdVec<Nearby<f64>>> {
     let others = proptest::collection::vec((flat(2.0), flat(0.5), any::<bool>()), 0..10);
     others.prop_map(|others| {
@@ -254,7 +245,6 @@ fn flat_robots() -> impl Strategy<Value = StdVec<Nearby<f64>>> {
     })
 }
 
-/// Balls, vertical planes and walls at the own height.
 fn flat_obstacles(walls: usize) -> impl Strategy<Value = StdVec<Obstacle<f64>>> {
     let ball =
         (flat(2.0), 0.05..0.4_f64).prop_map(|(center, radius_m)| Obstacle::Ball { center_m: vector(center), radius_m });
@@ -275,12 +265,9 @@ fn flat_obstacles(walls: usize) -> impl Strategy<Value = StdVec<Obstacle<f64>>> 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
-    /// Compares space with the plane if everything is at one height and no robot turns aside (the
-    /// goal is here). If the plane's velocity violates nothing, space gives the same one. If robots
-    /// alone forbid all velocities of a body without inertia, the least penetration is the same.
-    ///
-    /// No more holds: contradictory obstacles are met halfway in space, where the plane obeys the
-    /// nearest, and of equally bad velocities the one in space may climb.
+    /// If the plane's velocity violates nothing, space gives the same one. If robots alone forbid
+    /// all velocities of a body without inertia, the least penetration is the same. Contradictory
+    /// obstacles differ: space shares them, the plane obeys the nearest.
     #[test]
     fn space_agrees_with_the_plane_at_one_height(
         own in flat(0.4),
@@ -312,7 +299,7 @@ proptest! {
         step::<6>(&own, vector(wish), &nearby, &obstacles)?;
     }
 
-    /// Bit for bit, unless two are equally near.
+    /// Results are identical, unless two obstacles are equally near.
     #[test]
     fn the_order_of_obstacles_does_not_matter(
         wish in flat(0.6),
@@ -384,12 +371,10 @@ fn downwash_reduces_vertical_but_not_horizontal_distance() {
         let space = InSpace { downwash }.half_space(own, &ball(offset_m), &params).expect("sound");
         space.penetration(own)
     };
-    // A metre above: a ball permits a climb of 0.1 m/s, an ellipsoid 1.2 m high does not.
     let (climb, above) = (v(0.0, 0.0, 0.1), v(0.0, 0.0, 1.0));
     assert!(forbids(1.0, climb, above) < 0.0 && forbids(3.0, climb, above) > 0.0);
     let (ahead, beside) = (v(0.4, 0.0, 0.0), v(1.0, 0.0, 0.0));
     assert!((forbids(1.0, ahead, beside) - forbids(3.0, ahead, beside)).abs() < 1e-12);
-    // Less than a ball, or an invalid value, is a ball.
     for nonsense in [0.0, -3.0, 0.5, f64::NAN] {
         assert_eq!(forbids(nonsense, climb, above), forbids(1.0, climb, above));
     }
@@ -404,7 +389,6 @@ proptest! {
         let lowered = |v: V| V::new(v.x, v.y, v.z / downwash);
         prop_assume!(lowered(offset).norm() > radii_m * 1.01);
         let ball = MovingBall { offset_m: offset, velocity_mps: V::ZERO, radii_m, tie: V::ZERO };
-        // A robot that does all of the correction and stays on the border passes outside.
         let params = Params { horizon_s: 2.0, separation_s: STEP_S, share: 1.0 };
         let space = InSpace { downwash }.half_space(own, &ball, &params).expect("sound");
         prop_assert!((space.normal.norm() - 1.0).abs() < 1e-9);

@@ -46,7 +46,6 @@ fn robots_in_the_same_place_separate_in_opposite_directions() {
 
 #[test]
 fn a_robot_that_does_not_give_way_gets_the_whole_correction() {
-    // Head-on: with share 1 the own half-plane lies twice as far away.
     let own = body(1, [0.5, 0.0]);
     let swerve = |gives_way| {
         let other = Nearby { gives_way, ..robot(2, [1.2, -0.01], [-0.5, 0.0]) };
@@ -163,7 +162,6 @@ fn a_robot_opposite_gets_its_turn_at_a_door() {
     assert!(goes(&mut avoider(), robot(6, [1.2, 0.0], [0.0, 0.0])));
     assert!(!goes(&mut avoider(), robot(6, [1.1, 0.3], [0.0, 0.0])));
     assert!(goes(&mut avoider(), robot(4, [1.3, 0.2], [0.0, 0.0])));
-    // An unused turn passes on.
     let mut waiting = avoider();
     let first = (0..200).find(|_| goes(&mut waiting, robot(4, [1.2, 0.0], [0.0, 0.0])));
     // Five to ten times 0.15 m at 0.5 m/s, in steps of 0.05 s.
@@ -229,7 +227,6 @@ proptest! {
         let hard = avoider.constraints(&own, &others, &[], &mut planes);
         let best = solve::<_, 16>(&planes, hard, Vec2::ZERO, 0.5);
         let got = avoider.velocity(&own, Vec2::new(wish.0, wish.1), None, &others, &[], &mut rng());
-        // The rule against deadlocks bends the wish and nothing else.
         prop_assert!((got.penetration_mps - best.penetration_mps).abs() < 1e-3, "{got:?} {best:?}");
     }
 }

@@ -4,14 +4,11 @@ use crate::geom::Vec2;
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
 
-/// A gap on the path to the goal, relative to the robot: a door, or a short passage as wide as a
-/// door.
+/// A door, or a passage as wide as a door, on the path to the goal; relative to the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Gap<S> {
     pub(super) middle: Vec2<S>,
-    /// Unit vector through it, towards the goal.
     pub(super) ahead: Vec2<S>,
-    /// Half its width, metres.
     pub(super) half: S,
     /// Half its depth, metres; 0 between walls without thickness.
     pub(super) depth: S,
@@ -24,16 +21,13 @@ pub(super) struct Wanted<S> {
     pub(super) most_m: S,
     /// Longest passage among gaps that are not narrow, metres.
     pub(super) deepest_m: S,
-    /// Gaps of less width are narrow, metres.
     pub(super) narrow_m: S,
-    /// How far behind a gap it still counts, metres.
+    /// How far behind a gap it still counts.
     pub(super) past_m: S,
 }
 
 impl<S: Scalar> Gap<S> {
-    /// Converts a position relative to the robot into coordinates of the gap: x is how far behind
-    /// the gap (negative: before it, 0: in it, as if it had no depth), y how far to the right of
-    /// its axis.
+    /// Coordinates: x behind the gap (negative: before it; 0: in it), y to the right of its axis.
     pub(super) fn place(&self, offset: Vec2<S>) -> Vec2<S> {
         let Vec2 { x, y } = self.turn(offset - self.middle);
         let beyond = (x.abs() - self.depth).max(S::ZERO);
@@ -44,8 +38,7 @@ impl<S: Scalar> Gap<S> {
         Vec2::new(vector.dot(self.ahead), -self.ahead.det(vector))
     }
 
-    /// The vector from the robot to a position as [`Gap::place`] returns it; a position in the gap
-    /// counts as before it.
+    /// Inverse of [`Gap::place`]; a position in the gap counts as before it.
     pub(super) fn way(&self, place: Vec2<S>) -> Vec2<S> {
         let depth = if place.x > S::ZERO { self.depth } else { -self.depth };
         self.middle + self.ahead * (place.x + depth) - self.ahead.perp() * place.y
@@ -65,14 +58,12 @@ impl<S: Scalar> Gap<S> {
         (distance != S::ZERO).then_some(gap)
     }
 
-    /// Whether the robot is behind the gap, or beside it on that side.
     fn is_passed(&self, wanted: &Wanted<S>) -> bool {
         let own = self.place(Vec2::ZERO);
         own.x > wanted.past_m || own.x > S::ZERO && own.y.abs() > self.half
     }
 
-    /// Whether walls lead on both sides from this gap to another one in line, `way` away. If not,
-    /// there is a room in between. Checks the point halfway.
+    /// Whether walls lead on both sides to a gap in line, `way` away; checks halfway.
     fn is_walled(&self, way: Vec2<S>, obstacles: &[Obstacle<S>]) -> bool {
         let side = self.ahead.perp() * self.half;
         let halfway = self.middle + way * S::HALF;
@@ -81,7 +72,6 @@ impl<S: Scalar> Gap<S> {
             .all(|place| obstacles.iter().filter_map(|obstacle| distance(obstacle, place)).any(|near| near < self.half))
     }
 
-    /// Whether the gap is free: no obstacle is nearer to its middle than its sides.
     fn is_clear(&self, obstacles: &[Obstacle<S>]) -> bool {
         let room = self.half - self.half * S::from_milli(1);
         obstacles.iter().filter_map(|obstacle| distance(obstacle, self.middle)).all(|distance| distance >= room)
@@ -106,11 +96,8 @@ impl<S: Scalar> Gap<S> {
 }
 
 /// The gap on the shortest path to `target`, if a wall blocks the straight path or that leads
-/// through a gap; also for a robot in the gap or just behind it.
-///
-/// The sides of a gap are ends of two walls, and nothing else is as near to their middle; gaps in
-/// line are the ends of one passage. O(walls^2), and additional O(obstacles) for each pair of ends
-/// with the right distance.
+/// through a gap; also for a robot in the gap or just behind it. O(walls^2), and O(obstacles) for
+/// each pair of ends with the right distance.
 pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, wanted: &Wanted<S>) -> Option<Gap<S>> {
     let mut best: Option<(bool, S, Gap<S>)> = None;
     for_each_gap(obstacles, target, wanted, &mut |gap| {
@@ -178,7 +165,6 @@ fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
     sides && ends
 }
 
-/// The distance of an obstacle from `from`; `None` for planes, which have no end.
 fn distance<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Option<S> {
     let moved = match *obstacle {
         Obstacle::Wall([a, b]) => Obstacle::Wall([a - from, b - from]),

@@ -1,19 +1,13 @@
-//! The rule against symmetry and jams, which ORCA lacks: it chooses the preferred velocity for ORCA
-//! so that no robot waits forever.
+//! The rule against symmetry and jams, which ORCA lacks. It changes the wish and never a
+//! constraint, so that ORCA's guarantee holds.
 //!
-//! - In the open, robots pass each other on the right: while a robot is ahead, near, and coming
-//!   nearer, the wish turns to the right by a fixed angle ([`lean`]). Without it, equal robots on a
-//!   circle stop in the middle forever; with it, they circle as in a roundabout. A robot that moves
-//!   the same way does not trigger it.
-//! - In narrow places robots take turns: see [`right_of_way`].
-//! - Elsewhere a robot that makes no progress for long backs off a little: see [`patience`].
-//! - In space robots also lean to the right, each somewhat up or down: see [`spread`](mod@spread).
+//! - In the open, robots pass each other on the right ([`lean`]). Without this, equal robots on a
+//!   circle stop in the middle forever; with it, they circle as in a roundabout.
+//! - In narrow places robots take turns ([`right_of_way`]).
+//! - Elsewhere a robot that makes no progress for long backs off ([`patience`]).
+//! - In space robots lean to the right and somewhat up or down ([`spread`](mod@spread)).
 //!
-//! A robot without a goal, such as a member of a flock, follows its wish, since approaching robots
-//! are not a jam there.
-//!
-//! The rule changes the wish and never a constraint, so that ORCA's guarantee holds. It costs
-//! nothing if no robot is near.
+//! A robot without a goal, such as a member of a flock, follows its wish.
 
 mod gap;
 mod patience;
@@ -32,11 +26,11 @@ use crate::scalar::Scalar;
 
 /// A robot nearer than this is in the way, thousandths of the own radius.
 const LEAN_WITHIN: i32 = 5_333;
-/// The same distance for fast robots, thousandths of the path within the horizon.
+/// The same for fast robots, thousandths of the path within the horizon.
 const LEAN_AHEAD: i32 = 800;
 
 /// The wish, turned to the right while a robot is ahead, near, and coming nearer. Not applied near
-/// the `goal`, where the robot would circle. O(nearby).
+/// the `goal`, where the robot would circle.
 pub(super) fn lean<S: Scalar>(params: &AvoidParams<S>, situation: &Situation<'_, Vec2<S>>, goal: Vec2<S>) -> Vec2<S> {
     let Situation { wish, body, .. } = *situation;
     let ahead = body.max_speed_mps * params.horizon_s * S::from_milli(LEAN_AHEAD);

@@ -1,12 +1,9 @@
 //! A robot that makes no progress for long backs off.
 //!
-//! Robots that push against each other, each on the side where the other wants to pass, can stand
-//! still forever: each takes at most half of a gap ([`GapLimit`](crate::neighbor::GapLimit)), and half of
-//! nothing is nothing. Therefore a robot with almost no progress gives up its wish for a short
-//! distance, moves back or aside, and tries again. Direction and distance are random, since two
-//! robots that did the same would meet again. RVO2's examples always disturb the wishes of all
-//! robots (J. van den Berg, S. J. Guy, M. Lin, D. Manocha, "Reciprocal n-body collision avoidance",
-//! ISRR 2009); here only stuck robots do this. Lengths are in own radii.
+//! Robots that push against each other can stand still forever, since each takes at most half of a
+//! gap ([`GapLimit`](crate::neighbor::GapLimit)). A stuck robot moves a random short distance back
+//! or aside: two equal moves would meet again. RVO2's examples disturb all wishes instead (J. van
+//! den Berg et al., "Reciprocal n-body collision avoidance", ISRR 2009).
 
 use crate::geom::Vec2;
 use crate::orca::dimension::Situation;
@@ -16,24 +13,22 @@ use serde::{Deserialize, Serialize};
 
 /// A robot is stuck if its progress is below this share of its wish, thousandths.
 const STUCK: i32 = 150;
-/// How far to back off, up to twice as far; thousandths of the own radius. A shorter distance does
-/// not let another robot pass.
+/// Shortest distance to back off, thousandths of the own radius. Less does not let a robot pass.
 const BACK: i32 = 2_000;
 
 /// A robot's recent progress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Patience<S> {
-    /// The recent mean velocity, or the one to back off with, m/s; zero at the start.
+    /// Recent mean velocity, or the one to back off with, m/s.
     course_mps: Vec2<S>,
-    /// Remaining distance to back off, own radii; 0: it follows its wish.
     left: S,
 }
 
 impl<S: Scalar> Patience<S> {
     pub(in crate::orca) const NEW: Self = Self { course_mps: Vec2::ZERO, left: S::ZERO };
 
-    /// Returns the wish, or the velocity to back off with if the robot made no progress in the time
-    /// in which it could have moved some four times `patience` own radii. Constant work.
+    /// The wish, or a velocity to back off with if the robot made no progress in the time in which
+    /// it could have moved about four times `patience` own radii.
     pub(in crate::orca) fn wish(
         &mut self,
         situation: &Situation<'_, Vec2<S>>,
@@ -64,7 +59,6 @@ impl<S: Scalar> Patience<S> {
             return wish;
         }
         let mut share = || S::from_ratio(rng.below(1000).cast_signed(), 1000);
-        // A random direction behind.
         let (sin, cos) = (S::PI * (S::HALF + share())).sin_cos();
         let left = S::from_milli(BACK) * (S::ONE + share());
         *self = Self { course_mps: wish.rotate(cos, sin), left };
@@ -80,7 +74,7 @@ mod tests {
     use crate::scalar::Q16;
     use std::vec::Vec;
 
-    /// The wishes in 1000 steps of a robot that wants to go east and achieves this share of it.
+    /// The wishes in 1000 steps of a robot that wants to move east and achieves this share of it.
     fn wishes<S: Scalar>(share: S) -> Vec<Vec2<S>> {
         let (mut patience, mut rng) = (Patience::NEW, Rng::keyed(1, 2, 3, 4));
         let east = Vec2::new(S::HALF, S::ZERO);

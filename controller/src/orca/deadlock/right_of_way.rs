@@ -1,35 +1,25 @@
-//! Decides which robot may pass a gap and where the others wait.
+//! Decides which robot may pass a gap (a door or a passage) and where the others wait.
 //!
-//! ORCA alone jams in a door: all robots push, and none can leave. This rule applies to robots
-//! whose paths lead through the same gap (a door or a passage of any length). Each robot finds the
-//! gap on its own from the walls that it sees, and uses the positions, velocities and modes of the
-//! others. Lengths are in own radii.
+//! ORCA alone jams in a door: all robots push, and none can leave. Each robot finds the gap from
+//! the walls that it sees, and uses the positions, velocities and modes of the others.
 //!
-//! - **Order.** On each side the robot nearest to the gap is first; equal distances are ordered by
-//!   number. Only the first robot goes. The others wait at a distance that grows with their rank,
-//!   beside the lane that leads out of the gap, so that robots coming out get away and none pushes.
-//!   Parked robots are ignored.
-//! - **Queue.** A robot knows only its nearest neighbours and cannot count a long queue. Therefore
-//!   the positions pass the queue on: a robot that has a waiting robot ahead waits behind it,
-//!   [`QUEUE`] away, and keeps clear of it. Such a queue is loose enough for robots coming out,
-//!   however long it is.
-//! - **Wide gaps.** If two robots fit side by side, each direction keeps to its right half of the
-//!   gap, and both flow. There is no queue, and only short passages count.
-//! - **Narrow gaps.** If only one robot fits, directions take turns, one robot each (in a long
-//!   passage as many as come within the time of two passages). After a robot has come out of the
-//!   gap, it is the turn of the first robot on that side. At the beginning the nearer robot goes,
-//!   of equal ones the smaller number. If no robot waits on the opposite side, robots follow each
-//!   other.
-//! - **Inside the gap.** A robot in the gap continues. If two meet in it, the one nearer to its
-//!   exit continues, and the other goes back beside the lane, with the robots that follow it.
-//! - **Timeout.** Robots may see different things, and some wait for another gap. If for a while no
-//!   robot was in the gap, and none before this robot moved, turns no longer count. Each robot
-//!   draws this time at random; later ranks wait longer.
-//! - **Distant gaps.** A robot that a wall separates from its goal heads for the gap as soon as it
-//!   sees it.
+//! - **Order.** On each side the robot nearest to the gap goes first (ties: the smaller number).
+//!   The others wait at a distance that grows with their rank, beside the lane out of the gap.
+//! - **Queue.** A robot that knows only its nearest neighbours cannot count a long queue. So it
+//!   waits [`QUEUE`] behind a waiting robot ahead, which leaves room for robots coming out.
+//! - **Wide gaps.** If two robots fit side by side, each direction keeps to its right half, without
+//!   a queue; only short passages count.
+//! - **Narrow gaps.** Directions take turns, one robot each (in a long passage as many as come
+//!   within the time of two passages). The nearer robot begins. If no robot waits on the opposite
+//!   side, robots follow each other.
+//! - **Inside the gap.** If two robots meet, the one nearer to its exit continues; the other moves
+//!   back beside the lane, with the robots that follow it.
+//! - **Timeout.** Robots may see different things. If the gap was empty for a random time and no
+//!   robot before this one moved, turns no longer count; later ranks wait longer.
+//! - **Distant gaps.** A robot that a wall separates from its goal heads for the gap that it sees.
 //!
-//! Thus no robot waits forever: an unused turn passes on, and if two robots take a turn at once,
-//! their distances in the gap decide.
+//! Thus no robot waits forever: an unused turn passes to the next robot, and if two robots take a
+//! turn at once, their distances in the gap decide.
 
 use super::gap::{Gap, Wanted, gap_on_way};
 use crate::geom::Vec2;
@@ -40,60 +30,49 @@ use serde::{Deserialize, Serialize};
 
 /// Longest passage whose walls are not checked between its ends, thousandths of the own radius.
 const DEEPEST: i32 = 8_000;
-/// Widest gap in which the rule applies, thousandths of the own radius; wider ones are open space.
+/// Widest gap in which the rule applies, thousandths of the own radius.
 const WIDEST: i32 = 9_000;
-/// Gaps farther away are ignored, unless a wall blocks the straight path; thousandths of the own
-/// radius. Walls must be visible at least this far, since two walls of a corridor look like a gap
-/// where visibility ends.
+/// Gaps farther away are ignored unless a wall blocks the straight path; thousandths of the own
+/// radius. Walls must be visible this far: where visibility ends, a corridor looks like a gap.
 const WITHIN: i32 = 14_000;
-/// How far behind a gap the robot still moves straight ahead, thousandths of the own radius.
+/// How far behind a gap the robot moves straight ahead, thousandths of the own radius.
 const PAST: i32 = 2_000;
-/// Clearance that two robots need to pass each other in a gap, beyond their diameters, thousandths
-/// of the own radius.
+/// Clearance of two robots that pass in a gap, thousandths of the own radius.
 const PLAY: i32 = 150;
-/// Distance from the gap within which robots wait or come out, thousandths of the own radius.
+/// Where robots wait or come out, thousandths of the own radius from the gap.
 const YARD: i32 = 5_000;
 /// A robot this near behind a waiting robot stops, thousandths of the own radius.
 const QUEUE: i32 = 3_500;
 /// A robot nearer than this to the waiting robot ahead moves back, thousandths of the own radius.
 const APART: i32 = 3_000;
-/// How long a direction keeps a passage while others wait opposite: the time to travel this many
-/// times half its length.
+/// A direction keeps a passage while others wait for the time to travel half its length this often.
 const TURN: i32 = 4;
-/// Distances that differ by less count as equal, millionths of the own radius. Both robots know the
-/// same rounded values, except for this difference.
+/// Distances that differ by less are equal, millionths of the own radius: rounding of positions.
 const TIE: i32 = 600;
-/// Additional waiting time at an empty gap per rank, thousandths of the time to travel the own
-/// radius.
+/// Waiting time at an empty gap per rank, thousandths of the time to travel the own radius.
 const PATIENCE_OF_RANK: i32 = 1_667;
 
 /// The state of a robot at a gap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RightOfWay<S> {
-    /// Whether the last robot seen in the gap moved in this robot's direction.
+    /// Direction of the last robot seen in the gap.
     last_went_ahead: Option<bool>,
-    /// How long robots have moved that way since the direction changed, as the distance that one
-    /// could have travelled, metres.
+    /// How long robots have moved that way, as the distance that one could have travelled, metres.
     turn_m: S,
-    /// How long no robot has been seen in the gap, and the limit of that time; as distances that
-    /// one could have travelled, own radii.
+    /// How long the gap was empty, and the limit of that; as distances to travel, own radii.
     idle: Option<(S, S)>,
     goes: bool,
     is_narrow: bool,
 }
 
-/// The gap, the robot and its neighbours, in the coordinates of the gap.
 struct Approach<'a, S: Scalar> {
     gap: Gap<S>,
     situation: &'a Situation<'a, Vec2<S>>,
-    /// The own position: see [`Gap::place`].
     own: Vec2<S>,
-    /// Two robots of the own size do not fit side by side.
     is_narrow: bool,
 }
 
 struct Traffic<S> {
-    /// Number of robots on this side that are nearer to the gap.
     rank: i32,
     /// A robot in the gap moves in this robot's direction.
     ahead: bool,
@@ -105,13 +84,10 @@ struct Traffic<S> {
     flows: bool,
     /// A waiting robot is nearer to the gap, and directly ahead.
     is_behind: bool,
-    /// Position of the nearest waiting robot that is before this one and too close.
+    /// The nearest waiting robot that is before this one and too close.
     crowds: Option<Vec2<S>>,
-    /// A robot is coming out of the gap on this side.
     comes_out: bool,
-    /// A robot may be waiting on the opposite side.
     opposite: bool,
-    /// One of those has priority by distance or number.
     opposite_is_nearer: bool,
     largest: S,
 }
@@ -124,10 +100,8 @@ impl<S: Scalar> RightOfWay<S> {
         self.idle.is_some() && !self.goes
     }
 
-    /// The wish of a robot whose path leads through a gap, with others nearby; `None` otherwise.
-    ///
-    /// An empty gap is left to other robots for `patience` to twice as long: see
-    /// [`DeadlockParams`](crate::orca::DeadlockParams).
+    /// The wish of a robot whose path leads through a gap; `None` otherwise. It leaves an empty gap
+    /// to others for `patience` to twice as long ([`DeadlockParams`](crate::orca::DeadlockParams)).
     pub(in crate::orca) fn wish(
         &mut self,
         situation: &Situation<'_, Vec2<S>>,
@@ -171,7 +145,6 @@ impl<S: Scalar> RightOfWay<S> {
         Some(way.normalized().map_or(Vec2::ZERO, |unit| unit * pace))
     }
 
-    /// Whether it was at a gap for one robot in the last step.
     pub(in crate::orca) const fn takes_turns(&self) -> bool {
         self.is_narrow
     }
@@ -194,8 +167,7 @@ impl<S: Scalar> RightOfWay<S> {
             return true;
         }
         match self.last_went_ahead {
-            // It is the others' turn, unless this robot got its turn before it saw them, or the
-            // passage is long and the turn not yet over.
+            // The others' turn, unless the passage is long and the own turn not yet over.
             Some(true) if traffic.ahead => self.turn_m < approach.gap.depth * S::from_i32(TURN),
             Some(true) => self.goes,
             Some(false) => !traffic.ahead,
@@ -253,7 +225,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
             opposite_is_nearer: false,
             largest: self.situation.body.radius_m,
         };
-        // Slower robots count as stationary.
         let slow = self.situation.body.max_speed_mps * S::from_milli(100);
         let tie = self.situation.body.radius_m * S::from_micro(TIE);
         let own_distance = self.own.norm();
@@ -313,7 +284,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         }
     }
 
-    /// The next waypoint on the path through the gap.
     fn way_through(&self, has_lanes: bool) -> Vec2<S> {
         let lane = self.lane(has_lanes);
         let play = self.gap.half - self.situation.body.radius_m;
@@ -326,7 +296,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         }
     }
 
-    /// The place to wait; `None`: here.
     fn place_to_wait(&self, traffic: &Traffic<S>, has_lanes: bool) -> Option<Vec2<S>> {
         let radius = self.situation.body.radius_m;
         let own = self.own;

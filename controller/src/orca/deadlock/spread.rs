@@ -1,13 +1,9 @@
-//! For flying robots whose paths all cross in one point: each leans to the right, somewhat up or
-//! down.
-
 use crate::geom::Vec3;
 use crate::orca::dimension::Situation;
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 
-/// The wish, turned by 25 degrees to the right and, depending on the robot's number, somewhat up or
-/// down.
+/// The wish, turned by 25 degrees to the right and, depending on the robot's number, up or down.
 ///
 /// Applies while a robot that is at most `horizon_s` away at joint speed lies within 45 degrees of
 /// the wish, and the goal is farther than that robot. This breaks the symmetry of paths that all
@@ -33,8 +29,7 @@ fn meets_robot<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -> b
     })
 }
 
-/// The wish turned by 25 degrees to the right as seen from above (straight up: to the east;
-/// straight down: to the west), and somewhat up or down, depending on the robot's number.
+/// Turns to the right as seen from above: to the east if straight up, to the west if straight down.
 fn turned<S: Scalar>(own: RobotId, wish: Vec3<S>) -> Vec3<S> {
     let (cos, sin) = (S::from_ratio(90_631, 100_000), S::from_ratio(42_262, 100_000));
     let east = if wish.z > S::ZERO { S::ONE } else { -S::ONE };
@@ -43,8 +38,7 @@ fn turned<S: Scalar>(own: RobotId, wish: Vec3<S>) -> Vec3<S> {
     let Some(above) = right.cross(wish).normalized() else {
         return wish;
     };
-    // Multiples of the golden ratio spread evenly over a turn of 2^32; a quarter turn of that
-    // around the right.
+    // Multiples of the golden ratio spread evenly over a turn of 2^32.
     let spread = own.0.wrapping_mul(0x9E37_79B9) >> 16;
     let share = S::from_ratio(spread.cast_signed() - (1 << 15), 1 << 16);
     let (up, level) = (share * S::PI * S::HALF).sin_cos();

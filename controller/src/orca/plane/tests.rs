@@ -11,7 +11,6 @@ fn v(x: f64, y: f64) -> V {
     V::new(x, y)
 }
 
-/// FVM's worked example: the relative velocity lies before the cut-off disc.
 #[test]
 fn worked_example_of_the_paper_to_1e_6() {
     let own = v(1.5, 1.0);
@@ -25,7 +24,6 @@ fn worked_example_of_the_paper_to_1e_6() {
 
 #[test]
 fn head_on_robots_are_sent_to_opposite_sides() {
-    // 10 m ahead, closing at 2 m/s, a little to the left: pass on the right.
     let plane = |offset: V, own: V| half_plane(own, &ball(offset, -own, 1.0), &params(20.0, 0.5)).unwrap();
     let ours = plane(v(10.0, 0.1), v(1.0, 0.0));
     let theirs = plane(v(-10.0, -0.1), v(-1.0, 0.0));
@@ -47,7 +45,6 @@ fn overlapping_and_coincident_robots_are_sent_apart() {
     };
     assert_eq!(tied(v(0.0, 3.0)), -tied(v(0.0, -3.0)));
     assert_eq!(tied(V::ZERO), v(1.0, 0.0));
-    // Touching exactly: no speed towards each other.
     let touching = half_plane(V::ZERO, &ball(v(1.0, 0.0), V::ZERO, 1.0), &p).unwrap();
     assert!(touching.penetration(V::ZERO).abs() < 1e-9);
     assert!(touching.penetration(v(0.1, 0.0)) > 0.0);
@@ -74,8 +71,6 @@ fn speed_limit_and_preference_alone() {
     assert!((fast - v(0.6, 0.8)).norm() < 1e-12);
 }
 
-/// Walls that share a corner give the same half-plane twice; rounding between the two must not
-/// contradict.
 #[test]
 fn copies_of_a_half_plane_change_nothing() {
     let mut differing = 0;
@@ -104,7 +99,6 @@ fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     assert!((hard.velocity_mps.x - 0.5).abs() < 1e-9, "{hard:?}");
 }
 
-/// Realistic half-planes of neighbours around a robot.
 fn crowd() -> impl Strategy<Value = (Vec<HalfPlane<f64>>, V, V)> {
     let pair = || (-2.0_f64..2.0, -2.0_f64..2.0).prop_map(|(x, y)| v(x, y));
     let others = proptest::collection::vec((pair(), pair(), 0.1_f64..1.0), 0..10);
@@ -140,7 +134,6 @@ fn oracle(planes: &[HalfPlane<f64>], preferred: V, speed: f64) -> (f64, f64) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// No velocity of a fine grid is clearly better than the result.
     #[test]
     fn answer_is_the_best_within_the_disc((planes, _, preferred) in crowd()) {
         let speed = 1.5;
@@ -219,8 +212,7 @@ proptest! {
             };
             let params = Params { horizon_s: S::TWO, separation_s: s(0.05), share: S::HALF };
             let plane = half_plane(Vec2::new(S::HALF, S::HALF), &other, &params).unwrap();
-            // For a velocity on the axis of the cone the border may jump from leg to leg, but the
-            // demanded change does not: compare the distance of the own velocity from the border.
+            // On the cone's axis the border may jump between legs; the demanded change does not.
             let own = plane.penetration(Vec2::new(S::HALF, S::HALF)).to_f64();
             (own - exact.penetration(v(0.5, 0.5))).abs()
         }
@@ -230,8 +222,7 @@ proptest! {
 }
 
 proptest! {
-    /// By squares and by angles the change is the same; the normal too, unless two exits are
-    /// equally long.
+    /// Normals agree too, unless two exits are equally long.
     #[test]
     fn both_methods_to_leave_the_cone_agree(
         p in (-9.0_f64..9.0, -9.0_f64..9.0),
@@ -261,7 +252,6 @@ fn shortest_vectors_still_give_half_planes() {
     let tiny = [0.0, 1e-30, 1e-23, 1e-20, 1e-15, 1e-10];
     for (reach, off) in tiny.iter().flat_map(|reach| tiny.map(|off| (*reach, off))) {
         let disc = |offset_m: Vec2<f32>, radii_m: f32| ball(offset_m, Vec2::ZERO, radii_m);
-        // A relative velocity that points at the disc's centre except for `off`, and tiny robots.
         let own = Vec2::new(500.0 - off, off);
         let far = half_plane(own, &disc(Vec2::new(1000.0, 0.0), 1.0), &params);
         let small = half_plane(own, &disc(Vec2::new(reach * 3.0, 0.0), reach), &params);

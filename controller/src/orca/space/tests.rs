@@ -12,7 +12,6 @@ fn v(x: f64, y: f64, z: f64) -> V {
     V::new(x, y, z)
 }
 
-/// The rotation about `axis` by `angle` (Rodrigues).
 fn turn(at: V, axis: V, angle: f64) -> V {
     let axis = axis.normalized().unwrap();
     let (sin, cos) = (libm::sin(angle), libm::cos(angle));
@@ -33,8 +32,6 @@ fn worked_example_of_the_paper_holds_in_any_plane() {
 
 #[test]
 fn robots_that_fly_exactly_at_each_other_turn_to_opposite_sides() {
-    // Far inside the cone, on its axis: level to the right; if one is above the other, to either
-    // side.
     for (offset, side) in [
         (v(10.0, 0.0, 0.0), v(0.0, -1.0, 0.0)),
         (v(0.0, 0.0, 10.0), v(1.0, 0.0, 0.0)),
@@ -95,7 +92,6 @@ fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     assert!((soft.penetration_mps - 0.4).abs() < 1e-9);
     let hard = solve::<_, 4>(&spaces, 1, V::ZERO, 1.0);
     assert!((hard.velocity_mps.z - 0.5).abs() < 1e-9, "{hard:?}");
-    // Contradictions among hard constraints are shared as well.
     let torn = solve::<_, 4>(&spaces, 2, V::ZERO, 1.0);
     assert!((torn.penetration_mps - 0.4).abs() < 1e-9, "{torn:?}");
     let one = solve::<_, 1>(&spaces, 0, V::ZERO, 1.0);
@@ -106,10 +102,8 @@ fn vector(most: f64) -> impl Strategy<Value = V> {
     (-most..most, -most..most, -most..most).prop_map(|(x, y, z)| v(x, y, z))
 }
 
-/// Realistic half-spaces of neighbours around a robot.
 fn crowd() -> impl Strategy<Value = (Vec<HalfSpace<V>>, V)> {
     let others = proptest::collection::vec((vector(1.0), vector(2.0), 0.1..1.0_f64), 0..10);
-    // In about one of five cases no velocity is permitted.
     let spread = 0.5..4.0_f64;
     (others, spread, vector(2.0), vector(2.0)).prop_map(|(others, spread, own, preferred)| {
         let spaces = others
@@ -123,9 +117,7 @@ fn crowd() -> impl Strategy<Value = (Vec<HalfSpace<V>>, V)> {
     })
 }
 
-/// The nearest permitted velocity: the best of all points where the distance to `preferred` can
-/// have its minimum, on zero to three of the borders and on the ball. `None` if no velocity is
-/// permitted.
+/// The best of all candidates for the nearest point, on up to three borders and on the ball.
 fn nearest_permitted(spaces: &[HalfSpace<V>], preferred: V, speed: f64) -> Option<f64> {
     let mut candidates = Vec::from([preferred, preferred.clamp_norm(speed)]);
     let onto_ball = |foot: V, flat: V| {
@@ -259,7 +251,6 @@ proptest! {
         prop_assert!(least > 1.0 - 1e-6, "{least}");
     }
 
-    /// In one horizontal plane: the same half-planes, and the same velocity if there is one.
     #[test]
     fn space_agrees_with_the_plane_in_one_plane(
         others in proptest::collection::vec((vector(4.0), vector(2.0), 0.1_f64..1.0), 0..10),
@@ -311,8 +302,7 @@ proptest! {
             (v(x.to_f64(), y.to_f64(), z.to_f64()), found.penetration_mps.to_f64())
         }
         let exact = solve::<_, 10>(&spaces, 0, preferred, 1.5);
-        // Nearly parallel borders move a corner far, but not the penetration, until only rounding
-        // is left of their angle.
+        // Nearly parallel borders move a corner far, but not the penetration.
         let sine = |one: &HalfSpace<V>, two: &HalfSpace<V>| one.normal.cross(two.normal).norm();
         let mut pairs = spaces.iter().enumerate().flat_map(|(i, one)| spaces[..i].iter().map(move |two| (one, two)));
         let q16 = if pairs.any(|(one, two)| sine(one, two) < 0.02) { 0.1 } else { 0.02 };

@@ -1,20 +1,16 @@
 //! The voxel table, computed at compile time.
 
-/// Length of a stored normal, and denominator of the levels' sines: powers of two, exact in every
-/// scalar type.
+/// Scale of normals and sines: a power of two, exact in every scalar type.
 pub(super) const ONE: i32 = 1 << 14;
 
-/// The local geometry of the velocity obstacle, sampled over the sine of its half angle and the
-/// direction from its disc's centre.
+/// Normals of the velocity obstacle by sine of its half angle and direction from its disc's centre.
 #[derive(Clone, Copy, Debug)]
 pub struct VelocityObstacleTable {
     /// Sines of the half angle, ascending from 0 to 1, in 1 / 2^14.
     pub(super) sines: &'static [u16],
-    /// Directions in each level: equal steps of x / (x + y), from perpendicular to the axis to
-    /// straight back.
+    /// Directions per level: equal steps of x / (x + y), from perpendicular to straight back.
     pub(super) directions: usize,
-    /// The outward normals at the border nearest to the points in a direction, in 1 / 2^14; by
-    /// level, then by direction. The components are along the axis, negated to be positive, and
+    /// Outward normals in 1 / 2^14, by level, then by direction: along the axis (negated) and
     /// across it.
     pub(super) normals: &'static [[i16; 2]],
 }
@@ -50,11 +46,7 @@ impl VoxelTable2k {
     };
 }
 
-/// The normal of the left leg in each level, from perpendicular to the axis (far away) to straight
-/// back (touching).
-///
-/// The half angles are twice the arc tangents of equal steps, which are denser towards a right
-/// angle. The sine of a level is that of its rounded normal.
+/// Normals of the left leg, with half angles of twice the arc tangents of equal steps.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
 const fn legs() -> [[i16; 2]; LEVELS] {
     let mut legs = [[0; 2]; LEVELS];
@@ -68,7 +60,7 @@ const fn legs() -> [[i16; 2]; LEVELS] {
     legs
 }
 
-/// The sine of each level, rounded down: the cone must not be wider than the stored normals allow.
+/// Sines are rounded down: the cone must not be wider than the stored normals allow.
 #[expect(clippy::indexing_slicing, reason = "runs at compile time")]
 const fn sines(legs: &[[i16; 2]; LEVELS]) -> [u16; LEVELS] {
     let mut sines = [0; LEVELS];
@@ -81,7 +73,6 @@ const fn sines(legs: &[[i16; 2]; LEVELS]) -> [u16; LEVELS] {
     sines
 }
 
-/// The outward normal at the border nearest to the points in each direction.
 #[expect(clippy::indexing_slicing, clippy::integer_division_remainder_used, reason = "runs at compile time")]
 const fn normals(legs: &[[i16; 2]; LEVELS]) -> [[i16; 2]; LEVELS * DIRECTIONS] {
     let mut normals = [[0; 2]; LEVELS * DIRECTIONS];
@@ -95,11 +86,11 @@ const fn normals(legs: &[[i16; 2]; LEVELS]) -> [[i16; 2]; LEVELS * DIRECTIONS] {
     normals
 }
 
-/// The normal at the border nearest to the point x before and y beside the centre.
+/// The normal for a point `x` before and `y` beside the centre.
 const fn normal(leg: [i16; 2], x: f64, y: f64) -> [i16; 2] {
     let scale = ONE as f64 / root(x * x + y * y);
     let found = [rounded(x * scale), rounded(y * scale)];
-    // The disc is nearest before the leg's own normal; rounding must not turn one past the other.
+    // Rounding must not turn the disc's normal past the leg's.
     if found[0] as i32 * leg[1] as i32 > found[1] as i32 * leg[0] as i32 { found } else { leg }
 }
 
@@ -107,11 +98,11 @@ const fn rounded(x: f64) -> i16 {
     (x + 0.5) as i16
 }
 
-/// The square root by Newton's method; std's is not available at compile time.
+/// Newton's method; std's root is not available at compile time.
 const fn root(x: f64) -> f64 {
     let mut root = 0.5 * (x + 1.0);
     let mut step = 0;
-    // Enough for 0.1 to 10^10, where another step changes nothing.
+    // Enough for 0.1 to 10^10.
     while step < 24 {
         root = 0.5 * (root + x / root);
         step += 1;

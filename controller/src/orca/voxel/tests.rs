@@ -14,7 +14,6 @@ fn v(x: f64, y: f64) -> V {
 
 const PARAMS: Params<f64> = Params { horizon_s: 2.0, separation_s: 0.05, share: 1.0 };
 
-/// Robots of 0.1 to 0.5 m within 5 m, at up to 1.5 m/s.
 fn sample(rng: &mut Rng) -> (V, MovingBall<V>) {
     let mut unit = || f64::from(rng.below(1 << 20)) / f64::from(1 << 20);
     let radii = 0.2 + 0.8 * unit();
@@ -27,7 +26,7 @@ fn sample(rng: &mut Rng) -> (V, MovingBall<V>) {
     (own, ball(offset, other, radii))
 }
 
-/// Errors against the analytic form: angles in degrees and demanded changes in (R_A + R_B) / tau.
+/// Angles in degrees, demanded changes in (R_A + R_B) / tau.
 struct Errors {
     angles: Vec<f64>,
     changes: Vec<f64>,
@@ -62,7 +61,7 @@ fn looked_up(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     half_plane_from_table(own, other, &PARAMS).unwrap()
 }
 
-/// Like [`half_plane_from_table`], with the nearest direction of the level below.
+/// Uses the nearest direction of the level below.
 fn single_node(own: V, other: &MovingBall<V>) -> HalfPlane<f64> {
     let table = VoxelTable2k::TABLE;
     let (ahead, distance) = (other.offset_m.normalized().unwrap(), other.offset_m.norm());
@@ -99,7 +98,6 @@ fn worked_example_of_the_paper_within_the_tables_error() {
     let plane = looked_up(v(1.5, 1.0), &other);
     let apart = (plane.point - v(1.707107, 0.792893)).norm();
     assert!(apart < 5e-4, "{apart}");
-    // At least the correction that the paper demands.
     assert!(plane.penetration(v(1.5, 1.0)) >= 0.292893 - 1e-6);
 }
 
@@ -123,7 +121,6 @@ fn overlap_invalid_input_and_the_discs_centre_match_the_analytic_form() {
     let stopped = Params { horizon_s: 0.0, ..PARAMS };
     let other = ball(v(3.0, 0.0), V::ZERO, 1.0);
     assert_eq!(both(V::ZERO, &other, &stopped), (None, None));
-    // Straight to the disc's centre.
     let (found, exact) = both(v(1.5, 0.0), &other, &PARAMS);
     let (found, exact) = (found.unwrap(), exact.unwrap());
     assert!((found.normal - exact.normal).norm() < 0.03 && found.normal.y < 0.0);
@@ -150,8 +147,6 @@ fn stored_normals_lie_between_backwards_and_the_leg() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
-    /// No velocity of the velocity obstacle is permitted, and the robots of a pair get opposite
-    /// half-planes.
     #[test]
     fn every_half_plane_forbids_the_whole_obstacle(seed: u64) {
         let (own, other) = sample(&mut Rng::new(seed));
@@ -159,7 +154,6 @@ proptest! {
         prop_assert!((plane.normal.norm() - 1.0).abs() < 1e-6, "{plane:?}");
         let obstacle = VelocityObstacle::new(other.offset_m, other.radii_m, 2.0).unwrap();
         let (tip, radius) = obstacle.disc();
-        // In the space of relative velocities: touches the disc, and both legs lead away from it.
         let point = plane.point - other.velocity_mps;
         let gap = (point - tip).dot(plane.normal) - radius;
         prop_assert!(gap.abs() < 1e-6, "{gap}");
@@ -179,7 +173,6 @@ proptest! {
         prop_assert!(found >= exact - 1e-6, "{found} < {exact}");
     }
 
-    /// Inside the obstacle the R-function is positive and a change is demanded; outside neither.
     #[test]
     fn signs_agree_with_the_r_function(seed: u64) {
         let (own, other) = sample(&mut Rng::new(seed));

@@ -21,10 +21,8 @@ fn walls_ahead_beside_and_touching() {
     let beside = wall(forward, [v(-50.0, 1.0), v(50.0, 1.0)], 0.5, 1.0).unwrap();
     assert!((beside.normal - v(0.0, -1.0)).norm() < 1e-9);
     assert!(beside.penetration(v(1.0, 0.49)) < 0.0 && beside.penetration(v(1.0, 0.51)) > 0.0);
-    // Touching: no nearer.
     let touching = wall(forward, [v(0.5, -1.0), v(0.5, 1.0)], 0.5, 1.0).unwrap();
     assert_eq!((touching.point, touching.normal), (V::ZERO, v(-1.0, 0.0)));
-    // A wall of length zero is a post.
     let post = wall(v(3.0, 0.1), [v(2.0, 0.0); 2], 0.5, 10.0).unwrap();
     assert!(post.normal.y > 0.9, "pass on the left leg {post:?}");
     assert!(wall(forward, [v(f64::NAN, 0.0), v(1.0, 1.0)], 0.5, 1.0).is_none());
@@ -33,8 +31,6 @@ fn walls_ahead_beside_and_touching() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// A robot that obeys a wall's half-plane does not touch it within the horizon, and a robot
-    /// that would not have touched it is hardly affected.
     #[test]
     fn a_robot_that_obeys_a_wall_does_not_touch_it(
         a in (-4.0_f64..4.0, -4.0_f64..4.0),

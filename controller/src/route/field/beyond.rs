@@ -1,5 +1,3 @@
-//! Knowledge of the land beyond the window, and the exit costs that follow from it.
-
 use super::{CostField, Query};
 use crate::cost::{Cost, EXCLUDED};
 use crate::grid::{Cell, DIAGONAL};
@@ -7,19 +5,18 @@ use crate::land::Outlook;
 
 #[derive(Clone, Copy, Default)]
 pub(in crate::route) struct Beyond<'a> {
-    /// Lower bounds of the cost from some cells.
+    /// Lower bounds of the cost.
     pub learned: &'a [(Cell, Cost)],
-    /// The land there, from the map.
     pub land: Option<&'a Outlook<'a>>,
 }
 
 impl<const CELLS: usize> CostField<CELLS> {
-    /// Makes every border cell an exit, priced by its distance to the target (eq. 10) and the known
-    /// land there, or by the learned cost if that is higher.
+    /// Makes every border cell an exit, priced by its distance to the target (eq. 10) and the land
+    /// there, or by the learned cost if that is higher.
     pub(super) fn offer_border(&mut self, query: &Query<'_>, beyond: &Beyond<'_>) {
         let Query { params, target, .. } = *query;
         let distance = |cell: Cell| cell.distance(target, params.norm);
-        // If prices would leave the range of costs, the least of them is subtracted from all.
+        // Prices that would leave the range of costs are reduced by the least of them.
         let size = u32::from(self.width) + u32::from(self.height);
         let farthest = (query.from_cell.chebyshev(target) + size) * DIAGONAL;
         let base =

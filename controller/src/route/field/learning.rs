@@ -6,10 +6,9 @@ use crate::grid::Cell;
 use crate::route::{LearnedCosts, RouteParams};
 
 impl<const CELLS: usize> CostField<CELLS> {
-    /// Weights of the eight moves on the loaded window, as [`CostField::weights`] returns them for
-    /// land without robots and visits. Learns from the search a lower bound of the cost from each
-    /// visible cell; the straight path costs `easiest` times its length. O(L w h) with a memory of
-    /// L cells.
+    /// Weights of the eight moves on the loaded window, for land without robots and visits. Learns
+    /// a lower bound of the cost from each visible cell; the straight path costs `easiest` times
+    /// its length. O(L w h) with a memory of L cells.
     ///
     /// # Errors
     /// As for [`CostField::weights`].
@@ -42,7 +41,6 @@ impl<const CELLS: usize> CostField<CELLS> {
         Ok(weights)
     }
 
-    /// The search of [`CostField::learn`], over every cell.
     #[inline(never)]
     fn solve_learning(
         &mut self,

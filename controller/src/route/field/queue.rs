@@ -1,23 +1,19 @@
-//! The queue of a search: cells in a ring of buckets by cost (Dial 1969), each bucket a linked list
-//! in arrays.
+//! A ring of buckets by cost (Dial 1969), each a linked list in arrays.
 
 pub(super) const RING: u32 = 64;
-/// End of a list, and "in no bucket". Zero, so that a zeroed queue is an empty one.
+/// Zero, so that a zeroed queue is empty.
 const NIL: u16 = 0;
 pub(super) const MOST_CELLS: usize = u16::MAX as usize;
 
-/// The name of a cell in the lists: its number plus one.
 const fn name(cell: usize) -> u16 {
     cell.wrapping_add(1) as u16
 }
 
-/// The number of a name; beyond all cells for [`NIL`].
 const fn cell(name: u16) -> usize {
     (name as usize).wrapping_sub(1)
 }
 
-/// Cells 0 to `CELLS` - 1, each in one bucket or none. Bucket numbers are unlimited; those 64 apart
-/// are one bucket. 5 bytes per cell.
+/// Cells 0 to `CELLS` - 1, each in at most one bucket. Numbers 64 apart are one bucket.
 #[derive(Clone, Debug)]
 pub(super) struct Queue<const CELLS: usize> {
     next: [u16; CELLS],
@@ -25,12 +21,11 @@ pub(super) struct Queue<const CELLS: usize> {
     /// The bucket that holds the cell plus one, or `NIL`.
     bucket: [u8; CELLS],
     heads: [u16; RING as usize],
-    /// The buckets that are not empty.
     occupied: u64,
 }
 
 impl<const CELLS: usize> Queue<CELLS> {
-    /// Empty; all zeros, so that it takes no flash in firmware.
+    /// All zeros, so that it takes no flash in firmware.
     pub(super) const fn new() -> Self {
         Self { next: [0; CELLS], previous: [0; CELLS], bucket: [0; CELLS], heads: [0; RING as usize], occupied: 0 }
     }
@@ -48,8 +43,7 @@ impl<const CELLS: usize> Queue<CELLS> {
         self.occupied == 0
     }
 
-    /// The number of the first bucket with a cell, from number `at` on, in an endless numbering of
-    /// the ring. The queue must not be empty.
+    /// The first bucket with a cell from number `at` on. The queue must not be empty.
     pub(super) const fn next_from(&self, at: u32) -> u32 {
         at.saturating_add(self.occupied.rotate_right(at & (RING - 1)).trailing_zeros())
     }
@@ -66,7 +60,7 @@ impl<const CELLS: usize> Queue<CELLS> {
         cells.map(cell)
     }
 
-    /// Inserts a cell that is in no bucket into the bucket of this number.
+    /// The cell must be in no bucket.
     #[inline]
     pub(super) fn link(&mut self, at: usize, bucket: u32) {
         let slot = bucket & (RING - 1);

@@ -1,5 +1,3 @@
-//! The three flocks.
-
 use super::waypoints::add_movers;
 use crate::medium::Faults;
 use crate::plane::{Scene, Solid, run};
@@ -13,7 +11,6 @@ use staya_controller::geom::{Position, Vec3};
 use staya_controller::push_out::PushOutParams;
 use staya_controller::scalar::Scalar;
 
-/// Starts of a loose crowd, millimetres.
 const CROWD: [[i32; 3]; 5] = [[0, 0, 0], [0, 700, 0], [600, 300, 0], [-500, -400, 0], [700, -500, 0]];
 
 fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
@@ -21,8 +18,7 @@ fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
         solids,
         land: None,
         max_speed_mps: S::ONE,
-        // The flocking laws treat robots as points; push-out behind the goal flock gives them a
-        // radius.
+        // The laws treat robots as points; push-out gives them a radius.
         apart_mm: 300,
         faults: Faults::default(),
         ticks,
@@ -32,7 +28,7 @@ fn scene<S: Scalar>(solids: &'static [Solid], ticks: u32) -> Scene<S> {
 #[inline(never)]
 pub(super) fn lattice<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     const BALL: [Solid; 1] = [Solid::Ball([6000, 900, 0], 500)];
-    // Gains low enough to be stable at ten decisions per second with a latency of 0.1 s.
+    // Stable at ten decisions per second with a latency of 0.1 s.
     let params = LatticeParams {
         alpha: Gain::critical(S::ONE),
         beta: Gain::critical(S::from_i32(4)),
@@ -75,7 +71,6 @@ pub(super) fn boids<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     let params = BoidsParams::new(S::from_milli(300), S::from_i32(30), S::from_ratio(1, 20), S::from_ratio(1, 50));
     let mut movers = Vec::new();
     add_movers(&mut movers, &CROWD, |_| BoidsGuidance::new(params, S::HALF), || Unguarded);
-    // Directions within half a circle. The different speeds are equalised in the first step.
     let ways = [[5, 0], [4, 3], [3, -4], [0, 5], [4, -3]];
     for (mover, [x, y]) in movers.iter_mut().zip(ways) {
         let tenths = |n| S::from_ratio(n, 10);

@@ -1,5 +1,3 @@
-//! Cases on the grid.
-
 use crate::grid::{Formation, GridAgent, ROBOTS, Route, Scene, TICK, Walker, run};
 use crate::land::Land;
 use crate::medium::{Faults, INBOX};
@@ -18,7 +16,6 @@ use staya_controller::wire::{
 
 const LAND: Land = Land { size: 28, roughness_log2: 2, walls: &[(9, 7, 12), (18, 14, 19)] };
 const OPERATOR: RobotId = RobotId(200);
-/// Rows 1 2 and 3 4, with robot 1 in front.
 const PLACES: [Cell; ROBOTS] = [Cell::new(0, 0), Cell::new(-3, 0), Cell::new(0, -3), Cell::new(-3, -3)];
 const EDGES: [(u16, u16); 4] = [(0, 1), (0, 2), (1, 3), (2, 3)];
 const START: Cell = Cell::new(5, 5);
@@ -36,8 +33,7 @@ pub(super) fn route<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
     run(&scene, &mut walkers, Postcard, |_, _| {}, probe)
 }
 
-/// Adds a robot in each corner whose goal is the opposite corner. It fills the caller's vector
-/// because a small part has no memory for two.
+/// Fills the caller's vector because a small part has no memory for two.
 #[inline(never)]
 fn add_travellers<S: Scalar>(walkers: &mut Vec<Walker<S, Route>, ROBOTS>) {
     let corners = [(4, 4), (23, 4), (4, 23), (23, 23)].map(|(x, y)| Cell::new(x, y));
@@ -60,7 +56,7 @@ pub(super) fn reflexive<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
 }
 
 fn template(index: usize) -> Template<ROBOTS> {
-    // The graph is valid: a test shows that the robots keep their places.
+    // A test shows that the robots keep their places.
     Template::from_graph(&PLACES, &EDGES, index, 2).unwrap_or_default()
 }
 
@@ -105,14 +101,13 @@ pub(crate) fn packets<S: Scalar, W: Wire, P: Probe<S>>(wire: W, probe: &mut P) -
     run(&scene, &mut walkers, wire, |tick, out| operator.speak(tick, out), probe)
 }
 
-/// An operator that repeats its orders, because it gets no acknowledgements.
+/// It repeats its orders, because it gets no acknowledgements.
 struct Operator<W> {
     wire: W,
     sequence: u16,
 }
 
 impl<W: Wire> Operator<W> {
-    /// Ticks in which the operator sends "stop" and "resume".
     const STOP: core::ops::Range<u32> = 60..66;
     const RESUME: core::ops::Range<u32> = 80..90;
 
@@ -121,7 +116,7 @@ impl<W: Wire> Operator<W> {
         let to = RobotId(index as u32 + 1);
         let Template { slot, offset, entries } = template(index);
         if let Ok(parts) = TemplateAssignment::split(to, 1, slot, offset, &entries) {
-            // Alternates between the two parts, because a tick has no room for both.
+            // A tick has no room for both parts.
             let turn = (tick >> 2) as usize;
             for part in parts.filter(|part| usize::from(part.part) == turn & 1) {
                 self.say(Message::Template(part), out);
@@ -143,7 +138,6 @@ impl<W: Wire> Operator<W> {
     fn say(&mut self, message: Message, out: &mut Vec<u8, INBOX>) {
         let header = Header { boot: 0, sender: OPERATOR, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
-        // A message that does not fit in this tick is sent in a later one.
         let _ = self.wire.encode(header, &message, out);
     }
 }

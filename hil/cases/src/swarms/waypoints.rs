@@ -1,5 +1,3 @@
-//! Cases in which each robot has its own waypoint.
-
 use crate::grid::{Route, workspace};
 use crate::land::Land;
 use crate::medium::Faults;
@@ -23,13 +21,12 @@ use staya_controller::wire::Postcard;
 const RADIUS_MM: i32 = 150;
 const PLANES: usize = 16;
 
-/// A pentagon with a radius of 1.5 m, slightly irregular to avoid symmetry.
+/// Radius 1.5 m, slightly irregular to avoid symmetry.
 const PENTAGON: [[i32; 3]; 5] = [[1500, 0, 0], [464, 1427, 0], [-1214, 882, 0], [-1214, -885, 0], [464, -1420, 0]];
 
 pub(super) fn config<S: Scalar>(index: usize) -> AgentConfig<S> {
     AgentConfig {
         seed: 11,
-        // Received states are one step old.
         latency: STEP,
         ..AgentConfig::new(RobotId(index as u32 + 1), S::from_milli(RADIUS_MM), STEP)
     }
@@ -39,8 +36,7 @@ fn inflation<S: Scalar>() -> StalenessInflation<S> {
     StalenessInflation { growth_mps: S::HALF, max_m: S::from_milli(300) }
 }
 
-/// Adds one stationary robot at each start. It fills the caller's vector because a small part has
-/// no memory for two.
+/// Fills the caller's vector because a small part has no memory for two.
 #[inline(never)]
 pub(super) fn add_movers<S: Scalar, G: Guidance<S>, A: Safety<S>, const R: usize>(
     movers: &mut Vec<Mover<S, G, A>, R>,
@@ -112,7 +108,6 @@ pub(super) fn fly<S: Scalar, P: Probe<S>>(probe: &mut P) -> Summary {
         for (place, height) in places.iter_mut().zip(heights) {
             let [x, y, z] = place;
             (*x, *y) = (*x * sign, *y * sign);
-            // A robot that starts low ends high.
             *z = 1400 + sign * (height - 1400);
         }
         places

@@ -1,12 +1,9 @@
-//! Measures the instructions and the stack of a step, for each canned swarm and for an agent under
-//! heavy load, and of a beacon in each wire format.
+//! Measures instructions and stack of a step, for each canned swarm and for an agent under heavy
+//! load, and of a beacon in each wire format.
 //!
 //! Prints `case scalar steps median max stack agent workspace`: counts, instructions (on a board:
-//! clock cycles), bytes. Wire formats have no scalar (`-`), and their `agent` is the state of the
-//! format.
-//!
-//! In an emulator with `-icount shift=0`, an instruction takes 1 ns, and the tick counter resolves
-//! single instructions.
+//! clock cycles), bytes. Wire formats have no scalar (`-`). In an emulator with `-icount shift=0`,
+//! an instruction takes 1 ns, and the tick counter resolves single instructions.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -37,7 +34,7 @@ mod program {
         staya_mavlink::wire::Mavlink,
     };
 
-    /// Samples for the median. If there are more steps, every second, fourth, ... step is sampled.
+    /// If there are more steps, every second, fourth, ... is sampled.
     const SAMPLES: usize = if cfg!(part = "nrf51") { 64 } else { 1024 };
 
     struct Meter {
@@ -150,10 +147,10 @@ mod program {
             swarms::<f32>("f32", &row);
             worst::<f32, 16, 32>("f32", &row);
         }
-        // Needs an FPU, and does not fit the flash without optimisation.
+        // Needs an FPU, and optimisation to fit the flash.
         #[cfg(all(part = "stm32f405", not(debug_assertions)))]
         worst::<Fast32, 16, 32>("Fast32", &row);
-        // The micro:bit's flash fits the worst cases only; `replay` runs the swarms there.
+        // The flash fits the worst cases only; `replay` runs the swarms.
         #[cfg(not(part = "nrf51"))]
         {
             swarms::<Q16>("Q16", &row);
@@ -181,7 +178,6 @@ mod program {
         [summary.agent_bytes, summary.workspace_bytes]
     }
 
-    /// Measures how `own` encodes beacons and how `other` finds and decodes their frames.
     #[inline(never)]
     fn format<W: Wire>(mut own: W, mut other: W, names: [&str; 2], row: &impl Print) {
         let (mut saying, mut hearing) = (Meter::new(), Meter::new());
@@ -211,7 +207,7 @@ mod program {
         row(decode, "-", &mut hearing, kept);
     }
 
-    /// Not inlined, like [`step`]: `cargo xtask size` finds their flash by their names.
+    /// Not inlined: `cargo xtask size` finds the flash of this function by its name.
     #[inline(never)]
     fn encode<W: Wire>(
         wire: &mut W,

@@ -1,8 +1,5 @@
-//! Measures functional voxel models: a query of each kind, the half-planes of a room, one
-//! neighbour's half-plane, and whole steps of an agent under heavy load with them.
-//!
-//! Prints `case scalar calls median max`: instructions (on a board: clock cycles). Emulated like
-//! `bench`, with `-icount shift=0`.
+//! Measures functional voxel models: queries, half-planes, and whole steps of an agent under heavy
+//! load. Prints `case scalar calls median max`: instructions (on a board: clock cycles).
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -33,7 +30,6 @@ mod program {
     const PAIRS: [(&str, &[u8]); 2] =
         [("8", include_bytes!("../../models/neighbor-8.fvm")), ("16", include_bytes!("../../models/neighbor-16.fvm"))];
     const CALLS: u32 = 256;
-    /// As many as in `bench`.
     const NEIGHBORS: usize = if cfg!(part = "nrf51") { 8 } else { 16 };
     const HALF_PLANES: usize = 2 * NEIGHBORS;
 

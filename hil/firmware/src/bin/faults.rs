@@ -1,5 +1,5 @@
-//! Fails on purpose: a panic in the first start, a processor exception in the second. The third
-//! start ends the emulator. `cargo xtask test` checks the messages on the line.
+//! Fails on purpose, for `cargo xtask test`: a panic in the first start, a processor exception in
+//! the second. The third ends the emulator.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -17,8 +17,7 @@ mod program {
         match start.boots {
             1 => panic!("on purpose on {}", start.part),
             2 => {
-                // SAFETY: unsound on purpose: the read raises the exception under test, and its
-                // value is unused.
+                // SAFETY: unsound on purpose: the read raises the exception under test.
                 let _ = unsafe { (black_box(NOWHERE) as *const u32).read_volatile() };
                 runtime::exit(1)
             }

@@ -1,5 +1,4 @@
-//! The device's end of the link: a robot with any built-in guidance law that steps on request of
-//! the host.
+//! The device's end of the link: a robot with any built-in guidance law.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -1,10 +1,8 @@
 //! Links only if no panic is reachable from a step of any behaviour, from received packets, or from
-//! the device's end of the link. It is not meant to be run.
+//! the device's end of the link; not meant to be run.
 //!
-//! The panic handler calls an undefined function. Linking therefore fails unless the optimiser has
-//! removed the handler. All inputs go through `black_box`, so that the optimiser cannot rely on the
-//! inputs of the canned swarms. `cargo xtask plants` shows that a program with a panic does not
-//! link.
+//! The panic handler calls an undefined function, which the optimiser must remove. All inputs go
+//! through `black_box`. `cargo xtask plants` shows that a program with a panic does not link.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -15,7 +13,6 @@ mod program {
     use core::hint::black_box;
     #[cfg(not(part = "nrf51"))]
     use staya_cases::Opaque;
-    // Only its inbox is smaller: the length makes no difference to the code.
     #[cfg(not(part = "nrf51"))]
     use staya_link::robot::{Large as Robot, SMALL_INBOX};
     #[cfg(part = "nrf51")]
@@ -23,8 +20,7 @@ mod program {
     use staya_link::session::{About, Meter, Reaction, Session, content_bytes};
 
     pub fn run() -> ! {
-        // The small part's flash fits the link with its configurable agent, but not each kind of
-        // agent as well.
+        // The small part's flash fits the link, but not each kind of agent as well.
         #[cfg(not(part = "nrf51"))]
         swarms();
         link();

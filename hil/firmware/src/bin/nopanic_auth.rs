@@ -1,6 +1,5 @@
-//! Links only if no panic is reachable from the authenticating wire formats for any input:
-//! `Sealed`, `Signed`, and MAVLink's signatures on raw frames. Works like `nopanic`, which covers
-//! the controller's steps; it is not meant to be run.
+//! Links only if no panic is reachable from the authenticating wire formats: `Sealed`, `Signed`,
+//! and MAVLink's signatures on raw frames. Works like `nopanic`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);

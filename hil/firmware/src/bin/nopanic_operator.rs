@@ -1,6 +1,6 @@
-//! Links only if no panic is reachable from optional parts of a firmware that `nopanic` does not
-//! cover: an operator who takes over a robot, parameter changes at runtime, every number format of
-//! a part, and MAVLink messages of any kind. Works like `nopanic`; it is not meant to be run.
+//! Links only if no panic is reachable from optional parts of a firmware: an operator who takes
+//! over a robot, parameter changes at runtime, every number format, MAVLink messages of any kind.
+//! Works like `nopanic`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -10,8 +10,7 @@ staya_firmware::panics_do_not_link!();
 mod program {
     use core::hint::black_box;
 
-    // Built for one part only: the many kinds of agents take minutes per part, and their panics do
-    // not depend on the part.
+    // For one part only: the many kinds of agents take minutes per part.
     #[cfg(part = "stm32f405")]
     mod agents {
         use core::hint::black_box;
@@ -21,7 +20,6 @@ mod program {
         use staya_controller::time::Instant;
         use staya_controller::wire::Wire;
 
-        /// Changes an agent's parameters and lets an operator take it over.
         struct Operator;
 
         impl<S: Scalar> Probe<S> for Operator {
@@ -32,7 +30,6 @@ mod program {
                 now: Instant,
                 workspace: &mut G::Workspace,
             ) -> Outputs<S> {
-                // Always `None`, which the optimiser does not know.
                 let mut commanded = black_box(None::<Agent<S, Commanded<S, G>, N, A, W>>);
                 if let Some(agent) = black_box(&mut commanded) {
                     tune(agent);

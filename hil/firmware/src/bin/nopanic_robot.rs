@@ -1,6 +1,5 @@
-//! Links only if no panic is reachable from `staya-robot` (packets over a line, wheels, odometry,
-//! range scans) or from the models of `staya-voxel`, in `f32` and in Q16.16. Works like `nopanic`,
-//! which covers the controller's steps; it is not meant to be run.
+//! Links only if no panic is reachable from `staya-robot` or from the models of `staya-voxel`, in
+//! `f32` and in Q16.16. Works like `nopanic`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -56,7 +55,7 @@ mod program {
         Duration::from_micros(black_box(1))
     }
 
-    /// Stub of every pin and line: accepts everything and returns any value that the traits allow.
+    /// A stub that accepts everything and returns any value.
     struct Pin;
 
     impl PinError for Pin {

@@ -1,5 +1,4 @@
-//! Runs the canned swarms and prints `case number hash steps` for each. `tests/golden/cases.txt`
-//! has the lines that every target must reproduce.
+//! Runs the canned swarms and prints the lines of `tests/golden/cases.txt`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 staya_firmware::entry!(program::run);
@@ -16,7 +15,7 @@ mod program {
         staya_cases::every(print);
         #[cfg(part = "nrf51")]
         for &case in staya_cases::Case::ALL {
-            // Fixed point only: the part has no FPU, and flash for one number format only.
+            // No FPU, and flash for one number format only.
             use staya_controller::scalar::Q16;
             let summary = case.run::<Q16, _>(&mut staya_cases::Unmeasured);
             print(case.name(), "Q16", &summary);

@@ -1,4 +1,4 @@
-//! Drivers of the parts: each file sets up one part, with the same functions.
+//! One file per part, with the same functions.
 
 #[cfg(part = "nrf51")]
 mod nrf51;
@@ -18,12 +18,10 @@ pub use stm32f405::*;
 #[cfg(not(any(part = "stm32f405", part = "nrf51", part = "riscv32")))]
 compile_error!("no part has this target triple: see the table in src/lib.rs");
 
-/// Clock rates after the set-up.
 #[derive(Clone, Copy)]
 pub struct Clocks {
-    /// Processor clock, hertz.
     pub clock_hz: u32,
-    /// Rate of [`ticks`], hertz.
+    /// Rate of [`ticks`].
     pub tick_hz: u32,
 }
 
@@ -31,7 +29,7 @@ pub struct Clocks {
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const BAUD: u32 = number(env!("STAYA_BAUD"));
 
-/// Parses a decimal number that the build script has checked.
+/// Parses a number that the build script has checked.
 #[cfg(any(part = "stm32f405", part = "nrf51"))]
 const fn number(text: &str) -> u32 {
     let mut rest = text.as_bytes();

@@ -1,8 +1,7 @@
-//! nRF51822 of the micro:bit (version 1): UART0 on P0.24 (TX) and P0.25 (RX), which its debug chip
-//! forwards over USB.
+//! nRF51822 of the micro:bit (version 1): UART0 on P0.24 (TX) and P0.25 (RX).
 //!
-//! 16 MHz from the crystal, or from the internal oscillator if the crystal does not start. The part
-//! has no SysTick, so TIMER0 counts ticks. Sections: Nordic's nRF51 Series Reference Manual 3.0.
+//! 16 MHz from the crystal, or else from the internal oscillator. Without a SysTick, TIMER0 counts
+//! ticks. Sections: Nordic's nRF51 Series Reference Manual 3.0.
 
 use super::{BAUD, Clocks};
 use crate::ring::Ring;
@@ -10,23 +9,22 @@ use cortex_m::peripheral::{NVIC, SCB};
 use nrf_pac::{CLOCK, FICR, GPIO, Interrupt, TIMER0, UART0, WDT, gpio, timer, uart, wdt};
 
 pub const NAME: &str = "nrf51";
-/// Bytes between interrupt and main loop: 22 ms at 115200 baud.
+/// 22 ms at 115200 baud.
 pub static RECEIVED: Ring<256> = Ring::new();
 
 const HZ: u32 = 16_000_000;
 const TX_PIN: usize = 24;
 const RX_PIN: usize = 25;
-/// Reads of an oscillator's status flag before it counts as missing: tens of milliseconds.
+/// Reads of a status flag before an oscillator counts as missing: tens of milliseconds.
 const PATIENCE: u32 = 50_000;
-/// Ticks after which sending a byte is given up: two seconds, because the host of an emulator may
-/// read slowly.
+/// Two seconds per byte: the host of an emulator may read slowly.
 const SEND_PATIENCE: u32 = 2 * HZ;
-/// Capture and compare channels of TIMER0: one for [`ticks`], one to wake the main loop.
+/// Channels of TIMER0: for [`ticks`], and to wake the main loop.
 const NOW: usize = 0;
 const WAKE: usize = 1;
-/// Ticks between two wake-ups of the main loop: 0.26 s.
+/// 0.26 s.
 const WAKE_EVERY: u32 = 1 << 22;
-/// Size of the receiver's FIFO (section 29.4): the most bytes taken in one interrupt.
+/// Section 29.4: the most bytes taken in one interrupt.
 const FIFO: usize = 6;
 
 pub fn start() -> Clocks {
@@ -38,8 +36,7 @@ pub fn start() -> Clocks {
     Clocks { clock_hz: HZ, tick_hz: HZ }
 }
 
-/// QEMU has a constant device number, one word later than Nordic's registers, whose numbers are
-/// random.
+/// QEMU has a constant device number, one word after Nordic's registers, which hold random ones.
 pub fn is_emulated() -> bool {
     FICR.deviceid(0).read() == 3 && FICR.deviceid(1).read() == 0x1234_5678
 }
@@ -56,7 +53,6 @@ fn timer0() {
     unsafe { NVIC::unmask(Interrupt::TIMER0) };
 }
 
-/// Wakes the main loop and schedules the next wake-up.
 // SAFETY: nrf-pac's interrupt table has this name for it; a handler without arguments.
 #[unsafe(export_name = "TIMER0")]
 extern "C" fn on_timer() {
@@ -79,8 +75,7 @@ fn uart0() {
     UART0.pseltxd().write_value(TX_PIN as u32);
     UART0.pselrxd().write_value(RX_PIN as u32);
     UART0.baudrate().write(|baud| {
-        // The rate as a fraction of 2^32 of 16 MHz, in steps of 2^12: gives the values of the
-        // manual's table.
+        // A fraction of 2^32 of 16 MHz, in steps of 2^12: the values of the manual's table.
         let fraction = (((BAUD as u64) << 32) / HZ as u64) as u32;
         let rounded = fraction.wrapping_add(0x800) & 0xFFFF_F000;
         baud.set_baudrate(uart::vals::Baudrate::from_bits(rounded));
@@ -98,8 +93,7 @@ fn uart0() {
     unsafe { NVIC::unmask(Interrupt::UART0) };
 }
 
-/// Wakes [`send`], which checks the event itself, and empties the receiver's FIFO. The event is
-/// cleared first, so that a byte received meanwhile sets it again.
+/// Wakes [`send`] and empties the FIFO. The event is cleared first: later bytes set it.
 // SAFETY: nrf-pac's interrupt table has this name for it; a handler without arguments.
 #[unsafe(export_name = "UART0")]
 extern "C" fn on_uart() {
@@ -111,8 +105,7 @@ extern "C" fn on_uart() {
             break;
         }
         if !RECEIVED.has_room() {
-            // The emulator refills the FIFO as fast as it is read, which would starve the main
-            // loop. The rest stays in the FIFO until the main loop has caught up.
+            // The emulator refills the FIFO at once, which would starve the main loop.
             UART0.intenclr().write(|int| int.set_rxdrdy(true));
             break;
         }
@@ -129,7 +122,7 @@ extern "C" fn on_uart() {
     }
 }
 
-/// Called when the main loop has taken all bytes: resumes reception if the ring was full.
+/// The main loop has taken all bytes: resumes reception if the ring was full.
 pub fn listen() {
     UART0.intenset().write(|int| int.set_rxdrdy(true));
 }
@@ -150,7 +143,7 @@ pub fn send(byte: u8) -> bool {
     true
 }
 
-/// Nothing is left to send when [`send`] returns.
+/// [`send`] returns when nothing is left to send.
 pub fn flush() {}
 
 /// With interrupts masked, an interrupt after the check still ends the wait.
@@ -162,8 +155,7 @@ pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     });
 }
 
-/// Four seconds of the 32 kHz clock, which the watchdog starts itself. It pauses while a debugger
-/// halts the core.
+/// Four seconds of the 32 kHz clock; paused while a debugger halts the core.
 pub fn start_watchdog() {
     WDT.config().write(|config| {
         config.set_sleep(wdt::vals::Sleep::Run);

@@ -1,29 +1,24 @@
-//! RISC-V as QEMU's machine `virt`: a 16550 UART behind the platform-level interrupt controller.
-//! Only emulated.
-//!
-//! Addresses: QEMU's `hw/riscv/virt.c`. UART: National's data sheet PC16550D. PLIC: RISC-V's
-//! specification 1.0.0.
+//! QEMU's machine `virt`: a 16550 UART (PC16550D) behind the platform-level interrupt controller
+//! (PLIC 1.0.0). Addresses: QEMU's `hw/riscv/virt.c`.
 
 use super::Clocks;
 use crate::ring::Ring;
 use riscv::register::{mie, minstret, mstatus};
 
 pub const NAME: &str = "riscv32";
-/// Bytes between interrupt and main loop.
 pub static RECEIVED: Ring<1024> = Ring::new();
 
-/// `minstret` counts instructions, reported as 1 ns each, as with `-icount shift=0`.
+/// `minstret` counts instructions, 1 ns each as with `-icount shift=0`.
 const TICK_HZ: u32 = 1_000_000_000;
-/// Size of the FIFO: the most bytes taken in one interrupt.
+/// The most bytes taken in one interrupt.
 const FIFO: usize = 16;
-/// FIFO control: enabled, both sides cleared, an interrupt at 14 bytes or after a pause of four
-/// byte times. The emulator delivers that many bytes at once, which is several times as fast as
-/// single bytes.
+/// Enabled, both sides cleared, an interrupt at 14 bytes or after a pause of four byte times:
+/// several times as fast in the emulator as single bytes.
 const FIFO_ON: u8 = 0b1100_0111;
-/// Line control: access to the divisor in place of the data, and 8 bits per byte.
+/// Access to the divisor in place of the data, and 8 bits per byte.
 const SHOW_DIVISOR: u8 = 1 << 7;
 const EIGHT_BITS: u8 = 3;
-/// Polls of the transmitter before a byte is dropped: seconds, because the host may read slowly.
+/// Seconds: the host may read slowly.
 const SEND_PATIENCE: u32 = 5_000_000;
 
 #[derive(Clone, Copy)]
@@ -52,7 +47,7 @@ const UART_FIFO: Register<u8> = Register::at(UART + 2);
 const UART_LINE: Register<u8> = Register::at(UART + 3);
 const UART_STATUS: Register<u8> = Register::at(UART + 5);
 const UART_IRQ: u32 = 10;
-/// Line status: byte received, byte lost, transmitter ready, all bytes sent.
+/// Byte received, byte lost, transmitter ready, all bytes sent.
 const RECEIVED_ONE: u8 = 1;
 const OVERRUN: u8 = 1 << 1;
 const HAS_ROOM: u8 = 1 << 5;
@@ -69,8 +64,7 @@ const TEST: Register<u32> = Register::at(0x0010_0000);
 const TEST_RESET: u32 = 0x7777;
 
 pub fn start() -> Clocks {
-    // The divisor has no effect on the speed, but it determines the pause after which a partly
-    // filled FIFO is delivered.
+    // The divisor determines only the pause after which a partly filled FIFO is delivered.
     UART_LINE.write(SHOW_DIVISOR | EIGHT_BITS);
     UART_DATA.write(1);
     UART_INTERRUPTS.write(0); // the divisor's upper half
@@ -92,7 +86,6 @@ pub fn is_emulated() -> bool {
     true
 }
 
-/// Handler of the only external interrupt, the UART's.
 #[riscv_rt::core_interrupt(riscv::interrupt::Interrupt::MachineExternal)]
 fn uart() {
     let source = PLIC_CLAIM.read();
@@ -124,7 +117,6 @@ pub fn send(byte: u8) -> bool {
     has_room
 }
 
-/// Waits until the last byte has left.
 pub fn flush() {
     let _ = (0..SEND_PATIENCE).any(|_| UART_STATUS.read() & ALL_SENT != 0);
 }

@@ -1,8 +1,6 @@
-//! STM32F405: USART1 on PA9 (TX) and PA10 (RX), 168 MHz from the crystal or the internal
-//! oscillator.
+//! STM32F405: USART1 on PA9 (TX) and PA10 (RX), 168 MHz from crystal or internal oscillator.
 //!
-//! USART1 on these pins is also the port of the part's boot loader and the first serial port of
-//! QEMU's `netduinoplus2`. Sections and tables: ST's reference manual RM0090.
+//! The boot loader and QEMU's `netduinoplus2` use USART1 too. Sections and tables: ST's RM0090.
 
 use super::{BAUD, Clocks, number};
 use crate::ring::Ring;
@@ -11,7 +9,7 @@ use cortex_m::peripheral::{NVIC, SCB, SYST, syst::SystClkSource};
 use stm32_metapac::{DBGMCU, FLASH, GPIOA, IWDG, Interrupt, RCC, USART1, flash, gpio, iwdg, rcc};
 
 pub const NAME: &str = "stm32f405";
-/// Bytes between interrupt and main loop: 90 ms at 115200 baud.
+/// 90 ms at 115200 baud.
 pub static RECEIVED: Ring<1024> = Ring::new();
 
 const HSI_HZ: u32 = 16_000_000;
@@ -19,19 +17,18 @@ const HSE_HZ: u32 = number(env!("STAYA_HSE_HZ"));
 const PLL_HZ: u32 = 168_000_000;
 const TX_PIN: usize = 9;
 const RX_PIN: usize = 10;
-/// Reads of an oscillator's status bit before it counts as missing: tens of milliseconds at 16 MHz.
-/// Crystals need a few milliseconds, the PLL 0.3.
+/// Reads of a status bit before an oscillator counts as missing: tens of milliseconds.
 const PATIENCE: u32 = 50_000;
-/// Polls of the transmitter before a byte is dropped: more than one byte's time at 9600 baud.
+/// More than one byte's time at 9600 baud.
 const SEND_PATIENCE: u32 = 200_000;
-/// SysTick counts down from here, 24 bits.
+/// 24 bits.
 const SYSTICK_TOP: u32 = 0x00FF_FFFF;
 static WRAPS: AtomicU32 = AtomicU32::new(0);
 
 pub fn start() -> Clocks {
     let clock_hz = clocks();
     usart(if clock_hz == PLL_HZ { PLL_HZ / 2 } else { HSI_HZ });
-    // SAFETY: the only code that takes the core's peripherals; it runs once, at the start.
+    // SAFETY: nothing else takes the core's peripherals; it runs once, at the start.
     let mut core = unsafe { cortex_m::Peripherals::steal() };
     core.SYST.set_clock_source(SystClkSource::Core);
     core.SYST.set_reload(SYSTICK_TOP);
@@ -45,13 +42,12 @@ pub fn start() -> Clocks {
     }
 }
 
-/// The debug unit's device code is 0x413 on every STM32F405; QEMU has no debug unit and reads 0.
+/// The device code is 0x413 on every STM32F405; QEMU has no debug unit and reads 0.
 pub fn is_emulated() -> bool {
     DBGMCU.idcode().read().0 == 0
 }
 
-/// Sets the processor to 168 MHz from the crystal, else from the internal oscillator; else leaves
-/// it at 16 MHz. Returns the clock, hertz.
+/// 168 MHz from either oscillator, else 16 MHz. Returns the clock, hertz.
 fn clocks() -> u32 {
     RCC.cr().modify(|cr| cr.set_hseon(true));
     let crystal = comes(|| RCC.cr().read().hserdy());
@@ -90,12 +86,12 @@ fn clocks() -> u32 {
     if comes(|| RCC.cfgr().read().sws() == rcc::vals::Sw::PLL1_P) { PLL_HZ } else { HSI_HZ }
 }
 
-/// Polls a condition a bounded number of times; whether it came true.
+/// Polls a bounded number of times; whether the condition came true.
 fn comes(mut is_so: impl FnMut() -> bool) -> bool {
     (0..PATIENCE).any(|_| is_so())
 }
 
-/// Sets up USART1: 8 bits, no parity, one stop bit, an interrupt per received byte.
+/// 8 bits, no parity, one stop bit, an interrupt per received byte.
 fn usart(bus_hz: u32) {
     RCC.ahb1enr().modify(|enable| enable.set_gpioaen(true));
     RCC.apb2enr().modify(|enable| enable.set_usart1en(true));
@@ -124,7 +120,7 @@ fn usart(bus_hz: u32) {
     unsafe { NVIC::unmask(Interrupt::USART1) };
 }
 
-/// One interrupt per byte. Reading SR, then DR, clears every flag that can have raised it.
+/// Reading SR, then DR, clears every flag that can have raised it.
 // SAFETY: the PAC's interrupt table has this name for it; a handler without arguments.
 #[unsafe(export_name = "USART1")]
 extern "C" fn on_usart() {
@@ -170,7 +166,6 @@ pub fn send(byte: u8) -> bool {
     has_room
 }
 
-/// Waits until the last byte has left.
 pub fn flush() {
     let _ = (0..SEND_PATIENCE).any(|_| USART1.sr().read().tc());
 }
@@ -184,8 +179,7 @@ pub fn sleep_unless(is_due: impl FnOnce() -> bool) {
     });
 }
 
-/// The independent watchdog: its own oscillator of 32 kHz (17 to 47), divided by 64, 2048 steps:
-/// four seconds (section 21.3). It pauses while a debugger halts the core.
+/// Its own 32 kHz (17 to 47) / 64, 2048 steps: four seconds (section 21.3); pauses in the debugger.
 pub fn start_watchdog() {
     DBGMCU.apb1fzr().modify(|freeze| freeze.set_iwdg(true));
     // The watchdog accepts the two values only once its oscillator runs.

@@ -1,5 +1,3 @@
-//! Both ends over a faulty line, in simulated time.
-
 mod bench;
 mod world;
 
@@ -25,8 +23,7 @@ fn decide(controller: &mut impl Controller, step: &StepInputs<'_>) -> StepResult
     controller.result().expect("a robot")
 }
 
-/// Runs a thousand steps over a line and compares them with a controller without one. Returns the
-/// bench for its counters.
+/// Compares a thousand steps with a controller without a line.
 fn thousand_steps<B: Controller + Default>(
     faults: Faults,
     seed: u64,
@@ -161,7 +158,6 @@ fn nothing_new(tick: u32) -> StepInputs<'static> {
     }
 }
 
-/// Median and 99th percentile of the time of a step, microseconds.
 fn median_and_p99(faults: Faults, seed: u64) -> (u64, u64) {
     let mut bench = Bench::<Large>::new(Faults { lost: 0, ..faults }, seed);
     bench.port.set_limits(Limits { resend_after_us: 500_000, give_up_after_us: 10_000_000 });
@@ -178,7 +174,7 @@ fn median_and_p99(faults: Faults, seed: u64) -> (u64, u64) {
     (took_us[999], took_us[1979])
 }
 
-/// 5 % of the frames are lost in each direction, so that one step in a hundred is sent three times.
+/// One step in a hundred is sent three times.
 #[test]
 fn lost_frame_costs_round_trips_and_not_the_longest_wait() {
     for delay_us in [1, 2000, 20_000] {
@@ -203,7 +199,6 @@ fn silent_device_times_out_with_the_request_and_the_waiting_time() {
     assert_eq!(error, PortError::Silent { asked, attempts: 60, waited_us });
     assert_eq!(std::format!("{error}"), "no answer to greeting within 1200 ms (60 attempts)");
     assert_eq!(bench.port.poll(bench.now), Ok(Next::Idle));
-    // In the middle of a run, the error names the step.
     let mut bench = Bench::<Small>::new(Faults::default(), 1);
     bench.configure(&in_plane(), None);
     bench.there.faults = deaf;

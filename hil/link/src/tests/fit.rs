@@ -1,5 +1,3 @@
-//! Inputs that exceed the capacities of a device.
-
 use crate::capacities::{Capacities, window_cells};
 use crate::fit::{Cut, WindowTooLarge};
 use crate::robot::{Controller, Small};
@@ -64,7 +62,6 @@ fn nearest_obstacles_stay_in_their_order() {
     };
     assert_eq!(kept(4), far_first);
     assert_eq!(kept(3), far_first[1..]);
-    // Of two equally near obstacles, the first one is kept.
     assert_eq!(kept(2), [ball(3.0), ball(1.0)]);
     assert_eq!(kept(1), [ball(1.0)]);
     assert!(kept(0).is_empty());
@@ -102,7 +99,6 @@ fn terrain_is_never_cut() {
 }
 
 proptest! {
-    /// The kept inbox is a suffix that starts with a frame and fits; one more frame would not.
     #[test]
     fn inbox_is_cut_between_frames(frames in vec(vec(1_u8..4, 1..8), 0..12), bytes in 0_u16..70) {
         let inbox: Vec<u8> = frames.iter().flat_map(|frame| frame.iter().copied().chain([0])).collect();

@@ -1,5 +1,3 @@
-//! Frames: COBS compared with the `cobs` crate, damage, noise, lengths.
-
 use crate::frame::{Deframer, Frame, FrameError, OVERHEAD, VERSION, frame_len};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -33,7 +31,6 @@ fn raw(kind: u8, body: &[u8]) -> Vec<u8> {
     super::frame(kind, &Raw(body))
 }
 
-/// Bodies with runs of zeros and of other bytes of about the length of a block.
 fn body() -> impl Strategy<Value = Vec<u8>> {
     let run = (prop_oneof![Just(0_u8), 1..=u8::MAX], 0_usize..520);
     vec(run, 0..4).prop_map(|runs| {
@@ -99,7 +96,7 @@ fn every_changed_byte_and_every_truncation_is_detected() {
 #[test]
 fn lost_delimiter_costs_only_its_own_frame() {
     let (a, b) = (raw(1, &[1, 2, 3]), raw(2, &[4, 5]));
-    // The leading zero of the second frame ends the first.
+    // The leading zero of the second ends the first.
     let mut stream = a[..a.len() - 1].to_vec();
     stream.extend(&b);
     let both = [Ok((1, std::vec![1, 2, 3])), Ok((2, std::vec![4, 5]))];

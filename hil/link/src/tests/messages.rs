@@ -1,5 +1,3 @@
-//! The messages: round trips, and the size of the longest of each.
-
 use super::{frame, read};
 use crate::capacities::Capacities;
 use crate::message::*;
@@ -130,7 +128,7 @@ fn longest_setup_fits() {
     let configure = Configure { seq: u16::MAX, setup, task: Some(Task::Waypoints(waypoints)) };
     let bytes = frame(kind::CONFIGURE, &configure);
     let len = content(&bytes);
-    // Spare room for parameters that take more bytes than their defaults.
+    // Spare room for larger parameters.
     assert!(len + 100 <= MAX_CONFIGURE, "{len}");
     assert_eq!(read::<Configure>(kind::CONFIGURE, &bytes), configure);
 }
@@ -163,7 +161,6 @@ fn longest_step_fits_its_buffer() {
     let capacities = super::hello(session.hello()).capacities;
     assert_eq!(usize::from(capacities.inbox_bytes), crate::robot::LARGE_INBOX);
     assert!(bytes.len() <= capacities.frame_bytes());
-    // It is parsed and refused for its content, not for its length.
     let answers = super::answers(&mut session, &bytes);
     let fault: Fault = read(kind::FAULT, &answers[0]);
     assert_eq!(fault.kind, FaultKind::NotConfigured);
@@ -171,7 +168,7 @@ fn longest_step_fits_its_buffer() {
 
 #[test]
 fn session_sizes_match_the_documentation() {
-    // Pointers and alignment make them a little larger on a 64-bit host than on the parts.
+    // Pointers are larger on a 64-bit host.
     let small = size_of::<Session<Small, { super::SMALL }>>();
     assert!(small <= 9 * 1024, "{small}");
     let large = size_of::<Session<Large, { super::LARGE }>>();
@@ -327,7 +324,6 @@ fn robots_speak_any_format_unless_built_for_a_single_one() {
     let (mut large, mut small) = (Large::new(), Small::new());
     let mut lean = Robot::<Q16, CELLS, VISITS, 8, 16, 16, Postcard>::new();
     let postcard = large.configure(&setup(Format::Postcard), None, &[]);
-    // The packet format is not part of the state.
     assert_eq!(large.configure(&setup(Format::Mavlink), None, &[]), postcard);
     let in_small = small.configure(&setup(Format::Mavlink), None, &[]);
     assert_eq!(lean.configure(&setup(Format::Postcard), None, &[]), in_small);

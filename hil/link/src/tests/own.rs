@@ -1,5 +1,3 @@
-//! Robots with user-defined guidance laws.
-
 use super::{ABOUT, LARGE, SMALL, answers, frame, in_plane, large, read, stepped};
 use crate::message::{Configured, Fault, FaultKind, Greeting, NumberFormat, Step, StepInputs, Token, kind};
 use crate::own::{OwnLarge, OwnSmall};
@@ -72,7 +70,6 @@ fn inputs(tick: u32) -> StepInputs<'static> {
     }
 }
 
-/// Steps a session and its shadow; returns the last eastward speed, m/s.
 fn run<C: Controller, const N: usize>(mut session: Session<C, N>, mut shadow: C, ticks: u16) -> f32 {
     let mut law = [0; 16];
     let law = postcard::to_slice(&LAW, &mut law).expect("fits");
@@ -114,11 +111,9 @@ fn laws_that_cannot_be_parsed_are_refused() {
     };
     let mut own = Session::<OwnLarge<East>, LARGE>::new(OwnLarge::new(), ABOUT);
     drop(answers(&mut own, &greeting()));
-    // No law, too few bytes, too many bytes.
     fault(&answers(&mut own, &configure(&())));
     fault(&answers(&mut own, &configure(&5_u8)));
     fault(&answers(&mut own, &configure(&(LAW, 1_u8))));
-    // Firmware with the built-in laws does not accept a user-defined one.
     let mut ours = large();
     drop(answers(&mut ours, &greeting()));
     fault(&answers(&mut ours, &configure(&LAW)));

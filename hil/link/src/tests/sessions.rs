@@ -1,5 +1,3 @@
-//! The device's end alone: its answers to requests that are out of order.
-
 use super::{answers, frame, hello, in_plane, large, on_grid, read, small, stepped};
 use crate::frame::VERSION;
 use crate::message::*;
@@ -67,11 +65,9 @@ fn requests_out_of_order_are_reported_or_ignored() {
     assert_eq!((kind, seq), (FaultKind::Gap, 1));
     assert_eq!(text, "request 1 after 65535");
     assert_eq!(answers(&mut session, &step(0)).len(), 1, "after the wrap");
-    // Older than the last request: the host no longer waits for an answer.
     assert!(answers(&mut session, &step(u16::MAX)).is_empty());
     assert!(answers(&mut session, &configure(u16::MAX - 5)).is_empty());
     assert_eq!(session.counts().stale, 2);
-    // A fault in between does not discard the answer.
     let _ = answers(&mut session, &step(7));
     assert_eq!(stepped(&answers(&mut session, &step(0))[0]).seq, 0);
 }
@@ -94,7 +90,6 @@ fn setups_that_do_not_fit_are_refused_with_the_reason() {
             assert_eq!(text, "a search of 225 cells, and room for 169");
         }
     }
-    // A refused configuration leaves the device unconfigured.
     let (kind, ..) = fault(&answers(&mut session, &step(7)));
     assert_eq!(kind, FaultKind::NotConfigured);
     let mut setup = in_plane();
@@ -226,7 +221,6 @@ fn meter_runs_only_around_each_step() {
 }
 
 proptest! {
-    /// After any bytes, answered or not, the session still works as before.
     #[test]
     fn session_works_after_any_bytes(
         noise in vec(vec(any::<u8>(), 0..200), 0..20),

@@ -1,4 +1,3 @@
-//! Robots, their sensor readings, and devices that run in threads.
 #![allow(dead_code, reason = "each test program uses its own part")]
 
 use staya_controller::agent::{
@@ -22,7 +21,7 @@ use staya_runner::{Channel, DeviceConfig, LineFaults};
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::net::UnixStream;
 
-/// Configures a robot in the plane with ORCA or, for every other number, one on the grid.
+/// Robots use ORCA in the plane or, for every other number, the grid.
 pub fn config(robot: u32, device: &str) -> DeviceConfig {
     let agent = AgentConfig {
         seed: 7,
@@ -55,7 +54,7 @@ pub fn config(robot: u32, device: &str) -> DeviceConfig {
     }
 }
 
-/// Sensor readings of a robot in one tick, which do not depend on its decisions.
+/// Sensor readings that do not depend on the robot's decisions.
 pub struct Scene {
     wire: AnyWire,
     inbox: Vec<u8>,
@@ -71,7 +70,7 @@ impl Scene {
         Self::over(Format::Postcard, robot, tick)
     }
 
-    /// Like `new`, with neighbours that use this packet format.
+    /// Neighbours use this packet format.
     pub fn over(format: Format, robot: u32, tick: u32) -> Self {
         let cell = Cell::new((tick / 5) as i16, (robot % 7) as i16);
         let mm = [(tick * 60) as i32, robot as i32 * 300, 0];
@@ -93,7 +92,7 @@ impl Scene {
         scene
     }
 
-    /// Adds a beacon of a near robot; some beacons are damaged.
+    /// Some beacons are damaged.
     pub fn hear(&mut self, sender: u32, tick: u32) {
         let [x, y, _] = self.position.mm;
         let aside = (sender % 5) as i32 * 700 - 1400;
@@ -139,7 +138,7 @@ pub fn now(tick: u32) -> Instant {
     Instant::from_micros(tick * 100_000)
 }
 
-/// Misbehaviour of a device at these steps, counted over its whole life.
+/// Misbehaviour at these steps, counted over the device's whole life.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mischief {
     pub resets_at: Option<u32>,
@@ -157,7 +156,6 @@ pub fn device<B: Controller + Send + 'static, const N: usize>(
     Channel::new(ours.try_clone().expect("a second handle"), ours)
 }
 
-/// Runs a device at its end of a line.
 pub fn live<B: Controller, const N: usize>(
     new: fn() -> B,
     part: &'static str,

@@ -1,10 +1,5 @@
-<<<<<<< HEAD
-//! The velocity obstacle of two robots (Tolok et al., FVM): how far half-planes from the voxel
-//! template are off the exact ones, and [`pictures`] of what the paper draws.
-=======
 //! The velocity obstacle of two robots (Tolok et al., FVM): errors of half-planes from the voxel
 //! template, and [`pictures`] of the paper's figures.
->>>>>>> com5
 
 pub mod pictures;
 mod view;

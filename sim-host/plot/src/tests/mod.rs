@@ -10,12 +10,7 @@ use super::canvas::{Anchor, Canvas, Shape};
 use super::font;
 use std::path::Path;
 
-<<<<<<< HEAD
-/// Fails unless the text is XML with one root, every element closed, and no bare special
-/// characters.
-=======
 /// XML with one root, every element closed, and no bare special characters.
->>>>>>> com5
 fn assert_well_formed(svg: &str) {
     let mut open: Vec<&str> = Vec::new();
     let mut roots = 0;

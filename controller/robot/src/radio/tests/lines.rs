@@ -1,5 +1,3 @@
-//! Lines whose readiness and errors the test controls.
-
 use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write, WriteReady};
 #[cfg(feature = "async")]
 pub use halves::half;

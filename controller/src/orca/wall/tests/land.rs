@@ -1,5 +1,3 @@
-//! Robots that obey the walls of the grid.
-
 use crate::geom::Vec2;
 use crate::grid::{BLOCKED, Cell, GridFrame, Window};
 use crate::obstacle::{Obstacle, grid_walls};
@@ -23,7 +21,6 @@ proptest! {
                 if is_edge || rng.below(100) < share { BLOCKED } else { 1 }
             })
             .collect();
-        // It starts in the middle, on a free cell.
         bytes[usize::from(6 * side + 6)] = 1;
         let frame = GridFrame { origin_m: Vec2::ZERO, cell_m: 1.0 };
         let window = Window::new(&bytes, Cell::new(0, 0), side, side).unwrap();

@@ -1,5 +1,3 @@
-//! A host and a device with a faulty line between them, in simulated time.
-
 use crate::message::{StepInputs, StepResult};
 use crate::port::{Event, Limits, Next, Port, PortError};
 use crate::robot::Controller;
@@ -11,14 +9,14 @@ use std::vec::Vec;
 
 pub const LIMITS: Limits = Limits { resend_after_us: 20_000, give_up_after_us: 1_200_000 };
 
-/// Faults of one direction, probabilities in percent.
+/// Probabilities in percent.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Faults {
     pub lost: u32,
     pub repeated: u32,
     pub flipped: u32,
     pub cut: u32,
-    /// Longest delay; frames may overtake each other.
+    /// Frames may overtake each other.
     pub delay_us: u32,
 }
 
@@ -138,7 +136,6 @@ impl<B: Controller + Default> Bench<B> {
         }
     }
 
-    /// Greets and configures until the device has confirmed.
     pub fn configure(&mut self, setup: &Setup, task: Option<&Task>) -> u64 {
         loop {
             self.port.greet(self.now);

@@ -1,5 +1,3 @@
-//! Sensor readings of a moving robot.
-
 use staya_controller::agent::*;
 use staya_controller::geom::{Position, Vec2, Vec3};
 use staya_controller::grid::{Cell, Window};
@@ -23,21 +21,19 @@ pub fn inbox(tick: u32, now: Instant) -> Vec<u8> {
     let header = Header { boot: 0, sender: RobotId(2), sequence: tick as u16 };
     let mut out = heapless::Vec::<u8, 128>::new();
     encode(header, &Message::Beacon(beacon), &mut out).expect("fits");
-    // Every ninth beacon is damaged.
     if tick.is_multiple_of(9) {
         out[10] ^= 1;
     }
     out.to_vec()
 }
 
-/// The world of a reference robot without faults, which runs next to the one behind the line.
+/// A reference robot without faults.
 pub struct World {
     pub position: Position,
     pub velocity: Vec3<f32>,
     pub cell: Cell,
 }
 
-/// Inputs of the robot in one step.
 pub struct Scene {
     pub now: Instant,
     pub inbox: Vec<u8>,
