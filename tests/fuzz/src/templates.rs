@@ -130,7 +130,7 @@ fn carried(part: TemplateAssignment) -> TemplateAssignment {
     let mut out = Bounded::<u8, MAX_FRAME_LEN>::new();
     let message = Message::Template(part);
     encode(HEADER, &message, &mut out).expect("every message fits");
-    let frame = decode(&out[..out.len() - 1]).expect("what is sent is received");
+    let frame = decode(&out[..out.len() - 1]).expect("a sent frame is intact");
     match frame.message {
         Message::Template(part) if message == Message::Template(part.clone()) => part,
         other => panic!("sent {message:?}, received {other:?}"),
