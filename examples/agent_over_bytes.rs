@@ -74,7 +74,7 @@ fn main() {
         }
         now = now + TICK;
         ticks += 1;
-        assert!(ticks < 1000, "somebody never arrives");
+        assert!(ticks < 1000, "a robot never arrives");
     }
     println!("both arrived after {:.1} s; the least gap was {least_gap_m:.3} m", f64::from(ticks) * 0.05);
     println!("{bytes} bytes went through the pipe, {refused} damaged frames were refused");

@@ -56,7 +56,7 @@ fn main() {
     println!("the nearest neighbour is {least:.2} to {most:.2} m away, the spacing is {SPACING_M} m");
     println!("velocities differ from the reference by {off_by:.3} m/s at most");
     assert!(least > 0.7 * SPACING_M && most < 1.2 * SPACING_M, "no lattice");
-    assert!(off_by < 0.02, "somebody does not follow");
+    assert!(off_by < 0.02, "a robot does not follow");
 }
 
 fn decide(params: &LatticeParams<f64>, robots: &[Robot], own: usize, lead: &Robot) -> Vec3<f64> {

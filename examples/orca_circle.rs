@@ -66,7 +66,7 @@ fn main() {
             println!("{:4.1} s: robot 1 at ({x:5.2}, {y:5.2})", f64::from(steps) * STEP_S);
         }
         steps += 1;
-        assert!(steps < 1000, "somebody never arrives");
+        assert!(steps < 1000, "a robot never arrives");
     }
     println!("all {ROBOTS} arrived after {:.1} s", f64::from(steps) * STEP_S);
     println!("the least gap between two of them was {:.1} mm", least_gap_m * 1000.0);

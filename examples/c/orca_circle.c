@@ -81,7 +81,7 @@ int main(void)
             arrived += distance(place[i], goal[i]) < 0.05f;
         }
         if (steps > 1000) {
-            fprintf(stderr, "somebody never arrives\n");
+            fprintf(stderr, "a robot never arrives\n");
             return 1;
         }
     }

@@ -83,7 +83,7 @@ impl RunArgs {
         let stop = Stop::on_ctrl_c()?;
         let from = self.checkpoint.from.as_ref().map(|path| Checkpoint::open(path, &scenario)).transpose()?;
         if let Some(from) = &from
-            && self.outputs.begins_anew()
+            && self.outputs.is_recorded()
         {
             eprintln!("the files of --record and --mcap start after tick {}", from.tick());
         }
@@ -99,7 +99,7 @@ impl RunArgs {
         if global.json {
             print_json(&summary)?;
         } else {
-            print(&summary.table(&out)?)?;
+            print(&summary.table(&out))?;
         }
         Ok(Ended::by(&stop))
     }

@@ -53,7 +53,7 @@ def commanded(staya_path, ticks):
 
 
 def crowd():
-    """Robots on a grid, each with another one's start as its goal."""
+    """Robots on a grid; the goal of each is the start of another robot."""
     places = 1.5 * np.stack(np.meshgrid(np.arange(32.0), np.arange(32.0)), axis=-1).reshape(-1, 2)[:COUNT]
     return places, np.random.default_rng(1).permutation(places)
 

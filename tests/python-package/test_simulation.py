@@ -100,7 +100,7 @@ def test_orders_change_goals_parameters_and_the_radio(scenario):
         sim.set_goal(99, [0, 0])
     with pytest.raises(ValueError, match="unknown variant"):
         sim.order("gaol", place_m=[0, 0, 0])
-    with pytest.raises(ValueError, match=r"loss: .*is no probability"):
+    with pytest.raises(ValueError, match=r"loss: .*is not a probability"):
         sim.set_radio(loss=2)
 
 

@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_that_differ_are_told() {
+    fn rows_that_differ_are_reported() {
         let table = "a f32 1 2\nb f32 3 4\n";
         assert!(foreign(table, "b f32 3 4\n").is_empty());
         assert_eq!(foreign(table, "a f32 1 2\nb f32 3 5\n"), ["b f32 3 5"]);

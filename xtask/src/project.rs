@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const MAKE: Tools = Tools { packages: &["make"], programs: &["make"] };
-/// Parts of `staya new`, and what their code is compiled for.
+/// Parts of `staya new`, and the targets of their code.
 const PARTS: [(&str, &str); 4] = [
     ("stm32f405", "thumbv7em-none-eabihf"),
     ("rp2350", "thumbv8m.main-none-eabihf"),

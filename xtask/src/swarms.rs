@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_row_that_differs_or_is_missing_is_told() {
+    fn every_row_that_differs_or_is_missing_is_reported() {
         let table = ["a f32 1 2", "b f32 3 4"];
         assert!(differences(&table, &table).is_empty());
         let got = differences(&table, &["a f32 1 2", "b f32 9 4"]);
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_or_in_another_order_is_told() {
+    fn missing_and_reordered_lines_are_reported() {
         let part = &PARTS[0];
         let panic = "\0..faults.rs:20: on purpose on stm32f405..\0";
         let trap = "\0..exception of the processor at 0x08000b1a..\0";

@@ -324,7 +324,7 @@ fn run<G: for<'a> Guidance<f32, Input<'a>: From<InCells<'a, f32>>>>(
         bodies.iter_mut().for_each(Body::roll);
         check(bodies);
     }
-    panic!("nobody arrives: {:?}", bodies.iter().map(|b| b.axle).collect::<Vec<_>>());
+    panic!("no robot arrives: {:?}", bodies.iter().map(|b| b.axle).collect::<Vec<_>>());
 }
 
 #[test]

@@ -45,7 +45,7 @@ impl<S: Scalar, G> CellFollower<S, G> {
         self.speed_mps
     }
 
-    pub(super) fn decide_anew(&mut self) {
+    pub(super) fn discard_decision(&mut self) {
         self.last = None;
     }
 

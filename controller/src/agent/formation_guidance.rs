@@ -356,7 +356,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         let mut asks = Vec::new();
         let mut stays = false;
         let weights = if let Some(guide) = &guide {
-            self.router.begin_anew();
+            self.router.forget_route();
             list::extend(&mut asks, self.ask_pace(leader, guide.lag));
             status.is_off_place = self.pace.waits();
             status.is_at_goal &= guide.has_arrived;
@@ -370,10 +370,10 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         } else {
             // Wait only for robots that follow this one and still move: a separated part of the
             // formation would wait for ever for robots that reached the goal first.
-            let goes_on = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
+            let is_under_way = |mode: Mode| mode.gives_way() && mode != Mode::Arrived;
             let able = found.members.iter();
             let able = able.filter(|Member { seen, .. }| {
-                !goes_alone && goes_on(seen.mode) && comes_after(input, seen.id, seen.leader)
+                !goes_alone && is_under_way(seen.mode) && comes_after(input, seen.id, seen.leader)
             });
             let behind = able.map(|member| {
                 let off = member.seen.cell - (cell + member.offset);

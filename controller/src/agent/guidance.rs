@@ -154,7 +154,7 @@ pub trait Teamwork {
 
     /// Handles a part of a formation template; returns whether it was accepted. The flag reports
     /// that the sender changed or restarted.
-    fn assign_template(&mut self, _part: &TemplateAssignment, _is_anew: bool) -> bool {
+    fn assign_template(&mut self, _part: &TemplateAssignment, _is_restarted: bool) -> bool {
         false
     }
 

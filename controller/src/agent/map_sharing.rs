@@ -46,7 +46,7 @@ struct Progress {
 }
 
 impl Progress {
-    fn goes_on(&mut self, cell: Cell, goal: Cell) -> bool {
+    fn makes_progress(&mut self, cell: Cell, goal: Cell) -> bool {
         let before = self.way.replace((cell, goal));
         if before.is_none_or(|(_, old)| old != goal) {
             *self = Self { way: self.way, least: u64::MAX, idle: 0, patience: PATIENCE };
@@ -146,7 +146,7 @@ impl<S: Scalar, G: Guidance<S>, const T: usize> Guidance<S> for MapSharing<G, T>
         if let Some((cell, window)) = here.on_grid().and_then(|grid| Some((grid.cell.cell, grid.window?))) {
             map.land.see(&window, cell);
             let land: &dyn FarLand = &map.land;
-            let land = map.progress.goes_on(cell, input.goal).then_some(land);
+            let land = map.progress.makes_progress(cell, input.goal).then_some(land);
             return self.inside.decide(&GuidanceInput { land, ..*input }, here, rng, workspace);
         }
         self.inside.decide(input, here, rng, workspace)

@@ -133,8 +133,8 @@ impl<const CELLS: usize, const M: usize, const F: usize> PublishedFormation<CELL
             return (window.get(next) != Some(BLOCKED)).then_some(next);
         }
         let params = RouteParams { a2: Gain::ZERO, ..self.route };
-        let nobody = core::iter::empty();
-        let ways = field.weights::<0>(&params, window, seen.cell, neighbor.target, nobody, None).ok()?;
+        let no_robots = core::iter::empty();
+        let ways = field.weights::<0>(&params, window, seen.cell, neighbor.target, no_robots, None).ok()?;
         let cell_of = |id: RobotId| input.neighbor(id).map(|third| third.cell);
         let price = sums_of_other(self.formation.gain, (member, own), &self.template.entries, cell_of);
         ways.plus(&price).best().map(|dir| seen.cell + dir.offset())
@@ -274,11 +274,11 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize> Guidance<S> 
         // Lines 9 to 23.
         let sum = sum_of_deviations(cell + self.choice.offset(), &found.members);
         let is_leader = input.neighbors.iter().any(|other| other.leader == input.id);
-        let (ask, goes_on) = self.keep((cell, target), (is_leader, sum), &found);
+        let (ask, continues) = self.keep((cell, target), (is_leader, sum), &found);
         let ask = ask.filter(|_| self.leader.is_some()).map(|kind| Ask { to: self.leader, kind });
         list::extend(&mut decision.asks, ask);
         list::extend(&mut decision.asks, self.ask_others(input, &found).into_iter().flatten());
-        let stands = self.is_stopped && !goes_on;
+        let stands = self.is_stopped && !continues;
         decision.status = Status {
             waits_for: stands.then_some(Wait::Stopped),
             recovers: !stands,

@@ -178,7 +178,7 @@ fn repeated_replayed_and_own_frames_are_refused() {
     assert_eq!(hear(&bytes(2, 0, 7, &[beacon(2)]), 1), (0, 1), "a duplicate");
     assert_eq!(hear(&bytes(2, 0, 9, &[beacon(3)]), 2), (1, 0));
     assert_eq!(hear(&bytes(2, 0, 8, &[beacon(4)]), 3), (1, 0), "late, but not seen yet");
-    assert_eq!(hear(&bytes(2, 1, 0, &[beacon(6)]), 4), (1, 0), "it started anew");
+    assert_eq!(hear(&bytes(2, 1, 0, &[beacon(6)]), 4), (1, 0), "it restarted");
     assert_eq!(hear(&bytes(2, 0, 10, &[beacon(7)]), 5), (0, 1), "from before its start");
     let own = core::mem::take(&mut own);
     let out = agent.step(&inputs(&FLAT, Cell::new(5, 5), &own.concat()), tick(6), &mut ws);
@@ -278,7 +278,7 @@ fn stops_are_passed_up_the_leader_chain_hop_by_hop() {
     });
     let request = passed_on.expect("a request to the leader");
     assert_eq!((request.to, request.origin, request.kind), (RobotId(1), RobotId(3), RequestKind::Stop));
-    assert_ne!(agent.mode(), Mode::Hold, "who follows goes on following");
+    assert_ne!(agent.mode(), Mode::Hold, "a follower continues");
 }
 
 #[test]

@@ -134,7 +134,7 @@ fn counters_of_unknown_senders_start_at_the_floor() {
     assert_eq!(guard.admit(1, 49), Freshness::Replayed);
     assert_eq!(guard.admit(1, 50), Freshness::New);
     assert!(guard.import(2, 7));
-    assert_eq!(guard.admit(2, 8), Freshness::New, "who is known is known");
+    assert_eq!(guard.admit(2, 8), Freshness::New, "a known sender stays known");
 }
 
 proptest! {

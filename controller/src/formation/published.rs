@@ -175,7 +175,7 @@ mod tests {
                 .collect()
         };
         assert_eq!(leaders(1), [0, 1, 2, 1, 2, 3]);
-        assert_eq!(leaders(3), [0, 1, 1, 1, 1, 1], "who knows all follows the first");
+        assert_eq!(leaders(3), [0, 1, 1, 1, 1, 1], "a robot that knows all follows the first");
     }
 
     #[test]
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(price(Dir::East), 0, "back into its place");
         assert_eq!(price(Dir::West), Gain::ONE.of(5 * 2 * UNIT), "two cells off by all five");
         let alone = sums_of_other(Gain::ONE, (other, PLACES[0]), &template.entries, |_| None);
-        assert_eq!(alone.get(Dir::West), Gain::ONE.of(2 * UNIT), "by oneself alone");
+        assert_eq!(alone.get(Dir::West), Gain::ONE.of(2 * UNIT), "alone");
     }
 
     #[test]

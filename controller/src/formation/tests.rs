@@ -108,8 +108,8 @@ fn costs_restart_for_each_direction_and_point_to_the_place() {
     assert_eq!(price.get(Dir::East), crate::cost::TICK);
     let by_top = distances(&params, Cell::new(5, 10), Some(Cell::new(7, 10)), &[]);
     assert_eq!(by_top.get(Dir::East), crate::cost::TICK);
-    let nobody = distances(&params, Cell::new(5, 10), None, &[]);
-    assert_eq!(nobody, crate::cost::Weights::new([0; 8]));
+    let alone = distances(&params, Cell::new(5, 10), None, &[]);
+    assert_eq!(alone, crate::cost::Weights::new([0; 8]));
 }
 
 #[test]
@@ -181,7 +181,7 @@ fn a_robot_near_its_place_stays_rather_than_leave_it() {
     let place = Cell::new(3, 3);
     assert!(should_stay(Cell::new(3, 3), place, Dir::East));
     assert!(!should_stay(Cell::new(2, 3), place, Dir::East));
-    assert!(!should_stay(Cell::new(1, 3), place, Dir::West), "too far off to rest");
+    assert!(!should_stay(Cell::new(1, 3), place, Dir::West), "too far away to rest");
 }
 
 #[test]

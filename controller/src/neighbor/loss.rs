@@ -72,7 +72,7 @@ impl LossEstimate {
             ((u32::from(part) + 1) << 16).checked_div(u32::from(whole) + 2).map_or(1 << 16, u64::from)
         };
         let (begins, ends) = (chance(self.gaps, self.frames), chance(self.ended, self.lost));
-        let goes_on = (1_u64 << 16).saturating_sub(ends);
+        let continues = (1_u64 << 16).saturating_sub(ends);
         let per_minute = MINUTE_US.checked_div(period.as_micros()).map_or(0, i32::unsigned_abs);
         let neighbors = u16::try_from(neighbors).unwrap_or(u16::MAX);
         // Expected gaps of at least this many periods in a minute, Q24.
@@ -82,7 +82,7 @@ impl LossEstimate {
             if alarms <= FALSE_ALARMS || silence >= longest {
                 return silence.min(longest);
             }
-            alarms = alarms.saturating_mul(goes_on) >> 16;
+            alarms = alarms.saturating_mul(continues) >> 16;
         }
         longest
     }
@@ -99,17 +99,17 @@ mod tests {
     struct Radio {
         rng: Rng,
         begins: f64,
-        goes_on: f64,
+        continues: f64,
         is_lost: bool,
     }
 
     impl Radio {
-        fn new(seed: u64, begins: f64, goes_on: f64) -> Self {
-            Self { rng: Rng::keyed(seed, 0, 0, 0), begins, goes_on, is_lost: false }
+        fn new(seed: u64, begins: f64, continues: f64) -> Self {
+            Self { rng: Rng::keyed(seed, 0, 0, 0), begins, continues, is_lost: false }
         }
 
         fn loses(&mut self) -> bool {
-            let chance = if self.is_lost { self.goes_on } else { self.begins };
+            let chance = if self.is_lost { self.continues } else { self.begins };
             self.is_lost = f64::from(self.rng.next_u32()) < chance * f64::from(u32::MAX);
             self.is_lost
         }
@@ -138,9 +138,9 @@ mod tests {
 
     #[test]
     fn patience_grows_with_loss_and_bursts() {
-        let patiences = [(0.0, 0.0), (0.1, 0.1), (0.3, 0.3), (0.05, 0.7)].map(|(begins, goes_on)| {
+        let patiences = [(0.0, 0.0), (0.1, 0.1), (0.3, 0.3), (0.05, 0.7)].map(|(begins, continues)| {
             let mut estimate = LossEstimate::new();
-            false_alarms(&mut Radio::new(1, begins, goes_on), 20_000, &mut estimate).1
+            false_alarms(&mut Radio::new(1, begins, continues), 20_000, &mut estimate).1
         });
         assert!(patiences[0] <= 10 && patiences[1] <= 11 && (9..=13).contains(&patiences[2]), "{patiences:?}");
         assert!((20..=40).contains(&patiences[3]), "{patiences:?}");
@@ -148,12 +148,12 @@ mod tests {
 
     #[test]
     fn a_working_robot_is_not_taken_for_lost() {
-        for (seed, (begins, goes_on)) in (0..).zip([(0.01, 0.01), (0.1, 0.1), (0.3, 0.3), (0.02, 0.6), (0.4, 0.4)]) {
-            let mut radio = Radio::new(seed, begins, goes_on);
+        for (seed, (begins, continues)) in (0..).zip([(0.01, 0.01), (0.1, 0.1), (0.3, 0.3), (0.02, 0.6), (0.4, 0.4)]) {
+            let mut radio = Radio::new(seed, begins, continues);
             let mut estimate = LossEstimate::new();
             // 16,700 robot-minutes with one neighbour; the limit allows 1.7 alarms.
             let (alarms, patience) = false_alarms(&mut radio, 1_000_000, &mut estimate);
-            assert!(alarms <= 8, "{alarms} alarms at {begins} {goes_on}, patience {patience}");
+            assert!(alarms <= 8, "{alarms} alarms at {begins} {continues}, patience {patience}");
             assert!(patience < 60);
         }
     }

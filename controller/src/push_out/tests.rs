@@ -176,7 +176,7 @@ fn robots_in_one_place_separate_in_opposite_directions() {
         let way = tie::<f64>(RobotId(1), RobotId(2));
         assert!(step(1, 2).xy().dot(way) > 0.9, "{model:?}");
         assert!(step(2, 1).xy().dot(way) < -0.9, "{model:?}");
-        assert_eq!(step(1, 1), v(1.0, 0.5), "oneself is in nobody's way");
+        assert_eq!(step(1, 1), v(1.0, 0.5), "a robot is not in its own way");
     }
 }
 

@@ -97,7 +97,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         if self.target != Some(target) {
             self.target = Some(target);
             self.plan.clear();
-            self.begin_anew();
+            self.forget_route();
         }
         if self.here != Some(cell) {
             let made = self.here.and_then(|before| Dir::between(before, cell)).unwrap_or_default();
@@ -113,7 +113,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
         }
         let distance = cell.distance_squared(target);
         if distance == 0 {
-            self.begin_anew();
+            self.forget_route();
         } else if distance < self.least {
             self.least = distance;
             self.idle = 0;
@@ -122,7 +122,7 @@ impl<const M: usize, const L: usize> Router<M, L> {
     }
 
     /// Clears the knowledge of the route.
-    pub fn begin_anew(&mut self) {
+    pub fn forget_route(&mut self) {
         self.learned.clear();
         self.easiest = u8::MAX;
         self.least = u64::MAX;

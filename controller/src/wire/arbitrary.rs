@@ -13,7 +13,7 @@ pub fn robot() -> impl Strategy<Value = RobotId> {
     prop_oneof![0..300_u32, any::<u32>()].prop_map(RobotId)
 }
 
-pub fn somebody() -> impl Strategy<Value = RobotId> {
+pub fn sender() -> impl Strategy<Value = RobotId> {
     robot().prop_map(|id| RobotId(id.0.max(1)))
 }
 
@@ -22,7 +22,7 @@ pub fn cell() -> impl Strategy<Value = Cell> {
 }
 
 pub fn header() -> impl Strategy<Value = Header> {
-    (any::<u8>(), somebody(), any::<u16>()).prop_map(|(boot, sender, sequence)| Header { boot, sender, sequence })
+    (any::<u8>(), sender(), any::<u16>()).prop_map(|(boot, sender, sequence)| Header { boot, sender, sequence })
 }
 
 fn mode() -> impl Strategy<Value = Mode> {

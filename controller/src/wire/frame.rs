@@ -180,12 +180,12 @@ impl fmt::Display for EncodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Full => f.write_str("the outbox has less room than the frame needs"),
-            Self::NoSender => f.write_str("the sender in the header is nobody: robots' numbers begin at 1"),
+            Self::NoSender => f.write_str("the header has no sender; robot numbers begin at 1"),
             Self::Robot(id) => {
                 write!(f, "robot number {} is too large for the format; give the robot a smaller one", id.0)
             }
             Self::Exhausted => {
-                f.write_str("the format's counter has ended; start the robot anew, or give the swarm a new key")
+                f.write_str("the format's counter has ended; restart the robot, or give the swarm a new key")
             }
         }
     }
@@ -235,20 +235,20 @@ impl fmt::Display for DecodeError {
             Self::TooLong => {
                 return write!(f, "the frame has more than {} bytes before its delimiter", MAX_FRAME_LEN - 1);
             }
-            Self::Cobs => "the frame's stuffing does not end with it, or a zero lies within",
+            Self::Cobs => "the frame's COBS encoding does not end with the frame, or contains a zero",
             Self::Crc => "the frame's CRC is wrong: damaged or cut",
             Self::Version(version) => {
                 return write!(f, "the frame is of version {version}, not {VERSION}; update the older side");
             }
             Self::Unsigned => "the frame has no tag or signature; give its sender the key",
-            Self::Forged => "the frame's tag or signature is not of this key",
-            Self::Replayed => "the frame was recorded: seen before, or older than what was",
-            Self::Ahead => "the frame is authentic, but of a time too far ahead",
+            Self::Forged => "the frame's tag or signature belongs to another key",
+            Self::Replayed => "the frame is replayed: seen before, or older than a seen one",
+            Self::Ahead => "the frame is authentic, but its time is too far ahead",
             Self::NoRoom => "the frame is authentic, but there is no room to remember its sender",
-            Self::Body => "the frame is sound, but has no header and message that are known",
+            Self::Body => "the frame is intact, but its header or message is unknown",
             Self::Trailing => "bytes follow the message in the frame",
-            Self::NoSender => "the frame is sound, but its sender is nobody",
-            Self::Foreign => "the frame is sound, but none of the swarm's messages",
+            Self::NoSender => "the frame is intact, but has no sender",
+            Self::Foreign => "the frame is intact, but not a message of the swarm",
         })
     }
 }

@@ -43,14 +43,14 @@ pub enum AskError {
     /// The maximum number of requests is pending.
     Full,
     /// The addressee is [`RobotId::NONE`], which cannot acknowledge.
-    Nobody,
+    NoAddressee,
 }
 
 impl core::fmt::Display for AskError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::Full => "too many requests are on their way; wait until some are acknowledged or expire",
-            Self::Nobody => "a request to nobody: robots' numbers begin at 1",
+            Self::Full => "too many requests are pending; wait until some are acknowledged or expire",
+            Self::NoAddressee => "the request has no addressee; robot numbers begin at 1",
         })
     }
 }
@@ -121,7 +121,7 @@ impl<const P: usize> Requests<P> {
     /// after the last send, but never before its first send.
     ///
     /// # Errors
-    /// [`AskError::Full`] if `P` requests are pending, [`AskError::Nobody`] for [`RobotId::NONE`].
+    /// [`AskError::Full`] if `P` requests are pending, [`AskError::NoAddressee`] for [`RobotId::NONE`].
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn ask(
         &mut self,
@@ -132,7 +132,7 @@ impl<const P: usize> Requests<P> {
         now: Instant,
     ) -> Result<u8, AskError> {
         if !to.is_some() {
-            return Err(AskError::Nobody);
+            return Err(AskError::NoAddressee);
         }
         let number = self.free_number();
         let new = Pending {

@@ -37,7 +37,7 @@ pub(crate) fn capacities(neighbors: usize, half_planes: usize, obstacles: usize)
 /// Checks the robot id and the packet format.
 pub(crate) fn check(setup: &Setup) -> Result<(), Refusal> {
     if setup.agent.id == RobotId::NONE {
-        return Err(Refusal::Nobody);
+        return Err(Refusal::NoRobot);
     }
     Ok(())
 }

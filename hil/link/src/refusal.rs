@@ -10,7 +10,7 @@ pub enum Refusal {
     /// The device is not configured.
     NotConfigured,
     /// The setup has no robot id.
-    Nobody,
+    NoRobot,
     /// The firmware does not speak this packet format.
     Format(Format),
     /// The guidance law does not accept the task.
@@ -37,7 +37,7 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotConfigured => f.write_str("not configured"),
-            Self::Nobody => f.write_str("a setup for nobody: numbers begin at 1"),
+            Self::NoRobot => f.write_str("the setup has no robot number; numbers begin at 1"),
             Self::Format(format) => {
                 write!(f, "this firmware was built without {}", format.name())
             }

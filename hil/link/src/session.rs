@@ -331,7 +331,7 @@ impl<C: Controller, const CONTENT: usize> Core<C, CONTENT> {
     fn refused(&mut self, seq: u16, refusal: Refusal) -> Reaction<'_> {
         let kind = match refusal {
             Refusal::NotConfigured => FaultKind::NotConfigured,
-            Refusal::Nobody | Refusal::Format(_) | Refusal::Task | Refusal::Law => FaultKind::Setup,
+            Refusal::NoRobot | Refusal::Format(_) | Refusal::Task | Refusal::Law => FaultKind::Setup,
             Refusal::Search { .. } | Refusal::Obstacles { .. } => FaultKind::Capacity,
             Refusal::Nonsense => FaultKind::Malformed,
         };

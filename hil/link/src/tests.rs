@@ -76,7 +76,7 @@ pub fn answers<B: crate::robot::Controller, const N: usize>(session: &mut Sessio
         match session.receive(*byte, &mut ()) {
             Reaction::None => {}
             Reaction::Answer(frame) => answers.push(frame.to_vec()),
-            Reaction::Restart => panic!("nobody asked for it"),
+            Reaction::Restart => panic!("no restart was requested"),
         }
     }
     answers

@@ -48,7 +48,7 @@ pub enum Cause {
     #[error("the firmware is for `{said}`, not for `{expected}`")]
     OtherPart { expected: &'static str, said: String },
     #[error(
-        "it runs `{said}`, this program steps `{expected}`: build firmware and program from the same source, and flash it anew"
+        "it runs `{said}`, this program steps `{expected}`: build firmware and program from the same source, and flash the firmware again"
     )]
     OtherProgram { expected: String, said: String },
     #[error(

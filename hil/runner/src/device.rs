@@ -14,7 +14,7 @@ pub enum Device {
 
 /// Text that does not denote a device.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{text}` is no device: {what}")]
+#[error("`{text}` is not a device: {what}")]
 pub struct DeviceError {
     /// The whole text.
     pub text: String,
@@ -82,7 +82,7 @@ mod tests {
             for piece in pieces {
                 assert!(error.contains(piece), "{text}: {error}");
             }
-            assert!(error.starts_with(&format!("`{text}` is no device")), "{error}");
+            assert!(error.starts_with(&format!("`{text}` is not a device")), "{error}");
         }
     }
 }

@@ -77,10 +77,10 @@ impl Fleet {
             let (robot, device) = (config.setup.agent.id, config.device.clone());
             let reader = std::mem::replace(&mut channel.read, Box::new(std::io::empty()));
             let (sender, epoch) = (sender.clone(), fleet.epoch);
-            let goes_on = Arc::clone(&fleet.readers);
+            let is_reading = Arc::clone(&fleet.readers);
             std::thread::Builder::new()
                 .name(format!("robot {}", robot.0))
-                .spawn(move || read(reader, index, epoch, &sender, &goes_on))
+                .spawn(move || read(reader, index, epoch, &sender, &is_reading))
                 .map_err(|error| FleetError { robot, device, cause: Box::new(Cause::Thread(error)) })?;
             let now_us = fleet.now_us();
             fleet.units.push(Unit::new(config, channel, &options, now_us));
@@ -216,10 +216,10 @@ fn read(
     index: usize,
     epoch: std::time::Instant,
     sender: &Sender<Arrival>,
-    goes_on: &AtomicBool,
+    is_reading: &AtomicBool,
 ) {
     let mut buffer = [0; 2048];
-    while goes_on.load(Ordering::Relaxed) {
+    while is_reading.load(Ordering::Relaxed) {
         let bytes = match reader.read(&mut buffer) {
             Ok(count) => buffer.get(..count).unwrap_or(&[]).to_vec(),
             Err(error) => match error.kind() {

@@ -23,11 +23,11 @@ pub struct Note {
 pub enum NoteError {
     #[error("{}: {source}", .path.display())]
     Read { path: PathBuf, source: std::io::Error },
-    #[error("{} is no ELF file of 32 bits", .path.display())]
+    #[error("{} is not a 32-bit ELF file", .path.display())]
     NoElf { path: PathBuf },
     #[error(
-        "{} has no session of the link: it is another program than `lockstep` and than what `staya_firmware::lockstep!` makes, or older \
-         than this program; build it anew",
+        "{} has no session of the link: it is neither `lockstep` nor made by `staya_firmware::lockstep!`, or it is older \
+         than this program; build it again",
         .path.display()
     )]
     NoSession { path: PathBuf },

@@ -141,7 +141,7 @@ fn emulators_end_with_their_fleet_even_on_panic() {
     let (sender, receiver) = std::sync::mpsc::channel();
     let panicking = std::thread::spawn(move || {
         let fleet = Fleet::start(configs(), options()).expect("they start");
-        sender.send(fleet.processes()).expect("somebody listens");
+        sender.send(fleet.processes()).expect("the receiver exists");
         panic!("in the middle of a run");
     });
     let processes = receiver.recv().expect("two of them");
@@ -187,7 +187,7 @@ fn killed_runner_leaves_no_emulator() {
     let said = BufReader::new(runner.stdout.take().expect("piped")).lines();
     let mut said = said.map_while(Result::ok);
     let process = said.find_map(|line| line.strip_prefix("emulator ")?.parse().ok());
-    let process = process.expect("it says whom it started");
+    let process = process.expect("it names the emulator");
     assert!(is_alive(process));
     runner.kill().expect("it runs");
     runner.wait().expect("it ended");

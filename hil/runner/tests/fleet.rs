@@ -80,7 +80,7 @@ fn devices_of_two_kinds_decide_like_their_shadows_and_are_counted() {
         let round_trip = statistics.round_trip_us.expect("200 of them");
         assert!(round_trip.median <= round_trip.p99 && round_trip.p99 <= round_trip.max);
         assert!(statistics.sent_bytes > 200 * 100 && statistics.received_bytes > 200 * 50);
-        assert_eq!(statistics.instructions, None, "a thread is no emulator");
+        assert_eq!(statistics.instructions, None, "a thread is not an emulator");
     }
 }
 
@@ -281,7 +281,7 @@ fn device_that_never_answers_is_an_error_of_the_start() {
     let mischief = Mischief { silent_at: Some(0), ..Mischief::default() };
     let options = Options { start_limit: Duration::from_millis(60), ..options() };
     let lines = vec![(config(1, "thread"), large(mischief))];
-    let error = Fleet::over(lines, options).expect_err("nobody answers").to_string();
+    let error = Fleet::over(lines, options).expect_err("no device answers").to_string();
     assert!(error.starts_with("robot 1 on thread: no answer to greeting within "), "{error}");
 }
 
@@ -359,7 +359,7 @@ fn stop_ends_the_wait() {
 #[test]
 fn unknown_devices_and_missing_firmware_are_errors_of_the_start() {
     for (device, pieces) in [
-        ("qemu:z80", ["`qemu:z80` is no device", "qemu:riscv32"]),
+        ("qemu:z80", ["`qemu:z80` is not a device", "qemu:riscv32"]),
         ("qemu:stm32f405", ["nowhere/stm32f405/lockstep", "cargo xtask firmware stm32f405"]),
         ("serial:/dev/nothing-there", ["cannot open /dev/nothing-there", "; "]),
     ] {

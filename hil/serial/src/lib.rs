@@ -36,7 +36,7 @@ pub enum ParseError {
     NoPort,
     #[error("no option `{0}`; there is `baud`")]
     Option(String),
-    #[error("baud `{0}` is no whole number above 0")]
+    #[error("baud `{0}` is not a whole number above 0")]
     Baud(String),
 }
 

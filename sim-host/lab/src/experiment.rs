@@ -21,7 +21,7 @@ pub(crate) const MAX_RUNS: u32 = 1_000_000;
 
 /// Progress callback: takes the number of finished runs, on any thread; returns whether to
 /// continue.
-pub type GoesOn<'a> = dyn Fn(usize) -> bool + Sync + 'a;
+pub type ProgressCallback<'a> = dyn Fn(usize) -> bool + Sync + 'a;
 
 /// A plan of `points()` points with `runs()` runs each. Equal plans give equal reports on any
 /// number of threads.
@@ -98,9 +98,9 @@ pub trait Experiment: Sized + Sync {
     ///
     /// # Errors
     /// A parameter is out of range, or a run fails.
-    fn carry_out(&self, goes_on: impl Fn(usize) -> bool + Sync) -> Result<Vec<Vec<Self::Run>>> {
+    fn carry_out(&self, may_continue: impl Fn(usize) -> bool + Sync) -> Result<Vec<Vec<Self::Run>>> {
         self.check()?;
-        self.perform(&Jobs::new(self, &goes_on, None))
+        self.perform(&Jobs::new(self, &may_continue, None))
     }
 
     /// Makes all runs and computes the report.
@@ -123,7 +123,7 @@ pub trait Experiment: Sized + Sync {
         let since = Instant::now();
         let progress = Mutex::new((Progress::new(Self::UNIT, self.total() as u64, global), 0));
         // Calls of several threads may arrive out of order.
-        let goes_on = |done| {
+        let may_continue = |done| {
             if let Ok(mut progress) = progress.lock()
                 && done > progress.1
             {
@@ -132,7 +132,7 @@ pub trait Experiment: Sized + Sync {
             }
             !stop.is_requested()
         };
-        let jobs = Jobs::new(self, &goes_on, Some((out, keeping)));
+        let jobs = Jobs::new(self, &may_continue, Some((out, keeping)));
         jobs.clear()?;
         let runs = self.perform(&jobs);
         if let Ok(progress) = progress.lock() {

@@ -120,7 +120,7 @@ impl RunArgs {
                 if global.json {
                     print_json(&Report { summary: &summary, ranks: &sent })?;
                 } else {
-                    print(&format!("{}{}", summary.table(&out)?, table(&sent)?))?;
+                    print(&format!("{}{}", summary.table(&out), table(&sent)?))?;
                 }
                 Ok(Ended::by(stop))
             }

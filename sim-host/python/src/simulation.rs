@@ -171,11 +171,11 @@ impl Run {
 
     fn run(&self, py: Python<'_>, until: Option<u32>) -> PyResult<()> {
         self.in_slices(py, |inner| {
-            let goes_on = !inner.is_over() && until.is_none_or(|until| inner.tick < until);
-            if goes_on {
+            let is_running = !inner.is_over() && until.is_none_or(|until| inner.tick < until);
+            if is_running {
                 inner.advance()?;
             }
-            Ok(goes_on)
+            Ok(is_running)
         })
     }
 
@@ -365,7 +365,7 @@ impl Run {
     /// Without the interpreter lock, until `act` returns false. Signals are checked regularly.
     fn in_slices(&self, py: Python<'_>, mut act: impl FnMut(&mut Inner) -> PyResult<bool> + Send) -> PyResult<()> {
         loop {
-            let goes_on = py.detach(|| {
+            let is_running = py.detach(|| {
                 let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
                 let end = Instant::now() + SLICE;
                 while act(&mut inner)? {
@@ -376,7 +376,7 @@ impl Run {
                 Ok(false)
             })?;
             py.check_signals()?;
-            if !goes_on {
+            if !is_running {
                 return Ok(());
             }
         }

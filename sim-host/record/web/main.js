@@ -85,13 +85,13 @@ class App {
     const radii = Float32Array.from([...scene.robots.radius_m, ...scene.intruders.map(({ radius_m }) => radius_m)]);
     this.radii = radii;
     this.fastest = scene.robots.max_speed_mps.reduce((most, speed) => Math.max(most, speed), 0);
-    const anew = !same || before.seed !== scene.seed;
-    if (anew) {
+    const isNewRun = !same || before.seed !== scene.seed;
+    if (isNewRun) {
       this.motion.reset();
       this.plots.reset();
     }
     const balls = scene.kind === "space" ? this.solids.filter(({ kind }) => kind === "ball") : [];
-    if (anew || balls.length) {
+    if (isNewRun || balls.length) {
       this.renderer?.setBodies(
         this.robots,
         Float32Array.from([...radii].flatMap((radius, i) => [radius, this.groups[i] ?? 0])),

@@ -205,7 +205,7 @@ impl Checkpoint {
             |what: String, remedy: &str| CheckpointError { path: path.to_owned(), what, remedy: remedy.to_owned() };
         let of_io = |source: io::Error| error(source.to_string(), read_remedy(&source));
         let old = beside(path, ".old");
-        let other = if old.exists() { format!("take {}", old.display()) } else { "start anew".to_owned() };
+        let other = if old.exists() { format!("take {}", old.display()) } else { "restart the run".to_owned() };
         let mut file = file::open(path).map_err(of_io)?;
         let size = file.metadata().map_err(of_io)?.len();
         let cut = |at: u64, part: &str| error(format!("byte {at}: it ends in its {part}"), &other);
@@ -215,13 +215,13 @@ impl Checkpoint {
         }
         let Some(format) = first.strip_prefix(MAGIC) else {
             return Err(error(
-                "byte 0: this is no checkpoint".to_owned(),
+                "byte 0: this is not a checkpoint".to_owned(),
                 "name a file that `staya run --checkpoint` made",
             ));
         };
         if format != FORMAT.to_le_bytes() {
             let what = format!("byte {}: it is of another version of the program", MAGIC.len());
-            return Err(error(what, "go on with the program that made it, or start anew"));
+            return Err(error(what, "resume with the program that made it, or restart the run"));
         }
         let mut parts = [Part { at: 0, length: 0 }; PARTS.len()];
         let mut kept = [Vec::new(), Vec::new()];
@@ -262,7 +262,7 @@ impl Checkpoint {
             postcard::from_bytes(&head).map_err(|_| error(format!("{in_head}: its head makes no sense"), &other))?;
         if head.version != VERSION {
             let what = format!("{in_head}: it is of version {}, this is {VERSION}", head.version);
-            return Err(error(what, "go on with the program that made it, or start anew"));
+            return Err(error(what, "resume with the program that made it, or restart the run"));
         }
         if head.fingerprint != scenario.fingerprint() {
             let what = match head.scenario == scenario.name {

@@ -93,7 +93,7 @@ fn digits(line: &str) -> Result<Key, String> {
     let mut count = 0;
     for (column, letter) in (1..).zip(line.chars()) {
         let Some(digit) = letter.to_digit(16) else {
-            return Err(format!("column {column} is no hexadecimal digit"));
+            return Err(format!("column {column} is not a hexadecimal digit"));
         };
         if let Some(byte) = bytes.get_mut(count / 2) {
             *byte = *byte << 4 | digit as u8;
@@ -148,8 +148,8 @@ mod tests {
             (format!("{hex}\n\n{hex}"), 3, "there is a second key"),
             ("\npassphrase: ".into(), 2, "the passphrase is empty"),
             (format!("\n{hex}0"), 2, "65 hexadecimal digits instead of 64"),
-            ("secret".into(), 1, "column 1 is no hexadecimal digit"),
-            ("0é".into(), 1, "column 2 is no hexadecimal digit"),
+            ("secret".into(), 1, "column 1 is not a hexadecimal digit"),
+            ("0é".into(), 1, "column 2 is not a hexadecimal digit"),
         ] {
             assert_eq!(parse(&text), Err((line, problem.to_string())));
         }

@@ -315,11 +315,15 @@ impl Summary {
     }
 
     /// Formats the results as a text table.
-    ///
-    /// # Errors
-    /// Never: writing to a string cannot fail.
-    pub fn table(&self, out: &Path) -> Result<String, std::fmt::Error> {
+    #[must_use]
+    pub fn table(&self, out: &Path) -> String {
         let mut text = String::new();
+        // Cannot fail: a string accepts all text.
+        let _ = self.write_table(out, &mut text);
+        text
+    }
+
+    fn write_table(&self, out: &Path, text: &mut String) -> std::fmt::Result {
         let robot_ticks = self.robots as f64 * f64::from(self.ticks);
         let cost_us = self.wall_seconds * 1e6 / robot_ticks.max(1.0);
         let stopped = if self.interrupted { ", stopped" } else { "" };
@@ -368,7 +372,7 @@ impl Summary {
             line(if index == 0 { "groups" } else { "" }, group.to_string())?;
         }
         if let Some(ratio) = self.time_over_free_time {
-            line("time", format!("{ratio:.3} times of what the slowest needs by itself, straight"))?;
+            line("time", format!("{ratio:.3} times the straight-line time of the slowest robot"))?;
         }
         if self.washed > 0 {
             line("in downwash", self.washed.to_string())?;
@@ -411,7 +415,7 @@ impl Summary {
             let name = file.strip_prefix(out).unwrap_or(file);
             writeln!(text, "  {}", name.display())?;
         }
-        Ok(text)
+        Ok(())
     }
 }
 

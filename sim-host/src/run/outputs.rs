@@ -35,7 +35,7 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
-    pub const fn begins_anew(&self) -> bool {
+    pub const fn is_recorded(&self) -> bool {
         self.record.is_some() || self.mcap.is_some()
     }
 

@@ -23,13 +23,13 @@ pub fn minimize<const N: usize>(
         let y = f(x);
         if y.is_nan() { f64::INFINITY } else { y }
     };
-    let may_go_on = || evals.get() < max_evals;
+    let may_continue = || evals.get() < max_evals;
     let mut best = (start, value(start));
     loop {
         let before = best.1;
-        best = descend(&mut value, &may_go_on, best, step, tolerance);
+        best = descend(&mut value, &may_continue, best, step, tolerance);
         // A collapsed simplex can stop on a slope, which a fresh one detects.
-        if !may_go_on() || before - best.1 <= tolerance || before == best.1 {
+        if !may_continue() || before - best.1 <= tolerance || before == best.1 {
             return best;
         }
     }
@@ -37,7 +37,7 @@ pub fn minimize<const N: usize>(
 
 fn descend<const N: usize>(
     value: &mut impl FnMut([f64; N]) -> f64,
-    may_go_on: &impl Fn() -> bool,
+    may_continue: &impl Fn() -> bool,
     start: Vertex<N>,
     step: [f64; N],
     tolerance: f64,
@@ -51,7 +51,7 @@ fn descend<const N: usize>(
     loop {
         simplex.sort_by(|a, b| a.1.total_cmp(&b.1));
         let (best, second_worst, worst) = (simplex[0], simplex[N - 1], simplex[N]);
-        if !may_go_on() || worst.1 - best.1 <= tolerance {
+        if !may_continue() || worst.1 - best.1 <= tolerance {
             return best;
         }
         let mut center = [0.0; N];

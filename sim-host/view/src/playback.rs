@@ -131,7 +131,7 @@ impl Playback {
         match word {
             FromPage::Opened(client) => {
                 self.pages.insert(client);
-                server.begin_anew(Some(client), self.scene.clone());
+                server.send_scene(Some(client), self.scene.clone());
                 if let Some(rows) = &self.rows {
                     server.say(Some(client), rows.clone());
                 }
@@ -177,7 +177,7 @@ impl Playback {
         (self.is_new, self.shown) = (false, now);
         let scene = self.reader.scene_text_at(self.tick)?;
         if scene != self.scene {
-            server.begin_anew(None, scene.clone());
+            server.send_scene(None, scene.clone());
             self.scene = scene;
         }
         server.show(self.reader.frame_bytes(self.tick)?.to_vec());

@@ -198,7 +198,7 @@ impl Watcher {
         match word {
             FromPage::Opened(client) => {
                 self.pages.insert(client, Looks::default());
-                self.server.begin_anew(Some(client), self.scene.clone());
+                self.server.send_scene(Some(client), self.scene.clone());
             }
             FromPage::Closed(client) => {
                 self.pages.remove(&client);

@@ -178,7 +178,7 @@ impl Robot {
                 }
                 None
             }
-            other => panic!("nobody sent {other:?}"),
+            other => panic!("{other:?} was never sent"),
         }
     }
 

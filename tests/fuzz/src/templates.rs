@@ -20,7 +20,7 @@ pub fn templates(bytes: &[u8]) {
     let mut choice = Unstructured::new(bytes);
     let _ = match choice.arbitrary() {
         Ok(true) => from_one_commander(&mut choice),
-        _ => from_anybody(&mut choice),
+        _ => from_any_sender(&mut choice),
     };
 }
 
@@ -63,7 +63,7 @@ fn from_one_commander(choice: &mut Unstructured<'_>) -> Result<()> {
 }
 
 /// A refused part changes nothing. A completed template consists of parts of one version.
-fn from_anybody(choice: &mut Unstructured<'_>) -> Result<()> {
+fn from_any_sender(choice: &mut Unstructured<'_>) -> Result<()> {
     let mut assembler = TemplateAssembler::<F>::new();
     let mut seen: Vec<TemplateAssignment> = Vec::new();
     while !choice.is_empty() {
@@ -130,7 +130,7 @@ fn carried(part: TemplateAssignment) -> TemplateAssignment {
     let mut out = Bounded::<u8, MAX_FRAME_LEN>::new();
     let message = Message::Template(part);
     encode(HEADER, &message, &mut out).expect("every message fits");
-    let frame = decode(&out[..out.len() - 1]).expect("what is sent is received");
+    let frame = decode(&out[..out.len() - 1]).expect("a sent frame is intact");
     match frame.message {
         Message::Template(part) if message == Message::Template(part.clone()) => part,
         other => panic!("sent {message:?}, received {other:?}"),

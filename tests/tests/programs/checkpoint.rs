@@ -130,7 +130,7 @@ fn checkpoints_of_other_runs_are_refused_in_one_line() {
     let error = refused(&[&path, "--from", &checkpoint, "--seed", "2"]);
     assert!(error.contains("`figure-5` has changed"), "{error}");
     let error = refused(&[&path, "--from", &path]);
-    assert!(error.contains("this is no checkpoint"), "{error}");
+    assert!(error.contains("this is not a checkpoint"), "{error}");
     let error = refused(&[&path, "--from", &format!("{out}.nothing")]);
     assert!(error.contains("check the name"), "{error}");
     let bytes = fs::read(&checkpoint).expect("it is there");

@@ -35,7 +35,7 @@ fn an_invalid_override_names_field_and_remedy() {
     let Output { status, stdout, stderr } = staya(&["run", six, "--set", "radio.loss=7"]);
     let said = text(&stderr);
     assert!(status.code() == Some(1) && stdout.is_empty(), "{said}");
-    assert!(said.contains("radio.loss: 7 is no probability (by --set)"), "{said}");
+    assert!(said.contains("radio.loss: 7 is not a probability (by --set)"), "{said}");
     let Output { status, stderr, .. } = staya(&["run", six, "--set", "loss"]);
     assert!(status.code() == Some(2) && text(&stderr).contains("FIELD=VALUE"), "{}", text(&stderr));
 }

@@ -149,7 +149,7 @@ fn invalid_plans_are_refused_with_place_and_remedy() {
     );
     let said = folder.refused(&["plot", "plan.toml", "--out", "out", "--figure", "arrived", "--over", "radio.los"], 1);
     assert!(
-        said.contains("--over: radio.los is no axis of the plan; give one of radio.loss, radio.delay_ms"),
+        said.contains("--over: radio.los is not an axis of the plan; give one of radio.loss, radio.delay_ms"),
         "{said}"
     );
     let said = folder.refused(&["plot", "plan.toml", "--out", "out", "--figure", "arrived", "--over", "radio.loss"], 1);

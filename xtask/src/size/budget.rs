@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_within_its_limits_passes_and_each_breach_is_told() {
+    fn values_within_limits_pass_and_each_breach_is_reported() {
         let budget = Budget::read(TEXT, "a").unwrap();
         assert!(budget.breaches(&measured(100, 50, 10, 7)).is_empty());
         assert_eq!(budget.breaches(&measured(101, 50, 10, 8)).len(), 2);
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_for_what_nobody_measured_is_a_breach() {
+    fn a_limit_without_a_measurement_is_a_breach() {
         let text = TEXT.replace("fly", "boids");
         let budget = Budget::read(&text, "a").unwrap();
         assert_eq!(budget.breaches(&measured(1, 1, 1, 1)).len(), 1);

@@ -164,5 +164,5 @@ fn a_formation_on_the_grid_equals_that_of_rust() {
             said[own] = twin.outbox.to_vec();
         }
     }
-    assert_ne!(cells, places.map(|(x, y)| Cell::new(x + 20, y + 20)), "nobody moved");
+    assert_ne!(cells, places.map(|(x, y)| Cell::new(x + 20, y + 20)), "no robot moved");
 }

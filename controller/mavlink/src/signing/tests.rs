@@ -144,8 +144,8 @@ fn a_properly_restarted_sender_is_accepted_and_its_old_frames_are_not() {
         assert_eq!(judged(&mut receiver, frame), Verdict::Authentic);
     }
     let mut sender = Signing::<2>::new(key(), 0, 100 + MINUTE);
-    let anew = signed(&mut sender, &heartbeat(1, 0));
-    assert_eq!(judged(&mut receiver, &anew), Verdict::Authentic);
+    let later = signed(&mut sender, &heartbeat(1, 0));
+    assert_eq!(judged(&mut receiver, &later), Verdict::Authentic);
     for frame in &recorded {
         assert_eq!(judged(&mut receiver, frame), Verdict::Replayed);
     }

@@ -206,9 +206,9 @@ fn other_messages_are_foreign_and_other_bytes_are_damage() {
     cut.pop();
     assert_eq!(decode(&cut), Err(DecodeError::Crc));
     assert_eq!(decode(&[]), Err(DecodeError::Empty));
-    let mut nobody = Vec::<u8, 64>::new();
-    frame::encode(Sender::default(), &STAYA_GOAL_DATA::DEFAULT, &mut nobody).unwrap();
-    assert_eq!(decode(&nobody), Err(DecodeError::NoSender));
+    let mut unsent = Vec::<u8, 64>::new();
+    frame::encode(Sender::default(), &STAYA_GOAL_DATA::DEFAULT, &mut unsent).unwrap();
+    assert_eq!(decode(&unsent), Err(DecodeError::NoSender));
 }
 
 #[test]

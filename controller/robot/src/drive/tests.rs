@@ -159,7 +159,7 @@ fn duties_skip_the_dead_band_and_round_symmetrically() {
     assert_eq!(fixed.duty(Q16::ONE), FULL);
     assert_eq!(fixed.duty(Q16::from_ratio(1, 4)), 16384);
     let senseless = Calibration::linear(0.0f32);
-    assert_eq!(senseless.duty(1.0), 0, "nobody knows how fast it is");
+    assert_eq!(senseless.duty(1.0), 0, "its speed is unknown");
 }
 
 #[test]

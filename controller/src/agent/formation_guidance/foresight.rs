@@ -106,8 +106,8 @@ impl<const CELLS: usize, const M: usize, const F: usize, const L: usize, K: Stee
             return Some(other.cell);
         }
         let params = RouteParams { a2: Gain::ZERO, ..self.route };
-        let nobody = core::iter::empty();
-        let weights = field.weights::<0>(&params, window, other.cell, target, nobody, None).ok()?;
+        let no_robots = core::iter::empty();
+        let weights = field.weights::<0>(&params, window, other.cell, target, no_robots, None).ok()?;
         let price = distances(&self.formation, other.cell, place, &[]);
         let dir = weights.plus(&price).best()?;
         Some(other.cell + dir.offset())

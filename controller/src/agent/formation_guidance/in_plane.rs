@@ -235,8 +235,8 @@ fn lag_m<S: Scalar, const F: usize>(
 ) -> S {
     let lag = |entry: &TemplateEntry| {
         let other = input.neighbor(entry.id)?;
-        let goes_on = other.mode.gives_way() && other.mode != Mode::Arrived;
-        let follows = goes_on && comes_after(input, other.id, other.leader);
+        let is_under_way = other.mode.gives_way() && other.mode != Mode::Arrived;
+        let follows = is_under_way && comes_after(input, other.id, other.leader);
         follows.then(|| behind(step.beside(input, other, Cell::default() - entry.offset), ahead))
     };
     view.entries.iter().filter_map(lag).fold(S::ZERO, S::max)
@@ -280,7 +280,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         workspace: &mut Self::Workspace,
     ) -> Result<Decision<S>, BadInput> {
         if input.neighbor(self.inside().leader).is_none() && self.inside().leader.is_some() {
-            self.cells.decide_anew();
+            self.cells.discard_decision();
         }
         let mut decision = self.cells.decide(input, here, rng, workspace)?;
         self.refine(input, here, &mut decision)?;

@@ -143,9 +143,13 @@ fn a_robot_without_contact_stands_unless_it_may_be_alone() {
     assert_eq!(left_alone(true, after(0.0)), (0.0, Mode::Hold, true));
     assert_eq!(left_alone(true, after(0.25)), (0.25, Mode::Cruise, true));
     assert_eq!(left_alone(true, after(f32::MAX)), (1.0, Mode::Cruise, true));
-    assert_eq!(left_alone(false, after(0.0)), (1.0, Mode::Cruise, false), "who never heard anybody is the first");
-    let nobody = ContactLossPolicy { remember: Duration::ZERO, alone_mps: 0.0 };
-    assert_eq!(left_alone(true, nobody), (0.0, Mode::Hold, true), "nobody is remembered");
+    assert_eq!(
+        left_alone(false, after(0.0)),
+        (1.0, Mode::Cruise, false),
+        "a robot that never heard another one is the first"
+    );
+    let forgetful = ContactLossPolicy { remember: Duration::ZERO, alone_mps: 0.0 };
+    assert_eq!(left_alone(true, forgetful), (0.0, Mode::Hold, true), "no robot is remembered");
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn cell() -> impl Strategy<Value = Cell> {
 /// Valid frames, mostly from few robots, which concern this one and refer to each other.
 pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
     let few = || prop_oneof![4 => (0..7_u32).prop_map(RobotId), 1 => arbitrary::robot()];
-    let sender = few().prop_filter("somebody sends it", |id| id.is_some());
+    let sender = few().prop_filter("it has a sender", |id| id.is_some());
     let header = (0..3_u8, sender, 0..40_u16);
     let subject = (few(), few(), cell(), cell());
     (header, arbitrary::message(), subject).prop_map(|(header, mut message, subject)| {

@@ -101,12 +101,12 @@ fn a_payload_is_kept_between_beacons_and_discarded_after_a_restart() {
         let _ = step(&mut agent, n, inbox);
         agent.neighbors().first().map(|other| other.payload)
     };
-    assert_eq!(hear(0, &bytes(2, 0, 0, &[told(OWN)])), None, "nobody is known by a payload alone");
+    assert_eq!(hear(0, &bytes(2, 0, 0, &[told(OWN)])), None, "a payload alone makes no robot known");
     assert_eq!(hear(0, &bytes(2, 0, 1, &[beacon()])), Some(Told::default()));
     assert_eq!(hear(0, &bytes(2, 0, 2, &[told(OWN)])), Some(OWN));
     assert_eq!(hear(0, &bytes(2, 0, 4, &[beacon()])), Some(OWN));
     assert_eq!(hear(0, &bytes(2, 0, 3, &[told((1, 1, 1.0))])), Some(OWN), "an older one came later");
-    assert_eq!(hear(0, &bytes(2, 1, 0, &[beacon()])), Some(Told::default()), "its computer has started anew");
+    assert_eq!(hear(0, &bytes(2, 1, 0, &[beacon()])), Some(Told::default()), "its computer has restarted");
 }
 
 #[test]

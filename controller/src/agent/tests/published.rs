@@ -64,7 +64,7 @@ fn a_robot_in_its_place_takes_its_shortest_route_and_sends_no_requests() {
 fn the_leader_found_first_stays_the_leader() {
     let mut three = agent(3);
     let _ = step(&mut three, 0, 3, 0, &[]);
-    assert_eq!(three.leader(), RobotId::NONE, "nobody was heard yet");
+    assert_eq!(three.leader(), RobotId::NONE, "no robot was heard yet");
     let _ = step(&mut three, 1, 3, 0, &hears(&[(2, at(2, 0, 1))]));
     assert_eq!(three.leader(), RobotId(2));
     // Outside eps it is not found, but line 4 chooses the leader only at t = 0.

@@ -109,7 +109,7 @@ fn a_robot_arrives_beside_its_occupied_goal_until_it_is_free() {
             if n == 59 {
                 assert_eq!((robot.agent.mode(), wait), (Mode::Arrived, Some(Wait::GoalTaken)), "{mode:?}");
                 let off = length([2.03 - robot.at_m[0], 0.02 - robot.at_m[1]]);
-                assert!((0.4..0.65).contains(&off), "{mode:?}: {off} m from who is there");
+                assert!((0.4..0.65).contains(&off), "{mode:?}: {off} m from the robot there");
             }
         }
         assert_eq!(robot.agent.mode(), Mode::Arrived);

@@ -270,7 +270,7 @@ fn robots_in_one_place_separate_in_opposite_directions() {
     assert!(force(1, 2).norm() > 1.0 && force(1, 2).z == 0.0);
     let along = force(1, 2).normalized().unwrap().xy();
     assert!((along - tie(RobotId(1), RobotId(2))).norm() < 1e-12);
-    assert_eq!(force(1, 1), V::ZERO, "oneself is nobody's neighbour");
+    assert_eq!(force(1, 1), V::ZERO, "a robot is not its own neighbour");
 }
 
 #[test]

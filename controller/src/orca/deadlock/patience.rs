@@ -101,7 +101,7 @@ mod tests {
         let speeds = got.iter().map(|wish| wish.norm().to_f64());
         assert!(speeds.into_iter().all(|speed| (speed - 0.5).abs() < 1e-3));
         assert!(got[first + back..].iter().any(|wish| *wish != east), "again and again");
-        assert!(wishes(S::from_milli(200)).iter().all(|wish| *wish == east), "who goes, be it slowly, goes on");
+        assert!(wishes(S::from_milli(200)).iter().all(|wish| *wish == east), "a slowly moving robot continues");
     }
 
     #[test]

@@ -316,7 +316,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
         }
         // A quarter of this disc has space for as many robots as the rank.
         let room = radius * (S::from_milli(6_500) * S::from_i32(traffic.rank)).sqrt();
-        let goes_on = !traffic.is_behind && (spot - own).norm() >= room;
-        goes_on.then_some(spot)
+        let moves_there = !traffic.is_behind && (spot - own).norm() >= room;
+        moves_there.then_some(spot)
     }
 }

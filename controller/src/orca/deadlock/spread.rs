@@ -9,10 +9,10 @@ use crate::scalar::Scalar;
 /// the wish, and the goal is farther than that robot. This breaks the symmetry of paths that all
 /// cross in one point. O(nearby).
 pub fn spread<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -> Vec3<S> {
-    if meets_somebody(horizon_s, situation) { turned(situation.body.id, situation.wish) } else { situation.wish }
+    if meets_robot(horizon_s, situation) { turned(situation.body.id, situation.wish) } else { situation.wish }
 }
 
-fn meets_somebody<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -> bool {
+fn meets_robot<S: Scalar>(horizon_s: S, situation: &Situation<'_, Vec3<S>>) -> bool {
     let Some(ahead) = situation.wish.normalized() else {
         return false;
     };

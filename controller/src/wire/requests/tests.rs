@@ -127,8 +127,8 @@ fn a_full_table_refuses_new_matters_but_still_replaces() {
     assert_eq!(one.ask(B, OWN, Stop, 1_000, START), Err(AskError::Full));
     assert_eq!(one, before);
     assert!(one.ask(A, OWN, Resume, 1_000, START).is_ok());
-    let nobody = one.ask(RobotId::NONE, OWN, Stop, 1_000, START);
-    assert_eq!(nobody, Err(AskError::Nobody));
+    let refused = one.ask(RobotId::NONE, OWN, Stop, 1_000, START);
+    assert_eq!(refused, Err(AskError::NoAddressee));
 }
 
 #[test]

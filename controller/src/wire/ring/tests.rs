@@ -90,7 +90,7 @@ fn a_robot_without_the_new_key_is_excluded_after_the_change() {
             let at = id as usize - 1;
             assert!(matches!(read(&mut robots[at], &frame), Ok(Message::Key(_))));
             assert_eq!(robots[at].held(), Some((1, phase)));
-            assert_eq!(read(&mut robots[1 - at], &frame), Err(DecodeError::Foreign), "somebody else's");
+            assert_eq!(read(&mut robots[1 - at], &frame), Err(DecodeError::Foreign), "of another swarm");
             assert_eq!((hears(&mut robots, 0, 1), hears(&mut robots, 1, 0)), (Ok(()), Ok(())), "{phase:?} {id}");
         }
         let out = Err(DecodeError::Forged);
@@ -158,7 +158,11 @@ fn the_operator_accepts_a_report_only_under_the_robots_own_key() {
     let sent = |frame: &Bytes| frame[..frame.len() - 1].to_vec();
     assert_eq!(operator.hear(&sent(&good)).map(|(id, held)| (id, held.generation)), Ok((RobotId(1), 3)));
     assert_eq!(operator.hear(&sent(&good)), Err(DecodeError::Replayed));
-    assert_eq!(operator.hear(&sent(&frame(&mut first, 2, 1, OPERATOR))), Err(DecodeError::Forged), "for somebody else");
+    assert_eq!(
+        operator.hear(&sent(&frame(&mut first, 2, 1, OPERATOR))),
+        Err(DecodeError::Forged),
+        "for another addressee"
+    );
     assert_eq!(operator.hear(&sent(&frame(&mut first, 1, 2, RobotId(9)))), Err(DecodeError::Foreign));
     assert_eq!(operator.hear(&sent(&said(&mut first, 1, 3, &beacon()))), Err(DecodeError::Foreign));
     assert!(operator.hear(b"junk").is_err());

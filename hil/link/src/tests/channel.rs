@@ -129,7 +129,7 @@ fn reset_of_the_device_is_detected_and_it_rejoins() {
                     assert!(bench.boot > 1 && bench.session.controller().agent().is_none());
                 } else {
                     bench.reset();
-                    assert_eq!(bench.step(&step), None, "step {tick}: a reset is no answer");
+                    assert_eq!(bench.step(&step), None, "step {tick}: a reset does not answer");
                 }
                 resets += 1;
                 let mut again = setup.clone();
@@ -184,7 +184,7 @@ fn lost_frame_costs_round_trips_and_not_the_longest_wait() {
             // The host polls at most once a millisecond.
             assert!(p99_us <= 3100 + 11 * median_us, "delay {delay_us}: {median_us} {p99_us}");
             let (_, most_us) = median_and_p99(Faults { lost: 0, ..lossy }, seed);
-            assert!(most_us <= 2 * (100 + u64::from(delay_us)), "what is not lost waits for nothing: {most_us}");
+            assert!(most_us <= 2 * (100 + u64::from(delay_us)), "nothing waits without a loss: {most_us}");
         }
     }
 }
@@ -194,7 +194,7 @@ fn silent_device_times_out_with_the_request_and_the_waiting_time() {
     let deaf = Faults { lost: 100, ..Faults::default() };
     let mut bench = Bench::<Small>::new(deaf, 1);
     bench.port.greet(0);
-    let error = bench.wait().expect_err("nobody is there");
+    let error = bench.wait().expect_err("no device");
     let (asked, waited_us) = (Asked::Hello, LIMITS.give_up_after_us);
     assert_eq!(error, PortError::Silent { asked, attempts: 60, waited_us });
     assert_eq!(std::format!("{error}"), "no answer to greeting within 1200 ms (60 attempts)");

@@ -142,10 +142,10 @@ impl Plan {
     }
 
     /// `None` if it was stopped, because an incomplete row compares nothing.
-    fn row(&self, boids: u32, goes_on: &dyn Fn() -> bool) -> Option<Row> {
+    fn row(&self, boids: u32, may_continue: &dyn Fn() -> bool) -> Option<Row> {
         let mut row = Row::new(boids, self.steps);
         for method in Method::ALL {
-            if !goes_on() {
+            if !may_continue() {
                 return None;
             }
             if self.is_run(method, boids) {
@@ -286,7 +286,7 @@ impl Experiment for Plan {
     }
 
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Row>>> {
-        jobs.each(|(): &mut (), point, _| Ok(self.row(self.boids[point], &|| jobs.goes_on())))
+        jobs.each(|(): &mut (), point, _| Ok(self.row(self.boids[point], &|| jobs.may_continue())))
     }
 
     fn report(&self, rows: &[Vec<Row>]) -> Report {

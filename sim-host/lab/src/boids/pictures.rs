@@ -42,7 +42,7 @@ impl Report {
     }
 
     fn cost(&self) -> Chart {
-        let chart = Chart::new("What a step of boids costs by each search", "boids", "microseconds per boid and step")
+        let chart = Chart::new("Cost of a step of boids with each search", "boids", "microseconds per boid and step")
             .note("median step on one thread, building the index included")
             .log_x()
             .log_y();

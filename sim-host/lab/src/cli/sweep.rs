@@ -205,8 +205,8 @@ impl SweepArgs {
             bar.of(total);
             bar.set(done, String::new);
         };
-        let goes_on = || !stop.is_requested();
-        let job = |(): &mut (), run| perform(&plan, run, goes_on);
+        let may_continue = || !stop.is_requested();
+        let job = |(): &mut (), run| perform(&plan, run, may_continue);
         let course = perform_shard(&plan, self.shard, &out, existing, job, progress);
         bar.finish();
         let course = course?;

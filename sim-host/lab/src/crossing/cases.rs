@@ -197,7 +197,7 @@ impl Record for Crossing {
         each("overlaps", "overlaps of bodies, and with walls, summed over ticks", &mut self.overlaps);
         each("deepest_m", "the deepest of them; 0: none", &mut self.deepest_m);
         each("intruder_overlaps", "overlaps with the intruder, summed over ticks", &mut self.intruder_overlaps);
-        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("least_gap_m", "least gap between two bodies; empty: no robots met", &mut self.least_gap_m);
         each("parts", "connected parts of a flock at the end; empty: no flock", &mut self.parts);
     }
 
@@ -220,10 +220,10 @@ pub struct Report {
 }
 
 impl Plan {
-    fn crossing(&self, case: Case, seed: u64, goes_on: &dyn Fn() -> bool) -> Option<Crossing> {
+    fn crossing(&self, case: Case, seed: u64, may_continue: &dyn Fn() -> bool) -> Option<Crossing> {
         let scenario = self.scenario(case, seed);
         let (mut places, mut velocities, mut worst) = (Vec::new(), Vec::new(), 0.0_f64);
-        let outcome = run(&scenario, goes_on, |robots| {
+        let outcome = run(&scenario, may_continue, |robots| {
             (places, velocities) = robots.map(|robot| (robot.motion.position_m, robot.motion.velocity_mps)).unzip();
         })?;
         let clearance = outcome.clearance?;
@@ -356,7 +356,7 @@ impl Experiment for Plan {
 
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Crossing>>> {
         jobs.each(|(): &mut (), point, run| {
-            Ok(self.crossing(self.cases[point], self.seed(point, run), &|| jobs.goes_on()))
+            Ok(self.crossing(self.cases[point], self.seed(point, run), &|| jobs.may_continue()))
         })
     }
 

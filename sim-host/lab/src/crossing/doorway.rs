@@ -98,7 +98,7 @@ impl Record for Passage {
         each("last_s", "when the last one had arrived; empty: not all did", &mut self.last_s);
         each("time_ratio", "last arrival over the longest free time", &mut self.time_ratio);
         each("turns", "changes of direction in the gap", &mut self.turns);
-        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("least_gap_m", "least gap between two bodies; empty: no robots met", &mut self.least_gap_m);
         each("least_wall_gap_m", "least gap between a body and the wall", &mut self.least_wall_gap_m);
         each("overlaps", "overlaps of bodies, and with the wall, summed over ticks", &mut self.overlaps);
     }
@@ -151,11 +151,11 @@ impl Plan {
         self.conditions.scenario("doorway", seed, self.longest_s, setup)
     }
 
-    fn passage(&self, width_m: f64, seed: u64, goes_on: &dyn Fn() -> bool) -> Option<Passage> {
+    fn passage(&self, width_m: f64, seed: u64, may_continue: &dyn Fn() -> bool) -> Option<Passage> {
         let scenario = self.scenario(width_m, seed);
         let setup = scenario.plane.as_ref()?;
         let mut flow = Flow::new(setup.starts.iter().map(|start| start.position_m[0]));
-        let outcome = run(&scenario, goes_on, |robots| flow.see(robots))?;
+        let outcome = run(&scenario, may_continue, |robots| flow.see(robots))?;
         let clearance = outcome.clearance?;
         let times = self.conditions.arrivals_s(&outcome);
         let arrived = times.iter().flatten().count();
@@ -236,7 +236,7 @@ impl Experiment for Plan {
 
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Passage>>> {
         jobs.each(|(): &mut (), point, run| {
-            Ok(self.passage(self.widths_m[point], self.seed(point, run), &|| jobs.goes_on()))
+            Ok(self.passage(self.widths_m[point], self.seed(point, run), &|| jobs.may_continue()))
         })
     }
 

@@ -96,11 +96,11 @@ impl Conditions {
     }
 }
 
-/// Runs until all robots with a goal have arrived; `None` if `goes_on` stops the run. `see` is
+/// Runs until all robots with a goal have arrived; `None` if `may_continue` stops the run. `see` is
 /// called before the first tick and after each.
 fn run(
     scenario: &Scenario,
-    goes_on: &dyn Fn() -> bool,
+    may_continue: &dyn Fn() -> bool,
     mut see: impl FnMut(&mut dyn Iterator<Item = RobotRow>),
 ) -> Option<Outcome> {
     let mut stopped = false;
@@ -110,7 +110,7 @@ fn run(
         see(robots);
         if moment.arrived >= sent {
             ControlFlow::Break(())
-        } else if goes_on() {
+        } else if may_continue() {
             ControlFlow::Continue(())
         } else {
             stopped = true;

@@ -84,7 +84,7 @@ impl Record for Swap {
         each("arrived", "robots at their goals at the end", &mut self.arrived);
         each("time_ratio", "last arrival over the free time; empty: not all arrived", &mut self.time_ratio);
         each("mean_time_ratio", "the same, mean of those that arrived", &mut self.mean_time_ratio);
-        each("least_gap_m", "least gap between two bodies; empty: nobody came near", &mut self.least_gap_m);
+        each("least_gap_m", "least gap between two bodies; empty: no robots met", &mut self.least_gap_m);
         each("overlaps", "overlapping pairs, summed over ticks", &mut self.overlaps);
     }
 
@@ -142,8 +142,8 @@ impl Plan {
         self.circle_m.unwrap_or_else(|| circle_m(robots))
     }
 
-    fn swap(&self, robots: u32, seed: u64, goes_on: &dyn Fn() -> bool) -> Option<Swap> {
-        let outcome = run(&self.scenario(robots, seed), goes_on, |_| ())?;
+    fn swap(&self, robots: u32, seed: u64, may_continue: &dyn Fn() -> bool) -> Option<Swap> {
+        let outcome = run(&self.scenario(robots, seed), may_continue, |_| ())?;
         let circle_m = self.circle_m(robots);
         let free_s = 2.0 * circle_m / self.conditions.speed_mps;
         let times: Vec<_> = self.conditions.arrivals_s(&outcome);
@@ -215,9 +215,9 @@ impl Experiment for Plan {
     }
 
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Swap>>> {
-        jobs.each(
-            |(): &mut (), point, run| Ok(self.swap(self.robots[point], self.seed(point, run), &|| jobs.goes_on())),
-        )
+        jobs.each(|(): &mut (), point, run| {
+            Ok(self.swap(self.robots[point], self.seed(point, run), &|| jobs.may_continue()))
+        })
     }
 
     fn report(&self, runs: &[Vec<Swap>]) -> Report {

@@ -1,6 +1,6 @@
 //! Rows of experiments, written by the code of sweeps ([`crate::sweep::row`]).
 
-use super::{Experiment, GoesOn};
+use super::{Experiment, ProgressCallback};
 use crate::sweep::design::Design;
 use crate::sweep::merge::Merged;
 use crate::sweep::row::{Outcome, Row};
@@ -230,15 +230,19 @@ impl<E: Experiment> Design for Sheet<'_, E> {
 /// Runs of an experiment, and the folder of their rows.
 pub struct Jobs<'a, E> {
     sheet: Sheet<'a, E>,
-    goes_on: &'a GoesOn<'a>,
+    may_continue: &'a ProgressCallback<'a>,
     place: Option<(&'a Path, &'a RowRetention)>,
     course: Mutex<Option<Course>>,
 }
 
 impl<'a, E: Experiment> Jobs<'a, E> {
     /// `plan` is checked. `place`: folder and options; `None` if rows are not stored.
-    pub(crate) fn new(plan: &'a E, goes_on: &'a GoesOn<'a>, place: Option<(&'a Path, &'a RowRetention)>) -> Self {
-        Self { sheet: Sheet::new(plan), goes_on, place, course: Mutex::new(None) }
+    pub(crate) fn new(
+        plan: &'a E,
+        may_continue: &'a ProgressCallback<'a>,
+        place: Option<(&'a Path, &'a RowRetention)>,
+    ) -> Self {
+        Self { sheet: Sheet::new(plan), may_continue, place, course: Mutex::new(None) }
     }
 
     /// Folder of the results; `None` if nothing is stored.
@@ -249,8 +253,8 @@ impl<'a, E: Experiment> Jobs<'a, E> {
 
     /// Whether a run in progress may continue.
     #[must_use]
-    pub fn goes_on(&self) -> bool {
-        (self.goes_on)(0)
+    pub fn may_continue(&self) -> bool {
+        (self.may_continue)(0)
     }
 
     /// Makes the missing runs. Returns the available runs of each point in order, up to the first
@@ -268,7 +272,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         let sheet = &self.sheet;
         let (made, wrong) = (Mutex::new(BTreeMap::new()), Mutex::new(None));
         let one = |scratch: &mut S, number: u64| {
-            if !self.goes_on() {
+            if !self.may_continue() {
                 return None;
             }
             let since = Instant::now();
@@ -292,12 +296,12 @@ impl<'a, E: Experiment> Jobs<'a, E> {
         };
         let rows = match self.place {
             Some((out, keeping)) => {
-                let progress = |done, _| _ = (self.goes_on)(done as usize);
+                let progress = |done, _| _ = (self.may_continue)(done as usize);
                 let course = perform_shard(sheet, keeping.shard, out, keeping.existing(out), one, progress)?;
                 *self.course.lock().unwrap_or_else(PoisonError::into_inner) = Some(course);
                 Merged::read(sheet, &files(out)?)?.rows
             }
-            None => in_memory(sheet, self.goes_on, one),
+            None => in_memory(sheet, self.may_continue, one),
         };
         if let Some((_, error)) = wrong.into_inner().unwrap_or_else(PoisonError::into_inner) {
             return Err(error);
@@ -358,7 +362,7 @@ impl<'a, E: Experiment> Jobs<'a, E> {
 
 fn in_memory<S: Default>(
     sheet: &dyn Design,
-    goes_on: &GoesOn<'_>,
+    may_continue: &ProgressCallback<'_>,
     one: impl Fn(&mut S, u64) -> Option<Finished> + Sync,
 ) -> Vec<Row> {
     let mut order: Vec<u64> = (0..sheet.runs()).collect();
@@ -369,7 +373,7 @@ fn in_memory<S: Default>(
             return ControlFlow::Break(());
         };
         rows.push(finished.row);
-        if goes_on(rows.len()) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        if may_continue(rows.len()) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     jobs::each(order.len(), sheet.at_once(), |scratch, index| one(scratch, order[index]), take);
     rows.sort_by_key(|row| row.run);

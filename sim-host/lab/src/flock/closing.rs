@@ -346,7 +346,7 @@ impl Display for ClosingReport {
         writeln!(
             f,
             "{:<8}{:<8}{:>5}{:>6} |{:>12}{:>10}{:>8} |{:>12}{:>10}{:>8}",
-            "flock", "who", "d/s", "runs", "bare: runs", "overlaps", "pair/d", "ORCA: runs", "overlaps", "pair/d"
+            "flock", "sides", "d/s", "runs", "bare: runs", "overlaps", "pair/d", "ORCA: runs", "overlaps", "pair/d"
         )?;
         for line in &self.lines {
             let meeting =

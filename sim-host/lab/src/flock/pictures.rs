@@ -34,7 +34,7 @@ impl Report {
     }
 
     fn sheet(&self, case: &CaseReport) -> Sheet {
-        let title = format!("{}: {} robots, d = {} m, {}", title(case), case.robots, self.spacing_m, self.who());
+        let title = format!("{}: {} robots, d = {} m, {}", title(case), case.robots, self.spacing_m, self.setting());
         let moments = case.case.setting().moments;
         let mut sheet = Sheet::new(title, 3);
         for (number, share) in (0..).zip(moments) {
@@ -94,7 +94,7 @@ impl Report {
             .with(Series::reference("e1 = 0.005", ends(log(0.005))));
         let mismatch = chart("Velocity mismatch", "log10 K~", &|m| log(m.velocity_mismatch))
             .with(Series::reference("e2", ends(still)));
-        let title = format!("{}: {} runs of {} robots, {}", title(case), case.runs, case.robots, self.who());
+        let title = format!("{}: {} runs of {} robots, {}", title(case), case.runs, case.robots, self.setting());
         let hamiltonian = self.hamiltonian(case);
         Panels::new(title)
             .columns(2)

@@ -257,7 +257,7 @@ fn lattice_radius_m(plan: &Plan, case: Case, robots: usize) -> f64 {
 }
 
 impl Report {
-    pub(super) fn who(&self) -> String {
+    pub(super) fn setting(&self) -> String {
         let turns = if self.takes_turns { ", in turn" } else { "" };
         if !self.ideal {
             return format!("safety {}, loss {}{turns}", self.safety, self.loss);
@@ -276,7 +276,7 @@ impl Display for Report {
             self.spacing_m,
             self.radius_m,
             self.step_s,
-            self.who(),
+            self.setting(),
             self.seed
         )?;
         writeln!(

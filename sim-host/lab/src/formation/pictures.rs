@@ -69,8 +69,8 @@ impl Report {
 
     fn variants(&self, kind: Variants) -> Panels {
         let (title, name): (_, fn(&Journey) -> String) = match kind {
-            Variants::Eps => ("What eps does", |j| format!("eps = {} cells", j.eps)),
-            Variants::Loss => ("What a lossy radio does", |j| format!("loss {:.0} %", 100.0 * j.loss)),
+            Variants::Eps => ("Effect of eps", |j| format!("eps = {} cells", j.eps)),
+            Variants::Loss => ("Effect of a lossy radio", |j| format!("loss {:.0} %", 100.0 * j.loss)),
         };
         let mut error = Chart::new("Formation error per robot", "obstacles N", "error (cells)").note(self.note());
         let mut time = Chart::new("Travel time over that without formation", "obstacles N", "ratio").size(720.0, 320.0);

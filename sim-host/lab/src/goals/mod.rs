@@ -277,7 +277,7 @@ impl Experiment for Plan {
         let settings = self.settings();
         let mut runs = jobs.each(|(): &mut (), point, run| self.run(&settings[point], run, false).map(Some))?;
         for point in pictures::drawn(&settings) {
-            if let Some(first) = runs[point].first_mut().filter(|_| jobs.goes_on()) {
+            if let Some(first) = runs[point].first_mut().filter(|_| jobs.may_continue()) {
                 let again = self.run(&settings[point], 0, true)?;
                 ensure!(again.hash == first.hash, "a run is not that of its row; begin --restart");
                 *first = again;

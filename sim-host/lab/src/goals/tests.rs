@@ -27,7 +27,7 @@ fn attraction_to_neighbours_forms_the_group_and_shows_from_a_scattered_start() {
     let scattered = report(&small());
     let gains: Vec<f64> = scattered.points[1..].iter().map(|point| point.company_gain.unwrap()).collect();
     assert!(gains[0] > 0.0 && gains[1] > gains[0] && gains[2] > gains[1], "{gains:?}");
-    assert_eq!(scattered.points[0].company_gain, None, "independent robots are what others are compared with");
+    assert_eq!(scattered.points[0].company_gain, None, "independent robots are the reference");
     let [alone, .., last] = &scattered.points[..] else { panic!() };
     assert!(alone.together.unwrap() < 0.5 && last.together.unwrap() > alone.together.unwrap());
     let dense = report(&Plan { start_sides: vec![2.0], k2: vec![0.0, 50.0], ..small() });

@@ -101,7 +101,7 @@ pub(super) fn table(f: &mut Formatter<'_>, thresholds: &[Threshold]) -> fmt::Res
     }
     writeln!(
         f,
-        "\nthresholds: the K1/K2 behind the peak at which half is left of what a group has more than independent robots (K2 = 0)"
+        "\nthresholds: the K1/K2 above the peak at which the advantage of a group over independent robots (K2 = 0) is half"
     )?;
     writeln!(f, "{:<40}{:>28}{:>28}", "", "together", "company")?;
     let heads = format!("{:>9}{:>8}{:>11}", "peak", "at", "threshold");

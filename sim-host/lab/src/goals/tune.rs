@@ -145,7 +145,7 @@ impl Tuning {
         Verdict { cost: (1.0 - together) + (1.0 - arrived) + (time_ratio - 1.0), together, arrived, time_ratio }
     }
 
-    fn tune(&self, scene: &Setting, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Option<Tuned>> {
+    fn tune(&self, scene: &Setting, may_continue: &(dyn Fn() -> bool + Sync)) -> Result<Option<Tuned>> {
         let bounds = BOUNDS.map(|bound| bound.to_vec());
         let [low, high] = bounds;
         let swarm = ParticleSwarm::new((low, high), self.particles as usize)
@@ -154,11 +154,11 @@ impl Tuning {
             .and_then(|swarm| swarm.with_social_factor(PULL))
             .map_err(|error| anyhow!("the search cannot begin: {error}"))?
             .with_rng_generator(Xoshiro256PlusPlus::seed_from_u64(self.plan.seed));
-        let cost = Cost { tuning: self, scene, goes_on };
+        let cost = Cost { tuning: self, scene, may_continue };
         let search = Executor::new(cost, swarm).configure(|state| state.max_iters(u64::from(self.moves))).timer(false);
         let state = match search.run() {
             Ok(done) => done.state,
-            Err(_) if !goes_on() => return Ok(None),
+            Err(_) if !may_continue() => return Ok(None),
             Err(error) => return Err(anyhow!("the search came to no end: {error}")),
         };
         let Some(best) = state.get_best_param() else {
@@ -186,7 +186,7 @@ fn gains(place: &[f64]) -> [f64; 3] {
 struct Cost<'a> {
     tuning: &'a Tuning,
     scene: &'a Setting,
-    goes_on: &'a (dyn Fn() -> bool + Sync),
+    may_continue: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl CostFunction for Cost<'_> {
@@ -194,7 +194,7 @@ impl CostFunction for Cost<'_> {
     type Output = f64;
 
     fn cost(&self, place: &Vec<f64>) -> Result<f64> {
-        ensure!((self.goes_on)(), "ended");
+        ensure!((self.may_continue)(), "ended");
         let setting = self.tuning.with(self.scene, gains(place));
         Ok(self.tuning.judge(&setting, 0, self.tuning.plan.runs)?.0.cost)
     }
@@ -246,7 +246,7 @@ impl Experiment for Tuning {
 
     fn perform(&self, jobs: &Jobs<'_, Self>) -> Result<Vec<Vec<Tuned>>> {
         let scenes = self.scenes();
-        jobs.each(|(): &mut (), point, _| self.tune(&scenes[point], &|| jobs.goes_on()))
+        jobs.each(|(): &mut (), point, _| self.tune(&scenes[point], &|| jobs.may_continue()))
     }
 
     fn report(&self, runs: &[Vec<Tuned>]) -> Report {

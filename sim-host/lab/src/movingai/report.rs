@@ -23,8 +23,8 @@ pub struct Answer {
 impl Record for Answer {
     fn figures(&mut self, each: &mut Each<'_>) {
         each("arrived", "1: the robot reached the goal", &mut self.arrived);
-        each("length_cells", "length of its way, or of what it went until it gave up", &mut self.length_cells);
-        each("priced_cells", "the shortest way as the router took it to be; empty: none", &mut self.priced_cells);
+        each("length_cells", "length of its path; until it gave up if it did not arrive", &mut self.length_cells);
+        each("priced_cells", "shortest route by the router with the whole map; empty: none", &mut self.priced_cells);
     }
 }
 

@@ -104,19 +104,19 @@ impl Plan {
         (self.ground[point % self.ground.len()], self.robots[point / self.ground.len()])
     }
 
-    fn row(&self, ground: Ground, robots: u32, goes_on: &dyn Fn() -> bool) -> Result<Option<Row>> {
+    fn row(&self, ground: Ground, robots: u32, may_continue: &dyn Fn() -> bool) -> Result<Option<Row>> {
         let scenario = Scenario::parse(&self.text(ground, robots), Path::new("scale.toml"), &Overrides::default())?;
         let runs = WORTH.div_ceil(u64::from(robots) * u64::from(self.ticks)).max(1);
         let mut row = Row::new(ground, robots);
         for _ in 0..runs {
-            if !self.run(&scenario, &mut row, goes_on)? {
+            if !self.run(&scenario, &mut row, may_continue)? {
                 return Ok(None);
             }
         }
         Ok(Some(row))
     }
 
-    fn run(&self, scenario: &Scenario, row: &mut Row, goes_on: &dyn Fn() -> bool) -> Result<bool> {
+    fn run(&self, scenario: &Scenario, row: &mut Row, may_continue: &dyn Fn() -> bool) -> Result<bool> {
         let mut begun = None;
         let mut is_whole = true;
         let watch = |moment: &Moment<'_>, _: &mut dyn Iterator<Item = RobotRow>| {
@@ -124,7 +124,7 @@ impl Plan {
                 begun = Some((Instant::now(), Usage::now()));
             }
             row.memory_bytes = row.memory_bytes.max(process::memory_bytes());
-            is_whole &= goes_on();
+            is_whole &= may_continue();
             if is_whole { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         let outcome = simulate(scenario, watch)?;
@@ -193,7 +193,7 @@ impl Experiment for Plan {
         let before = process::memory_bytes();
         jobs.each(|(): &mut (), point, _| {
             let (ground, robots) = self.point(point);
-            let Some(mut row) = self.row(ground, robots, &|| jobs.goes_on())? else { return Ok(None) };
+            let Some(mut row) = self.row(ground, robots, &|| jobs.may_continue())? else { return Ok(None) };
             row.memory_bytes = row.memory_bytes.zip(before).map(|(after, before)| after.saturating_sub(before));
             Ok(Some(row))
         })

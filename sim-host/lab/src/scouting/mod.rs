@@ -137,11 +137,7 @@ pub struct Run {
 
 impl Record for Run {
     fn figures(&mut self, each: &mut Each<'_>) {
-        each(
-            "least_cost",
-            "least travel time of who knows all land at all times, 70ths of a tick",
-            &mut self.least_cost,
-        );
+        each("least_cost", "least travel time with the land of all times known, 70ths of a tick", &mut self.least_cost);
         each("arrived", "1: the robot reached its target", &mut self.arrived);
         each("cost", "travel time of the robot, 70ths of a tick", &mut self.cost);
         each("moves", "its moves", &mut self.moves);
@@ -214,7 +210,7 @@ impl Experiment for Plan {
         ensure!(SIZES.contains(&size), "a landscape of {size} x {size} cells; its side must be {least}..={most}");
         ensure!(!self.drifts.is_empty(), "no drift; give one share or more, 0 for land that stays");
         for share in self.drifts.iter().chain(&self.unknown).chain(&self.wrong) {
-            ensure!((0.0..=1.0).contains(share), "{share} is no share; give 0 to 1");
+            ensure!((0.0..=1.0).contains(share), "{share} is not a share; give 0 to 1");
         }
         let (sight, wide) = (self.sight, self.map_radius);
         ensure!(

@@ -116,8 +116,8 @@ impl Display for Report {
             )?;
         }
         f.write_str(
-            "dT: travel time above the least of who knows all land at all times to come; +-: half the 95 % interval of its mean\n\
-             sight: plans on what it sees; map: on a map too, and on what it has seen; far sight: sees as far as maps reach\n",
+            "dT: travel time above the least with the land of all times known; +-: half the 95 % interval of its mean\n\
+             sight: plans on the land in sight; map: also on a map and on land seen before; far sight: sees as far as maps reach\n",
         )
     }
 }

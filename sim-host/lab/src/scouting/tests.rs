@@ -126,7 +126,7 @@ fn invalid_plans_are_refused_with_the_permitted_range() {
     let refused = |plan: Plan| plan.check().unwrap_err().to_string();
     assert!(refused(Plan { runs: 0, ..small() }).contains("make 1 or more"));
     assert!(refused(Plan { drifts: vec![], ..small() }).contains("give one share"));
-    assert!(refused(Plan { unknown: vec![1.5], ..small() }).contains("1.5 is no share"));
+    assert!(refused(Plan { unknown: vec![1.5], ..small() }).contains("1.5 is not a share"));
     assert!(refused(Plan { map_radius: 4, ..small() }).contains("--map-radius 5 or more"));
     assert!(refused(Plan { size: 3, ..small() }).contains("its side must be 4"));
     assert!(refused(Plan { obstacles: 901, ..small() }).contains("901 obstacles on 900 cells"));

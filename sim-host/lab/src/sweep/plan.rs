@@ -198,7 +198,7 @@ impl Plan {
         }
         for (field, axis) in [("over", Some(&plot.over)), ("and", plot.and.as_ref())] {
             if let Some(axis) = axis.filter(|axis| self.find(axis).is_none()) {
-                let what = format!("{axis} is no axis of the plan");
+                let what = format!("{axis} is not an axis of the plan");
                 return Err((field, what, list(&mut self.axes())));
             }
         }
@@ -373,7 +373,7 @@ fn check_seeds(source: &Source<'_>, seeds: &Seeds) -> Result<Vec<u64>, ScenarioE
     let what = if seeds.is_empty() {
         "there is none".to_owned()
     } else if let Some(twice) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        format!("{} stands there twice", twice[0])
+        format!("{} is listed twice", twice[0])
     } else if seeds.len() > most || sorted.last().is_some_and(|&last| last > i64::MAX as u64) {
         "there are too many, or too large ones".to_owned()
     } else {
@@ -393,11 +393,11 @@ fn check_measures(
     for (index, name) in measures.iter().enumerate() {
         let field = format!("measures[{index}]");
         if !known.contains(name) {
-            let what = format!("{name} is no figure of summary.json");
+            let what = format!("{name} is not a figure of summary.json");
             return Err(source.error(&field, what, format!("give some of {}", known.join(", "))));
         }
         if measures[..index].contains(name) {
-            return Err(source.error(&field, format!("{name} stands there twice"), "leave one out"));
+            return Err(source.error(&field, format!("{name} is listed twice"), "leave one out"));
         }
     }
     if measures.is_empty() {

@@ -65,11 +65,11 @@ impl Row {
     pub fn read(plan: &dyn Design, line: &str) -> Result<Self, (String, String)> {
         let cells: Vec<&str> = line.split(',').collect();
         let [start @ .., hash, fingerprint, version] = &cells[..] else {
-            return Err(damaged("it is no row"));
+            return Err(damaged("it is not a row"));
         };
         let is_fingerprint = fingerprint.len() == 16 && fingerprint.chars().all(|c| c.is_ascii_hexdigit());
         if !is_fingerprint || version.is_empty() {
-            return Err(damaged("it is no row"));
+            return Err(damaged("it is not a row"));
         }
         if *fingerprint != plan.fingerprint() {
             let what = format!("it is of another plan ({fingerprint}, this one is {})", plan.fingerprint());
@@ -88,12 +88,12 @@ impl Row {
             return Err(damaged("its values are not those of this run"));
         }
         let outcome = [Outcome::Done, Outcome::Impossible].into_iter().find(|known| known.name() == *outcome);
-        let outcome = outcome.ok_or_else(|| damaged("nobody knows what became of it"))?;
+        let outcome = outcome.ok_or_else(|| damaged("its outcome is unknown"))?;
         if figures.len() != plan.figures().len() {
             return Err(damaged("it has not as many figures as the plan"));
         }
         let figures = figures.iter().map(|cell| Figure::read(cell)).collect::<Option<Vec<_>>>();
-        let figures = figures.ok_or_else(|| damaged("a figure is no number"))?;
+        let figures = figures.ok_or_else(|| damaged("a figure is not a number"))?;
         Ok(Self { run, outcome, figures, trace_hash: (*hash).to_owned() })
     }
 }

@@ -20,10 +20,10 @@ pub struct Finished {
     pub refusal: Option<String>,
 }
 
-/// Makes a run; `None` if `goes_on` stops it between two ticks.
-pub fn perform(plan: &Plan, number: u64, goes_on: impl Fn() -> bool) -> Option<Finished> {
+/// Makes a run; `None` if `may_continue` stops it between two ticks.
+pub fn perform(plan: &Plan, number: u64, may_continue: impl Fn() -> bool) -> Option<Finished> {
     let since = Instant::now();
-    let simulated = simulated(plan, number, &mut |_| goes_on());
+    let simulated = simulated(plan, number, &mut |_| may_continue());
     let (outcome, figures, trace_hash, refusal) = match simulated {
         Ok((_, true)) => return None,
         Ok((summary, false)) => (Outcome::Done, chosen(plan, &summary), summary.trace_hash().to_owned(), None),

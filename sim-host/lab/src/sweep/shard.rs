@@ -116,7 +116,7 @@ pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
             SweepError::new(format_args!("{}:{number}", path.display()), what, remedy)
         };
         let line = std::str::from_utf8(line)
-            .map_err(|_| wrong(("it is no text".to_owned(), "is it another kind of file, or damaged?".to_owned())))?;
+            .map_err(|_| wrong(("it is not text".to_owned(), "the file is of another kind, or damaged".to_owned())))?;
         let line = line.trim_end_matches('\n');
         if number > 1 {
             rows.rows.push((number, Row::read(plan, line).map_err(wrong)?));

@@ -21,7 +21,7 @@ impl Value {
     pub(crate) fn read(value: &toml::Value) -> Result<Self, String> {
         match value {
             toml::Value::Integer(number) => Ok(Self::Whole(*number)),
-            toml::Value::Float(number) if number.is_nan() => Err("nan is no value".to_owned()),
+            toml::Value::Float(number) if number.is_nan() => Err("nan is not a value".to_owned()),
             toml::Value::Float(number) => Ok(Self::Number(*number)),
             toml::Value::Boolean(truth) => Ok(Self::Truth(*truth)),
             toml::Value::String(word) => {

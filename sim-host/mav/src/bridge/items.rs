@@ -74,14 +74,14 @@ impl Vehicle {
     fn finish_item(&mut self, out: &mut Out) -> bool {
         let seq = self.mission.current();
         out.messages.push(MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
-        let goes_on = self.mission.set_current(seq + 1);
-        if !goes_on {
+        let has_next = self.mission.set_current(seq + 1);
+        if !has_next {
             self.mission.complete();
             self.is_on_mission = false;
             out.actions.push(Action::Wish(Wish::Hold));
             self.text(out, Kind::News, MAV_SEVERITY_INFO, "mission done: holding");
         }
-        goes_on
+        has_next
     }
 
     fn limit_speed(&mut self, speed_mps: f32, out: &mut Out) {
@@ -103,7 +103,7 @@ impl Vehicle {
         }
     }
 
-    pub(super) fn go_on_with_mission(&mut self, out: &mut Out) {
+    pub(super) fn advance_mission(&mut self, out: &mut Out) {
         let Some(item) = self.mission.item(self.mission.current()).copied() else {
             return;
         };

@@ -167,7 +167,7 @@ impl Vehicle {
         for event in events {
             self.report(event, out);
         }
-        self.go_on(out);
+        self.advance(out);
     }
 
     fn report(&mut self, event: &Event, out: &mut Out) {
@@ -419,7 +419,7 @@ impl Vehicle {
         all <= near_m * near_m
     }
 
-    fn go_on(&mut self, out: &mut Out) {
+    fn advance(&mut self, out: &mut Out) {
         if !self.is_armed {
             return;
         }
@@ -437,7 +437,7 @@ impl Vehicle {
                     self.enter(FlightMode::Land, out);
                 }
             }
-            FlightMode::Auto if self.is_on_mission => self.go_on_with_mission(out),
+            FlightMode::Auto if self.is_on_mission => self.advance_mission(out),
             _ => {}
         }
     }

@@ -47,7 +47,7 @@ pub enum StationError {
     #[error(
         "{0}: no robot found; start `staya bridge SCENARIO --mavlink udpin:HOST:PORT` there, or give more time (--wait) or the key (--key)"
     )]
-    Nobody(String),
+    NoVehicle(String),
     /// Some of the selected robots were not found.
     #[error(
         "{line}: robots {missing} not found, only {heard}; select other robots (--robots) or give more time (--wait)"
@@ -187,7 +187,7 @@ impl Station<'_> {
             }
         }
         if self.heard.is_empty() {
-            return Err(StationError::Nobody(endpoint.to_string()));
+            return Err(StationError::NoVehicle(endpoint.to_string()));
         }
         let robots = wanted.robots.as_ref().unwrap_or(&self.heard).clone();
         let missing: BTreeSet<u8> = robots.difference(&self.heard).copied().collect();

@@ -28,13 +28,13 @@ where
         let (most, sum) = self.loads.iter().fold((0.0_f64, 0.0), |(most, sum), &load| (most.max(load), sum + load));
         let is_uneven = most * self.loads.len() as f64 > sum * self.sharing.above;
         if is_uneven && self.age >= self.sharing.every_ticks.saturating_mul(REST) {
-            self.cut_anew()?;
+            self.recut()?;
         }
         self.send_robots()?;
         self.tell_region()
     }
 
-    fn cut_anew(&mut self) -> Result<(), RankError> {
+    fn recut(&mut self) -> Result<(), RankError> {
         let robots = self.engine.here.len();
         let stride = robots.div_ceil(SAMPLES_A_RANK).max(1);
         let load = self.loads[self.wire.rank()] / robots.div_ceil(stride).max(1) as f64;

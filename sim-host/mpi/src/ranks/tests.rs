@@ -8,10 +8,10 @@ use std::path::Path;
 use std::sync::Mutex;
 
 fn on_ranks(scenario: &Scenario, ranks: usize, sharing: &Sharing) -> Vec<Result<Ended, RankError>> {
-    go_on(scenario, ranks, sharing, None, &Mutex::default())
+    resume_on(scenario, ranks, sharing, None, &Mutex::default())
 }
 
-fn go_on(
+fn resume_on(
     scenario: &Scenario,
     ranks: usize,
     sharing: &Sharing,
@@ -204,7 +204,7 @@ fn a_checkpoint_continues_identically_on_any_number_of_ranks() {
         let sharing =
             Sharing { every_ticks: 4, checkpoints: Some(CheckpointInterval::Ticks(25)), ..Sharing::default() };
         let saved = Mutex::default();
-        let ended = go_on(&scenario, 3, &sharing, None, &saved);
+        let ended = resume_on(&scenario, 3, &sharing, None, &saved);
         assert_eq!(ended[0].as_ref().expect("an outcome").outcome, alone, "{}", scenario.name);
         let saved = saved.into_inner().expect("no thread panicked");
         assert_eq!(saved.len() as u32, alone.ticks / 25, "{}", scenario.name);
@@ -213,14 +213,14 @@ fn a_checkpoint_continues_identically_on_any_number_of_ranks() {
                 .expect("the checkpoint is valid");
             assert_eq!(here, alone, "{} by one process", scenario.name);
             for ranks in [1, 4] {
-                let ended = go_on(&scenario, ranks, &Sharing::default(), Some(state), &Mutex::default());
+                let ended = resume_on(&scenario, ranks, &Sharing::default(), Some(state), &Mutex::default());
                 let outcome = &ended[0].as_ref().expect("an outcome").outcome;
                 assert_eq!(outcome, &alone, "{} on {ranks} ranks", scenario.name);
             }
         }
         let mut cut = saved[1].clone();
         cut.truncate(cut.len() / 2);
-        for ended in go_on(&scenario, 2, &Sharing::default(), Some(&cut), &Mutex::default()) {
+        for ended in resume_on(&scenario, 2, &Sharing::default(), Some(&cut), &Mutex::default()) {
             let error = ended.expect_err("half a checkpoint").to_string();
             assert!(error.starts_with("byte ") && error.contains("cut off"), "{error}");
         }

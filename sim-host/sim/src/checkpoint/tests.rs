@@ -48,7 +48,7 @@ fn resumed_records_are_identical() {
         recorder.tick(moment.row, robots).expect("it can be written");
         ControlFlow::Continue(())
     })
-    .expect("it goes on");
+    .expect("it resumes");
     let history = recorder.finish().expect("it can be written");
     assert_eq!(history.ticks(), 13);
     for name in ["trace.csv", "series.csv", "trace.schema.json", "series.schema.json"] {
@@ -72,7 +72,7 @@ fn a_run_without_traces_resumes_without_traces() {
             recorder.tick(moment.row, robots).expect("it can be written");
             ControlFlow::Continue(())
         })
-        .expect("it goes on");
+        .expect("it resumes");
         recorder.finish().expect("it can be written");
         let mut names: Vec<_> =
             fs::read_dir(&again).expect("a folder").map(|entry| entry.expect("an entry").file_name()).collect();

@@ -118,7 +118,11 @@ where
             return Err(Refusal::new("kind", "some of these robots run elsewhere", "run them here"));
         }
         if !self.ground.is_open(place_m) {
-            return Err(Refusal::new("place_m", "nobody can stand there", "give a place on the map and not in a wall"));
+            return Err(Refusal::new(
+                "place_m",
+                "no robot can stand there",
+                "give a place on the map and not in a wall",
+            ));
         }
         let robots = number.map_or(0..self.robots.len(), |number| number..number + 1);
         let tops = self.shapes.iter().filter(|_| number.is_none());
@@ -142,7 +146,7 @@ where
         if is_of_use {
             return Ok(());
         }
-        Err(Refusal::new("kind", "these robots go to no place, they roam", "give them another guidance law"))
+        Err(Refusal::new("kind", "these robots have no goal", "give them another guidance law"))
     }
 
     fn tune(&mut self, robot: Option<usize>, parameter: Parameter, value: f32) -> Result<(), Refusal> {
@@ -157,7 +161,7 @@ where
         }
         // A robot of another rank may have the parameter.
         if !is_known && self.here.len() == self.robots.len() {
-            let what = format!("no robot that this is for has the parameter {parameter}");
+            let what = format!("none of these robots has the parameter {parameter}");
             return Err(Refusal::new("name", what, "give one that its guidance law or its safety layer has"));
         }
         self.tuned.push(tuned);

@@ -132,8 +132,8 @@ pub enum StartError {
 /// See [`Grid::new`] and [`Engine::restore`].
 pub fn simulate_from(scenario: &Scenario, state: &[u8], watch: &mut Watch<'_>) -> Result<Outcome, StartError> {
     Ok(match AnyEngine::new(scenario)? {
-        AnyEngine::Plane(engine) => go_on(scenario, *engine, state, watch)?,
-        AnyEngine::Cells(engine) => go_on(scenario, *engine, state, watch)?,
+        AnyEngine::Plane(engine) => resume(scenario, *engine, state, watch)?,
+        AnyEngine::Cells(engine) => resume(scenario, *engine, state, watch)?,
     })
 }
 
@@ -217,7 +217,7 @@ where
     ticks(scenario, engine, watch)
 }
 
-fn go_on<W, G, A>(
+fn resume<W, G, A>(
     scenario: &Scenario,
     mut engine: Engine<W, G, A>,
     state: &[u8],

@@ -61,7 +61,7 @@ pub struct StateError {
     remedy: &'static str,
 }
 
-const ANEW: &str = "take another checkpoint, or start anew";
+const REMEDY: &str = "take another checkpoint, or restart the run";
 const SAME: &str = "restore it with the scenario, and the program, that made it";
 
 impl StateError {
@@ -103,9 +103,9 @@ impl<'a> Reader<'a> {
             }
             Err(postcard::Error::DeserializeUnexpectedEnd) => {
                 let what = format!("{what} is cut off");
-                Err(StateError::new(self.all.len(), what, ANEW))
+                Err(StateError::new(self.all.len(), what, REMEDY))
             }
-            Err(error) => Err(StateError::new(stopped_at, format!("{what} makes no sense: {error}"), ANEW)),
+            Err(error) => Err(StateError::new(stopped_at, format!("{what} makes no sense: {error}"), REMEDY)),
         }
     }
 }

@@ -140,7 +140,7 @@ fn a_down_robot_is_stationary_and_silent_and_restarts_its_clock() {
     let clocks: Vec<_> = own.iter().map(|k| k.now_us / 500_000).collect();
     assert_eq!(clocks, [0, 1, 0, 1, 2]);
     assert_eq!(own[2].cell, own[1].cell + Cell::new(1, 0), "it stood meanwhile");
-    assert!(own[2].others.is_empty(), "it forgot everybody");
+    assert!(own[2].others.is_empty(), "it forgot all robots");
     assert_eq!(own[3].others.len(), 1);
     assert_eq!(engine.computers[0].boot, 1);
     // The other robot receives the first start, then nothing, then the restart.

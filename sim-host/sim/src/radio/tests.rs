@@ -56,8 +56,8 @@ fn coincident_robots_and_an_empty_swarm_are_valid() {
     let mut crowd = radio(params, 5);
     let counts = crowd.carry(0, &[[2.0, 3.0]; 5], |_| &FRAME);
     assert_eq!(counts.delivered, 20);
-    let mut nobody = radio(RadioParams::default(), 0);
-    assert_eq!(nobody.carry(0, &[], |_| &FRAME), Counts::default());
+    let mut empty = radio(RadioParams::default(), 0);
+    assert_eq!(empty.carry(0, &[], |_| &FRAME), Counts::default());
 }
 
 #[test]

@@ -29,7 +29,7 @@ pub const TRACE: [Column; 21] = [
         "wait",
         "string",
         "",
-        "formation, request, way, radio, turn, others or place: what it waits for; empty: it gets on",
+        "formation, request, way, radio, turn, others or place: reason for waiting; empty: it does not wait",
     ),
     (
         "goal_x_m",

@@ -47,11 +47,11 @@ pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) ->
     let keeping = if has_master { Some(keeping(source, file, table, robots, &found.0)?) } else { None };
     if keeping.is_none() && (!table.roll.is_empty() || table.overlap_s.is_some() || table.place_m.is_some()) {
         let remedy = "give master_file or master, or leave roll, overlap_s and place_m out";
-        return Err(source.error("authentication", "who has one key cannot be sent another one", remedy));
+        return Err(source.error("authentication", "only robots with a master key receive new keys", remedy));
     }
     // The operators take two more entries of the peer table.
     if robots.len() + 2 > PEERS {
-        let problem = format!("{} robots are too many: nobody forgets whom he has heard", robots.len());
+        let problem = format!("{} robots do not fit into a robot's table of peers", robots.len());
         let remedy = format!("give at most {}, or leave this table out", PEERS - 2);
         return Err(source.error("authentication", problem, remedy));
     }
@@ -129,14 +129,18 @@ fn attack(
 ) -> Result<Attack, ScenarioError> {
     let is_insider = table.kind == AttackKind::Insider;
     if is_insider == table.lies.is_empty() {
-        let remedy = "an \"insider\" lies: give lies, one or more of \"orders\", \"radius\", \"speed\", \"jump\", \"ghosts\"; nobody else does";
-        return Err(source.error(field, "it is not clear what it says", remedy));
+        let remedy = "give lies, one or more of \"orders\", \"radius\", \"speed\", \"jump\", \"ghosts\", or another kind without lies";
+        return Err(source.error(field, "kind = \"insider\" requires lies, and no other kind has them", remedy));
     }
     let has_ghosts = table.lies.contains(&Lie::Ghosts);
     let ghosts = table.ghosts.unwrap_or(16);
     if table.ghosts.is_some() && !has_ghosts || !(1..=100).contains(&ghosts) {
         let remedy = "give 1 to 100, with lies = [\"ghosts\"]";
-        return Err(source.error(&format!("{field}.ghosts"), "these are no ghosts", remedy));
+        return Err(source.error(
+            &format!("{field}.ghosts"),
+            "the number of ghosts is out of range, or lies does not contain \"ghosts\"",
+            remedy,
+        ));
     }
     let lure_m = match (table.kind, table.lure_m, table.delay_s) {
         (AttackKind::Replay, None, _) => [0.0; 2],
@@ -169,7 +173,7 @@ fn attack(
     let most = max_robot(file.radio.format, true);
     if !claims.is_some() || claims > most {
         let remedy = format!("give 1 to {}", most.0);
-        return Err(source.error(&format!("{field}.claims"), "this is no robot's number", remedy));
+        return Err(source.error(&format!("{field}.claims"), format!("{claims} is not a valid robot number"), remedy));
     }
     if is_insider && robots.binary_search_by_key(&claims, |robot| robot.id).is_err() {
         let remedy = "give the number of a robot of this scenario";
@@ -177,7 +181,11 @@ fn attack(
     }
     if has_ghosts && claims.0.max(last.0) + u32::from(ghosts) > most.0 {
         let remedy = format!("give fewer; numbers end at {}", most.0);
-        return Err(source.error(&format!("{field}.ghosts"), "there are no numbers for so many", remedy));
+        return Err(source.error(
+            &format!("{field}.ghosts"),
+            format!("there are not enough robot numbers for {ghosts} ghosts"),
+            remedy,
+        ));
     }
     Ok(Attack {
         kind: table.kind,

@@ -1,6 +1,6 @@
 //! Checks that involve more than one field.
 
-use super::ranges::within;
+use super::ranges::{short, within};
 use super::source::Source;
 use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
 use crate::file::has_memory;
@@ -22,7 +22,7 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
         ));
     }
     if file.ticks == 0 {
-        return Err(source.error("ticks", "0 ticks are no run", "give 1 or more"));
+        return Err(source.error("ticks", "a run needs at least one tick", "give 1 or more"));
     }
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
 }
@@ -51,7 +51,7 @@ pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Scen
     if radio.range_m.is_nan() || radio.range_m < 0.0 {
         return Err(source.error(
             "radio.range_m",
-            format!("{} is no distance", radio.range_m),
+            format!("{} is not a distance", short(radio.range_m)),
             "give metres, 0 or more, or inf",
         ));
     }
@@ -77,7 +77,7 @@ pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Scen
         if !(burst.mean_ms >= least_ms && burst.mean_ms <= 600_000.0) {
             return Err(source.error(
                 "radio.burst.mean_ms",
-                format!("{} is out of range", burst.mean_ms),
+                format!("{} is out of range", short(burst.mean_ms)),
                 format!("with this tick and share, give {least_ms:.1} to 600000 milliseconds"),
             ));
         }
@@ -86,7 +86,7 @@ pub(super) fn radio(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Scen
         if !(*from >= 0.0 && from < to && to.is_finite()) {
             return Err(source.error(
                 &format!("radio.blackout_s[{index}]"),
-                format!("[{from}, {to}] is no span of time"),
+                format!("[{}, {}] is not a time span", short(*from), short(*to)),
                 "give [from, to] in seconds after the start with 0 <= from < to",
             ));
         }
@@ -98,7 +98,7 @@ fn probability(source: &Source<'_>, field: &str, value: f64) -> Result<(), Scena
     if (0.0..=1.0).contains(&value) {
         return Ok(());
     }
-    let what = format!("{value} is no probability");
+    let what = format!("{} is not a probability", short(value));
     Err(source.error(field, what, "give a number from 0 to 1"))
 }
 
@@ -236,12 +236,12 @@ fn law_only(source: &Source<'_>, file: &ScenarioFile) -> Result<(), ScenarioErro
     }
     if file.formation.waits == Some(false) {
         if file.plane.is_some() {
-            let what = "in the plane nobody waits: the slowest makes the pace";
+            let what = "robots in the plane do not wait; the slowest sets the pace";
             return Err(source.error("formation.waits", what, "leave it out"));
         }
         for name in ["formation.halt_cells", "formation.resume_cells"] {
             if source.stands(name) {
-                return Err(source.error(name, "nobody waits", "leave it out, or waits = false"));
+                return Err(source.error(name, "with waits = false no robot waits", "leave out one of the two"));
             }
         }
     }
@@ -265,7 +265,7 @@ pub(super) fn misnumbered(
         } else if robot == number {
             ("number", format!("robot {robot} has this number anyway"), "give that of another robot".to_owned())
         } else if !(RobotId(1)..=most).contains(&number) {
-            let what = format!("{} is no number of a robot", entry.number);
+            let what = format!("{} is not a valid robot number", entry.number);
             ("number", what, format!("give 1 to {}", most.0))
         } else {
             known.push((robot, number));

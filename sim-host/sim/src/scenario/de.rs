@@ -2,6 +2,7 @@
 //! any source of events; its generic layers produce three times as much machine code for the
 //! scenario tables.
 
+use super::ranges::short;
 use serde::de::value::StrDeserializer;
 use serde::de::{
     DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, IntoDeserializer as _, MapAccess, SeqAccess,
@@ -102,12 +103,6 @@ fn in_words(found: Unexpected<'_>) -> String {
         Unexpected::Other(what) => format!("a {what}"),
         other => other.to_string(),
     }
-}
-
-/// A number in at most about twenty characters.
-pub fn short(value: f64) -> String {
-    let is_long = value != 0.0 && value.is_finite() && !(1e-6..1e15).contains(&value.abs());
-    if is_long { format!("{value:e}") } else { value.to_string() }
 }
 
 /// What a type accepts, without its Rust name.

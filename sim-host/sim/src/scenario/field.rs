@@ -56,7 +56,7 @@ impl Field {
             let entry = table.entry(name).or_insert_with(|| Value::Table(toml::Table::new()));
             table = element(entry, name, places)?
                 .as_table_mut()
-                .ok_or_else(|| format!("{name} is no table in the scenario"))?;
+                .ok_or_else(|| format!("{name} is not a table in the scenario"))?;
         }
         if places.is_empty() {
             table.insert(last.clone(), to);
@@ -70,7 +70,7 @@ impl Field {
 
 fn element<'a>(mut value: &'a mut Value, name: &str, places: &[usize]) -> Result<&'a mut Value, String> {
     for &place in places {
-        let list = value.as_array_mut().ok_or_else(|| format!("{name} is no list in the scenario"))?;
+        let list = value.as_array_mut().ok_or_else(|| format!("{name} is not a list in the scenario"))?;
         let count = list.len();
         value = list.get_mut(place).ok_or_else(|| format!("{name} has {count} elements, counted from 0"))?;
     }
@@ -112,10 +112,10 @@ mod tests {
     fn an_obstruction_on_the_path_is_named() {
         for (name, what) in [
             ("plane.group[2].count", "group has 2 elements, counted from 0"),
-            ("plane.radius_m.x", "radius_m is no table in the scenario"),
-            ("ticks[0]", "ticks is no list in the scenario"),
+            ("plane.radius_m.x", "radius_m is not a table in the scenario"),
+            ("ticks[0]", "ticks is not a list in the scenario"),
             ("plane.order[0]", "order is not in the scenario"),
-            ("order[0].at_s", "order is no list in the scenario"),
+            ("order[0].at_s", "order is not a list in the scenario"),
         ] {
             assert_eq!(set(name).expect_err(name), what);
         }

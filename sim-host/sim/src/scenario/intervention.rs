@@ -1,7 +1,7 @@
 //! Interventions: changes to a running simulation, made by hand in the viewer or listed as
 //! `[[intervention]]` in a scenario.
 
-use super::ranges::micros;
+use super::ranges::{micros, short};
 use super::source::{ScenarioError, Source};
 use super::{Robot, ScenarioFile};
 use crate::world::Refusal;
@@ -117,30 +117,38 @@ impl Intervention {
                 let is_far = |x: &f64| x.is_nan() || x.abs() > FAR_M;
                 if place_m.iter().any(is_far) {
                     let remedy = format!("give metres within {FAR_M}");
-                    return Err(Refusal::new("place_m", "this is no place", remedy));
+                    return Err(Refusal::new("place_m", "a coordinate is out of range", remedy));
                 }
             }
             Self::Parameter { name, value, .. } => {
                 let [least, greatest] = name.range();
                 if !(least..=greatest).contains(value) {
-                    let what = format!("{value} is out of range");
+                    let what = format!("{} is out of range", short((*value).into()));
                     return Err(Refusal::new("value", what, format!("give {least} to {greatest}")));
                 }
             }
             Self::Down { for_s: Some(for_s), .. } if !(0.0..=1e9).contains(for_s) => {
-                return Err(Refusal::new("for_s", format!("{for_s} is no time"), "give seconds, 0 to 1e9"));
+                return Err(Refusal::new(
+                    "for_s",
+                    format!("{} is out of range", short(*for_s)),
+                    "give seconds, 0 to 1e9",
+                ));
             }
             Self::Radio { loss: Some(loss), .. } if !(0.0..=1.0).contains(loss) => {
-                let what = format!("{loss} is no probability");
+                let what = format!("{} is not a probability", short(*loss));
                 return Err(Refusal::new("loss", what, "give a number from 0 to 1"));
             }
             Self::Radio { range_m: Some(range_m), .. } if range_m.is_nan() || *range_m < 0.0 => {
-                let what = format!("{range_m} is no distance");
+                let what = format!("{} is not a distance", short(*range_m));
                 return Err(Refusal::new("range_m", what, "give metres, 0 or more, or inf"));
             }
             Self::Solid { solid } => solid.check()?,
             Self::Move { by_m, .. } if by_m.iter().any(|x| x.is_nan() || x.abs() > FAR_M) => {
-                return Err(Refusal::new("by_m", "this is no way", format!("give metres within {FAR_M}")));
+                return Err(Refusal::new(
+                    "by_m",
+                    "the displacement is out of range",
+                    format!("give metres within {FAR_M}"),
+                ));
             }
             _ => {}
         }

@@ -42,8 +42,8 @@ impl Entry<'_> {
             (Some(cells), None, None) => {
                 let cells: Vec<Cell> = cells.iter().map(|&[x, y]| Cell::new(x, y)).collect();
                 if let Some(at) = cells.iter().position(|cell| land.index(*cell).is_none()) {
-                    let what = format!("({}, {}) is no cell of the map", cells[at].x, cells[at].y);
-                    let remedy = format!("it has {} x {}", land.width(), land.height());
+                    let what = format!("({}, {}) is outside the map", cells[at].x, cells[at].y);
+                    let remedy = format!("give a cell of the map of {} x {} cells", land.width(), land.height());
                     return Err(self.error(&format!("cells[{at}]"), what, &remedy));
                 }
                 Ok(Some(cells))
@@ -57,7 +57,11 @@ impl Entry<'_> {
             }
             (None, None, Some(corners)) => {
                 if corners.len() < 3 || corners.as_flattened().iter().any(|x| !x.is_finite()) {
-                    return Err(self.error("polygon_m", "this is no polygon", "give three corners or more, in metres"));
+                    return Err(self.error(
+                        "polygon_m",
+                        "this is not a polygon",
+                        "give three corners or more, in metres",
+                    ));
                 }
                 let cells: Vec<Cell> = all().filter(|cell| contains(corners, land.center_m(*cell))).collect();
                 if cells.is_empty() {
@@ -94,7 +98,7 @@ impl Entry<'_> {
                     ));
                 };
                 if every.is_some() && lasts.is_none() {
-                    return Err(self.error("every_s", "what is never over does not begin again", "give for_s, too"));
+                    return Err(self.error("every_s", "a change without an end cannot repeat", "give for_s, too"));
                 }
                 let cells = cells.into_iter().map(|cell| (cell, land.get(cell))).collect();
                 ChangeKind::Become { cells, class, lasts }

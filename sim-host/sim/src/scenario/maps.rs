@@ -35,7 +35,7 @@ pub(super) fn sharing(
         params.forget_after = Duration::from_micros((seconds * 1e6) as i32);
     }
     if !file.maps.share {
-        let what = "nobody shares a map";
+        let what = "no robot shares a map";
         let is_alone = file.maps.forget_after_s.is_some();
         return if is_alone {
             Err(source.error("maps.forget_after_s", what, "give maps.share = true, or leave it out"))
@@ -45,19 +45,13 @@ pub(super) fn sharing(
     }
     let refused = |what: &str, remedy: &str| Err(source.error("maps.share", what, remedy));
     if plane.is_some_and(|plane| !plane.kinds().any(|group| group.guidance.kind().is_on_grid())) {
-        return refused(
-            "none of the robots goes by land",
-            "give a guidance \"route\" or \"formation\", or leave it out",
-        );
+        return refused("no robot plans on the map", "give a guidance \"route\" or \"formation\", or leave it out");
     }
     if route.params.exit == ExitRule::Ray {
-        return refused("with route.exit = \"ray\" nobody asks what lies beyond the window", "give exit = \"best\"");
+        return refused("route.exit = \"ray\" ignores the land beyond the window", "give exit = \"best\"");
     }
     if route.replan == Replan::UntilChanged {
-        return refused(
-            "with route.replan = \"until_changed\" ways are planned by the window alone",
-            "give \"each_cell\"",
-        );
+        return refused("route.replan = \"until_changed\" plans routes in the window only", "give \"each_cell\"");
     }
     if file.scouting.is_some() {
         return refused("robots that have a map ([scouting]) plan by that one", "leave one of the two out");

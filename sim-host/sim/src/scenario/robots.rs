@@ -79,7 +79,11 @@ pub(super) fn build(
     terrain: &Terrain,
 ) -> Result<(Vec<Robot>, Vec<Formation>), ScenarioError> {
     let Some(table) = &file.robots else {
-        return Err(source.error("robots", "it is missing", "say who takes part"));
+        return Err(source.error(
+            "robots",
+            "the table is missing",
+            "give exactly one of list, formation, scen, scattered",
+        ));
     };
     let mut formations = Vec::new();
     let entries = match (&table.list, &table.formation[..], &table.scen, &table.scattered) {
@@ -102,7 +106,7 @@ pub(super) fn build(
         _ => {
             return Err(source.error(
                 "robots",
-                "it is not clear who takes part",
+                "the robots are not defined exactly once",
                 "give exactly one of list, formation, scen, scattered",
             ));
         }
@@ -178,7 +182,7 @@ fn graph(
         )),
     }?;
     if rho == Some(0) {
-        return Err(source.error("formation.rho", "with 0 nobody would know of anybody", "give 1 or more"));
+        return Err(source.error("formation.rho", "with rho = 0 no robot knows its neighbours", "give 1 or more"));
     }
     let templates =
         |rho| (0..places.len()).map(|own| Template::from_graph(&places, &edges, own, rho)).collect::<Result<_, _>>();
@@ -439,7 +443,7 @@ fn scattered(
 
 fn check(source: &Source<'_>, entries: &[Entry], terrain: &Terrain) -> Result<(), ScenarioError> {
     if entries.is_empty() {
-        return Err(source.error("robots", "nobody takes part", "give at least one robot"));
+        return Err(source.error("robots", "there are no robots", "give at least one robot"));
     }
     let mut ids = BTreeSet::new();
     let mut starts = vec![0; terrain.cells().len()];

@@ -27,13 +27,13 @@ pub(super) fn scouting(
         within(source, field, value, 0.0, 1.0, "(a share)")?;
     }
     if table.unknown + table.wrong > 1.0 {
-        let what = format!("{} of the map is unknown, the rest is not {}", table.unknown, table.wrong);
-        return Err(source.error("scouting.wrong", what, "give shares whose sum is 1 at most"));
+        let what = format!("unknown {} and wrong {} add up to more than 1", table.unknown, table.wrong);
+        return Err(source.error("scouting.wrong", what, "give shares with a sum of at most 1"));
     }
     let patch_cells = table.patch_cells.unwrap_or(1);
     within(source, "scouting.patch_cells", patch_cells.into(), 1.0, 1000.0, "cells")?;
     if table.assumed == Some(0) {
-        let what = "nobody would go where nothing is known";
+        let what = "0 makes unknown cells impassable";
         return Err(source.error("scouting.assumed", what, "give 1 to 255 ticks"));
     }
     let old = match &table.map {
@@ -102,7 +102,7 @@ mod tests {
         for (rest, field, remedy) in [
             ("[scouting]\nunknown = 1.5\n", "scouting.unknown", "0 to 1"),
             ("[scouting]\nwrong = -0.5\n", "scouting.wrong", "0 to 1"),
-            ("[scouting]\nunknown = 0.6\nwrong = 0.6\n", "scouting.wrong", "sum is 1"),
+            ("[scouting]\nunknown = 0.6\nwrong = 0.6\n", "scouting.wrong", "sum of at most 1"),
             ("[scouting]\npatch_cells = 0\n", "scouting.patch_cells", "1 to 1000"),
             ("[scouting]\nassumed = 0\n", "scouting.assumed", "1 to 255"),
             ("[scouting]\nradius = 4\n", "scouting.radius", "5 to 16"),

@@ -68,11 +68,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ("name = \"t\"\nticks = -3\n", "s.toml:2: ticks: invalid value"),
         (
             &format!("{HEAD}{robots}[radio]\nloss = 30\n"),
-            "s.toml:8: radio.loss: 30 is no probability; give a number from 0 to 1",
+            "s.toml:8: radio.loss: 30 is not a probability; give a number from 0 to 1",
         ),
         (
             &format!("{HEAD}{robots}[radio]\n\nbit_error_rate = nan\n"),
-            "s.toml:9: radio.bit_error_rate: NaN is no probability",
+            "s.toml:9: radio.bit_error_rate: NaN is not a probability",
         ),
         (
             &format!("{HEAD}{robots}[radio]\nformat = \"morse\"\n"),
@@ -84,21 +84,21 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             ),
             "s.toml:8: radio.format: robot 255 has no number in mavlink: systems are 1 to 254; give fewer robots",
         ),
-        (&format!("{HEAD}{robots}[radio]\nrange_m = nan\n"), "s.toml:8: radio.range_m: NaN is no distance"),
+        (&format!("{HEAD}{robots}[radio]\nrange_m = nan\n"), "s.toml:8: radio.range_m: NaN is not a distance"),
         (
             &format!("{HEAD}{robots}[radio]\ndelay_ms = -1\n"),
             "s.toml:8: radio.delay_ms: -1 is out of range; give 0 to 600000 milliseconds",
         ),
         (
             &format!("{HEAD}{robots}[radio]\nblackout_s = [[0, 1], [5, 4]]\n"),
-            "s.toml:8: radio.blackout_s[1]: [5, 4] is no span",
+            "s.toml:8: radio.blackout_s[1]: [5, 4] is not a time span",
         ),
         (
             &format!("{HEAD}{robots}[radio]\nburst = {{ share = 0.5, mean_ms = 100 }}\n"),
             "s.toml:8: radio.burst.mean_ms: 100 is out of range; with this tick and share, give 2000.0",
         ),
         (&format!("tick_s = inf\n{HEAD}{robots}"), "s.toml:1: tick_s: inf is out of range; give 0.001 to 60 seconds"),
-        (&format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"), "s.toml:2: ticks: 0 ticks"),
+        (&format!("{HEAD}{robots}").replace("ticks = 5", "ticks = 0"), "s.toml:2: ticks: a run needs"),
         (&format!("{HEAD}{robots}").replace("\"t\"", "\"../x\""), "s.toml:1: name: \"../x\" cannot name a folder"),
         (&format!("{HEAD}{robots}").replace("m.map", "no.map"), "s.toml:4: terrain.file: "),
         (&format!("{HEAD}crop = {{ x = 2, y = 0, width = 4, height = 1 }}\n{robots}"), "s.toml:5: terrain.crop: "),
@@ -107,8 +107,8 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             &format!("name = \"t\"\nticks = 5\n[terrain]\n{robots}"),
             "s.toml:3: terrain: it is not clear what land is meant; give exactly one of",
         ),
-        (&with_robots(""), "s.toml:5: robots: it is not clear who takes part; give exactly one of"),
-        (&with_robots("list = []"), "s.toml:5: robots: nobody takes part"),
+        (&with_robots(""), "s.toml:5: robots: the robots are not defined exactly once; give exactly one of"),
+        (&with_robots("list = []"), "s.toml:5: robots: there are no robots"),
         (
             &with_robots("list = [\n{ start = [0, 0], goal = [3, 2] },\n{ start = [0, 0], goal = [3, 1] }]"),
             "s.toml:8: robots.list[1].start: robots 1 and 2 have the same start (0, 0); a cell holds one",
@@ -245,7 +245,7 @@ fn misnumbered_robots_claim_another_id_and_mistakes_are_named() {
     let cases = [
         (table(3, 1), "misnumbered[0].robot: there is no robot 3; give the number of a robot"),
         (table(2, 2), "misnumbered[0].number: robot 2 has this number anyway; give that of another"),
-        (table(2, 0), "misnumbered[0].number: 0 is no number of a robot; give 1 to 2147483646"),
+        (table(2, 0), "misnumbered[0].number: 0 is not a valid robot number; give 1 to 2147483646"),
         (table(2, 1) + &table(2, 7), "misnumbered[1].robot: robot 2 has been given a number before; give each"),
     ];
     for (tables, expected) in cases {
@@ -330,7 +330,7 @@ fn a_formation_has_the_law_of_its_file() {
         ("crowd = 2\n", "crowd: the law \"staya\" has no use for it; leave it out"),
         ("law = \"lookahead\"\ncrowd = 2\n", "crowd: the law \"lookahead\" has no use for it; leave it out"),
         ("law = \"lookahead\"\nresume_cells = 3.1\n", "resume_cells: 3.1 is out of range; give 0 to 3"),
-        ("waits = false\nhalt_cells = 3\n", "halt_cells: nobody waits"),
+        ("waits = false\nhalt_cells = 3\n", "halt_cells: with waits = false no robot waits"),
         ("law = \"paper\"\nhalt_cells = 901\n", "halt_cells: 901 is out of range"),
     ] {
         let refusal = refusal(&with(rest));
@@ -362,15 +362,18 @@ fn maps_are_shared_if_robots_plan_on_terrain() {
     let brief = parse(&with("[maps]\nshare = true\nforget_after_s = 1.5\n")).expect("good");
     assert_eq!(brief.maps.map(|maps| maps.forget_after.as_micros()), Some(1_500_000));
     for (rest, expected) in [
-        ("[maps]\nforget_after_s = 9\n", "s.toml:8: maps.forget_after_s: nobody shares a map; give maps.share = true"),
+        (
+            "[maps]\nforget_after_s = 9\n",
+            "s.toml:8: maps.forget_after_s: no robot shares a map; give maps.share = true",
+        ),
         (
             "[maps]\nshare = true\nforget_after_s = 0.5\n",
             "s.toml:9: maps.forget_after_s: 0.5 is out of range; give 1 to 2100",
         ),
         ("[maps]\nshares = true\n", "s.toml:8: maps.shares: unknown field `shares`"),
-        ("[maps]\nshare = true\n[route]\nexit = \"ray\"\n", "s.toml:8: maps.share: with route.exit = \"ray\""),
+        ("[maps]\nshare = true\n[route]\nexit = \"ray\"\n", "s.toml:8: maps.share: route.exit = \"ray\""),
         ("[maps]\nshare = true\n[scouting]\n", "s.toml:8: maps.share: robots that have a map"),
-        ("[maps]\nshare = true\n[route]\nreplan = \"until_changed\"\n", "s.toml:8: maps.share: with route.replan"),
+        ("[maps]\nshare = true\n[route]\nreplan = \"until_changed\"\n", "s.toml:8: maps.share: route.replan"),
     ] {
         let refusal = refusal(&with(rest));
         assert!(refusal.starts_with(expected), "{refusal}");
@@ -402,7 +405,7 @@ fn a_formation_too_large_for_the_controller_is_refused() {
     refused(&rho, "s.toml:8: formation.rho");
     refused(
         &rho.replace("rho = 5", "rho = 0"),
-        "s.toml:8: formation.rho: with 0 nobody would know of anybody; give 1 or more",
+        "s.toml:8: formation.rho: with rho = 0 no robot knows its neighbours; give 1 or more",
     );
     let chain = |edges: &str| {
         with_robots(&format!(

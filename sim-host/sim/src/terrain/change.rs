@@ -157,7 +157,7 @@ mod tests {
         let drift = ChangeKind::Drift { cells: Some(vec![Cell::new(1, 0)]), draws: 50, step: 1, classes: 9 };
         let rules = [gate(None, None), LandChange { first: 5, every: None, kind: drift }];
         change(&mut land, &rules, 1, 5, |_, _| ());
-        assert_eq!(land.cells(), [1, 0, 0, 1], "nobody opens what is closed");
+        assert_eq!(land.cells(), [1, 0, 0, 1], "a closed cell does not open");
     }
 
     proptest! {

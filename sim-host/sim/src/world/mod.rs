@@ -285,8 +285,12 @@ impl World {
 /// A body inside a cell keeps the crossing time that it entered with.
 fn set_cell(terrain: &mut Terrain, cell: Cell, class: u8, is_taken: bool) -> Result<(), Refusal> {
     if terrain.index(cell).is_none() {
-        let what = format!("({}, {}) is no cell of the map", cell.x, cell.y);
-        return Err(Refusal::new("cell", what, format!("it has {} x {}", terrain.width(), terrain.height())));
+        let what = format!("({}, {}) is outside the map", cell.x, cell.y);
+        return Err(Refusal::new(
+            "cell",
+            what,
+            format!("give a cell of the map of {} x {} cells", terrain.width(), terrain.height()),
+        ));
     }
     if is_taken {
         return Err(Refusal::new("cell", "a robot is there", "wait until it has left, or take another cell"));

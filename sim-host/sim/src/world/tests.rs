@@ -124,7 +124,7 @@ fn a_contested_cell_goes_to_each_robot_equally_often() {
         let mut world = world(Terrain::flat(3, 2), MoveRules::default(), &[(0, 0), (1, 0), (2, 0)]);
         let up = [moves(&[Dir::NorthEast]), moves(&[Dir::North]), moves(&[Dir::NorthWest])];
         world.advance(tick, &up);
-        wins[world.body_at(Cell::new(1, 1)).expect("somebody moved")] += 1;
+        wins[world.body_at(Cell::new(1, 1)).expect("a robot moved")] += 1;
     }
     // Three standard deviations of a binomial(3000, 1/3) are 77.
     assert!(wins.iter().all(|&w| w.abs_diff(1000) < 80), "{wins:?}");

@@ -179,7 +179,7 @@ impl Server {
     }
 
     /// Sends a text and drops a queued frame, which it makes obsolete.
-    pub fn begin_anew(&self, to: Option<Client>, text: impl Into<Utf8Bytes>) {
+    pub fn send_scene(&self, to: Option<Client>, text: impl Into<Utf8Bytes>) {
         *lock(&self.latest) = None;
         self.say(to, text);
     }

@@ -209,7 +209,7 @@ impl Session {
         self.is_over = self.is_at_end();
         self.engine.log_receptions(self.wants_links());
         self.take_frame_of_past();
-        self.begin_anew(None, server);
+        self.send_scene(None, server);
         while let Some((client, asked)) = self.deferred.pop_front() {
             self.answer(client, asked, server);
             if self.catches_up_to.is_some() {
@@ -288,7 +288,7 @@ impl Session {
         match word {
             FromPage::Opened(client) => {
                 self.pages.insert(client, Looks::default());
-                self.begin_anew(Some(client), server);
+                self.send_scene(Some(client), server);
                 self.tell(server);
             }
             FromPage::Closed(client) => {
@@ -383,7 +383,7 @@ impl Session {
         self.is_over = false;
         self.take_frame();
         if changes_scene {
-            self.begin_anew(None, server);
+            self.send_scene(None, server);
         }
     }
 
@@ -397,7 +397,7 @@ impl Session {
         let mut fresh = Self::new(text, path, overrides, self.pace.is_paused())?;
         fresh.pages = self.pages.keys().map(|client| (*client, Looks::default())).collect();
         *self = fresh;
-        self.begin_anew(None, server);
+        self.send_scene(None, server);
         Ok(())
     }
 
@@ -406,8 +406,8 @@ impl Session {
     }
 
     /// Frames have no meaning without scene and state.
-    fn begin_anew(&mut self, to: Option<Client>, server: &Server) {
-        server.begin_anew(to, self.scene());
+    fn send_scene(&mut self, to: Option<Client>, server: &Server) {
+        server.send_scene(to, self.scene());
         self.has_new_land &= to.is_some();
         if let Some(rows) = self.rows(ROWS) {
             server.say(to, rows);

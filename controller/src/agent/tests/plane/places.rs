@@ -29,7 +29,7 @@ fn waypoints_are_assigned_by_packet_and_older_ones_ignored() {
     assert_eq!(goes_east_after(99, 0, order(1, 4, 0, west)), Some(true), "older");
     assert_eq!(goes_east_after(99, 0, order(1, 5, 0, west)), Some(true), "again");
     assert_eq!(goes_east_after(99, 0, order(0, 6, 0, west)), Some(false), "to all");
-    assert_eq!(goes_east_after(99, 1, order(1, 0, 0, east)), Some(true), "anew");
+    assert_eq!(goes_east_after(99, 1, order(1, 0, 0, east)), Some(true), "restarted");
     assert_eq!(goes_east_after(98, 0, order(1, 0, 0, west)), Some(false), "another one");
 }
 

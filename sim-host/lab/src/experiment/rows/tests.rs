@@ -69,7 +69,7 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     fs::create_dir_all(out("cut/shards")).expect("room");
     let rows = text(&out("whole"), "shards/1-of-1.csv");
     fs::write(out("cut/shards/1-of-1.csv"), &rows[..rows.len() / 2]).expect("room");
-    let refused = command(&out("cut"), &RowRetention::default()).expect_err("somebody's hours").to_string();
+    let refused = command(&out("cut"), &RowRetention::default()).expect_err("existing rows").to_string();
     assert!(refused.contains("--resume does the others, --restart forgets these"), "{refused}");
     command(&out("cut"), &resume).expect("done");
     same("cut");
@@ -85,8 +85,8 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
 fn early_end_keeps_finished_runs() {
     let dir = tempfile::tempdir().expect("a folder");
     let (asked, keeping, plan) = (AtomicUsize::new(0), RowRetention::default(), plan());
-    let goes_on = |_: usize| asked.fetch_add(1, Ordering::Relaxed) < 700;
-    let jobs = Jobs::new(&plan, &goes_on, Some((dir.path(), &keeping)));
+    let may_continue = |_: usize| asked.fetch_add(1, Ordering::Relaxed) < 700;
+    let jobs = Jobs::new(&plan, &may_continue, Some((dir.path(), &keeping)));
     let some = plan.perform(&jobs).expect("no error");
     let course = jobs.course().expect("rows are kept");
     assert!(course.done > 0 && course.missing() > 0, "{course:?}");

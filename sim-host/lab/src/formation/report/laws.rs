@@ -46,9 +46,9 @@ impl Report {
         if losses.is_empty() {
             return Ok(());
         }
-        f.write_str("\nother laws on the same landscapes; staya: ours as above; lookahead: ours, those who follow plan their way to where their\n")?;
+        f.write_str("\nother laws on the same landscapes; staya: ours as above; lookahead: ours, followers plan their way to where their\n")?;
         f.write_str("places will be; loose: the same, the leader waits from 12 cells on; shared: ours, maps shared over the radio; unwaiting: ours,\n")?;
-        f.write_str("nobody waits for those behind; paper: each robot weighs its own way against all neighbours found (algorithms 2 and 5 to 7)\n")?;
+        f.write_str("no robot waits for those behind; paper: each robot weighs its own way against all neighbours found (algorithms 2 and 5 to 7)\n")?;
         f.write_str("landscapes that all six crossed, dPhi/6 over all, travel time ratio over those crossed; S: entropy of the land;\n")?;
         f.write_str("figure 6: the paper's dPhi/6 at this N, and on land of this S\n")?;
         write!(f, "{:>8}{:>11}", "loss %", "law")?;

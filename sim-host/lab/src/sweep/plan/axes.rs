@@ -42,7 +42,7 @@ pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError>
     for entry in entries(source, table(root, "axes", None), &file.axes)? {
         let axis = axis(source, entry)?;
         if let Some(twice) = twice(&axis.values) {
-            let what = format!("{twice} stands there twice");
+            let what = format!("{twice} is listed twice");
             return Err(source.error_at(axis.span, axis.field.name(), what, "leave one out; seeds make repetitions"));
         }
         all.groups.push(all.axes.len()..all.axes.len() + 1);
@@ -90,7 +90,7 @@ pub fn read(source: &Source<'_>, file: &PlanFile) -> Result<Axes, ScenarioError>
     for (index, (field, span)) in fields.iter().enumerate() {
         let wrong = |what: &str, remedy: &str| Err(source.error_at((*span).clone(), field.name(), what, remedy));
         match field.name() {
-            "seed" => return wrong("seeds are no axis", "give `seeds`"),
+            "seed" => return wrong("seeds are not an axis", "give `seeds`"),
             "name" => return wrong("it is a text, and no run depends on it", "leave it out"),
             _ if fields[..index].iter().any(|(other, _)| other == field) => {
                 return wrong("it is named twice", "leave one out");
@@ -153,7 +153,7 @@ fn entries<'a>(
         Some(field) => Ok(Entry { field, span, value }),
         None => {
             let remedy = "write names as in radio.loss or \"plane.group[0].count\"";
-            Err(source.error_at(span, &name, "it is no name of a field", remedy))
+            Err(source.error_at(span, &name, "it is not the name of a field", remedy))
         }
     };
     found.into_iter().map(entry).collect()
@@ -192,7 +192,7 @@ fn axis(source: &Source<'_>, Entry { field, span, value }: Entry<'_>) -> Result<
             let range = range(value).map_err(|what| wrong(what, "give { from, to, count } or { from, to, step }"))?;
             (spread(&range).map_err(|(what, remedy)| wrong(what, remedy))?, range.log, true)
         }
-        _ => return Err(wrong("one value is no axis".to_owned(), "give a list, a range, or put it into [set]")),
+        _ => return Err(wrong("one value is not an axis".to_owned(), "give a list, a range, or put it into [set]")),
     };
     if values.is_empty() {
         return Err(wrong("there are no values".to_owned(), "give one or more"));
@@ -208,7 +208,7 @@ fn line_of(source: &Source<'_>, span: &Range<usize>) -> usize {
 fn range(value: &toml::Value) -> Result<RangeTable, String> {
     let range: RangeTable = value.clone().try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
     if !(range.from.is_finite() && range.to.is_finite()) {
-        return Err(format!("{} to {} is no range", range.from, range.to));
+        return Err(format!("{} to {} is not a range", range.from, range.to));
     }
     Ok(range)
 }
@@ -219,7 +219,7 @@ fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
     let values: Vec<f64> = match (range.count, range.step) {
         (Some(count), None) => {
             if !(2..=MOST).contains(&count) {
-                return Err((format!("{count} values are no range"), "give 2 to 1000000"));
+                return Err((format!("{count} values are not a range"), "give 2 to 1000000"));
             }
             (0..count).map(|number| between(range, f64::from(number) / f64::from(count - 1))).collect()
         }

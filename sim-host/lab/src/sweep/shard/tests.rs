@@ -27,9 +27,9 @@ fn done(
     shard: Shard,
     out: &Path,
     existing: Existing,
-    goes_on: &(dyn Fn() -> bool + Sync),
+    may_continue: &(dyn Fn() -> bool + Sync),
 ) -> Result<Course, SweepError> {
-    perform_shard(plan, shard, out, existing, |(): &mut (), run| perform(plan, run, goes_on), |_, _| {})
+    perform_shard(plan, shard, out, existing, |(): &mut (), run| perform(plan, run, may_continue), |_, _| {})
 }
 
 fn perform_all(plan: &Plan, out: &Path, shards: &[&str], existing: Existing) -> Course {
@@ -89,8 +89,8 @@ fn early_end_keeps_finished_runs_and_resume_makes_the_missing_ones() {
     let (folder, plan) = folder();
     let out = folder.path().join("out");
     let asked = AtomicU64::new(0);
-    let goes_on = || asked.fetch_add(1, Ordering::Relaxed) < 40;
-    let course = done(&plan, Shard::default(), &out, Existing::Refuse, &goes_on).expect("no error");
+    let may_continue = || asked.fetch_add(1, Ordering::Relaxed) < 40;
+    let course = done(&plan, Shard::default(), &out, Existing::Refuse, &may_continue).expect("no error");
     assert!(course.done > 0 && course.missing() > 0, "{course:?}");
     let other = perform_all(&plan, &out, &["2/3"], Existing::Resume);
     let rest = perform_all(&plan, &out, &["1/1"], Existing::Resume);
@@ -178,11 +178,11 @@ fn inconsistent_rows_are_refused() {
         "{said}"
     );
     for (cells, what) in [
-        ("1,2,3", "it is no row"),
-        ("", "it is no row"),
+        ("1,2,3", "it is not a row"),
+        ("", "it is not a row"),
         (&second.replacen(&format!("{number},"), "77,", 1), "the plan has no such run"),
-        (&second.replacen(",done,", ",lost,", 1), "nobody knows what became of it"),
-        (&second.replacen(",done,", ",done,x", 1), "a figure is no number"),
+        (&second.replacen(",done,", ",lost,", 1), "its outcome is unknown"),
+        (&second.replacen(",done,", ",done,x", 1), "a figure is not a number"),
         (&second.replacen(",done,", ",done,1,", 1), "it has not as many figures as the plan"),
         (&second.replace(staya_console::VERSION, "9.9.9"), "it is of version 9.9.9"),
     ] {

@@ -124,7 +124,7 @@ fn interventions_without_effect_are_refused() {
     for (text, what) in wrong {
         let scenario = parse(text);
         let mut swarm = operated(&scenario).expect("they can be placed");
-        let refusal = swarm.intervene(&what).expect_err("nobody has a use for it").to_string();
+        let refusal = swarm.intervene(&what).expect_err("it does not apply").to_string();
         assert!(refusal.contains("; "), "{refusal}");
         for _ in 0..8 {
             swarm.advance();

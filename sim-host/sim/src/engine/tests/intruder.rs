@@ -80,7 +80,7 @@ fn ids_of_intruders_with_beacons_must_fit_the_format() {
     let parse = |text: &str| Scenario::parse(text, Path::new("t.toml"), &Overrides::default());
     let error = parse(text).expect_err("there is no system 255").to_string();
     assert!(error.starts_with("t.toml:5: radio.format: robot 255 has no number in mavlink"), "{error}");
-    parse(&format!("{text}heard = false\n")).expect("who is silent needs no number");
+    parse(&format!("{text}heard = false\n")).expect("a silent intruder needs no number");
 }
 
 /// Balls on two rings swap places; counts those within `looked_for` above or below another.

@@ -186,7 +186,7 @@ fn in_the_plane_a_robot_may_leave_a_closing_cell_and_none_may_enter() {
         let is_in: Vec<bool> = rows.map(|row| class_under(land, row.motion.position_m) == BLOCKED).collect();
         if moment.row.tick > 41 {
             for (is_in, was_in) in is_in.iter().zip(&was_in) {
-                assert!(!is_in || *was_in, "tick {}: somebody has entered", moment.row.tick);
+                assert!(!is_in || *was_in, "tick {}: a robot has entered", moment.row.tick);
             }
         }
         inside.extend(is_in.iter().any(|&is_in| is_in).then_some(moment.row.tick));

@@ -21,7 +21,7 @@ fn run(swarm: &mut dyn Operated, ticks: u32) {
 fn hash_without_operator(scenario: &Scenario) -> u64 {
     let outcome = simulate(scenario, |_, _| ControlFlow::Continue(()));
     let outcome = outcome.expect("they can be placed");
-    assert_eq!(outcome.ticks, scenario.ticks, "nobody has arrived before");
+    assert_eq!(outcome.ticks, scenario.ticks, "no robot arrives early");
     outcome.trace_hash
 }
 
@@ -71,7 +71,7 @@ fn a_down_robot_ignores_commands_and_restarts_with_the_scenarios_task() {
     assert!(!before.is_up && before.motion.velocity_mps == [0.0; 3]);
     assert!(!swarm.set_parameter(2, Parameter::Speed, 0.5));
     assert_eq!(swarm.parameter(2, Parameter::Speed), None);
-    assert!(!swarm.command(2, east), "nobody is there");
+    assert!(!swarm.command(2, east), "there is no such robot");
     run(&mut *swarm, 15);
     let after = swarm.observation(2);
     assert!(after.is_up && after.boot != before.boot && after.wish == Wish::Own);

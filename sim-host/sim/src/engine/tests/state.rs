@@ -24,7 +24,7 @@ fn seen<W: Ground, G: HostLaw, A: Safety<f32> + Send>(engine: &Engine<W, G, A>, 
     hasher.finish()
 }
 
-fn goes_on<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, ticks: u32, at: &[u32])
+fn resumes<W, G, A>(make: &dyn Fn() -> Box<Engine<W, G, A>>, name: &str, ticks: u32, at: &[u32])
 where
     W: Ground,
     G: HostLaw + State,
@@ -80,7 +80,7 @@ where
         bytes.clear();
         one.pack(index, &mut bytes);
         let length = bytes.len();
-        bytes.extend_from_slice(b"what follows is somebody else's");
+        bytes.extend_from_slice(b"bytes of another robot");
         assert_eq!(other.unpack(index, &bytes), Ok(length), "{name}");
     }
     for _ in tick..ticks {
@@ -94,7 +94,7 @@ fn everything(scenario: &Scenario, name: &str, work: usize) {
     let ticks = (work / scenario.robots.len()).clamp(20, 500) as u32;
     let ticks = ticks.min(scenario.ticks);
     let at = [1, ticks / 3, ticks - 2];
-    with_engines!(scenario, goes_on(name, ticks, &at));
+    with_engines!(scenario, resumes(name, ticks, &at));
     with_engines!(scenario, moves(name, ticks / 2, ticks));
 }
 
@@ -142,7 +142,7 @@ fn runs_with_radio_faults_resume_in_every_format() {
             let rest =
                 format!("[radio]\nformat = \"{format}\"\n{fault}{key}[[fault]]\nrobot = 2\nat_s = 2\ndown_s = 1.5\n");
             let scenario = scenario(TWO, &rest);
-            with_engines!(&scenario, goes_on(&rest, 30, &[3, 5, 9, 20]));
+            with_engines!(&scenario, resumes(&rest, 30, &[3, 5, 9, 20]));
             with_engines!(&scenario, moves(&rest, 6, 30));
         }
     }
@@ -157,7 +157,7 @@ fn runs_with_interventions_resume() {
          [[intervention]]\nat_s = 3\ndo = { kind = \"down\", robot = 2, for_s = 2 }\n\
          [[intervention]]\nat_s = 4\ndo = { kind = \"radio\", loss = 0.5, range_m = 7 }\n",
     );
-    with_engines!(&on_grid, goes_on("grid", 40, &[1, 3, 5, 7, 8, 9, 12]));
+    with_engines!(&on_grid, resumes("grid", 40, &[1, 3, 5, 7, 8, 9, 12]));
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/six-discs.toml"))
         .expect("it is there");
     let text = format!(
@@ -169,7 +169,7 @@ fn runs_with_interventions_resume() {
     );
     let in_plane = Scenario::parse(&text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
     let at = [5, 15, 25, 35, 45, 55, 65].map(|tenths| tenths * 100_000 / in_plane.tick_us);
-    with_engines!(&in_plane, goes_on("plane", at[6] + 20, &at));
+    with_engines!(&in_plane, resumes("plane", at[6] + 20, &at));
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn runs_with_sensors_resume() {
         [plane.sensing]\nrange_m = 3\nnoise_m = 0.05\nevery_ticks = 2\ndelay_ticks = 3\n\
         [plane.robots.circle]\ncount = 8\nradius_m = 1\n[[fault]]\nrobot = 2\nat_s = 1\ndown_s = 1\n";
     let scenario = Scenario::parse(text, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
-    with_engines!(&scenario, goes_on("eyes", 80, &[1, 2, 3, 4, 5, 21, 41, 50]));
+    with_engines!(&scenario, resumes("eyes", 80, &[1, 2, 3, 4, 5, 21, 41, 50]));
 }
 
 #[test]
@@ -187,14 +187,14 @@ fn runs_with_changing_terrain_and_memory_resume() {
         [[terrain.change]]\nevery_s = 1\ndrift = { share = 0.2, classes = 4 }\n\
         [scouting]\nradius = 8\nunknown = 0.5\nassumed = 3\n[[fault]]\nrobot = 2\nat_s = 3\ndown_s = 2\n";
     let on_grid = scenario(TWO, changes);
-    with_engines!(&on_grid, goes_on("grid", 40, &[1, 4, 5, 7, 8, 9, 12]));
+    with_engines!(&on_grid, resumes("grid", 40, &[1, 4, 5, 7, 8, 9, 12]));
     with_engines!(&on_grid, moves("grid", 9, 40));
     let in_plane = "tick_s = 0.1\nname = \"t\"\nticks = 200\n[terrain]\nuniform = { width = 12, height = 6, classes = 2 }\n\
         [[terrain.change]]\nat_s = 2\nfor_s = 3\nclass = 0\nrectangle = { x = 2, y = 0, width = 4, height = 6 }\n\
         [plane]\nradius_m = 0.2\nmax_speed_mps = 1\nguidance = \"route\"\n[scouting]\nunknown = 0.5\n\
         [robots]\nlist = [{ start = [1, 2], goal = [10, 2] }, { start = [10, 3], goal = [1, 3] }]\n";
     let in_plane = Scenario::parse(in_plane, Path::new("t.toml"), &Overrides::default()).expect("a good scenario");
-    with_engines!(&in_plane, goes_on("plane", 80, &[5, 19, 21, 25, 30, 49, 52]));
+    with_engines!(&in_plane, resumes("plane", 80, &[5, 19, 21, 25, 30, 49, 52]));
     with_engines!(&in_plane, moves("plane", 30, 60));
 }
 
@@ -228,7 +228,7 @@ fn a_damaged_state_is_refused_or_harmless() {
         assert!(engine.restore(&bytes).expect_err(whole).to_string().contains("under way"));
     }
     let small = scenario(TWO, "[radio]\njitter_ms = 900\n");
-    with_engines!(&small, check("a part is no state"));
+    with_engines!(&small, check("a part is not a state"));
 }
 
 #[test]
@@ -275,7 +275,7 @@ proptest! {
         );
         let mut scenario = scenario(&robots, &rest);
         scenario.seed = seed;
-        with_engines!(&scenario, goes_on("random", 50, &[at]));
+        with_engines!(&scenario, resumes("random", 50, &[at]));
         with_engines!(&scenario, moves("random", at, 50));
     }
 }

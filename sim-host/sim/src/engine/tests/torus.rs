@@ -92,5 +92,5 @@ fn far_from_the_seams_the_torus_is_the_plane() {
         let way = |i: usize| [three[i + 1][0][0] - three[i][0][0], three[i + 1][0][1] - three[i][0][1]];
         (way(0)[0] * way(1)[1] - way(0)[1] * way(1)[0]).abs() > 1e-6
     });
-    assert!(turned, "nobody minds anybody");
+    assert!(turned, "no robot avoids another one");
 }

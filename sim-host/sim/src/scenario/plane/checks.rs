@@ -98,7 +98,7 @@ pub(super) fn in_cells(
 pub(super) fn list(source: &Source<'_>, spec: &Spec, list: &[PlaneRobotEntry]) -> Result<(), ScenarioError> {
     let field = format!("{}.robots.list", spec.table());
     if list.is_empty() {
-        return Err(source.error(&field, "nobody takes part", "give one robot or more"));
+        return Err(source.error(&field, "there are no robots", "give one robot or more"));
     }
     check_count(source, &field, u32::try_from(list.len()).unwrap_or(u32::MAX))?;
     for (index, robot) in list.iter().enumerate() {

@@ -1,5 +1,6 @@
 //! Groups of identical robots: body, law and safety layer.
 
+use super::super::ranges::short;
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile, params};
 use super::spec::Spec;
@@ -110,7 +111,7 @@ impl Spec {
         self.within(source, "max_speed_mps", self.max_speed_mps, [0.001, 32.0], "m/s")?;
         self.within(source, "sight_m", self.sight_m, [0.0, far], "metres")?;
         if self.max_acceleration_mps2.is_nan() || self.max_acceleration_mps2 <= 0.0 {
-            let what = format!("{} is no acceleration", self.max_acceleration_mps2);
+            let what = format!("{} is out of range", short(self.max_acceleration_mps2));
             let remedy = "give more than 0, in m/s^2, or inf";
             return Err(source.error(&self.field(source, "max_acceleration_mps2"), what, remedy));
         }

@@ -232,7 +232,7 @@ pub(super) fn build(
     if cells.is_some() == table.robots.is_some() && (cells.is_some() || !has_groups) {
         return Err(source.error(
             "plane.robots",
-            "it is not clear who takes part",
+            "the robots are not defined exactly once",
             "give either plane.robots in metres or the top-level robots in cells, with plane.group if you like",
         ));
     }
@@ -313,7 +313,11 @@ fn intruders(source: &Source<'_>, table: &PlaneTable) -> Result<Vec<Intruder>, S
         within(source, &field("radius_m"), entry.radius_m, 0.001, 65.0, "metres")?;
         if entry.heard && source.has("authentication") {
             let remedy = "give heard = false, or leave [authentication] out";
-            return Err(source.error(&field("heard"), "nobody is heard without the key", remedy));
+            return Err(source.error(
+                &field("heard"),
+                "an intruder does not have the key, so robots reject its beacons",
+                remedy,
+            ));
         }
         intruders.push(Intruder {
             position_m: entry.start_m.0,
@@ -331,7 +335,7 @@ fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Resul
         let is_sound = wall.points_m.iter().flatten().all(|x| x.abs() <= checks::FAR_M);
         if wall.points_m.len() < 2 || !is_sound {
             let field = format!("plane.wall[{index}].points_m");
-            return Err(source.error(&field, "this is no wall", "give two or more points in metres"));
+            return Err(source.error(&field, "this is not a wall", "give two or more points in metres"));
         }
         let pairs = wall.points_m.windows(2).map(|pair| [pair[0], pair[1]]);
         solids.extend(pairs.map(Solid::Wall));
@@ -354,7 +358,7 @@ fn solids(source: &Source<'_>, file: &ScenarioFile, table: &PlaneTable) -> Resul
         let length = entry.normal.0.iter().map(|x| x * x).sum::<f64>().sqrt();
         if !(length > 0.0 && length.is_finite()) {
             let field = format!("plane.half_space[{index}].normal");
-            return Err(source.error(&field, "this is no direction", "give a vector that is not zero"));
+            return Err(source.error(&field, "this is not a direction", "give a vector that is not zero"));
         }
         solids.push(Solid::Plane { point_m: entry.point_m.0, normal: entry.normal.0.map(|x| x / length) });
     }
@@ -396,6 +400,6 @@ fn check_count(source: &Source<'_>, field: &str, count: u32) -> Result<(), Scena
     if (1..=MAX_ROBOTS).contains(&count) {
         return Ok(());
     }
-    let remedy = format!("give 1 to {MAX_ROBOTS}");
-    Err(source.error(field, format!("{count} robots are no swarm"), remedy))
+    let remedy = format!("give 1 to {MAX_ROBOTS} robots");
+    Err(source.error(field, format!("{count} is out of range"), remedy))
 }

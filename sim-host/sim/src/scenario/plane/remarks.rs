@@ -35,12 +35,14 @@ pub(in super::super) fn remarks(setup: &PlaneSetup, tick_s: f64) -> Vec<String> 
         is_plane && (goal_m[2] - start.position_m[2]).abs() > group.tolerance_m
     });
     let troubles = [
-        (in_obstacle, "nearer to an obstacle than the body's radius: nobody gets there"),
-        (shut, "on the other side of a closed wall: there is no way there"),
+        (in_obstacle, "nearer to an obstacle than the body's radius and cannot be reached"),
+        (shut, "on the other side of a closed wall and cannot be reached"),
         (in_space, "at another height, and this safety layer keeps to the plane: give safety = \"fly\""),
     ];
     remarks.extend(
-        troubles.into_iter().filter_map(|(who, what)| Some(format!("plane.robots: the goal of {} is {what}", who?))),
+        troubles
+            .into_iter()
+            .filter_map(|(robots, what)| Some(format!("plane.robots: the goal of {} is {what}", robots?))),
     );
     remarks
 }
@@ -114,7 +116,7 @@ fn crossing(corners: &[[f64; 2]]) -> Option<String> {
     let (one, other) = pairs.find(|&(one, other)| cross(one, other))?;
     let [x, y] = corners[0];
     Some(format!(
-        "plane.wall: sides {} and {} of the closed wall that begins at [{x}, {y}] cross: what is inside it is not clear",
+        "plane.wall: sides {} and {} of the closed wall that begins at [{x}, {y}] cross, so its inside is undefined",
         one + 1,
         other + 1
     ))

@@ -25,10 +25,14 @@ pub(in super::super) fn sensing(
     };
     let refuse = |what: String, remedy: &str| Err(source.error("plane.sensing", what, remedy));
     if setup.torus_m.is_some() {
-        return refuse("nobody sees over the seams of a torus".into(), "leave one of the two out");
+        return refuse(
+            "sensors do not see across the edges of a torus".into(),
+            "leave out plane.sensing or plane.torus_m",
+        );
     }
     if let Some(group) = setup.kinds().find(|group| group.guidance.kind().is_on_grid()) {
-        let what = format!("guidance \"{}\" goes by cells, which nobody sees", group.guidance.kind().name());
+        let what =
+            format!("guidance \"{}\" moves between cells, which sensors do not observe", group.guidance.kind().name());
         return refuse(what, "give a guidance that goes by velocities, or leave it out");
     }
     let number = |name: &str, value: f64, low: f64, high: f64, unit: &str| {

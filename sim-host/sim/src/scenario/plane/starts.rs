@@ -78,7 +78,7 @@ impl Placing<'_> {
             }
             _ => {
                 let remedy = "give exactly one of list, circle, cloud, scattered";
-                return Err(source.error(&table, "it is not clear who takes part", remedy));
+                return Err(source.error(&table, "the robots are not defined exactly once", remedy));
             }
         };
         placed.iter_mut().for_each(|start| start.group = group);

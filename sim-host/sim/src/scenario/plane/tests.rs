@@ -101,8 +101,8 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             with("").replace("max_speed_mps = 1", "max_speed_mps = 33"),
             "s.toml:5: plane.max_speed_mps: 33 is out of range; give 0.001 to 32 m/s",
         ),
-        (with("max_acceleration_mps2 = nan\n"), "s.toml:6: plane.max_acceleration_mps2: NaN is no acceleration"),
-        (with("max_acceleration_mps2 = 0\n"), "s.toml:6: plane.max_acceleration_mps2: 0 is no acceleration"),
+        (with("max_acceleration_mps2 = nan\n"), "s.toml:6: plane.max_acceleration_mps2: NaN is out of range"),
+        (with("max_acceleration_mps2 = 0\n"), "s.toml:6: plane.max_acceleration_mps2: 0 is out of range"),
         (with("cruise_mps = 0\n"), "s.toml:6: plane.cruise_mps: 0 is out of range; give 0.001 to 1 m/s"),
         (with("tolerance_m = 0\n"), "s.toml:6: plane.tolerance_m: 0 is out of range"),
         (with("sight_m = inf\n"), "s.toml:6: plane.sight_m: inf is out of range"),
@@ -134,10 +134,13 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             after("[[plane.balls]]\ncount = 0\nradius_m = 1\nfrom_m = [9, 9]\nto_m = [12, 12]\n"),
             "s.toml:9: plane.balls[0].count: 0 is out of range; give 1 to 1000000 balls",
         ),
-        (format!("{HEAD}{PLANE}"), "s.toml:3: plane.robots: it is not clear who takes part; give either plane.robots"),
-        (robots(""), "s.toml:6: plane.robots: it is not clear who takes part; give exactly one of"),
-        (robots("list = []"), "s.toml:7: plane.robots.list: nobody takes part"),
-        (robots("circle = { count = 0, radius_m = 3 }"), "s.toml:7: plane.robots.circle.count: 0 robots are no swarm"),
+        (
+            format!("{HEAD}{PLANE}"),
+            "s.toml:3: plane.robots: the robots are not defined exactly once; give either plane.robots",
+        ),
+        (robots(""), "s.toml:6: plane.robots: the robots are not defined exactly once; give exactly one of"),
+        (robots("list = []"), "s.toml:7: plane.robots.list: there are no robots"),
+        (robots("circle = { count = 0, radius_m = 3 }"), "s.toml:7: plane.robots.circle.count: 0 is out of range"),
         (
             robots("circle = { count = 3, radius_m = nan }"),
             "s.toml:7: plane.robots.circle.radius_m: NaN is out of range",
@@ -145,7 +148,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         (robots("circle = { count = 1000001, radius_m = 3 }"), "s.toml:7: plane.robots.circle.count: 1000001 robots"),
         (
             robots("circle = { count = 3, radius_m = 3 }\nlist = []"),
-            "s.toml:6: plane.robots: it is not clear who takes part",
+            "s.toml:6: plane.robots: the robots are not defined exactly once",
         ),
         (
             robots("cloud = { count = 100, from_m = [0, 0], to_m = [1, 1] }"),
@@ -169,7 +172,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             format!("{HEAD}{LAND}{PLANE}{TWO}[robots]\nscattered = {{ count = 2 }}\n"),
-            "s.toml:9: plane.robots: it is not clear who takes part",
+            "s.toml:9: plane.robots: the robots are not defined exactly once",
         ),
         (
             format!("{HEAD}{PLANE}[robots]\nscattered = {{ count = 2 }}\n"),
@@ -226,11 +229,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             after("[[plane.wall]]\npoints_m = [[1, 2]]\n"),
-            "s.toml:9: plane.wall[0].points_m: this is no wall; give two or more points",
+            "s.toml:9: plane.wall[0].points_m: this is not a wall; give two or more points",
         ),
         (
             after("[[plane.wall]]\npoints_m = [[1, 2], [3, 1e300]]\n"),
-            "s.toml:9: plane.wall[0].points_m: this is no wall",
+            "s.toml:9: plane.wall[0].points_m: this is not a wall",
         ),
         (
             after("[[plane.ball]]\ncenter_m = [1, 2]\nradius_m = 0\n"),
@@ -246,7 +249,7 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
         ),
         (
             after("[[plane.half_space]]\npoint_m = [0, -9]\nnormal = [0, 0]\n"),
-            "s.toml:10: plane.half_space[0].normal: this is no direction",
+            "s.toml:10: plane.half_space[0].normal: this is not a direction",
         ),
         (
             after("[[plane.ball]]\ncenter_m = [3.5, 0, 1]\nradius_m = 0.31\n"),

@@ -33,8 +33,8 @@ pub(super) fn check(
         if (side_mm - libm::round(side_mm)).abs() > 1e-6 {
             return refuse(
                 &field,
-                format!("{side_m} m is no whole number of millimetres"),
-                "places on the air are: round it",
+                format!("{side_m} m is not a whole number of millimetres"),
+                "round it; robots transmit positions in millimetres",
             );
         }
     }

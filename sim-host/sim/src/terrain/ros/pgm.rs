@@ -134,8 +134,8 @@ mod tests {
 
     #[test]
     fn plain_and_raw_pictures_are_equal() {
-        let plain = picture(b"P2 # grey\n# CREATOR: somebody\n3 2\n255\n1 2 3\n\n4 5 255").unwrap();
-        let raw = picture(b"P5\n# CREATOR: somebody\n3 2\n255\n\x01\x02\x03\x04\x05\xFF").unwrap();
+        let plain = picture(b"P2 # grey\n# CREATOR: a program\n3 2\n255\n1 2 3\n\n4 5 255").unwrap();
+        let raw = picture(b"P5\n# CREATOR: a program\n3 2\n255\n\x01\x02\x03\x04\x05\xFF").unwrap();
         assert_eq!(plain, raw);
         assert_eq!(plain.pixels, [1, 2, 3, 4, 5, 255]);
     }

@@ -65,7 +65,7 @@ impl Crowd {
                 contests.into_iter().zip(&mut self.parts).for_each(|(contest, part)| contest.finish(part));
                 return round;
             }
-            assert!(round < 1000, "each round settles somebody");
+            assert!(round < 1000, "each round settles a robot");
             for (rank, bounds) in bounds.iter().enumerate() {
                 let Some(bounds) = bounds else { continue };
                 for other in (0..contests.len()).filter(|&other| other != rank) {

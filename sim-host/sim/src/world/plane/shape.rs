@@ -56,14 +56,14 @@ impl Shape {
     pub fn check(&self) -> Result<(), Refusal> {
         let (coordinates, radius_m) = self.numbers();
         if coordinates.iter().any(|x| x.abs().partial_cmp(&FAR_M).is_none_or(std::cmp::Ordering::is_gt)) {
-            return Err(Refusal::new("solid", "it is nowhere", format!("give metres within {FAR_M}")));
+            return Err(Refusal::new("solid", "a coordinate is out of range", format!("give metres within {FAR_M}")));
         }
         if radius_m.is_some_and(|radius_m| !(0.001..=FAR_M).contains(&radius_m)) {
-            return Err(Refusal::new("solid", "its radius is no size", format!("give 0.001 to {FAR_M} metres")));
+            return Err(Refusal::new("solid", "its radius is out of range", format!("give 0.001 to {FAR_M} metres")));
         }
         match self {
             Self::Polygon { points_m } if !(3..=POINTS).contains(&points_m.len()) => {
-                let what = format!("{} points are no polygon", points_m.len());
+                let what = format!("{} points do not make a polygon", points_m.len());
                 Err(Refusal::new("solid", what, format!("give 3 to {POINTS}")))
             }
             _ => Ok(()),

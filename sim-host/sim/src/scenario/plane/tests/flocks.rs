@@ -48,7 +48,7 @@ fn a_torus_is_only_for_boids_and_in_whole_millimetres() {
         format!("{HEAD}[plane]\nradius_m = 0.2\nmax_speed_mps = 1\ntorus_m = [9, 8]\n[plane.robots]\nlist = [{two}]\n");
     for (text, said) in [
         (text("torus_m = [9, 0]", two, ""), "plane.torus_m[1]: 0 is out of range"),
-        (text("torus_m = [9, 8.0005]", two, ""), "plane.torus_m[1]: 8.0005 m is no whole number of millimetres"),
+        (text("torus_m = [9, 8.0005]", two, ""), "plane.torus_m[1]: 8.0005 m is not a whole number of millimetres"),
         (text("torus_m = [9, 7]", two, ""), "give sides of twice plane.boids.closest_m"),
         (text("torus_m = [8.5, 8]", two, ""), "plane.robots: robot 2 starts beside the torus"),
         (text("torus_m = [9, 8]", "{ start_m = [0, 0, 1] }", ""), "at height 0"),

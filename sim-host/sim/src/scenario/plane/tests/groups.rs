@@ -85,7 +85,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots = {{ }}\n"),
-            "s.toml:7: plane.group[0].robots: it is not clear who takes part; give exactly one of",
+            "s.toml:7: plane.group[0].robots: the robots are not defined exactly once; give exactly one of",
         ),
         (
             format!("{HEAD}{PLANE}[[plane.group]]\nrobots.list = [{{ start_m = [nan, 0] }}]\n"),
@@ -143,7 +143,7 @@ fn mistakes_in_groups_waypoints_and_intruders_name_line_field_and_remedy() {
                 "[[plane.intruder]]\nstart_m = [9, 9]\nvelocity_mps = [1, 0]\nradius_m = 1\n\
                  [authentication]\nkey = \"passphrase: open sesame now\"\n",
             ),
-            "s.toml:8: plane.intruder[0].heard: nobody is heard without the key; give heard = false",
+            "s.toml:8: plane.intruder[0].heard: an intruder does not have the key, so robots reject its beacons; give heard = false",
         ),
     ];
     refused(&cases);

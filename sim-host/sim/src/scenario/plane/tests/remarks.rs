@@ -15,11 +15,11 @@ fn unreachable_goals_cause_a_warning() {
     let ball = "[[plane.ball]]\ncenter_m = [6.5, 0]\nradius_m = 0.4\n";
     assert_eq!(
         said(ONE, ball),
-        ["plane.robots: the goal of robot 1 is nearer to an obstacle than the body's radius: nobody gets there"]
+        ["plane.robots: the goal of robot 1 is nearer to an obstacle than the body's radius and cannot be reached"]
     );
     assert_eq!(
         said(ONE, YARD),
-        ["plane.robots: the goal of robot 1 is on the other side of a closed wall: there is no way there"]
+        ["plane.robots: the goal of robot 1 is on the other side of a closed wall and cannot be reached"]
     );
     // A robot that is already inside may have its goal there, and an open wall has an entrance.
     assert_eq!(said("{ start_m = [5, 1], goal_m = [6, 0] }", YARD), Vec::<String>::new());
@@ -60,7 +60,7 @@ fn a_closed_wall_that_crosses_itself_causes_a_warning() {
     let bow = "[[plane.wall]]\npoints_m = [[4, 4], [8, 8], [8, 4], [4, 8]]\nclosed = true\n";
     assert_eq!(
         said("{ start_m = [0, 0] }", bow),
-        ["plane.wall: sides 1 and 3 of the closed wall that begins at [4, 4] cross: what is inside it is not clear"]
+        ["plane.wall: sides 1 and 3 of the closed wall that begins at [4, 4] cross, so its inside is undefined"]
     );
     // A concave corner, and walls that touch at their ends, do not cross.
     let notch = "[[plane.wall]]\npoints_m = [[4, 4], [8, 4], [8, 8], [6, 6], [4, 8]]\nclosed = true\n";

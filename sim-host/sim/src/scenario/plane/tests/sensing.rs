@@ -40,7 +40,7 @@ fn invalid_sensors_are_refused_with_a_remedy() {
             format!(
                 "{LAND}{PLANE}guidance = \"route\"\n{SENSING}[robots]\nlist = [{{ start = [1, 1], goal = [5, 5] }}]\n"
             ),
-            "goes by cells",
+            "moves between cells",
         ),
         (
             format!(
