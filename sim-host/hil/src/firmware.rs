@@ -133,6 +133,9 @@ fn target(root: &Path) -> PathBuf {
         .map_or_else(|| root.join("target"), |folder| std::path::absolute(&folder).unwrap_or_else(|_| folder.into()))
 }
 
+/// Rust targets of all parts; without them cargo also builds `core`.
+const TARGETS: &str = "thumbv7em-none-eabihf thumbv6m-none-eabi riscv32imac-unknown-none-elf";
+
 /// Builds outdated firmware, downloads the emulators, and returns the firmware's folder.
 fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
     let names: Vec<&str> = parts.iter().map(|part| part.firmware_name()).collect();
@@ -146,7 +149,7 @@ fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
         }
     };
     if lacking(parts, &folder).is_some() {
-        eprintln!("staya: building the firmware for {}; the first build takes some minutes", names.join(", "));
+        eprintln!("staya: building the firmware for {}; the first build takes some minutes, fewer after `rustup target add {TARGETS}`", names.join(", "));
     }
     let began = Instant::now();
     xtask(root, &[&["firmware"], what.as_slice(), names.as_slice()].concat())?;

@@ -61,11 +61,11 @@ impl NewArgs {
         };
         let part = self.part.unwrap_or(&PARTS[0]);
         let name = name(folder)?;
-        let source = Source::find(self.staya.as_deref())?;
+        let source = Source::find(self.staya.as_deref(), folder)?;
         let files = files(kind, part)?;
         write(folder, name, &files, &locks(kind, part), &source)?;
         if !global.quiet {
-            print(&next(folder, kind, part))?;
+            print(&next(folder, kind, part, &source))?;
         }
         Ok(Ended::Done)
     }
@@ -150,7 +150,7 @@ fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], sour
         _ => anyhow!("{shown}: {error}; give a writable folder"),
     })?;
     // Names in paths are replaced too, for the Python module.
-    let filled = files.iter().map(|(path, text)| (folder.join(source.fill(path, name)), source.fill(text, name)));
+    let filled = files.iter().map(|(path, text)| (folder.join(source.fill("", path, name)), source.fill(path, text, name)));
     let locks = locks.iter().filter_map(|(path, own)| Some((folder.join(path), source.lock(own)?)));
     for (path, text) in filled.chain(locks) {
         if let Err(error) = write_file(&path, &text) {
@@ -166,8 +166,9 @@ fn write_file(path: &Path, text: &str) -> std::io::Result<()> {
     fs::write(path, text)
 }
 
-fn next(folder: &Path, kind: Kind, part: &Part) -> String {
+fn next(folder: &Path, kind: Kind, part: &Part, source: &Source) -> String {
     let folder = folder.display();
+    let place = source.fill("", "/STAYA_PIP", "");
     let rest = match kind {
         Kind::Rust => format!(
             "  cargo test                     test the law in the simulator: src/lib.rs, scenario.toml\n  \
@@ -181,13 +182,16 @@ fn next(folder: &Path, kind: Kind, part: &Part) -> String {
              make firmware                  build the firmware ({}): complete firmware/board.c first\n",
             part.name
         ),
-        Kind::Python => String::from(
-            "  python3 -m venv .venv && .venv/bin/pip install -e '.[test]'\n  \
+        Kind::Python => format!(
+            "  python3 -m venv .venv && .venv/bin/pip install {place} -e '.[test]'\n  \
              .venv/bin/pytest               test the law in the simulator\n  \
              .venv/bin/python show.py       make a page of a run\n",
         ),
     };
-    format!("{folder} created. Next:\n  cd {folder}\n{rest}See README.md there.\n")
+    format!(
+        "{folder} created. Next:\n  cd {folder}\n{rest}The project uses Staya at {place}: make it again with --staya PATH or --staya URL \
+         for another place.\nSee README.md there.\n"
+    )
 }
 
 #[cfg(test)]

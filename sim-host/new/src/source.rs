@@ -3,13 +3,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 pub(crate) enum Source {
-    Folder { root: PathBuf, text: String },
+    /// The repository, and its path from the new project's folder.
+    Folder { root: PathBuf, relative: String },
     Address(String),
 }
 
 impl Source {
-    /// The given source, or the repository from which this program was built.
-    pub(crate) fn find(said: Option<&str>) -> Result<Self> {
+    /// The given source, or the repository from which this program was built, for a project in
+    /// `project`.
+    pub(crate) fn find(said: Option<&str>, project: &Path) -> Result<Self> {
         let is_address = |text: &&str| text.contains("://") || text.starts_with("git@");
         if let Some(address) = said.filter(is_address) {
             ensure!(is_plain(address), "{address}: the URL contains blanks or quotes; give one without");
@@ -27,20 +29,29 @@ impl Source {
         };
         ensure!(is_there, "{why}");
         let root = fs::canonicalize(folder)?;
-        let text = root.to_str().map(|text| text.replace('\\', "/")).filter(|text| is_plain(text));
-        let text = text.ok_or_else(|| {
+        let parent = project.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        // A missing folder is an error later.
+        let parent = fs::canonicalize(parent).or_else(|_| std::path::absolute(parent))?;
+        let relative = relative(&parent.join(project.file_name().unwrap_or_default()), &root);
+        let relative = relative.to_str().map(|text| text.replace('\\', "/")).filter(|text| is_plain(text));
+        let relative = relative.ok_or_else(|| {
             anyhow::anyhow!(
                 "{}: the path of Staya's sources contains blanks, quotes, $ or #, which Makefiles do not support; move them",
                 root.display()
             )
         })?;
-        Ok(Self::Folder { root, text })
+        Ok(Self::Folder { root, relative })
     }
 
-    pub(crate) fn fill(&self, template: &str, name: &str) -> String {
+    /// The text of `file`, a path in the project.
+    pub(crate) fn fill(&self, file: &str, template: &str, name: &str) -> String {
         let text = template.replace("my-swarm", name).replace("my_swarm", &name.replace('-', "_"));
         match self {
-            Self::Folder { text: folder, .. } => text.replace("/STAYA_URL", "").replace("/STAYA", folder),
+            Self::Folder { relative, .. } => {
+                let up = "../".repeat(file.matches('/').count());
+                let text = text.replace("/STAYA_URL", "").replace("/STAYA_ROOT", relative).replace("/STAYA_PIP", relative);
+                text.replace("/STAYA", &format!("{up}{relative}"))
+            }
             Self::Address(address) => {
                 // Cargo finds a package in a repository by its name.
                 let lines = text.split_inclusive('\n').map(|line| match line.split_once("path = \"/STAYA/") {
@@ -48,10 +59,11 @@ impl Source {
                         let after = rest.split_once('"').map_or("", |(_, after)| after);
                         format!("{before}git = \"{address}\"{after}")
                     }
-                    None => line.replace("staya @ file:///STAYA", &format!("staya @ git+{address}")),
+                    None => line.replace("/STAYA_PIP", &format!("git+{address}")),
                 });
                 // Files outside of packages are in a clone in the build folder.
-                lines.collect::<String>().replace("/STAYA_URL", address).replace("/STAYA", "build/staya")
+                let text = lines.collect::<String>().replace("/STAYA_URL", address);
+                text.replace("/STAYA_ROOT", "build/staya").replace("/STAYA", "build/staya")
             }
         }
     }
@@ -63,6 +75,13 @@ impl Source {
             Self::Address(_) => None,
         }
     }
+}
+
+/// The path from one absolute folder to another.
+fn relative(from: &Path, to: &Path) -> PathBuf {
+    let common = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(common).map(|_| std::path::Component::ParentDir);
+    up.chain(to.components().skip(common)).collect()
 }
 
 fn is_plain(text: &str) -> bool {

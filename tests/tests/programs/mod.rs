@@ -3,6 +3,7 @@
 mod checkpoint;
 mod crossing;
 mod crowd;
+mod errors;
 mod orca;
 mod recordings;
 mod run;
