@@ -1,13 +1,13 @@
 //! `staya page` makes one HTML file of a run.
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, anyhow};
 use clap::Args;
 use serde::Serialize;
 use staya_console::{Ended, Global, Progress, ScenarioArgs, Stop, print, print_json};
 use staya_record::page;
 use staya_record::recording::{Reader, RecordingError, RunRecorder};
 use staya_sim::engine::{Moment, simulate};
-use staya_sim::file::{MAP, read};
+use staya_sim::file::{MAP, read, read_remedy};
 use staya_sim::record::{RobotRow, write_atomically};
 use staya_sim::scenario::Scenario;
 use std::ops::ControlFlow;
@@ -48,7 +48,9 @@ impl PageArgs {
         let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
         let bytes = match is_scenario {
             true => recorded(&self.source.load()?, self.every, &stop, global)?,
-            false => read(path, MAP).with_context(|| format!("cannot read {}; check the name", path.display()))?,
+            false => {
+                read(path, MAP).map_err(|error| anyhow!("{}: {error}; {}", path.display(), read_remedy(&error)))?
+            }
         };
         let mut reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
         reader.scene()?;

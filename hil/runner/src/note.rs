@@ -153,8 +153,8 @@ mod tests {
         let good = note(VERSION, "stm32f405", "patrol 0.1.0");
         assert!(checked(&elf(SECTION, &good)).starts_with("Note {"));
         for (file, why) in [
-            (b"#!/bin/sh".to_vec(), "no ELF file"),
-            (Vec::new(), "no ELF file"),
+            (b"#!/bin/sh".to_vec(), "is not a 32-bit ELF file"),
+            (Vec::new(), "is not a 32-bit ELF file"),
             (elf(b".text\0", &good), "no session"),
             (elf(SECTION, b"stay"), "no session"),
             (elf(SECTION, &good[..40]), "no session"),

@@ -149,7 +149,10 @@ fn prepare(root: &Path, parts: &[Part], made: &Made) -> Result<PathBuf> {
         }
     };
     if lacking(parts, &folder).is_some() {
-        eprintln!("staya: building the firmware for {}; the first build takes some minutes, fewer after `rustup target add {TARGETS}`", names.join(", "));
+        eprintln!(
+            "staya: building the firmware for {}; the first build takes some minutes, fewer after `rustup target add {TARGETS}`",
+            names.join(", ")
+        );
     }
     let began = Instant::now();
     xtask(root, &[&["firmware"], what.as_slice(), names.as_slice()].concat())?;

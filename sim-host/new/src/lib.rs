@@ -150,7 +150,8 @@ fn write(folder: &Path, name: &str, files: &[File], locks: &[(&str, &str)], sour
         _ => anyhow!("{shown}: {error}; give a writable folder"),
     })?;
     // Names in paths are replaced too, for the Python module.
-    let filled = files.iter().map(|(path, text)| (folder.join(source.fill("", path, name)), source.fill(path, text, name)));
+    let filled =
+        files.iter().map(|(path, text)| (folder.join(source.fill("", path, name)), source.fill(path, text, name)));
     let locks = locks.iter().filter_map(|(path, own)| Some((folder.join(path), source.lock(own)?)));
     for (path, text) in filled.chain(locks) {
         if let Err(error) = write_file(&path, &text) {

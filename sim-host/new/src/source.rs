@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 
 pub(crate) enum Source {
     /// The repository, and its path from the new project's folder.
-    Folder { root: PathBuf, relative: String },
+    Folder {
+        root: PathBuf,
+        relative: String,
+    },
     Address(String),
 }
 
@@ -49,7 +52,8 @@ impl Source {
         match self {
             Self::Folder { relative, .. } => {
                 let up = "../".repeat(file.matches('/').count());
-                let text = text.replace("/STAYA_URL", "").replace("/STAYA_ROOT", relative).replace("/STAYA_PIP", relative);
+                let text =
+                    text.replace("/STAYA_URL", "").replace("/STAYA_ROOT", relative).replace("/STAYA_PIP", relative);
                 text.replace("/STAYA", &format!("{up}{relative}"))
             }
             Self::Address(address) => {

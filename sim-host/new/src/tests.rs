@@ -38,6 +38,8 @@ fn every_kind_of_project_is_complete_without_placeholders() {
                 assert!(!file.to_string_lossy().contains("my_swarm"), "{file:?}");
                 let text = fs::read_to_string(file).expect("a file");
                 let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the repository");
+                // Relative paths to the sources are fine.
+                let text = text.replace("../", ".");
                 for left in ["my-swarm", "my_swarm", "/STAYA", root.to_str().expect("text")] {
                     assert!(!text.contains(left), "{left} in {}", file.display());
                 }
@@ -112,5 +114,8 @@ fn invalid_arguments_list_the_choices() {
 fn a_git_url_replaces_paths() {
     let source = Source::Address(String::from("https://example.org/staya.git"));
     let line = "a = { path = \"/STAYA/controller/robot\", features = [\"async\"] }\n";
-    assert_eq!(source.fill("Cargo.toml", line, "pack"), "a = { git = \"https://example.org/staya.git\", features = [\"async\"] }\n");
+    assert_eq!(
+        source.fill("Cargo.toml", line, "pack"),
+        "a = { git = \"https://example.org/staya.git\", features = [\"async\"] }\n"
+    );
 }

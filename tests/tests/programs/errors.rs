@@ -52,7 +52,16 @@ fn run(folder: &Path, line: &str) -> String {
     assert!(stdout.is_empty(), "{line}: a mistake prints results: {stdout}");
     assert!(!output.status.success(), "{line}: a mistake ends with success: {stderr}");
     let code = output.status.code().unwrap_or_else(|| panic!("{line}: ended by a signal: {stderr}"));
-    format!("{}[{code}]\n", stderr.replace(&*folder.to_string_lossy(), "FOLDER"))
+    let stderr = stderr.replace(&*folder.to_string_lossy(), "FOLDER");
+    // The machine's serial ports.
+    let lines = stderr.lines().map(|line| match line.split_once("; there are /dev/") {
+        Some((before, after)) => {
+            let rest = after.split_once(';').map_or(String::new(), |(_, rest)| format!(";{rest}"));
+            format!("{before}; there are PORTS{rest}\n")
+        }
+        None => format!("{line}\n"),
+    });
+    format!("{}[{code}]\n", lines.collect::<String>())
 }
 
 /// The transcript with the outputs of this build.

@@ -142,7 +142,7 @@ fn errors_name_the_file_the_byte_and_the_remedy() {
     let (out, file, page) = (folder.path("out"), folder.path("run.rec"), folder.path("page.html"));
     let figure = scenario("figure-5.toml");
     for option in ["--record", "--mcap", "--gif"] {
-        let nowhere = folder.path("no/such/file");
+        let nowhere = folder.path(&format!("no/such/file.{}", &option[2..]));
         let refused = refusal(&["run", &figure, "--quiet", "--out", &out, option, &nowhere]);
         assert!(refused.contains(&nowhere) && refused.contains("make its directory first"), "{refused}");
         assert!(!Path::new(&out).exists(), "{option}: nothing was begun");

@@ -10,7 +10,7 @@ use crate::sweep::value::Value;
 use axes::Axis;
 use staya_controller::digest::{chained, digest};
 use staya_sim::file::{MAP, TEXT, read, read_text};
-use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source};
+use staya_sim::scenario::{Overrides, Scenario, ScenarioError, Source, nearest};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 pub use table::PlotTable;
@@ -264,7 +264,7 @@ impl Plan {
         };
         if let Some(axis) = self.axes.iter().find(is_meant) {
             let field = axis.field.name().to_owned();
-            let is_word = axis.is_range && what.contains("string");
+            let is_word = axis.is_range && what.contains("quotes");
             let (what, remedy) = if is_word { axes::no_range("a text") } else { (what, remedy) };
             return ScenarioError::Field { path: self.path.clone(), line: axis.line, field, what, remedy };
         }
@@ -394,7 +394,11 @@ fn check_measures(
         let field = format!("measures[{index}]");
         if !known.contains(name) {
             let what = format!("{name} is not a figure of summary.json");
-            return Err(source.error(&field, what, format!("give some of {}", known.join(", "))));
+            let remedy = match nearest(name, known.iter().map(String::as_str)) {
+                Some(near) => format!("did you mean {near}?"),
+                None => format!("give some of {}", known.join(", ")),
+            };
+            return Err(source.error(&field, what, remedy));
         }
         if measures[..index].contains(name) {
             return Err(source.error(&field, format!("{name} is listed twice"), "leave one out"));

@@ -60,7 +60,7 @@ fn csv_files_have_the_columns_of_their_schema() {
     assert_eq!(lines.len(), 6);
     assert_eq!(lines[3].join(","), "1,0.1,2,1,-1,1.5,-0.5,0,1,0,0,cruise,1,9,9,,,,,,", "an unknown value is empty");
     assert_eq!(lines[2].join(","), "1,0.1,1,,,1.5,-0.5,0,1,0,0,cruise,0,,,,,2.5,-3,0,0.25", "without cells");
-    assert_eq!(lines[5][16], "others");
+    assert_eq!(lines[5][16], "robots");
     let (series_header, series) = read(&out.join("series.csv"));
     assert_eq!(series[2].join(","), "2,0.2,1.5,,6,20,9,2,1");
     for (name, header) in [("trace", header), ("series", series_header)] {

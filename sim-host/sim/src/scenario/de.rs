@@ -2,7 +2,6 @@
 //! any source of events; its generic layers produce three times as much machine code for the
 //! scenario tables.
 
-use super::ranges::short;
 use serde::de::value::StrDeserializer;
 use serde::de::{
     DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, IntoDeserializer as _, MapAccess, SeqAccess,
@@ -103,6 +102,12 @@ fn in_words(found: Unexpected<'_>) -> String {
         Unexpected::Other(what) => format!("a {what}"),
         other => other.to_string(),
     }
+}
+
+/// Formats a number for an error text: huge and tiny numbers have an exponent.
+pub(super) fn short(value: f64) -> String {
+    let has_few_digits = value == 0.0 || (1e-6..1e12).contains(&value.abs()) || !value.is_finite();
+    if has_few_digits { value.to_string() } else { format!("{value:e}") }
 }
 
 /// What a type accepts, without its Rust name.
@@ -313,5 +318,24 @@ impl<'a> VariantAccess<'a> for Variant<'a, '_> {
 
     fn struct_variant<V: Visitor<'a>>(self, _: &'static [&'static str], visitor: V) -> Result<V::Value, Error> {
         self.content()?.deserialize_any(visitor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn huge_and_tiny_numbers_have_an_exponent() {
+        for (value, text) in [
+            (1e308, "1e308"),
+            (-2.5e-9, "-2.5e-9"),
+            (600_000.0, "600000"),
+            (0.0, "0"),
+            (-1.5, "-1.5"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(short(value), text);
+        }
     }
 }

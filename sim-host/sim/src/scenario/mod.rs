@@ -5,6 +5,7 @@
 mod authentication;
 mod check;
 mod de;
+pub use de::nearest;
 mod field;
 mod fingerprint;
 mod formation;

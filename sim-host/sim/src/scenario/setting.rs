@@ -138,7 +138,7 @@ mod tests {
         let none = error(&["robots.list[1].goal=[1, 1]"]);
         assert!(none.contains("list has 1 elements, counted from 0 (by --set)"), "{none}");
         let word = error(&["ticks=many"]);
-        assert!(word.contains("ticks") && word.contains("expected a whole number"), "{word}");
+        assert!(word.contains("ticks") && word.contains("is not a whole number"), "{word}");
         // Errors in the file itself are not attributed to the command line.
         let other = error(&["radio.range_m=5", "robots.list[0].start=[99, 0]"]);
         assert!(other.contains("robots.list[0].start"), "{other}");

@@ -127,7 +127,7 @@ fn errors_name_the_plan_the_line_and_the_field() {
             axes("radio.format = { from = 1, to = 2, count = 2 }"),
             "plan.toml:4: radio.format: it is a text, which has no range",
         ),
-        (axes("radio.loss = ['a']"), "plan.toml:4: radio.loss: invalid type: string \"a\", expected a number"),
+        (axes("radio.loss = ['a']"), "plan.toml:4: radio.loss: \"a\" is not a number"),
         (axes("radio.loss = [[1]]"), "plan.toml:4: radio.loss: [1] is neither a number nor a word"),
         (axes("radio = [1]"), "plan.toml:4: radio: it is a list or a table; name a field in it"),
         (axes("seed = [1, 2]"), "plan.toml:4: seed: seeds are not an axis; give `seeds`"),
@@ -164,7 +164,7 @@ fn errors_name_the_plan_the_line_and_the_field() {
         (error("[[sample]]\nkind = 'random'\ncount = 0\naxes = {}"), "plan.toml:5: sample[0].count: 0 samples"),
         (
             error("[[sample]]\nkind = 'sobol'\ncount = 3\naxes = {}"),
-            "plan.toml:4: sample[0].kind: unknown variant `sobol`",
+            "plan.toml:4: sample[0].kind: unknown value `sobol`",
         ),
         (error("seeds = 0"), "plan.toml:3: seeds: there is none"),
         (error("seeds = [1, 2, 1]"), "plan.toml:3: seeds: 1 is listed twice"),
@@ -172,7 +172,7 @@ fn errors_name_the_plan_the_line_and_the_field() {
         (error("seeds = 'all'"), "plan.toml:3: seeds: invalid seeds, expected a number"),
         (
             error("measures = ['arrivd']"),
-            "plan.toml:3: measures[0]: arrivd is not a figure of summary.json; give some of robots",
+            "plan.toml:3: measures[0]: arrivd is not a figure of summary.json; did you mean arrived?",
         ),
         (error("measures = ['arrived', 'arrived']"), "plan.toml:3: measures[1]: arrived is listed twice"),
         (error("measures = []"), "plan.toml:3: measures: there is none"),
@@ -206,7 +206,7 @@ fn errors_of_the_scenario_name_its_own_line() {
 fn text_fields_accept_lists_of_words() {
     let plan = plan("[axes]\nradio.format = ['postcard', 'mavlink']\n");
     assert_eq!(values(&plan, "radio.format"), ["postcard", "mavlink"]);
-    assert!(error("[axes]\nradio.format = ['postcard', 'morse']").contains("unknown variant `morse`"));
+    assert!(error("[axes]\nradio.format = ['postcard', 'morse']").contains("unknown value `morse`"));
 }
 
 #[test]
