@@ -145,7 +145,8 @@ impl Refused {
     }
 }
 
-/// Counts of beacons with values beyond [`AgentConfig::plausibility`](super::AgentConfig::plausibility).
+/// Counts of beacons with values beyond
+/// [`AgentConfig::plausibility`](super::AgentConfig::plausibility).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ImplausibleCounts {

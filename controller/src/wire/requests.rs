@@ -121,7 +121,8 @@ impl<const P: usize> Requests<P> {
     /// after the last send, but never before its first send.
     ///
     /// # Errors
-    /// [`AskError::Full`] if `P` requests are pending, [`AskError::NoAddressee`] for [`RobotId::NONE`].
+    /// [`AskError::Full`] if `P` requests are pending, [`AskError::NoAddressee`] for
+    /// [`RobotId::NONE`].
     #[expect(clippy::arithmetic_side_effects, reason = "an `Instant` wraps, as is meant")]
     pub fn ask(
         &mut self,

@@ -44,7 +44,7 @@ const LOOK: Duration = Duration::from_secs(1);
 const SELDOM: Duration = Duration::from_secs(3);
 
 /// Longest demo, seconds.
-pub const DEMO_S: f64 = 600.0;
+const DEMO_S: f64 = 600.0;
 
 /// Options of the command line.
 #[derive(Debug, Default)]
@@ -56,7 +56,7 @@ pub struct Options {
     /// Duration in seconds; `None` runs until stopped.
     pub seconds: Option<f64>,
     /// Simulated autopilots in place of the configured links; the run ends when all vehicles have
-    /// arrived, or after [`DEMO_S`].
+    /// arrived, or after ten minutes.
     pub demo: bool,
     /// Runs the demo in real time.
     pub is_real_time: bool,

@@ -339,7 +339,7 @@ pub enum Lie {
     Orders,
     /// PlausibilityLimits the largest radius that a beacon can encode, at the lure.
     Radius,
-    /// PlausibilityLimits the highest speed that a beacon can encode, from its place towards the lure.
+    /// Claims the highest speed that a beacon can encode, from its place towards the lure.
     Speed,
     /// PlausibilityLimits to be at the lure in one tick and at its place in the next.
     Jump,
