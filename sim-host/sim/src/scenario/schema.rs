@@ -337,13 +337,13 @@ pub enum AttackKind {
 pub enum Lie {
     /// Orders all robots to the lure.
     Orders,
-    /// PlausibilityLimits the largest radius that a beacon can encode, at the lure.
+    /// Claims the largest radius that a beacon can encode, at the lure.
     Radius,
     /// Claims the highest speed that a beacon can encode, from its place towards the lure.
     Speed,
-    /// PlausibilityLimits to be at the lure in one tick and at its place in the next.
+    /// Claims to be at the lure in one tick and at its place in the next.
     Jump,
-    /// PlausibilityLimits that further robots exist around the lure.
+    /// Claims that further robots exist around the lure.
     Ghosts,
 }
 
