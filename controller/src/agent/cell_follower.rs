@@ -157,7 +157,11 @@ fn follow<S: Scalar, P>(
         }
     };
     let way = way(&decision);
-    let needed = way.norm().checked_div(input.body.step_s).unwrap_or(speed);
+    let is_last = decision.action.moves().first().is_none_or(|dir| cell + dir.offset() == decision.target);
+    let needed = match is_last {
+        true => input.body.stopping_speed(way.norm()),
+        false => way.norm().checked_div(input.body.step_s).unwrap_or(speed),
+    };
     let ahead = way.normalized().unwrap_or_default();
     decision.action = Action::Velocity { wish_mps: (ahead * needed.min(speed)).extend(S::ZERO), way_m: None };
     Ok(decision)

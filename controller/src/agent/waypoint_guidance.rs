@@ -51,13 +51,22 @@ impl<S: Scalar> WaypointGuidance<S> {
         Some((way, waypoint.velocity_mps))
     }
 
+    /// The rest of the course, metres, with `distance` to the current waypoint.
+    fn left_m(&self, distance: S) -> S {
+        let ahead = self.course.get(usize::from(self.leg)..).unwrap_or_default();
+        let legs = ahead.windows(2).map(|pair| match pair {
+            [from, to] => to.position.since::<S>(from.position).norm(),
+            _ => S::ZERO,
+        });
+        legs.fold(distance, |sum, leg| sum + leg)
+    }
+
     pub(super) fn head<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
         let (way, velocity_mps) = self.next(input).ok_or(BadInput)?;
         let is_last = usize::from(self.leg) + 1 >= self.course.len();
         let distance = way.norm();
         let speed = self.speed_mps.min(input.body.max_speed_mps);
-        let needed = distance.checked_div(input.body.step_s).unwrap_or(speed);
         let ahead = way.normalized().unwrap_or_default();
         let claim = match is_last && velocity_mps == Vec3::ZERO {
             true => self.beside.claim(input, way, self.tolerance_m),
@@ -66,10 +75,15 @@ impl<S: Scalar> WaypointGuidance<S> {
         let pace = match claim {
             Claim::Yields(room_m) if distance < room_m => -speed,
             Claim::Yields(_) => S::ZERO,
-            Claim::Goes | Claim::IsBeside => needed.min(speed),
+            Claim::Goes | Claim::IsBeside => {
+                let left_m = if input.body.has_inertia() { self.left_m(distance) } else { distance };
+                input.body.stopping_speed(left_m).min(speed)
+            }
         };
         let is_beside = claim == Claim::IsBeside;
-        let is_at_goal = is_last && distance <= self.tolerance_m || is_beside;
+        // A body that is too fast to stop there passes the goal.
+        let slides_m = if velocity_mps == Vec3::ZERO { input.body.stopping_way() } else { Vec3::ZERO };
+        let is_at_goal = is_last && distance.max((way - slides_m).norm()) <= self.tolerance_m || is_beside;
         Ok(Decision {
             // A robot that lets another one go first does not head anywhere, so it is not in a jam.
             action: Action::Velocity {

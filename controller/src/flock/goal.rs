@@ -102,16 +102,17 @@ pub fn wish<S: Scalar>(
         return Vec3::ZERO;
     }
     let way = goal.map_or(Vec3::ZERO, |goal| goal.since(own));
-    let r1 = to_goal(params.goal_gain, way, speed * body.step_s);
+    // r1 = K1 unit(goal - x), eq. 2; near the goal limited to the remaining distance.
+    let left = if body.has_inertia() {
+        // Brakes before the goal.
+        body.stopping_speed(way.norm()).checked_div(speed).unwrap_or(S::ONE)
+    } else {
+        let step_m = speed * body.step_s;
+        if way.norm() < step_m { way.norm().checked_div(step_m).unwrap_or(S::ONE) } else { S::MAX }
+    };
+    let r1 = way.normalized().map_or(Vec3::ZERO, |unit| unit * params.goal_gain.min(left));
     let (r2, r3) = among_neighbors(params, body.id, nearby);
     (r1 + r2 + r3).clamp_norm(S::ONE) * speed
-}
-
-/// r1 = K1 unit(goal - x), eq. 2; on the last step limited to the remaining distance.
-fn to_goal<S: Scalar>(gain: S, way_m: Vec3<S>, step_m: S) -> Vec3<S> {
-    let distance = way_m.norm();
-    let left = if distance < step_m { distance.checked_div(step_m).unwrap_or(S::ONE) } else { S::MAX };
-    way_m.normalized().map_or(Vec3::ZERO, |unit| unit * gain.min(left))
 }
 
 /// r2 = K2 unit(mean of the neighbours - x), eq. 5, and r3, eq. 8.

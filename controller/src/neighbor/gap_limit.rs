@@ -40,9 +40,14 @@ const TOLERANCE_UM: i32 = 200;
 ///
 /// *Inertia:* the ball follows the last course of the body and grows by half of its acceleration
 /// times t^2, if that is less. The own robot takes no more of a gap than it can brake within.
+/// Braking for one neighbour leaves less acceleration for the others, so a velocity is allowed only
+/// if braking straight along it keeps all gaps at once: closing speed times half of the braking
+/// time counts, not the braking distance of the closing speed alone. Straight braking then remains
+/// possible in the next step, and the robot takes it if it can reach no allowed velocity.
 ///
 /// *Lost robots:* their balls stop growing at `max_m` only while at least half of all robots are
-/// fresh, or if [`may_be_alone`](Self::may_be_alone) is set.
+/// fresh, after [`settled_after`](Self::settled_after), or if
+/// [`may_be_alone`](Self::may_be_alone) is set.
 #[derive(Clone, Copy, Debug)]
 pub struct GapLimit<'a, S> {
     /// Own body.
@@ -58,6 +63,8 @@ pub struct GapLimit<'a, S> {
     pub inflation: StalenessInflation<S>,
     /// Whether lost robots count as stationary even when most robots are lost.
     pub may_be_alone: bool,
+    /// Silence from which a lost robot counts as stationary in any case.
+    pub settled_after: Duration,
 }
 
 #[derive(Clone, Copy)]
@@ -65,8 +72,11 @@ struct Limit<S> {
     ahead: Vec3<S>,
     /// Sine of the angle by which `ahead` may be wrong.
     slant: S,
-    /// Permitted approach in this step, metres; negative, within tolerance, without a gap.
-    room_m: S,
+    /// Permitted approach until the robot stands, metres; negative, within tolerance, without a
+    /// gap.
+    left_m: S,
+    /// Speed at which the gap shrinks meanwhile, m/s.
+    growth_mps: S,
 }
 
 impl<S: Scalar> Limit<S> {
@@ -80,6 +90,23 @@ impl<S: Scalar> Limit<S> {
     fn taken(&self, velocity_mps: Vec3<S>, step_s: S) -> S {
         let (closing, side) = self.closing(velocity_mps);
         (closing + side) * step_s
+    }
+
+    /// The part of `velocity_mps`, from 0 to 1, from which the robot stops within the gap after
+    /// this step. `brake_s` is the time to brake from the whole velocity.
+    fn share(&self, velocity_mps: Vec3<S>, step_s: S, brake_s: S) -> S {
+        let (closing, side) = self.closing(velocity_mps);
+        let (closing, left_m) = (closing + side, self.left_m.max(S::ZERO));
+        let (now, later) = (closing * step_s + self.growth_mps * brake_s, closing * brake_s * S::HALF);
+        if closing <= S::ZERO || now + later - S::from_micro(TOLERANCE_UM) <= self.left_m {
+            return S::ONE;
+        }
+        if brake_s <= S::ZERO {
+            return left_m.checked_div(now - S::from_micro(TOLERANCE_UM)).unwrap_or(S::ZERO);
+        }
+        // Solves share now + share^2 later = left, without cancellation.
+        let root = (now * now + later * left_m * S::from_i32(4)).sqrt();
+        (left_m * S::TWO).checked_div(now + root).unwrap_or(S::ZERO).min(S::ONE)
     }
 }
 
@@ -98,7 +125,8 @@ impl<S: Scalar> GapLimit<'_, S> {
         let (known, lost, ages) = (table.as_slice(), table.lost(), table.ages());
         let is_fresh = |other: &&Neighbor<S, P>| other.age(self.now).is_some_and(|age| age <= ages.stale_after);
         let fresh = known.iter().filter(is_fresh).count();
-        let is_bad = !self.may_be_alone && fresh + fresh < known.len() + lost.len();
+        let moving = lost.iter().filter(|other| !self.is_settled(other)).count();
+        let is_bad = !self.may_be_alone && fresh + fresh < known.len() + moving;
         let mut limits = Vec::<Limit<S>, N>::new();
         let mut is_hidden = false;
         for other in &mut table.entries {
@@ -113,7 +141,9 @@ impl<S: Scalar> GapLimit<'_, S> {
             let mut is_turned = false;
             for limit in &limits {
                 let (closing, side) = limit.closing(v);
-                let most = limit.room_m.checked_div(step_s).unwrap_or(S::ZERO) - side;
+                let brake_s = self.brake_s(v);
+                let left_m = limit.left_m - limit.growth_mps * brake_s;
+                let most = left_m.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO) - side;
                 if closing > most && closing > S::ZERO {
                     v -= limit.ahead * (closing - most.max(S::ZERO));
                     is_turned = true;
@@ -132,14 +162,18 @@ impl<S: Scalar> GapLimit<'_, S> {
                 v -= ahead * (v.dot(ahead) - most).max(S::ZERO);
             }
         }
-        let mut share = S::ONE;
-        for limit in &limits {
-            let taken_m = limit.taken(v, step_s) - S::from_micro(TOLERANCE_UM);
-            if taken_m > limit.room_m {
-                share = share.min(limit.room_m.max(S::ZERO).checked_div(taken_m).unwrap_or(S::ZERO));
+        let allowed = |v: Vec3<S>| {
+            let shares = limits.iter().map(|limit| limit.share(v, step_s, self.brake_s(v)));
+            shares.fold(S::ONE, Scalar::min)
+        };
+        let mut v = v * allowed(v);
+        if self.body.has_inertia() {
+            // From the present velocity the body may reach none that is allowed.
+            let reached = self.body.reach(v);
+            if allowed(reached) < S::ONE {
+                v = Vec3::ZERO;
             }
         }
-        let v = v * share;
         for (other, limit) in table.entries.iter_mut().zip(&limits) {
             other.gap_m = other.gap_m * S::HALF - limit.taken(v, step_s);
         }
@@ -152,7 +186,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         let age = other.age(self.now).unwrap_or(Duration::MAX);
         let silent = age.as_micros().saturating_sub(self.news.as_micros()).max(0);
         let silent_s = S::from_micro(silent);
-        let is_parked = other.is_lost && !is_bad;
+        let is_parked = other.is_lost && (!is_bad || self.is_settled(other));
         let mut grown = inflation.growth_mps * silent_s;
         if is_parked {
             grown = grown.min(inflation.max_m);
@@ -180,15 +214,20 @@ impl<S: Scalar> GapLimit<'_, S> {
             _ if swerves => told_mps + swerve_mps,
             _ => inflation.growth_mps,
         };
-        let room_m = if !other.mode.gives_way() {
-            self.brakes(gap - comes_mps * body.step_s, comes_mps.max(S::ZERO))
+        let (left_m, growth_mps) = if !other.mode.gives_way() {
+            (gap - comes_mps * body.step_s, comes_mps.max(S::ZERO))
         } else if silent > 0 {
-            self.brakes(gap * S::HALF, comes_mps.max(S::ZERO) * S::HALF)
+            (gap * S::HALF, comes_mps.max(S::ZERO) * S::HALF)
         } else {
-            self.brakes((gap * S::HALF).min(gap - self.way_to_stand(comes_mps)), S::ZERO)
+            ((gap * S::HALF).min(gap - self.way_to_stand(comes_mps)), S::ZERO)
         };
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
-        (Limit { ahead, slant, room_m: room_m.max(-S::from_micro(TOLERANCE_UM)) }, silent > 0 && grown >= distance)
+        let left_m = left_m.max(-S::from_micro(TOLERANCE_UM));
+        (Limit { ahead, slant, left_m, growth_mps }, silent > 0 && grown >= distance)
+    }
+
+    fn is_settled<P>(&self, other: &Neighbor<S, P>) -> bool {
+        other.age(self.now).is_none_or(|age| age >= self.settled_after)
     }
 
     /// Braking distance, metres; 0 without inertia.
@@ -198,14 +237,9 @@ impl<S: Scalar> GapLimit<'_, S> {
         if most >= S::MAX { S::ZERO } else { (speed * speed * S::HALF).checked_div(most).unwrap_or(S::ZERO) }
     }
 
-    /// Distance to cover in a step before braking within `left`, metres, shrinking at `growth_mps`.
-    fn brakes(&self, left: S, growth_mps: S) -> S {
-        let Body { step_s, max_acceleration_mps2: most, .. } = *self.body;
-        if most >= S::MAX || left <= S::ZERO {
-            return left;
-        }
-        // Solves v step + v^2 / 2 most + growth v / most = left.
-        let lag = most * step_s + growth_mps;
-        ((lag * lag + most * left * S::TWO).sqrt() - lag) * step_s
+    /// Time to brake to rest, seconds; 0 without inertia.
+    fn brake_s(&self, velocity_mps: Vec3<S>) -> S {
+        let most = self.body.max_acceleration_mps2;
+        if most >= S::MAX { S::ZERO } else { velocity_mps.norm().checked_div(most).unwrap_or(S::ZERO) }
     }
 }

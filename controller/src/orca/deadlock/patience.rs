@@ -53,7 +53,12 @@ impl<S: Scalar> Patience<S> {
         if self.course_mps == Vec2::ZERO {
             self.course_mps = wish;
         }
-        let rate = step.checked_div(patience * S::TWO).unwrap_or(S::ONE).min(S::ONE);
+        let mut rate = step.checked_div(patience * S::TWO).unwrap_or(S::ONE).min(S::ONE);
+        if body.has_inertia() {
+            // A body that speeds up at its full acceleration is not stuck.
+            let change_mps = body.max_acceleration_mps2 * body.step_s;
+            rate = rate.min(change_mps.checked_div(wish.norm()).unwrap_or(S::ONE));
+        }
         self.course_mps += (body.velocity_mps.xy() - self.course_mps) * rate;
         if self.course_mps.norm() >= wish.norm() * S::from_milli(STUCK) {
             return wish;

@@ -333,6 +333,7 @@ mod intruder;
 mod land;
 mod operator;
 mod plane;
+mod safety_scenes;
 mod sensing;
 mod state;
 mod torus;

@@ -194,6 +194,15 @@ impl Spec {
 
     fn orca(&self, source: &Source<'_>) -> Result<AvoidParams<f32>, ScenarioError> {
         let (table, mut params) = (&self.orca, AvoidParams::<f32>::default());
+        // A body with inertia must see a conflict early enough to brake for it: one braking time
+        // for its own speed and one for the other's.
+        let brake_s = (2.0 * self.max_speed_mps / self.max_acceleration_mps2).min(60.0);
+        params.horizon_s = params.horizon_s.max(brake_s as f32);
+        if let Some(given) = table.horizon_s.filter(|&given| given < brake_s) {
+            let what = format!("{} is less than 2 max_speed_mps / max_acceleration_mps2", short(given));
+            let remedy = format!("give {} seconds or more, or leave it out", short(brake_s));
+            return Err(source.error(&self.field(source, "orca.horizon_s"), what, remedy));
+        }
         for (field, value, range, unit, param) in [
             ("horizon_s", table.horizon_s, [0.01, 60.0], "seconds", &mut params.horizon_s),
             ("wall_horizon_s", table.wall_horizon_s, [0.01, 60.0], "seconds", &mut params.wall_horizon_s),
