@@ -363,7 +363,8 @@ pub struct OrderEntry {
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OrcaTable {
-    /// Time ahead in which robots must not meet, seconds.
+    /// Time ahead in which robots must not meet, seconds; at least twice the braking time, to which
+    /// the default grows.
     pub horizon_s: Option<f64>,
     /// Time ahead in which a robot must not meet an obstacle, seconds.
     pub wall_horizon_s: Option<f64>,
@@ -379,7 +380,7 @@ pub struct OrcaTable {
     pub inflation_m: Option<f64>,
     /// In space: ratio of the vertical to the horizontal separation. Default: 1.
     pub downwash: Option<f64>,
-    /// How long a lost robot is remembered, seconds.
+    /// Silence after which a lost robot certainly stands, seconds.
     pub remember_s: Option<f64>,
     /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
     pub alone_mps: Option<f64>,
