@@ -20,10 +20,9 @@ use serde::{Deserialize, Serialize};
 /// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
 /// | never any since power-on | moves freely: it is the first or only robot of its swarm |
 ///
-/// A lost robot is avoided until it is in contact again, or an operator calls
-/// [`forget_lost`](super::Agent::forget_lost). It left radio range, and is forgotten, if it was
-/// receding at about the greatest distance at which a beacon was ever received. All have left if
-/// the last ones exceed the greatest distance of any earlier contact.
+/// A lost robot is avoided until it is in contact again or [`remember`](Self::remember) has passed.
+/// It left radio range, and is forgotten, if it was last known about as far away as the farthest
+/// fresh robot. All have left if the last ones exceed the greatest distance of any earlier contact.
 ///
 /// [`GapLimit`]: crate::neighbor::GapLimit
 /// [lost]: crate::neighbor::Ages::expire_after
@@ -32,10 +31,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ContactLossPolicy<S> {
-    /// Silence after which a lost robot certainly stands; at most half an hour. Longer: a robot
-    /// without contact to most others waits for longer. Shorter: a robot whose radio failed on the
-    /// way may be hit. Below [`Ages::expire_after`](crate::neighbor::Ages::expire_after), no lost
-    /// robot is remembered.
+    /// How long a silent robot is remembered; at most half an hour. Longer: a removed robot blocks
+    /// its place for longer. Shorter: a dead robot is hit sooner. Below
+    /// [`Ages::expire_after`](crate::neighbor::Ages::expire_after), no robot is remembered.
     pub remember: Duration,
     /// Speed when all robots are lost, m/s; 0 to stand until a robot is in contact. Above 0 only
     /// for robots that may be alone, since moving silent robots are not detected.

@@ -125,7 +125,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     /// explains; with `remember` > 0 only after [`Ages::expire_after`]. Comes first in each step.
     pub(super) fn expire(
         &mut self,
-        (own, own_mps): (Position, Vec3<S>),
+        own: Position,
         now: Instant,
         (period, latency): (Duration, Duration),
         remember: Duration,
@@ -143,7 +143,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         };
         let longest = Duration::from_micros(patience.as_micros().saturating_add(latency.as_micros()));
         let missed = patience.as_micros().checked_div(period.as_micros()).unwrap_or(0);
-        self.table.expire((own, own_mps), now, (longest, remember), |lost| {
+        self.table.expire(own, now, (longest, remember), |lost| {
             loss.gave_up(u16::try_from(missed).unwrap_or(u16::MAX));
             windows.retain(|(id, _)| *id != lost);
             report(out, Event::NeighborLost(lost));

@@ -45,12 +45,6 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         self.link.table.as_slice()
     }
 
-    /// Declares the place of a lost robot free, because it was carried away; returns whether it was
-    /// blocked. O(N).
-    pub fn forget_lost(&mut self, id: RobotId) -> bool {
-        self.link.table.forget_lost(id)
-    }
-
     /// Returns the knowledge about robot `id`: fresh, stale or unknown. O(log N).
     #[must_use]
     pub fn neighbor(&self, id: RobotId, now: Instant) -> Knowledge<'_, S, G::Payload> {

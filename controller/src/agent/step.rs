@@ -97,7 +97,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let remember = if keeps_clear { config.contact_loss.remember } else { Duration::ZERO };
         let radio = (config.beacon_period, config.latency);
         let own = inputs.state.position;
-        link.expire((own, inputs.state.velocity_mps), now, radio, remember, out);
+        link.expire(own, now, radio, remember, out);
         let have_left = link.table.is_empty() && link.table.lost().is_empty();
         if keeps_clear && link.contact.passes(now, have_left, config) {
             report(out, Event::ContactLost);
@@ -300,8 +300,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let mut is_hidden = false;
         if let Some(inflation) = inflation {
             let (news, may_be_alone) = (config.latency.max(config.tick), config.contact_loss.may_be_alone());
-            let settled_after = config.contact_loss.remember;
-            let room = GapLimit { body: &body, own, now, news, inflation, may_be_alone, settled_after };
+            let room = GapLimit { body: &body, own, now, news, inflation, may_be_alone };
             let within = room.limit(table, plane.obstacles, safe);
             is_hidden = within.is_none();
             safe = within.unwrap_or(Vec3::ZERO);

@@ -46,8 +46,7 @@ const TOLERANCE_UM: i32 = 200;
 /// possible in the next step, and the robot takes it if it can reach no allowed velocity.
 ///
 /// *Lost robots:* their balls stop growing at `max_m` only while at least half of all robots are
-/// fresh, after [`settled_after`](Self::settled_after), or if
-/// [`may_be_alone`](Self::may_be_alone) is set.
+/// fresh, or if [`may_be_alone`](Self::may_be_alone) is set.
 #[derive(Clone, Copy, Debug)]
 pub struct GapLimit<'a, S> {
     /// Own body.
@@ -63,8 +62,6 @@ pub struct GapLimit<'a, S> {
     pub inflation: StalenessInflation<S>,
     /// Whether lost robots count as stationary even when most robots are lost.
     pub may_be_alone: bool,
-    /// Silence from which a lost robot counts as stationary in any case.
-    pub settled_after: Duration,
 }
 
 #[derive(Clone, Copy)]
@@ -125,8 +122,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         let (known, lost, ages) = (table.as_slice(), table.lost(), table.ages());
         let is_fresh = |other: &&Neighbor<S, P>| other.age(self.now).is_some_and(|age| age <= ages.stale_after);
         let fresh = known.iter().filter(is_fresh).count();
-        let moving = lost.iter().filter(|other| !self.is_settled(other)).count();
-        let is_bad = !self.may_be_alone && fresh + fresh < known.len() + moving;
+        let is_bad = !self.may_be_alone && fresh + fresh < known.len() + lost.len();
         let mut limits = Vec::<Limit<S>, N>::new();
         let mut is_hidden = false;
         for other in &mut table.entries {
@@ -186,7 +182,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         let age = other.age(self.now).unwrap_or(Duration::MAX);
         let silent = age.as_micros().saturating_sub(self.news.as_micros()).max(0);
         let silent_s = S::from_micro(silent);
-        let is_parked = other.is_lost && (!is_bad || self.is_settled(other));
+        let is_parked = other.is_lost && !is_bad;
         let mut grown = inflation.growth_mps * silent_s;
         if is_parked {
             grown = grown.min(inflation.max_m);
@@ -224,10 +220,6 @@ impl<S: Scalar> GapLimit<'_, S> {
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
         let left_m = left_m.max(-S::from_micro(TOLERANCE_UM));
         (Limit { ahead, slant, left_m, growth_mps }, silent > 0 && grown >= distance)
-    }
-
-    fn is_settled<P>(&self, other: &Neighbor<S, P>) -> bool {
-        other.age(self.now).is_none_or(|age| age >= self.settled_after)
     }
 
     /// Braking distance, metres; 0 without inertia.

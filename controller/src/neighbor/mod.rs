@@ -33,9 +33,8 @@ pub use tie::tie;
 pub use track::Track;
 pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 
-/// Where a lost robot may be out of range, thousandths of the greatest distance at which a beacon was
-/// received.
-const LEAVES_FROM: i32 = 900;
+/// Where a lost robot is out of range, thousandths of the distance to the farthest fresh robot.
+const LEAVES_FROM: i32 = 750;
 
 /// The last known state of one robot. `P` is the payload of its guidance law, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -155,7 +154,7 @@ type Entries<S, const N: usize, P> = crate::list::SparseVec<Neighbor<S, P>, N>;
 
 /// At most `N` robots, sorted by id: first the known robots, then the remembered lost ones.
 ///
-/// Bytes: 20, and `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the
+/// Bytes: 16, and `N` times the size of [`Neighbor`] (60 for `f32` and fixed point, plus the
 /// payload). With the feature `host`, only the memory of the stored robots.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct NeighborTable<S, const N: usize, P = ()> {
@@ -163,15 +162,13 @@ pub struct NeighborTable<S, const N: usize, P = ()> {
     ages: Ages,
     /// Greatest distance to the farthest fresh robot when another one was lost, metres; 0: never.
     range_m: S,
-    /// Greatest distance at which a beacon was received, metres.
-    reach_m: S,
 }
 
 impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// Creates an empty table.
     #[must_use]
     pub const fn new(ages: Ages) -> Self {
-        Self { entries: Entries::new(), ages, range_m: S::ZERO, reach_m: S::ZERO }
+        Self { entries: Entries::new(), ages, range_m: S::ZERO }
     }
 
     /// Returns the age limits of the table.
@@ -201,10 +198,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     ) -> Put {
         if !newcomer.id.is_some() {
             return Put::Refused;
-        }
-        let distance_m = newcomer.position.since::<S>(own).norm();
-        if distance_m.is_finite() {
-            self.reach_m = self.reach_m.max(distance_m);
         }
         let place = self.place(newcomer.id);
         if place.is_none() {
@@ -261,20 +254,17 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     }
 
     /// Moves neighbours silent for longer than `longest` (at most [`Ages::expire_after`]) to the
-    /// list of lost robots, and reports each in the order of ids. A lost robot stays in the list
-    /// until it is received again, [forgotten](Self::forget_lost) or evicted; its age stops at
-    /// `remember`, and none is kept if that is below [`Ages::expire_after`]. Call it at the start of each step. O(N), and O(N) for each
-    /// lost robot.
+    /// list of lost robots, reports each in the order of ids, and forgets robots silent for longer
+    /// than `remember`. Call it at the start of each step. O(N), and O(N) for each lost robot.
     ///
     /// These robots are not remembered:
-    /// - A robot that left radio range: it was receding from `own` (position and velocity, m/s), and
-    ///   its extrapolated position is at least 9/10 as far away as any beacon was ever received
-    ///   from. Without fresh robots the own radio may have failed; then it must also be at least as
-    ///   far as any robot in contact while another one was lost.
+    /// - A robot that left radio range: its extrapolated position is at least 3/4 as far from `own`
+    ///   as the farthest fresh robot; without fresh robots, at least as far as any robot in contact
+    ///   while another one was lost. If that never happened, all robots are remembered.
     /// - One of two robots with one id, while the other is fresh: the robot was moved.
     pub fn expire(
         &mut self,
-        (own, own_mps): (Position, Vec3<S>),
+        own: Position,
         now: Instant,
         (longest, remember): (Duration, Duration),
         mut lost: impl FnMut(RobotId),
@@ -288,33 +278,20 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             self.entries.retain(|entry| entry.id != silent.id);
             let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));
             let farthest_m = fresh.map(distance).fold(S::ZERO, Scalar::max);
-            // When it was last received: meanwhile it may seem to have passed.
-            let age_s = S::from_micro(silent.age(now).unwrap_or(Duration::ZERO).as_micros());
-            let offset_m = silent.position.since(own) + own_mps * age_s;
-            let recedes = (silent.velocity_mps - own_mps).dot(offset_m) > S::ZERO;
-            let is_far = distance(&silent) >= self.reach_m * S::from_milli(LEAVES_FROM);
             // Without contact the own radio may have failed, unless earlier losses give the range.
-            let has_range = self.range_m > S::ZERO && distance(&silent) >= self.range_m;
-            let has_left = recedes && is_far && (farthest_m > S::ZERO || has_range);
+            let range_m = if farthest_m > S::ZERO { farthest_m * S::from_milli(LEAVES_FROM) } else { self.range_m };
             self.range_m = self.range_m.max(farthest_m);
             // The other robot with this id is fresh: it was moved.
             let is_moved = || {
                 let mut others = self.as_slice().iter();
                 others.any(|entry| entry.id.duplicate() == silent.id.duplicate() && is_within(entry, ages.stale_after))
             };
-            if !has_left && !is_moved() {
+            if (range_m <= S::ZERO || distance(&silent) < range_m) && !is_moved() {
                 let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
                 self.sort_last();
             }
         }
-        // The place of a dead robot stays blocked; a bounded age cannot wrap.
-        let oldest = now - remember;
-        for entry in self.entries.iter_mut().filter(|entry| entry.is_lost && !is_within(entry, remember)) {
-            entry.heard = oldest;
-        }
-        if remember < ages.expire_after {
-            self.entries.retain(|entry| !entry.is_lost);
-        }
+        self.entries.retain(|entry| !entry.is_lost || is_within(entry, remember));
     }
 
     /// Stores the payload of robot `id`, if known; ignores an invalid one (`None`). O(log N).
@@ -333,13 +310,6 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             self.entries.retain(|entry| entry.is_lost || entry.id != id);
         }
         is_known
-    }
-
-    /// Removes a lost robot, whose place is free again; returns whether it was in the list. O(N).
-    pub fn forget_lost(&mut self, id: RobotId) -> bool {
-        let before = self.entries.len();
-        self.entries.retain(|entry| !entry.is_lost || entry.id != id);
-        self.entries.len() < before
     }
 
     /// Moves all robots, also lost ones; on a torus, to the image nearest to the own robot. O(N).
@@ -432,4 +402,4 @@ impl<'a, S: Scalar, const N: usize, P: Copy> IntoIterator for &'a NeighborTable<
 // Each robot stores 16 entries, and a simulated swarm has 100,000 robots.
 const _: () = assert!(size_of::<Neighbor<f32>>() == 60);
 #[cfg(not(feature = "host"))]
-const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 20);
+const _: () = assert!(size_of::<NeighborTable<f32, 16>>() == 16 * 60 + 16);

@@ -29,9 +29,6 @@ fn nearest_ids<const N: usize, const K: usize>(table: &NeighborTable<f32, N>, ow
     nearest.iter().map(|near| near.id.0).collect()
 }
 
-/// Own position and velocity.
-const STILL: (Position, Vec3<f32>) = (Position::ORIGIN, Vec3::ZERO);
-
 const INFLATION: StalenessInflation<f32> = StalenessInflation { growth_mps: 1.0, max_m: 1.0 };
 
 fn put<const N: usize>(table: &mut NeighborTable<f32, N>, n: Neighbor<f32>, now: Instant) -> Put {
@@ -44,7 +41,7 @@ fn ids<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
 
 fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> StdVec<u32> {
     let mut lost = StdVec::new();
-    table.expire(STILL, now, (Duration::MAX, Duration::ZERO), |id| lost.push(id.0));
+    table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::ZERO), |id| lost.push(id.0));
     lost
 }
 
@@ -209,7 +206,7 @@ fn expiry_reports_each_lost_robot_once_in_order() {
 }
 
 #[test]
-fn lost_robots_are_remembered_until_they_are_received_or_cleared() {
+fn lost_robots_are_remembered_until_they_are_received_or_too_old() {
     let mut table = full::<4>(at(0));
     let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
     // Robot 2 is not fresh, so it does not determine the radio range.
@@ -217,7 +214,7 @@ fn lost_robots_are_remembered_until_they_are_received_or_cleared() {
     let lost = |table: &NeighborTable<f32, 4>| table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>();
     let mut told = StdVec::new();
     for now in [5_000_001, 5_100_000] {
-        table.expire(STILL, at(now), (Duration::MAX, remember), |id| told.push(id.0));
+        table.expire(Position::ORIGIN, at(now), (Duration::MAX, remember), |id| told.push(id.0));
         assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
     }
     assert_eq!(told, [1, 3, 4], "each once");
@@ -228,22 +225,17 @@ fn lost_robots_are_remembered_until_they_are_received_or_cleared() {
     // The farthest is removed, even if lost; a reported loss is not reported again.
     assert_eq!(put(&mut table, standing(9, 1.5, now), now), Put::Inserted);
     assert_eq!((ids(&table), lost(&table)), ([2, 3, 9].into(), [1].into()));
-    table.expire(STILL, at(20_000_001), (Duration::MAX, remember), |_| {});
-    assert_eq!((table.len(), lost(&table)), (0, [1, 2, 3, 9].into()), "for good");
-    assert!(table.forget_lost(RobotId(1)) && !table.forget_lost(RobotId(1)));
-    assert_eq!(lost(&table), [2, 3, 9]);
+    table.expire(Position::ORIGIN, at(20_000_001), (Duration::MAX, remember), |_| {});
+    assert_eq!((table.len(), lost(&table)), (0, [2, 3, 9].into()));
 }
 
 #[test]
-fn a_robot_that_recedes_at_the_edge_of_radio_range_is_not_remembered() {
-    let leaving = |id, x, now| Neighbor { velocity_mps: Vec3::new(0.01, 0.0, 0.0), ..standing(id, x, now) };
+fn a_robot_lost_beyond_all_fresh_ones_is_not_remembered() {
     let mut table = full::<4>(at(0));
-    let _ = put(&mut table, leaving(4, 4.0, at(0)), at(0));
-    let _ = put(&mut table, leaving(2, 2.0, at(0)), at(0));
     let now = at(5_000_001);
     let _ = put(&mut table, standing(3, 3.0, now), now);
     let mut told = StdVec::new();
-    table.expire(STILL, now, (Duration::MAX, Duration::from_millis(20_000)), |id| told.push(id.0));
+    table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::from_millis(20_000)), |id| told.push(id.0));
     assert_eq!(told, [1, 2, 4]);
     assert_eq!(table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>(), [1, 2]);
 }
@@ -259,10 +251,9 @@ fn a_robot_that_drives_out_of_range_is_not_remembered() {
         let (now, x) = (at(step * 100_000), 0.03 * step as f32);
         let own = place(x, 0.0).unwrap();
         let _ = table.put(moving(3, x + 2.1, now), own, now, |_| false);
-        table.expire((own, Vec3::new(0.3, 0.0, 0.0)), now, (Duration::MAX, Duration::from_millis(20_000)), |_| {});
+        table.expire(own, now, (Duration::MAX, Duration::from_millis(20_000)), |_| {});
     }
-    // Robot 2 keeps its distance, so its radio is dead; robot 4 stands, and fell behind.
-    assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 2, 4]));
+    assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 4]));
 }
 
 #[test]
@@ -277,7 +268,7 @@ fn the_last_robot_out_of_range_is_remembered_unless_others_left_earlier() {
                     let _ = put(&mut table, Neighbor { velocity_mps, ..standing(id, x, now) }, now);
                 }
             }
-            table.expire(STILL, now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
+            table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
         }
         assert!(table.is_empty());
         table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>()

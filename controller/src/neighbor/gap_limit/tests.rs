@@ -47,20 +47,12 @@ impl<S: Scalar> Mover<S> {
     fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
         let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
         let (own, now) = (self.position(), moment(step));
-        table.expire((own, body.velocity_mps), now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
+        table.expire(own, now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
         for &neighbor in heard {
             let _ = table.put(neighbor, own, now, |_| false);
         }
         let inflation = StalenessInflation { growth_mps: S::ONE, max_m: body.radius_m };
-        let room = GapLimit {
-            body: &body,
-            own,
-            now,
-            news: STEP,
-            inflation,
-            may_be_alone: false,
-            settled_after: Duration::MAX,
-        };
+        let room = GapLimit { body: &body, own, now, news: STEP, inflation, may_be_alone: false };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
         body.velocity_mps = velocity_mps;
@@ -171,7 +163,6 @@ fn a_robot_turned_aside_is_not_turned_into_a_wall() {
         news: STEP,
         inflation,
         may_be_alone: false,
-        settled_after: Duration::MAX,
     };
     let east = Vec3::new(1.0, 0.0, 0.0);
     let open = room.limit(&mut table, &[], east).unwrap();
@@ -191,15 +182,7 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
         let (own, now) = (mover.position(), moment(step));
         let _ = mover.table.put(other.news(step - 1), own, now, |_| false);
         let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-        let room = GapLimit {
-            body: &mover.body,
-            own,
-            now,
-            news: STEP,
-            inflation,
-            may_be_alone: false,
-            settled_after: Duration::MAX,
-        };
+        let room = GapLimit { body: &mover.body, own, now, news: STEP, inflation, may_be_alone: false };
         let v = room.limit(&mut mover.table, &wall, Vec3::new(1.0, 0.0, 0.0)).unwrap();
         mover.at_m += v.cast() * 0.1;
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);

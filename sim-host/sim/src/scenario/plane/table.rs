@@ -380,7 +380,7 @@ pub struct OrcaTable {
     pub inflation_m: Option<f64>,
     /// In space: ratio of the vertical to the horizontal separation. Default: 1.
     pub downwash: Option<f64>,
-    /// Silence after which a lost robot certainly stands, seconds.
+    /// How long a lost robot is remembered, seconds.
     pub remember_s: Option<f64>,
     /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
     pub alone_mps: Option<f64>,
