@@ -13,7 +13,7 @@ named! {
     /// | [`Team`](Self::Team) | the robots arrive, or after [`patience`] decisions |
     /// | [`Stopped`](Self::Stopped) | a resume request arrives, or the request expires |
     /// | [`Route`](Self::Route) | the visible terrain changes |
-    /// | [`Radio`](Self::Radio) | another robot is in contact ([policy](super::ContactLossPolicy)) |
+    /// | [`Radio`](Self::Radio) | a robot is in contact: [policy](super::ContactLossPolicy) |
     /// | [`Turn`](Self::Turn) | its turn comes; a turn that is not taken passes on |
     /// | [`Robots`](Self::Robots) | the robots leave; robots lean to the right to pass each other |
     /// | [`GoalTaken`](Self::GoalTaken) | its place is free; until then it has arrived beside it |

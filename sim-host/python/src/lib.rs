@@ -1,6 +1,6 @@
 //! The module `staya._staya`; the package in `python/staya` provides its interface and checks all
-//! arguments (arrays are contiguous, finite and of the right shape). [`simulation`] runs scenarios;
-//! [`behaviors`] applies single behaviours to all robots at once.
+//! arguments (arrays are contiguous, finite and of the right shape). `simulation` runs scenarios;
+//! `behaviors` applies single behaviours to all robots at once.
 #![cfg(feature = "module")]
 
 pub mod behaviors;

@@ -31,17 +31,17 @@ fn scenario(text: &str) -> Scenario {
 fn lone(seed: u32) -> (String, f64, f64) {
     let mut draw = Draw::new(2, seed);
     let (speed, most, way) = (draw.within(0.3, 12.0), draw.within(0.3, 6.0), draw.within(1.0, 150.0));
-    let angle = draw.within(0.0, 6.28);
+    let angle = draw.within(0.0, std::f64::consts::TAU);
     let (step, radius) = (f64::from(draw.whole(2, 20)) / 100.0, draw.within(0.1, 1.0));
     let full = speed * speed / most;
-    let least_s = if way > full { way / speed + speed / most } else { 2.0 * (way / most).sqrt() };
+    let least_s = if way > full { way / speed + speed / most } else { 2.0 * libm::sqrt(way / most) };
     let text = format!(
         "name = \"lone\"\nseed = {seed}\nticks = {}\ntick_s = {step}\n[plane]\nradius_m = {radius}\n\
          max_speed_mps = {speed}\nmax_acceleration_mps2 = {most}\ntolerance_m = 0.02\n[plane.robots]\n\
          list = [{{ start_m = [0, 0], goal_m = [{}, {}] }}]\n",
         (3.0 * least_s / step) as u32 + 100,
-        way * angle.cos(),
-        way * angle.sin(),
+        way * libm::cos(angle),
+        way * libm::sin(angle),
     );
     (text, way, least_s)
 }
@@ -55,7 +55,7 @@ fn a_lone_robot_with_inertia_stops_at_its_goal_in_time() {
         let outcome = simulate(&scene, |_, robots| {
             for row in robots {
                 let [x, y, _] = row.motion.position_m;
-                farthest = farthest.max(x.hypot(y));
+                farthest = farthest.max(libm::hypot(x, y));
             }
             ControlFlow::Continue(())
         });
@@ -82,7 +82,7 @@ fn crossing(seed: u32) -> String {
     );
     for i in 0..count {
         let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU + draw.within(-0.2, 0.2);
-        let [x, y] = [ring_m * angle.cos(), ring_m * angle.sin()];
+        let [x, y] = [ring_m * libm::cos(angle), ring_m * libm::sin(angle)];
         let _ = writeln!(text, "{{ start_m = [{x}, {y}], goal_m = [{}, {}] }},", -x, -y);
     }
     text + "]\n"
