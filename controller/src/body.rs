@@ -30,8 +30,7 @@ impl<S: Scalar> Body<S> {
     pub fn reach(&self, wish_mps: Vec3<S>) -> Vec3<S> {
         let wish = wish_mps.clamp_norm(self.max_speed_mps);
         let most = self.max_acceleration_mps2 * self.step_s;
-        let has_inertia = self.max_acceleration_mps2 < S::MAX && most.is_finite();
-        if !has_inertia || !self.velocity_mps.is_finite() {
+        if !self.has_inertia() || !most.is_finite() || !self.velocity_mps.is_finite() {
             return wish;
         }
         let change = wish - self.velocity_mps;
@@ -40,9 +39,7 @@ impl<S: Scalar> Body<S> {
         }
         self.velocity_mps + change.clamp_norm(most)
     }
-}
 
-impl<S: Scalar> Body<S> {
     pub(crate) fn has_inertia(&self) -> bool {
         self.max_acceleration_mps2 < S::MAX
     }

@@ -133,15 +133,16 @@ impl<S: Scalar> GapLimit<'_, S> {
         }
         let step_s = self.body.step_s;
         let mut v = if is_hidden { Vec3::ZERO } else { velocity_mps };
+        let mut brake_s = self.brake_s(v);
         for _ in 0..ROUNDS {
             let mut is_turned = false;
             for limit in &limits {
                 let (closing, side) = limit.closing(v);
-                let brake_s = self.brake_s(v);
                 let left_m = limit.left_m - limit.growth_mps * brake_s;
                 let most = left_m.checked_div(step_s + brake_s * S::HALF).unwrap_or(S::ZERO) - side;
                 if closing > most && closing > S::ZERO {
                     v -= limit.ahead * (closing - most.max(S::ZERO));
+                    brake_s = self.brake_s(v);
                     is_turned = true;
                 }
             }
@@ -159,19 +160,22 @@ impl<S: Scalar> GapLimit<'_, S> {
             }
         }
         let allowed = |v: Vec3<S>| {
-            let shares = limits.iter().map(|limit| limit.share(v, step_s, self.brake_s(v)));
+            let brake_s = self.brake_s(v);
+            let shares = limits.iter().map(|limit| limit.share(v, step_s, brake_s));
             shares.fold(S::ONE, Scalar::min)
         };
         let mut v = v * allowed(v);
+        let mut reached = v;
         if self.body.has_inertia() {
+            reached = self.body.reach(v);
             // From the present velocity the body may reach none that is allowed.
-            let reached = self.body.reach(v);
             if allowed(reached) < S::ONE {
                 v = Vec3::ZERO;
+                reached = self.body.reach(v);
             }
         }
         for (other, limit) in table.entries.iter_mut().zip(&limits) {
-            other.gap_m = other.gap_m * S::HALF - limit.taken(v, step_s);
+            other.gap_m = other.gap_m * S::HALF - limit.taken(reached, step_s);
         }
         (!is_hidden).then_some(v)
     }

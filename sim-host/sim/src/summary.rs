@@ -130,12 +130,12 @@ impl Waited {
     const fn words(&self) -> &'static str {
         match self.reason {
             Wait::Team => "for their formation",
-            Wait::Stopped => "since they were asked to",
-            Wait::Route => "for a way",
-            Wait::Radio => "for news by radio",
+            Wait::Stopped => "because of a request",
+            Wait::Route => "for an open route",
+            Wait::Radio => "for contact by radio",
             Wait::Turn => "for their turn at a door",
-            Wait::Robots => "for others in the way",
-            Wait::GoalTaken => "beside a place that is taken",
+            Wait::Robots => "for robots in the way",
+            Wait::GoalTaken => "beside a goal that is taken",
         }
     }
 }
@@ -366,7 +366,7 @@ impl Summary {
             (self.place_error_mean_m, self.place_error_worst_m, self.place_error_worst_robot, self.place_error_worst_s)
         {
             let worst = format!("at most {worst:.3} m (robot {robot} after {at_s:.1} s)");
-            line("off their places", format!("after 10 s, {worst}, {mean:.3} m on average"))?;
+            line("place error", format!("after 10 s, {worst}, {mean:.3} m on average"))?;
         }
         for (index, group) in self.groups.iter().enumerate() {
             line(if index == 0 { "groups" } else { "" }, group.to_string())?;
@@ -405,7 +405,7 @@ impl Summary {
         let lies = &packets.implausible;
         if lies.sum() > 0 {
             line(
-                "beyond belief",
+                "implausible",
                 format!("{} numbers, {} radii, {} speeds, {} jumps", lies.numbers, lies.radii, lies.speeds, lies.jumps),
             )?;
         }

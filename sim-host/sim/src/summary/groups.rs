@@ -79,7 +79,7 @@ impl Display for GroupFigures {
         }
         match (self.place_error_mean_m, self.place_error_worst_m, self.formation_error_per_agent) {
             (Some(mean), Some(worst), _) => {
-                write!(f, "; off their places {mean:.3} m on average, {worst:.3} m at most")
+                write!(f, "; place error {mean:.3} m on average, {worst:.3} m at most")
             }
             (_, _, Some(error)) => write!(f, "; formation error {error:.3} cells per robot"),
             _ => Ok(()),
