@@ -88,6 +88,20 @@ def test_a_robot_that_is_down_stops_and_restarts(scenario):
     assert sim.is_up.all() and (sim.positions[2] != there).any()
 
 
+def test_a_law_reports_arrival_and_the_run_ends(scenario):
+    def to_goal(sim):
+        way = (sim.goals - sim.positions)[:, :2]
+        distance = np.linalg.norm(way, axis=1)
+        velocities = way / np.maximum(distance, 1e-9)[:, None] * np.minimum(0.5, 2 * distance)[:, None]
+        return velocities, distance < 0.02
+
+    sim = staya.Simulation(scenario("swap-circle"), ticks=4000)
+    summary = sim.run(guidance=to_goal).summary
+    assert summary["arrived"] == summary["robots"] and sim.tick < 4000
+    with pytest.raises(ValueError, match='robot: None is not a robot id; give an id of `ids`, or "all"'):
+        sim.set_goal(None, [0, 0])
+
+
 def test_orders_change_goals_parameters_and_the_radio(scenario):
     sim = staya.Simulation(scenario("swap-circle"), ticks=2000)
     sim.set_goal(1, [0.0, 3.0])

@@ -2,31 +2,34 @@
 
 mod demo;
 mod machine;
+mod options;
 mod shown;
 mod sight;
 mod telemetry;
 mod vehicle;
 
+pub use options::{Options, RunError};
 pub use sight::{Seen, Sight};
 
 use super::config::{Config, VehicleSetup};
 use super::controller::Controller;
-use super::medium::{Medium, MediumError, MediumSetup, tunnel, tunnelled};
+use super::medium::{Medium, MediumSetup, tunnel, tunnelled};
 use super::offboard::{AUTOPILOT, COMPONENT, Event, OffboardStateMachine, Rules, State, status_text};
 use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
-use super::seal::{Seal, SealError};
+use super::seal::Seal;
 use crate::geo::{Origin, ned};
-use crate::{Lines, OpenError, Received, Tlog, TlogError};
+use crate::{Lines, Received, TlogError};
 use demo::Demo;
 use machine::{Host, Machine};
+use options::DEMO_S;
 use staya_controller::robot::Mode;
 use staya_mavlink::any::AnyWire;
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::signing::Signing;
 use staya_sim::engine::PlaneGround;
-use staya_sim::key::{self, KeyError, KeyFile};
+use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
 use std::io::{self, Write as _};
 use std::sync::Arc;
@@ -42,60 +45,6 @@ const FEW_TIMESTAMPS: u64 = 1000;
 const LOOK: Duration = Duration::from_secs(1);
 /// Smallest age limit of positions in a dry run.
 const SELDOM: Duration = Duration::from_secs(3);
-
-/// Longest demo, seconds.
-const DEMO_S: f64 = 600.0;
-
-/// Options of the command line.
-#[derive(Debug, Default)]
-pub struct Options {
-    /// Show the messages that would be sent, and send nothing.
-    pub dry_run: bool,
-    /// Do not show changes of state.
-    pub quiet: bool,
-    /// Duration in seconds; `None` runs until stopped.
-    pub seconds: Option<f64>,
-    /// Simulated autopilots in place of the configured links; the run ends when all vehicles have
-    /// arrived, or after ten minutes.
-    pub demo: bool,
-    /// Runs the demo in real time.
-    pub is_real_time: bool,
-    /// Ends with an error if no autopilot is heard within this time; `None` waits forever.
-    pub wait: Option<Duration>,
-    /// Log of all sent and accepted messages.
-    pub tlog: Option<Tlog>,
-}
-
-/// Why companions cannot start or continue.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// A link cannot be opened.
-    #[error(transparent)]
-    Line(#[from] OpenError),
-    /// The LAN is unavailable.
-    #[error(transparent)]
-    Medium(#[from] MediumError),
-    /// The key of packets is unusable.
-    #[error(transparent)]
-    Seal(#[from] SealError),
-    /// The key of links is unusable.
-    #[error(transparent)]
-    Key(#[from] KeyError),
-    /// No autopilot was heard.
-    #[error(
-        "no autopilot heard within {seconds} s on {links}; start the vehicles or correct `link`, wait longer with --wait N \
-         (0: forever), or try --demo, which simulates the vehicles"
-    )]
-    NoAutopilot {
-        /// The time, seconds.
-        seconds: f64,
-        /// The links, with the reason where one has no connection.
-        links: String,
-    },
-    /// Standard output cannot be written during a dry run.
-    #[error("cannot write to standard output: {0}")]
-    Output(io::Error),
-}
 
 struct Link {
     name: String,
