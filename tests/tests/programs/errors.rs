@@ -1,6 +1,8 @@
-//! Compares the output of mistakes with the transcripts `tests/errors/*.txt`. A transcript begins
-//! with files for all of its cases; a case has a title, files of its own, a command, its standard error
-//! and its exit code. `cargo xtask bless` writes the outputs; read them before you commit.
+//! Compares the output of mistakes with the transcripts `tests/errors/*.txt`.
+//!
+//! A transcript begins with files for all of its cases. A case has a title, files of its own, a
+//! command, its standard error and its exit code. `cargo xtask bless` writes the outputs; read them
+//! before you commit.
 
 use std::fmt::Write as _;
 use std::fs;

@@ -1,5 +1,5 @@
-//! Random scenes of basic situations. Seeds from 0 were looked at while the rules were written, seeds
-//! from [`UNSEEN`] were run only afterwards.
+//! Random scenes of basic situations. Seeds from 0 were looked at while the rules were written.
+//! Seeds from [`UNSEEN`] were run only afterwards.
 
 use super::*;
 use staya_controller::rand::Rng;
