@@ -4197,6 +4197,105 @@ impl MessageData for STAYA_LAND_DATA {
         }
     }
 }
+///A robot that fell silent, for robots that never heard it; sent in turn behind beacons. A ground station clears a place with is_lost 0 and age 0.
+///
+///ID: 9500009
+#[derive(Debug, Clone, PartialEq)]
+pub struct STAYA_LOST_DATA {
+    ///Position of its last beacon, east.
+    pub x_mm: i32,
+    ///The same, north.
+    pub y_mm: i32,
+    ///The same, up.
+    pub z_mm: i32,
+    ///Radius of the ball around its body.
+    pub radius_mm: u16,
+    ///Time since that beacon.
+    pub age_cs: u16,
+    ///Counts the sender's Staya messages; wraps.
+    pub sequence: u16,
+    ///Changes with each start of the sender.
+    pub boot: u8,
+    ///System of the silent robot.
+    pub robot: u8,
+    ///1: it is silent near that position; 0: it was heard since, or is no longer there.
+    pub is_lost: u8,
+}
+impl STAYA_LOST_DATA {
+    pub const ENCODED_LEN: usize = 21usize;
+    pub const DEFAULT: Self = Self {
+        x_mm: 0_i32,
+        y_mm: 0_i32,
+        z_mm: 0_i32,
+        radius_mm: 0_u16,
+        age_cs: 0_u16,
+        sequence: 0_u16,
+        boot: 0_u8,
+        robot: 0_u8,
+        is_lost: 0_u8,
+    };
+}
+impl Default for STAYA_LOST_DATA {
+    fn default() -> Self {
+        Self::DEFAULT.clone()
+    }
+}
+impl MessageData for STAYA_LOST_DATA {
+    type Message = MavMessage;
+    const ID: u32 = 9500009u32;
+    const NAME: &'static str = "STAYA_LOST";
+    const EXTRA_CRC: u8 = 86u8;
+    const ENCODED_LEN: usize = 21usize;
+    fn deser(
+        _version: MavlinkVersion,
+        __input: &[u8],
+    ) -> Result<Self, ::mavlink_core::error::ParserError> {
+        let avail_len = __input.len();
+        let mut payload_buf;
+        let mut buf = if avail_len < Self::ENCODED_LEN {
+            payload_buf = [0; Self::ENCODED_LEN];
+            payload_buf[0..avail_len].copy_from_slice(__input);
+            Bytes::new(&payload_buf)
+        } else {
+            Bytes::new(__input)
+        };
+        let mut __struct = Self::default();
+        __struct.x_mm = buf.get_i32_le()?;
+        __struct.y_mm = buf.get_i32_le()?;
+        __struct.z_mm = buf.get_i32_le()?;
+        __struct.radius_mm = buf.get_u16_le()?;
+        __struct.age_cs = buf.get_u16_le()?;
+        __struct.sequence = buf.get_u16_le()?;
+        __struct.boot = buf.get_u8()?;
+        __struct.robot = buf.get_u8()?;
+        __struct.is_lost = buf.get_u8()?;
+        Ok(__struct)
+    }
+    fn ser(&self, version: MavlinkVersion, bytes: &mut [u8]) -> usize {
+        let mut __tmp = BytesMut::new(bytes);
+        if __tmp.remaining() < Self::ENCODED_LEN {
+            panic!(
+                "buffer is too small (need {} bytes, but got {})", Self::ENCODED_LEN,
+                __tmp.remaining(),
+            )
+        }
+        __tmp.put_i32_le(self.x_mm);
+        __tmp.put_i32_le(self.y_mm);
+        __tmp.put_i32_le(self.z_mm);
+        __tmp.put_u16_le(self.radius_mm);
+        __tmp.put_u16_le(self.age_cs);
+        __tmp.put_u16_le(self.sequence);
+        __tmp.put_u8(self.boot);
+        __tmp.put_u8(self.robot);
+        __tmp.put_u8(self.is_lost);
+        if matches!(version, MavlinkVersion::V2) {
+            let len = __tmp.len();
+            ::mavlink_core::utils::remove_trailing_zeroes(&bytes[..len])
+        } else {
+            __tmp.len()
+        }
+    }
+}
 ///Data of a robot's guidance law for robots with the same law, sent after each beacon.
 ///
 ///ID: 9500008
@@ -5209,6 +5308,10 @@ pub enum MavMessage {
     ///
     ///ID: 9500007
     STAYA_LAND(STAYA_LAND_DATA),
+    ///A robot that fell silent, for robots that never heard it; sent in turn behind beacons. A ground station clears a place with is_lost 0 and age 0.
+    ///
+    ///ID: 9500009
+    STAYA_LOST(STAYA_LOST_DATA),
     ///Data of a robot's guidance law for robots with the same law, sent after each beacon.
     ///
     ///ID: 9500008
@@ -5255,6 +5358,7 @@ impl MavMessage {
             85u32, 86u32, 87u32, 110u32, 111u32, 124u32, 147u32, 148u32, 193u32, 230u32,
             242u32, 244u32, 245u32, 253u32, 256u32, 385u32, 9500000u32, 9500002u32,
             9500003u32, 9500004u32, 9500005u32, 9500006u32, 9500007u32, 9500008u32,
+            9500009u32,
         ]
     }
     pub const fn all_messages() -> &'static [(&'static str, u32)] {
@@ -5322,6 +5426,7 @@ impl MavMessage {
             (STAYA_PLACE_DATA::NAME, STAYA_PLACE_DATA::ID),
             (STAYA_LAND_DATA::NAME, STAYA_LAND_DATA::ID),
             (STAYA_PAYLOAD_DATA::NAME, STAYA_PAYLOAD_DATA::ID),
+            (STAYA_LOST_DATA::NAME, STAYA_LOST_DATA::ID),
         ]
     }
 }
@@ -5497,6 +5602,9 @@ impl Message for MavMessage {
             STAYA_LAND_DATA::ID => {
                 STAYA_LAND_DATA::deser(version, payload).map(Self::STAYA_LAND)
             }
+            STAYA_LOST_DATA::ID => {
+                STAYA_LOST_DATA::deser(version, payload).map(Self::STAYA_LOST)
+            }
             STAYA_PAYLOAD_DATA::ID => {
                 STAYA_PAYLOAD_DATA::deser(version, payload).map(Self::STAYA_PAYLOAD)
             }
@@ -5581,6 +5689,7 @@ impl Message for MavMessage {
             Self::STAYA_BEACON(..) => STAYA_BEACON_DATA::NAME,
             Self::STAYA_GOAL(..) => STAYA_GOAL_DATA::NAME,
             Self::STAYA_LAND(..) => STAYA_LAND_DATA::NAME,
+            Self::STAYA_LOST(..) => STAYA_LOST_DATA::NAME,
             Self::STAYA_PAYLOAD(..) => STAYA_PAYLOAD_DATA::NAME,
             Self::STAYA_PLACE(..) => STAYA_PLACE_DATA::NAME,
             Self::STAYA_REQUEST(..) => STAYA_REQUEST_DATA::NAME,
@@ -5646,6 +5755,7 @@ impl Message for MavMessage {
             Self::STAYA_BEACON(..) => STAYA_BEACON_DATA::ID,
             Self::STAYA_GOAL(..) => STAYA_GOAL_DATA::ID,
             Self::STAYA_LAND(..) => STAYA_LAND_DATA::ID,
+            Self::STAYA_LOST(..) => STAYA_LOST_DATA::ID,
             Self::STAYA_PAYLOAD(..) => STAYA_PAYLOAD_DATA::ID,
             Self::STAYA_PLACE(..) => STAYA_PLACE_DATA::ID,
             Self::STAYA_REQUEST(..) => STAYA_REQUEST_DATA::ID,
@@ -5715,6 +5825,7 @@ impl Message for MavMessage {
             STAYA_BEACON_DATA::NAME => Some(STAYA_BEACON_DATA::ID),
             STAYA_GOAL_DATA::NAME => Some(STAYA_GOAL_DATA::ID),
             STAYA_LAND_DATA::NAME => Some(STAYA_LAND_DATA::ID),
+            STAYA_LOST_DATA::NAME => Some(STAYA_LOST_DATA::ID),
             STAYA_PAYLOAD_DATA::NAME => Some(STAYA_PAYLOAD_DATA::ID),
             STAYA_PLACE_DATA::NAME => Some(STAYA_PLACE_DATA::ID),
             STAYA_REQUEST_DATA::NAME => Some(STAYA_REQUEST_DATA::ID),
@@ -5861,6 +5972,7 @@ impl Message for MavMessage {
             }
             STAYA_GOAL_DATA::ID => Some(Self::STAYA_GOAL(STAYA_GOAL_DATA::default())),
             STAYA_LAND_DATA::ID => Some(Self::STAYA_LAND(STAYA_LAND_DATA::default())),
+            STAYA_LOST_DATA::ID => Some(Self::STAYA_LOST(STAYA_LOST_DATA::default())),
             STAYA_PAYLOAD_DATA::ID => {
                 Some(Self::STAYA_PAYLOAD(STAYA_PAYLOAD_DATA::default()))
             }
@@ -5929,6 +6041,7 @@ impl Message for MavMessage {
             Self::STAYA_BEACON(body) => body.ser(version, bytes),
             Self::STAYA_GOAL(body) => body.ser(version, bytes),
             Self::STAYA_LAND(body) => body.ser(version, bytes),
+            Self::STAYA_LOST(body) => body.ser(version, bytes),
             Self::STAYA_PAYLOAD(body) => body.ser(version, bytes),
             Self::STAYA_PLACE(body) => body.ser(version, bytes),
             Self::STAYA_REQUEST(body) => body.ser(version, bytes),
@@ -5998,6 +6111,7 @@ impl Message for MavMessage {
             STAYA_BEACON_DATA::ID => STAYA_BEACON_DATA::EXTRA_CRC,
             STAYA_GOAL_DATA::ID => STAYA_GOAL_DATA::EXTRA_CRC,
             STAYA_LAND_DATA::ID => STAYA_LAND_DATA::EXTRA_CRC,
+            STAYA_LOST_DATA::ID => STAYA_LOST_DATA::EXTRA_CRC,
             STAYA_PAYLOAD_DATA::ID => STAYA_PAYLOAD_DATA::EXTRA_CRC,
             STAYA_PLACE_DATA::ID => STAYA_PLACE_DATA::EXTRA_CRC,
             STAYA_REQUEST_DATA::ID => STAYA_REQUEST_DATA::EXTRA_CRC,

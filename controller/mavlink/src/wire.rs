@@ -10,8 +10,8 @@
 //! bytes between frames as one piece, which [`Wire::decode`] rejects, so that it is counted.
 
 use crate::dialect::{
-    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_PAYLOAD_DATA, STAYA_PLACE_DATA,
-    STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
+    STAYA_ACK_DATA, STAYA_BEACON_DATA, STAYA_GOAL_DATA, STAYA_LAND_DATA, STAYA_LOST_DATA, STAYA_PAYLOAD_DATA,
+    STAYA_PLACE_DATA, STAYA_REQUEST_DATA, STAYA_TEMPLATE_DATA,
 };
 use crate::frame::{self, Full, RawFrame, Scan, Sender, scan};
 use heapless::Vec;
@@ -23,8 +23,8 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, MAX_PAYLOAD, Message, PayloadBytes, Request,
-    RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
+    Ack, Beacon, DecodeError, EncodeError, Frame, GoalAssignment, Header, LostRobot, MAX_PAYLOAD, Message,
+    PayloadBytes, Request, RequestKind, TEMPLATE_PART, TemplateAssignment, WaypointAssignment, Wire,
 };
 
 /// The component of robots: an onboard computer (`MAV_COMP_ID_ONBOARD_COMPUTER`).
@@ -192,6 +192,21 @@ pub fn encode<const N: usize>(header: Header, message: &Message, out: &mut Vec<u
             }
             frame::encode(sender, &data, out)
         }
+        Message::Lost(lost) => {
+            let [x_mm, y_mm, z_mm] = lost.position_mm;
+            let data = STAYA_LOST_DATA {
+                x_mm,
+                y_mm,
+                z_mm,
+                radius_mm: lost.radius_mm,
+                age_cs: lost.age_cs,
+                sequence,
+                boot,
+                robot: system(lost.id)?,
+                is_lost: lost.is_lost.into(),
+            };
+            frame::encode(sender, &data, out)
+        }
         // MAVLink's signatures have one key: see `Sealed` for robots with their own keys.
         Message::Key(_) | Message::KeyHeld(_) => return Err(EncodeError::Full),
     };
@@ -244,6 +259,21 @@ pub fn decode(bytes: &[u8]) -> Result<Frame, DecodeError> {
             let bytes = data.bytes.get(..usize::from(data.count));
             let payload = bytes.and_then(PayloadBytes::new).ok_or(DecodeError::Body)?;
             (data.boot, data.sequence, Message::Payload(payload))
+        }
+        STAYA_LOST_DATA::ID => {
+            let data: STAYA_LOST_DATA = body(&raw)?;
+            let lost = LostRobot {
+                id: robot(data.robot),
+                is_lost: match data.is_lost {
+                    0 => false,
+                    1 => true,
+                    _ => return Err(DecodeError::Body),
+                },
+                age_cs: data.age_cs,
+                position_mm: [data.x_mm, data.y_mm, data.z_mm],
+                radius_mm: data.radius_mm,
+            };
+            (data.boot, data.sequence, Message::Lost(lost))
         }
         _ => return Err(DecodeError::Foreign),
     };

@@ -97,7 +97,11 @@ fn any_message() -> impl Strategy<Value = Message> {
         (cell(), any::<[u8; 32]>()).prop_map(|(corner, bytes)| Message::Land(LandPatch::from_bytes(corner, bytes)));
     let payload = vec(any::<u8>(), 0..=MAX_PAYLOAD);
     let payload = payload.prop_map(|bytes| Message::Payload(PayloadBytes::new(&bytes).unwrap_or_default()));
-    prop_oneof![beacon, request, ack, template, goal, place, land, payload]
+    let lost = (any::<u8>(), any::<bool>(), any::<u16>(), any::<[i32; 3]>(), any::<u16>());
+    let lost = lost.prop_map(|(id, is_lost, age_cs, position_mm, radius_mm)| {
+        Message::Lost(LostRobot { id: robot(id), is_lost, age_cs, position_mm, radius_mm })
+    });
+    prop_oneof![beacon, request, ack, template, goal, place, land, payload, lost]
 }
 
 proptest! {
