@@ -40,6 +40,14 @@ impl<S: Scalar> Body<S> {
         self.velocity_mps + change.clamp_norm(most)
     }
 
+    /// Returns twice the time that it takes to brake from the highest speed, at most a minute: it
+    /// must see a conflict one braking time before the other robot has to brake, too, seconds.
+    #[must_use]
+    pub fn least_horizon_s(&self) -> S {
+        let brake_s = self.max_speed_mps.checked_div(self.max_acceleration_mps2).unwrap_or(S::ZERO);
+        if self.has_inertia() { (brake_s * S::TWO).min(S::from_i32(60)) } else { S::ZERO }
+    }
+
     pub(crate) fn has_inertia(&self) -> bool {
         self.max_acceleration_mps2 < S::MAX
     }
@@ -64,6 +72,16 @@ impl<S: Scalar> Body<S> {
         };
         // Solves (steps + 1) v step - steps (steps + 1) half step = distance.
         direct.checked_div(steps + S::ONE).map_or(braking, |mean| mean + steps * half)
+    }
+
+    /// Returns the way that it takes to brake from `speed_mps`, metres; 0 without inertia.
+    #[must_use]
+    pub fn braking_m(&self, speed_mps: S) -> S {
+        let speed = speed_mps.max(S::ZERO);
+        if speed == S::ZERO || !self.has_inertia() {
+            return S::ZERO;
+        }
+        (speed * speed * S::HALF).checked_div(self.max_acceleration_mps2).unwrap_or(S::ZERO)
     }
 
     /// Returns the way that the body still covers if it brakes from now on, metres; zero without

@@ -160,6 +160,15 @@ impl Dir {
         matches!(self, Self::NorthEast | Self::NorthWest | Self::SouthWest | Self::SouthEast)
     }
 
+    /// Whether this diagonal move out of `from` passes the same point as the diagonal move `other`
+    /// that ends in `end`, in another direction. Two robots that do so at once collide.
+    #[must_use]
+    pub fn crosses(self, from: Cell, other: Self, end: Cell) -> bool {
+        let (to, start) = (from + self.offset(), end - other.offset());
+        let sides = [Cell::new(from.x, to.y), Cell::new(to.x, from.y)];
+        self.is_diagonal() && (sides == [start, end] || sides == [end, start])
+    }
+
     /// Length of the move in [`UNIT`]s. `Stay` counts as one cell, the cost of waiting.
     #[must_use]
     pub const fn length(self, norm: Norm) -> u32 {
@@ -294,6 +303,7 @@ impl<S: Scalar> GridFrame<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::vec::Vec;
 
     #[test]
     fn diagonal_is_sqrt_two_within_1e_4() {
@@ -311,6 +321,25 @@ mod tests {
         }
         assert_eq!(Dir::between(Cell::new(0, 0), Cell::new(2, 0)), None);
         assert_eq!(Dir::from_index(200), Dir::Stay);
+    }
+
+    #[test]
+    fn only_the_two_diagonals_of_four_cells_cross() {
+        let from = Cell::new(4, -1);
+        let ends = || (1..8).flat_map(|x| (-4..3).map(move |y| Cell::new(x, y)));
+        for dir in Dir::MOVES {
+            let all = ends().flat_map(|end| Dir::MOVES.map(|other| (other, end)));
+            let crossing: Vec<_> = all.filter(|&(other, end)| dir.crosses(from, other, end)).collect();
+            assert_eq!(crossing.len(), if dir.is_diagonal() { 2 } else { 0 }, "{dir:?}");
+            for (other, end) in crossing {
+                let start = end - other.offset();
+                assert_eq!(from + from + dir.offset(), start + end, "the middles are one point");
+                assert!(other.is_diagonal() && start != from && end != from);
+                assert!(other.crosses(start, dir, from + dir.offset()), "crossing is mutual");
+            }
+        }
+        let edge = Cell::new(i16::MAX, i16::MAX);
+        assert!(!Dir::NorthEast.crosses(edge, Dir::NorthWest, edge));
     }
 
     #[test]

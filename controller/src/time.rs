@@ -109,6 +109,7 @@ mod tests {
         assert_eq!(after.as_micros(), 9);
         assert!(before.is_before(after));
         assert!(!after.is_before(before));
+        assert!(!before.is_before(before));
         assert_eq!(after.since(before), Duration::from_micros(20));
         assert_eq!(after - Duration::from_micros(20), before);
     }

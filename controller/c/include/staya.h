@@ -89,7 +89,7 @@
 /**
  * Size of a StayaSetup in bytes, on every machine.
  */
-#define STAYA_SETUP_SIZE 400
+#define STAYA_SETUP_SIZE 416
 
 /**
  * Maximum number of entries in a formation's template.
@@ -1181,9 +1181,14 @@ typedef struct StayaSetup {
      */
     int32_t lost_after_us;
     /**
-     * How long a lost robot is remembered, microseconds; at most half an hour.
+     * Silence after which a lost robot counts as standing even if most robots are lost,
+     * microseconds; at most ten minutes.
      */
-    int32_t remember_us;
+    int32_t stands_after_us;
+    /**
+     * How long the robot stands and listens after its start, microseconds.
+     */
+    int32_t listen_us;
     /**
      * How long a stop lasts unless it is renewed, microseconds.
      */
@@ -1217,6 +1222,10 @@ typedef struct StayaSetup {
      */
     uint8_t wire;
     /**
+     * Above 0: a robot that has not heard another one stands.
+     */
+    uint8_t expects_others;
+    /**
      * Radius of the ball around the body, metres.
      */
     float radius_m;
@@ -1233,10 +1242,18 @@ typedef struct StayaSetup {
      */
     float max_acceleration_mps2;
     /**
+     * Time constant with which the body follows a velocity command, seconds; 0: at once.
+     */
+    float lag_s;
+    /**
      * Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0:
      * only for robots that may be alone.
      */
     float alone_mps;
+    /**
+     * Distance within which the radio works when nothing disturbs it, metres; 0: unknown.
+     */
+    float reach_m;
     /**
      * Largest radius accepted in a beacon, metres; FLT_MAX: any.
      */

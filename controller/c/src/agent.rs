@@ -174,7 +174,7 @@ impl From<&Neighbor<Number>> for StayaNeighbor {
             slot: neighbor.slot,
             mode: StayaMode::from(neighbor.mode) as u8,
             heading: neighbor.heading.index() as u8,
-            is_lost: neighbor.is_lost.into(),
+            is_lost: neighbor.is_lost().into(),
         }
     }
 }

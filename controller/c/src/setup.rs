@@ -38,7 +38,7 @@ use staya_controller::wire::{Postcard, Retry};
 pub const STAYA_KEY: usize = 32;
 
 /// Size of a StayaSetup in bytes, on every machine.
-pub const STAYA_SETUP_SIZE: usize = 400;
+pub const STAYA_SETUP_SIZE: usize = 416;
 
 const _: () = assert!(size_of::<StayaSetup>() == STAYA_SETUP_SIZE);
 #[cfg(feature = "auth")]
@@ -66,8 +66,11 @@ pub struct StayaSetup {
     pub stale_after_us: i32,
     /// A robot that is silent for longer is lost, microseconds; at most half an hour.
     pub lost_after_us: i32,
-    /// How long a lost robot is remembered, microseconds; at most half an hour.
-    pub remember_us: i32,
+    /// Silence after which a lost robot counts as standing even if most robots are lost,
+    /// microseconds; at most ten minutes.
+    pub stands_after_us: i32,
+    /// How long the robot stands and listens after its start, microseconds.
+    pub listen_us: i32,
     /// How long a stop lasts unless it is renewed, microseconds.
     pub stop_valid_us: i32,
     /// Time between two attempts of a request, microseconds.
@@ -84,6 +87,8 @@ pub struct StayaSetup {
     pub safety: u8,
     /// StayaWire.
     pub wire: u8,
+    /// Above 0: a robot that has not heard another one stands.
+    pub expects_others: u8,
     /// Radius of the ball around the body, metres.
     pub radius_m: f32,
     /// Cruising speed, m/s; limited by that of the body.
@@ -92,9 +97,13 @@ pub struct StayaSetup {
     pub tolerance_m: f32,
     /// How fast the body can change its velocity, m/s^2; FLT_MAX: at once.
     pub max_acceleration_mps2: f32,
+    /// Time constant with which the body follows a velocity command, seconds; 0: at once.
+    pub lag_s: f32,
     /// Speed if all other robots are lost, m/s. 0: it stops until it receives a beacon; above 0:
     /// only for robots that may be alone.
     pub alone_mps: f32,
+    /// Distance within which the radio works when nothing disturbs it, metres; 0: unknown.
+    pub reach_m: f32,
     /// Largest radius accepted in a beacon, metres; FLT_MAX: any.
     pub plausibility_max_radius_m: f32,
     /// Highest speed accepted in a beacon, m/s; FLT_MAX: any, and positions are not checked.
@@ -143,7 +152,8 @@ impl StayaSetup {
         self.beacon_period_us = config.beacon_period.as_micros();
         self.stale_after_us = config.ages.stale_after.as_micros();
         self.lost_after_us = config.ages.expire_after.as_micros();
-        self.remember_us = config.contact_loss.remember.as_micros();
+        self.stands_after_us = config.contact_loss.stands_after.as_micros();
+        self.listen_us = config.contact_loss.listen.as_micros();
         self.stop_valid_us = config.stop_valid.as_micros();
         self.retry_interval_us = config.retry.interval.as_micros();
         self.retry_attempts = config.retry.attempts;
@@ -190,11 +200,18 @@ impl StayaSetup {
             beacon_period: us(self.beacon_period_us),
             radius_m: self.radius_m,
             max_acceleration_mps2: self.max_acceleration_mps2,
+            lag_s: self.lag_s,
             latency: us(self.latency_us.max(0)),
             ages: Ages { stale_after: us(self.stale_after_us), expire_after: us(self.lost_after_us) },
             retry: Retry { attempts: self.retry_attempts, interval: us(self.retry_interval_us) },
             stop_valid: us(self.stop_valid_us),
-            contact_loss: ContactLossPolicy { remember: us(self.remember_us), alone_mps: self.alone_mps },
+            contact_loss: ContactLossPolicy {
+                stands_after: us(self.stands_after_us),
+                alone_mps: self.alone_mps,
+                listen: us(self.listen_us.max(0)),
+                expects_others: self.expects_others > 0,
+                reach_m: self.reach_m,
+            },
             plausibility: PlausibilityLimits {
                 max_radius_m: self.plausibility_max_radius_m,
                 max_speed_mps: self.plausibility_max_speed_mps,

@@ -28,6 +28,9 @@ pub struct AgentConfig<S> {
     pub radius_m: S,
     /// Largest acceleration in the plane, m/s^2; [`Scalar::MAX`] for no limit.
     pub max_acceleration_mps2: S,
+    /// Time constant with which the body follows a velocity command (first order), seconds; 0 for a
+    /// body that follows at once. A body has the same one in all directions.
+    pub lag_s: S,
     /// Age of a beacon when it arrives; at least 0. Neighbours are extrapolated over this time.
     pub latency: Duration,
     /// Ages at which the state of a neighbour counts as stale and as expired.
@@ -58,6 +61,7 @@ impl<S: Scalar> AgentConfig<S> {
             beacon_period: self.beacon_period,
             radius_m: cast(self.radius_m),
             max_acceleration_mps2: cast(self.max_acceleration_mps2),
+            lag_s: cast(self.lag_s),
             latency: self.latency,
             ages: self.ages,
             retry: self.retry,
@@ -71,8 +75,9 @@ impl<S: Scalar> AgentConfig<S> {
     /// Creates a configuration from the values that every robot needs (on the grid any `radius_m`).
     ///
     /// Defaults: seed 0, boot 0, flock 0, a beacon per tick, states stale after 4 ticks and expired
-    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no latency
-    /// (set [`latency`](Self::latency) for a real radio in the plane), and no plausibility limits.
+    /// after 30, requests resent every 3 ticks, stops valid for 12 ticks, no inertia, no lag, no
+    /// latency (set [`latency`](Self::latency) for a real radio in the plane), and no plausibility
+    /// limits.
     #[must_use]
     pub const fn new(id: RobotId, radius_m: S, tick: Duration) -> Self {
         Self {
@@ -83,6 +88,7 @@ impl<S: Scalar> AgentConfig<S> {
             beacon_period: tick,
             radius_m,
             max_acceleration_mps2: S::MAX,
+            lag_s: S::ZERO,
             latency: Duration::ZERO,
             ages: Ages { stale_after: tick.saturating_mul(4), expire_after: tick.saturating_mul(30) },
             retry: Retry { attempts: 5, interval: tick.saturating_mul(3) },

@@ -15,39 +15,62 @@ use serde::{Deserialize, Serialize};
 /// | one neighbour [lost] | avoids its ball, which grows by at most [`max_m`] |
 /// | fewer than half fresh | avoids the balls of all silent robots, then stands |
 /// | all lost | reports [`ContactLost`]; avoids their balls, then stands |
-/// | all lost for longer than [`remember`](Self::remember) | stands until a robot is in contact |
+/// | all lost for longer than [`stands_after`] | stands until one is in contact |
 /// | all lost, all left radio range | reports [`ContactLost`], moves freely |
 /// | all lost, it may be alone | moves at [`alone_mps`](Self::alone_mps) around the lost robots |
-/// | never any since power-on | moves freely: it is the first or only robot of its swarm |
+/// | just started | stands and [listens](Self::listen) |
+/// | never any since power-on | moves freely, or stands if it [expects others] |
 ///
-/// A lost robot is avoided until it is in contact again or [`remember`](Self::remember) has passed.
-/// It left radio range, and is forgotten, if it was last known about as far away as the farthest
-/// fresh robot. All have left if the last ones exceed the greatest distance of any earlier contact.
+/// The place of a lost robot stays blocked until a robot hears that robot again, or an operator
+/// [clears](crate::wire::LostRobot) it. Robots tell each other the lost robots that they know. A
+/// robot that was receding near the greatest distance of any reception has left radio range, and
+/// is forgotten.
 ///
 /// [`GapLimit`]: crate::neighbor::GapLimit
 /// [lost]: crate::neighbor::Ages::expire_after
+/// [`stands_after`]: Self::stands_after
+/// [expects others]: Self::expects_others
 /// [`max_m`]: crate::neighbor::StalenessInflation::max_m
 /// [`ContactLost`]: super::Event::ContactLost
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ContactLossPolicy<S> {
-    /// How long a silent robot is remembered; at most half an hour. Longer: a removed robot blocks
-    /// its place for longer. Shorter: a dead robot is hit sooner. Below
-    /// [`Ages::expire_after`](crate::neighbor::Ages::expire_after), no robot is remembered.
-    pub remember: Duration,
+    /// Silence after which a lost robot counts as standing even if most robots are lost, so that it
+    /// may be the own radio that failed; at most ten minutes.
+    pub stands_after: Duration,
     /// Speed when all robots are lost, m/s; 0 to stand until a robot is in contact. Above 0 only
     /// for robots that may be alone, since moving silent robots are not detected.
     pub alone_mps: S,
+    /// How long a robot that has started stands before it moves, so that it hears the robots near
+    /// by: a beacon period and the latency, several times that on a radio with losses.
+    pub listen: Duration,
+    /// Other robots exist: a robot that has not heard any stands, as if all were lost.
+    pub expects_others: bool,
+    /// Distance within which the radio works when nothing disturbs it, metres; a robot that falls
+    /// silent nearer than that has not left. Greater distances are learned; 0: all.
+    pub reach_m: S,
 }
 
 impl<S: Scalar> ContactLossPolicy<S> {
-    /// Remembers for a minute, and stands.
-    pub const DEFAULT: Self = Self { remember: Duration::from_millis(60_000), alone_mps: S::ZERO };
+    /// Stands for a minute, and after the start for 0.2 s.
+    pub const DEFAULT: Self = Self {
+        stands_after: Duration::from_millis(60_000),
+        alone_mps: S::ZERO,
+        listen: Duration::from_millis(200),
+        expects_others: false,
+        reach_m: S::ZERO,
+    };
 
     /// Converts to another scalar type.
     #[must_use]
     pub fn cast<T: Scalar>(&self) -> ContactLossPolicy<T> {
-        ContactLossPolicy { remember: self.remember, alone_mps: cast(self.alone_mps) }
+        ContactLossPolicy {
+            stands_after: self.stands_after,
+            alone_mps: cast(self.alone_mps),
+            listen: self.listen,
+            expects_others: self.expects_others,
+            reach_m: cast(self.reach_m),
+        }
     }
 
     /// Returns whether the robot moves although all others are lost.
@@ -69,9 +92,15 @@ pub(super) enum ContactState {
 }
 
 impl ContactState {
-    /// Updates the state. Returns whether contact was lost just now; `have_left`: all lost robots
-    /// left radio range. Call it in each step, so that the 32-bit clock cannot wrap unnoticed.
-    pub(super) fn passes<S: Scalar>(&mut self, now: Instant, have_left: bool, config: &AgentConfig<S>) -> bool {
+    /// Updates the state. Returns whether contact was lost just now; `last_left(at)`: the robots
+    /// received last, at that time, left radio range. Call it in each step, so that the 32-bit
+    /// clock cannot wrap unnoticed.
+    pub(super) fn passes<S: Scalar>(
+        &mut self,
+        now: Instant,
+        last_left: impl Fn(Instant) -> bool,
+        config: &AgentConfig<S>,
+    ) -> bool {
         let is_over = |at, longest| !(Duration::ZERO..=longest).contains(&now.since(at));
         let before = *self;
         if let Self::InContact(at) = *self
@@ -80,9 +109,9 @@ impl ContactState {
             *self = Self::Lost(at);
         }
         if let Self::Lost(at) = *self {
-            if is_over(at, config.contact_loss.remember) {
+            if is_over(at, config.contact_loss.stands_after) {
                 *self = Self::Forgotten;
-            } else if have_left {
+            } else if last_left(at) {
                 *self = Self::Never;
             }
         }
@@ -91,5 +120,27 @@ impl ContactState {
 
     pub(super) const fn is_lost(self) -> bool {
         matches!(self, Self::Lost(_) | Self::Forgotten)
+    }
+}
+
+/// How long a robot has been running, as far as it matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Listening {
+    NotStarted,
+    Since(Instant),
+    Over,
+}
+
+impl Listening {
+    /// Updates the state; returns whether the robot still listens. Call it in each step.
+    pub(super) fn passes(&mut self, now: Instant, listen: Duration) -> bool {
+        let start = match *self {
+            Self::NotStarted => now,
+            Self::Since(start) => start,
+            Self::Over => return false,
+        };
+        let listens = now.since(start) < listen;
+        *self = if listens { Self::Since(start) } else { Self::Over };
+        listens
     }
 }

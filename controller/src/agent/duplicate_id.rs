@@ -81,3 +81,34 @@ pub(super) fn is_within<S: Scalar, P>(place: Position, known: &Neighbor<S, P>, t
     let most_m = fastest_mps.max(went_mps) * S::from_micro(time.as_micros()) + slack_m;
     place.since::<S>(known.position).length_key() <= Vec3::new(most_m, S::ZERO, S::ZERO).length_key()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Cell;
+    use crate::time::Instant;
+    use crate::wire::Beacon;
+
+    #[test]
+    fn each_bit_of_time_and_place_changes_the_fingerprint() {
+        let beacon = Beacon {
+            time: Instant::from_micros(1_234_567),
+            position_mm: [-123_456, 7_890, -3],
+            cell: Cell::new(-5, 900),
+            ..Beacon::default()
+        };
+        let same = print(&Message::Beacon(beacon));
+        for bit in 0..15 {
+            let mut others = [beacon; 6];
+            let [x, y, z, east, north, time] = &mut others;
+            for (axis, other) in [x, y, z].into_iter().enumerate() {
+                other.position_mm[axis] ^= 1 << bit;
+            }
+            (east.cell.x, north.cell.y) = (east.cell.x ^ 1 << bit, north.cell.y ^ 1 << bit);
+            time.time = Instant::from_micros(beacon.time.as_micros() ^ 1 << bit);
+            for (at, other) in others.into_iter().enumerate() {
+                assert_ne!(print(&Message::Beacon(other)), same, "bit {bit} of word {at}");
+            }
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! Moving in formation (A. V. Kuznetsov 2017, KUZ, algorithm 2); see [`crate::formation`].
 
 use super::guidance::{Action, Ask, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
-use super::move_history::{MoveHistory, PATIENCE, on_grid, reachable_goal};
+use super::move_history::{MoveHistory, PATIENCE, avoid_crossing, on_grid, reachable_goal};
 use super::route_guidance::GridWorkspace;
 use super::tunable::Tunable;
 use super::{OnGrid, Parameter, Wait};
@@ -405,6 +405,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const F: usize, const L: usi
         if stays {
             moves.clear();
         }
+        avoid_crossing(&mut moves, input, (&window, self.route.norm), cell);
         let choice = moves.first().copied().unwrap_or_default();
         let blocked = self.travel.note(input, cell, choice, 0);
         if status.waits_for.is_none() && !status.is_at_goal {

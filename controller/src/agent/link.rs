@@ -1,9 +1,10 @@
 //! The radio link of an agent: decodes received frames, encodes frames to send.
 
-use super::contact_loss::ContactState;
+use super::contact_loss::{ContactState, Listening};
 use super::duplicate_id::EchoFilter;
 use super::io::{Event, KinematicState, OUTBOX, Outputs};
 use super::{AgentConfig, CellState, Last, Waypoint};
+use crate::body::Body;
 use crate::geom::{Position, Torus, Vec3};
 use crate::grid::Cell;
 use crate::land::LandPatch;
@@ -13,12 +14,14 @@ use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
 use crate::wire::{
     Arrival, Beacon, DecodeError, Due, EncodeError, Frame, Header, KeyHeld, Message, Newest, Orders, Payload,
-    PayloadBytes, Request, RequestKind, Requests, Retry, SequenceWindow, TemplateAssignment, Wire,
+    PayloadBytes, Request, RequestKind, Requests, SequenceWindow, TemplateAssignment, Wire,
 };
 use heapless::Vec;
+use lost::LostNews;
 use serde::{Deserialize, Serialize};
 
 mod identity;
+mod lost;
 mod sight;
 
 const PENDING: usize = 4;
@@ -47,6 +50,7 @@ pub(super) struct Link<S, const N: usize, W, P> {
     said: EchoFilter,
     pub(super) table: NeighborTable<S, N, P>,
     pub(super) contact: ContactState,
+    pub(super) listening: Listening,
     suspects: PlausibilityFilter,
     loss: LossEstimate,
     windows: Vec<(RobotId, SequenceWindow), N>,
@@ -58,6 +62,7 @@ pub(super) struct Link<S, const N: usize, W, P> {
     commanders: [Option<(RobotId, u8)>; 3],
     beacon_due: Instant,
     has_sent: bool,
+    lost: LostNews,
     /// Constant in a run, so digests omit it.
     #[cfg(feature = "host")]
     #[serde(with = "crate::digest::uncounted")]
@@ -67,6 +72,7 @@ pub(super) struct Link<S, const N: usize, W, P> {
 /// The context of received frames; `heard_at` is the time at which arriving frames were sent.
 pub(super) struct ReceiveContext<'a, S> {
     pub(super) position: Position,
+    pub(super) velocity_mps: Vec3<S>,
     pub(super) heard_at: Instant,
     pub(super) fastest_mps: Option<S>,
     pub(super) period: Duration,
@@ -75,13 +81,15 @@ pub(super) struct ReceiveContext<'a, S> {
 }
 
 impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
-    pub(super) const fn new(id: RobotId, boot: u8, ages: Ages, retry: Retry, wire: W) -> Self {
+    pub(super) const fn new(config: &AgentConfig<S>, wire: W) -> Self {
+        let AgentConfig { id, boot, ages, retry, .. } = *config;
         Self {
             wire,
             header: Header { boot, sender: id, sequence: 0 },
             said: EchoFilter::new(),
-            table: NeighborTable::new(ages),
-            contact: ContactState::Never,
+            table: NeighborTable::new(ages).with_reach(config.contact_loss.reach_m),
+            contact: if config.contact_loss.expects_others { ContactState::Forgotten } else { ContactState::Never },
+            listening: Listening::NotStarted,
             suspects: PlausibilityFilter::new(),
             loss: LossEstimate::new(),
             windows: Vec::new(),
@@ -92,6 +100,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             commanders: [None; 3],
             beacon_due: Instant::from_micros(0),
             has_sent: false,
+            lost: LostNews::NEW,
             #[cfg(feature = "host")]
             torus: None,
         }
@@ -122,28 +131,30 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
     }
 
     /// Moves neighbours to the list of lost robots once their silence is longer than packet loss
-    /// explains; with `remember` > 0 only after [`Ages::expire_after`]. Comes first in each step.
+    /// explains; if it `remembers`, only after [`Ages::expire_after`]. Comes first in each step.
     pub(super) fn expire(
         &mut self,
         own: Position,
+        body: &Body<S>,
         now: Instant,
-        (period, latency): (Duration, Duration),
-        remember: Duration,
+        config: &AgentConfig<S>,
+        remembers: bool,
         out: &mut Outputs<S>,
     ) {
+        let (period, latency) = (config.beacon_period, config.latency);
         if let Some(torus) = self.torus() {
             self.table.see_at(|place| torus.image(place, own));
         }
         let (windows, loss) = (&mut self.windows, &mut self.loss);
         let Ages { stale_after, expire_after } = self.table.ages();
-        let patience = if remember > Duration::ZERO {
+        let patience = if remembers {
             expire_after
         } else {
             loss.patience(self.table.len(), period, expire_after).max(stale_after)
         };
         let longest = Duration::from_micros(patience.as_micros().saturating_add(latency.as_micros()));
         let missed = patience.as_micros().checked_div(period.as_micros()).unwrap_or(0);
-        self.table.expire(own, now, (longest, remember), |lost| {
+        self.table.expire((body, config.lag_s), now, (longest, remembers), |lost| {
             loss.gave_up(u16::try_from(missed).unwrap_or(u16::MAX));
             windows.retain(|(id, _)| *id != lost);
             report(out, Event::NeighborLost(lost));
@@ -262,6 +273,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             }
             Message::Land(patch) => return Some(Received::Land(patch)),
             Message::Payload(bytes) if size_of::<P>() > 0 && arrival.is_latest() => self.table.tell(id, bytes.get()),
+            Message::Lost(lost) if listener.fastest_mps.is_some() => self.hear_lost(&lost, now, listener, out),
             Message::Key(key) if is_mine(key.to) => {
                 if let Some((generation, phase)) = self.wire.held() {
                     self.say_early(&Message::KeyHeld(KeyHeld { to: sender, generation, phase }), out);
@@ -283,18 +295,23 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         let id = neighbor.id;
         neighbor.position = self.image(neighbor.position, listener.position);
         self.cut(&mut neighbor, listener.plausibility, out);
+        self.table.note_reception(&mut neighbor, listener.position, listener.velocity_mps);
         self.contact = ContactState::InContact(neighbor.heard);
         let put = self.table.put(neighbor, listener.position, now, listener.needs);
-        if let Put::Evicted(evicted) = put {
-            self.windows.retain(|(id, _)| *id != evicted);
-            report(out, Event::NeighborEvicted(evicted));
-        }
+        self.note_eviction(put, out);
         if matches!(put, Put::Inserted | Put::Evicted(_)) {
             let mut window = SequenceWindow::new();
             let _ = window.check(header);
             // Cannot fail: there are as many windows as entries.
             let _ = self.windows.push((id, window));
             report(out, id.duplicate_of().map_or(Event::NeighborFound(id), Event::DuplicateId));
+        }
+    }
+
+    fn note_eviction(&mut self, put: Put, out: &mut Outputs<S>) {
+        if let Put::Evicted(evicted) = put {
+            self.windows.retain(|(id, _)| *id != evicted);
+            report(out, Event::NeighborEvicted(evicted));
         }
     }
 
@@ -321,7 +338,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         self.orders.is_stopped(now)
     }
 
-    /// Sends due requests, the beacon if it is due, then the payload and a map patch if they fit.
+    /// Sends due requests, the beacon if it is due, then the payload, a map patch and a lost robot
+    /// if they fit.
     pub(super) fn speak(
         &mut self,
         now: Instant,
@@ -355,6 +373,9 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
             }
             if let Some(patch) = land {
                 let _ = self.say(&Message::Land(patch), 0, out);
+            }
+            if let Some(lost) = self.lost_to_tell(now) {
+                let _ = self.say(&Message::Lost(lost), 0, out);
             }
             self.has_sent = true;
             self.beacon_due = now + period;

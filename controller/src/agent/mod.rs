@@ -110,6 +110,7 @@ mod goal_occupancy;
 mod guidance;
 mod io;
 mod link;
+mod make_way;
 mod map_sharing;
 mod move_history;
 mod neighbor_tracking;
@@ -162,6 +163,7 @@ pub use wait::Wait;
 pub use waypoint::{WAYPOINTS, Waypoint};
 pub use waypoint_guidance::WaypointGuidance;
 
+use crate::geom::Vec3;
 use crate::grid::{Cell, Dir};
 use crate::robot::{Mode, RobotId};
 use crate::scalar::Scalar;
@@ -198,9 +200,9 @@ pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
-const _: () = assert!(BYTES[0] <= 4400 && BYTES[1] <= 4672 && BYTES[2] <= 1992 && BYTES[3] <= 2720);
+const _: () = assert!(BYTES[0] <= 4448 && BYTES[1] <= 4720 && BYTES[2] <= 2056 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4408, 4680, 2008, 2720]));
+const _: () = assert!(matches!(BYTES, [4456, 4728, 2072, 2720]));
 
 /// The controller of one robot: guidance law `G`, at most `N` known neighbours, safety layer `A`,
 /// wire format `W`.
@@ -209,9 +211,9 @@ const _: () = assert!(matches!(BYTES, [4408, 4680, 2008, 2720]));
 ///
 /// | type | 32-bit part | 64-bit host |
 /// | --- | --- | --- |
-/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4400 | 4408 |
-/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4672 | 4680 |
-/// | [`OrcaAgent`] | at most 1992 | 2008 |
+/// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4448 | 4456 |
+/// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4720 | 4728 |
+/// | [`OrcaAgent`] | at most 2056 | 2072 |
 /// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
 ///
 /// With the feature `host`, lists take only the memory of their entries.
@@ -227,6 +229,8 @@ pub struct Agent<S: Scalar, G: Guidance<S>, const N: usize, A = Unguarded, W = P
     /// Keys the random numbers of each decision.
     decisions: u32,
     last: Last,
+    /// The last command of a body with a lag, m/s.
+    commanded_mps: Vec3<S>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -258,7 +262,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             config: *config,
             guidance,
             safety,
-            link: Link::new(config.id, config.boot, config.ages, config.retry, wire),
+            link: Link::new(config, wire),
             mode: Mode::Idle,
             goal: None,
             decisions: 0,
@@ -278,6 +282,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 heading: Dir::Stay,
                 slot: 0,
             },
+            commanded_mps: Vec3::ZERO,
         }
     }
 

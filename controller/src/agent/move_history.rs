@@ -3,7 +3,7 @@
 use super::OnGrid;
 use super::guidance::{Ask, BadInput, GuidanceInput};
 use crate::cost::Weights;
-use crate::grid::{BLOCKED, Cell, Dir, Window};
+use crate::grid::{BLOCKED, Cell, Dir, Norm, UNIT, Window};
 use crate::neighbor::Neighbor;
 use crate::rand::Rng;
 use crate::robot::Mode;
@@ -77,6 +77,29 @@ impl MoveHistory {
         }
         self.attempts = 0;
         Some(Ask { to: to.id, kind: RequestKind::Redirect })
+    }
+}
+
+/// Removes diagonal moves out of `cell` that cross one of another robot: under way, or announced so
+/// recently that it may be under way. An announced move into an occupied cell has not begun.
+pub(super) fn avoid_crossing<S>(
+    moves: &mut Vec<Dir, 8>,
+    input: &GuidanceInput<'_, S>,
+    (window, norm): (&Window<'_>, Norm),
+    cell: Cell,
+) {
+    // Beacons are a tick old.
+    let now = input.now + input.tick;
+    for other in input.neighbors.iter().filter(|other| other.cell.chebyshev(cell) == 1) {
+        let announced = other.cell + other.heading.offset();
+        let class = window.get(announced).unwrap_or(BLOCKED);
+        let length = i64::from(other.heading.length(norm)) * i64::from(class) * i64::from(input.tick.as_micros());
+        let age = i64::from(now.since(other.heard).as_micros()) * i64::from(UNIT);
+        let has_begun = other.heard == other.busy_until && age < length && occupant(input, announced).is_none();
+        let end = if has_begun { announced } else { other.cell };
+        if has_begun || now.is_before(other.busy_until) {
+            moves.retain(|dir| !dir.crosses(cell, other.heading, end));
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Routing of a single robot to its own goal (A. V. Kuznetsov 2017, KUZ, algorithm 1).
 
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToCells};
-use super::move_history::{MoveHistory, on_grid, reachable_goal};
+use super::move_history::{MoveHistory, avoid_crossing, on_grid, reachable_goal};
 use super::tunable::Tunable as _;
 use super::{OnGrid, Parameter};
 use crate::cost::{Gain, Weights};
@@ -141,6 +141,7 @@ impl<S: Scalar, const CELLS: usize, const M: usize, const L: usize> Guidance<S> 
             let open = self.moves(input, &window, (cell, target), makes_way, rng, workspace);
             status.is_stuck = open.is_none();
             moves = open.unwrap_or_default();
+            avoid_crossing(&mut moves, input, (&window, self.params.norm), cell);
         }
         let choice = moves.first().copied().unwrap_or_default();
         let idle = if makes_way { u8::MAX } else { self.router.idle() };

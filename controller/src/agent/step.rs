@@ -4,8 +4,8 @@ use super::contact_loss::ContactState;
 use super::link::{ReceiveContext, Received, beacon, report};
 use super::wait::is_hindered;
 use super::{
-    Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs, Outputs, Safety,
-    SafetyInput, Surroundings, Wait,
+    Action, Agent, CellState, Command, Decision, Event, Goal, Guidance, GuidanceInput, Inputs, KinematicState, Outputs,
+    Safety, SafetyInput, Surroundings, Wait,
 };
 use crate::body::Body;
 use crate::geom::Vec3;
@@ -68,15 +68,34 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             return Vec::new();
         }
         let (config, inflation) = (&self.config, self.safety.inflation().unwrap_or_default());
-        let (known, own, now) = (self.link.table.as_slice(), inputs.state.position, now);
-        nearest(known, config.flock, own, config.radius_m, now, &config.ages, &inflation)
+        let (known, own, now) = (self.link.table.as_slice(), self.steered(inputs).position, now);
+        let mut nearby = nearest(known, config.flock, own, config.radius_m, now, &config.ages, &inflation);
+        if config.lag_s > S::ZERO {
+            for other in &mut nearby {
+                other.offset_m += other.velocity_mps * config.lag_s;
+            }
+        }
+        nearby
+    }
+
+    /// The state that laws and the safety layer control. The point ahead of a body with a lag, at
+    /// its velocity times the lag, moves exactly as commanded, as a body without a lag does; the
+    /// body itself follows it on the straight line. [`GapLimit`] keeps that line free.
+    fn steered(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> KinematicState<S> {
+        let (state, lag_s) = (inputs.state, self.config.lag_s);
+        if lag_s <= S::ZERO {
+            return state;
+        }
+        let ahead_m = state.velocity_mps * lag_s;
+        let position = state.position.moved(ahead_m).unwrap_or(state.position);
+        KinematicState { position, velocity_mps: self.commanded_mps }
     }
 
     fn body(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Body<S> {
         let plane = inputs.surroundings.in_plane();
         Body {
             id: self.config.id,
-            velocity_mps: inputs.state.velocity_mps,
+            velocity_mps: self.steered(inputs).velocity_mps,
             radius_m: self.config.radius_m,
             max_speed_mps: plane.map_or(S::ZERO, |plane| plane.max_speed_mps),
             max_acceleration_mps2: self.config.max_acceleration_mps2,
@@ -86,6 +105,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
 
     #[inline(never)]
     fn hear(&mut self, inputs: &Inputs<'_, S, G::Input<'_>>, now: Instant, out: &mut Outputs<S>) {
+        let body = self.body(inputs);
         let Self { config, guidance, safety, link, goal, last, .. } = self;
         let leader = last.leader;
         let mut pass_on = Vec::<_, 4>::new();
@@ -94,18 +114,20 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let keeps_clear = inputs.surroundings.in_plane().is_some() && safety.inflation().is_some();
         let fastest_mps = safety.inflation().map(|inflation| inflation.growth_mps);
         let fastest_mps = fastest_mps.filter(|fastest| keeps_clear && *fastest > S::ZERO);
-        let remember = if keeps_clear { config.contact_loss.remember } else { Duration::ZERO };
-        let radio = (config.beacon_period, config.latency);
         let own = inputs.state.position;
-        link.expire(own, now, radio, remember, out);
-        let have_left = link.table.is_empty() && link.table.lost().is_empty();
-        if keeps_clear && link.contact.passes(now, have_left, config) {
+        link.expire(own, &body, now, config, keeps_clear, out);
+        let table = &link.table;
+        // A robot that was lost at about the same time may be there, or the own radio has failed.
+        let is_recent = |at: Instant, heard: Instant| at.since(heard) <= config.ages.expire_after;
+        let last_left = |at| table.is_empty() && !table.lost().iter().any(|lost| is_recent(at, lost.heard));
+        if keeps_clear && link.contact.passes(now, last_left, config) {
             report(out, Event::ContactLost);
         }
         let mut inbox = inputs.inbox;
         while let Some(bytes) = link.next_frame(&mut inbox) {
             let listener = ReceiveContext {
                 position: own,
+                velocity_mps: inputs.state.velocity_mps,
                 heard_at,
                 fastest_mps,
                 period: config.beacon_period,
@@ -179,7 +201,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             id: self.config.id,
             now,
             tick: self.config.tick,
-            state: inputs.state,
+            state: self.steered(inputs),
             goal,
             body: self.body(inputs),
             nearby,
@@ -277,6 +299,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         };
         if !self.mode.gives_way() {
             self.link.table.forget_gaps();
+            self.commanded_mps = Vec3::ZERO;
             out.command = Command::Hold;
             return;
         }
@@ -285,12 +308,16 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             (Command::Velocity(wish), Some(Action::Velocity { way_m, .. })) if wish.is_finite() => (*wish, *way_m),
             _ => (Vec3::ZERO, None),
         };
-        let body = self.body(inputs);
+        let (body, steered) = (self.body(inputs), self.steered(inputs).position);
         let Self { link, safety, config, .. } = self;
-        let (own, table, inflation) = (inputs.state.position, &mut link.table, safety.inflation());
+        let (table, inflation) = (&mut link.table, safety.inflation());
         let mut wish_mps = wish_mps;
         if let Some(inflation) = inflation {
-            add_lost(nearby, table.lost(), own, body.radius_m, now, &config.ages, &inflation);
+            if link.listening.passes(now, config.contact_loss.listen) {
+                out.wait = (wish_mps != Vec3::ZERO).then_some(Wait::Radio);
+                wish_mps = Vec3::ZERO;
+            }
+            add_lost(nearby, table.lost(), steered, body.radius_m, now, &config.ages, &inflation);
             if link.contact.is_lost() && config.contact_loss.may_be_alone() {
                 wish_mps = wish_mps.clamp_norm(config.contact_loss.alone_mps);
             }
@@ -299,8 +326,10 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let mut safe = safety.keep_clear(&input, rng);
         let mut is_hidden = false;
         if let Some(inflation) = inflation {
-            let (news, may_be_alone) = (config.latency.max(config.tick), config.contact_loss.may_be_alone());
-            let room = GapLimit { body: &body, own, now, news, inflation, may_be_alone };
+            let (stands_after, may_be_alone) = (config.contact_loss.stands_after, config.contact_loss.may_be_alone());
+            let KinematicState { position: own, velocity_mps: own_mps } = inputs.state;
+            let (news, lag_s) = (config.tick, config.lag_s);
+            let room = GapLimit { body: &body, own, own_mps, lag_s, now, news, inflation, may_be_alone, stands_after };
             let within = room.limit(table, plane.obstacles, safe);
             is_hidden = within.is_none();
             safe = within.unwrap_or(Vec3::ZERO);
@@ -313,7 +342,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
                 () => Wait::Robots,
             });
         }
-        out.command = Command::Velocity(body.reach(safe));
+        self.commanded_mps = body.reach(safe);
+        out.command = Command::Velocity(self.commanded_mps);
     }
 
     #[inline(never)]
@@ -321,7 +351,13 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
         let Self { config, last, guidance, .. } = self;
         let mode = self.mode;
         // The velocity of the next step is more useful to other robots than the previous one.
+        let (own_mps, step_s) = (inputs.state.velocity_mps, S::from_micro(config.tick.as_micros()));
         let velocity_mps = match out.command {
+            // A first-order system goes this part of the way in a step, to second order.
+            Command::Velocity(velocity_mps) if config.lag_s > S::ZERO => {
+                let part = step_s.checked_div(config.lag_s + step_s * S::HALF).unwrap_or(S::ONE).min(S::ONE);
+                own_mps + (velocity_mps - own_mps) * part
+            }
             Command::Velocity(velocity_mps) => velocity_mps,
             Command::Hold | Command::Move(_) => inputs.state.velocity_mps,
         };

@@ -195,3 +195,26 @@ impl<S: Scalar> Tunable<S> for FormationParams {
         self.resume_lag <= self.halt_lag
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gains_and_cells_are_rounded_to_the_nearest_part() {
+        let mut route = RouteParams::default();
+        let mut formation = FormationParams::default();
+        for (value, rounded) in [(0.7, 0.6875), (0.72, 0.75), (3.0, 3.0)] {
+            assert!(Tunable::<f32>::tune(&mut route, Parameter::VisitsGain, value));
+            assert_eq!(route.get(Parameter::VisitsGain), Some(rounded));
+            assert!(Tunable::<f32>::tune(&mut formation, Parameter::PlaceGain, value));
+            assert_eq!(formation.get(Parameter::PlaceGain), Some(rounded));
+        }
+        for (value, rounded) in [(4.4, 4.0), (4.6, 5.0)] {
+            assert!(Tunable::<f32>::tune(&mut formation, Parameter::Eps, value));
+            assert_eq!(formation.get(Parameter::Eps), Some(rounded));
+        }
+        assert!(!Tunable::<f32>::tune(&mut formation, Parameter::ResumeLag, 100.0), "above the lag that halts");
+        assert!(!Tunable::<f32>::tune(&mut route, Parameter::VisitsGain, -1.0));
+    }
+}

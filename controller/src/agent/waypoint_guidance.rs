@@ -2,6 +2,7 @@
 
 use super::goal_occupancy::{Claim, GoalOccupancy};
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
+use super::make_way::MakeWay;
 use super::{InPlane, Parameter, WAYPOINTS, Wait, Waypoint};
 use crate::geom::Vec3;
 use crate::rand::Rng;
@@ -13,7 +14,8 @@ use serde::{Deserialize, Serialize};
 const PASSED_RADII: i32 = 3;
 
 /// Moves straight to a waypoint, stays there, and follows a waypoint that moves. If another robot
-/// occupies the last one, it arrives beside that robot.
+/// occupies the last one, it arrives beside that robot. If it blocks a robot in a narrow place, it
+/// makes way and returns.
 ///
 /// Index 0 starts a new course, the next free index extends it, and an existing index moves that
 /// waypoint. The course is passed in the order of indices.
@@ -22,6 +24,7 @@ pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
     leg: u8,
     beside: GoalOccupancy<S>,
+    make_way: MakeWay,
     tolerance_m: S,
     speed_mps: S,
 }
@@ -31,7 +34,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     /// some millimetres, because waypoints are rounded to millimetres.
     #[must_use]
     pub const fn new(speed_mps: S, tolerance_m: S) -> Self {
-        Self { course: Vec::new(), leg: 0, beside: GoalOccupancy::NEW, tolerance_m, speed_mps }
+        Self { course: Vec::new(), leg: 0, beside: GoalOccupancy::NEW, make_way: MakeWay::NEW, tolerance_m, speed_mps }
     }
 
     /// Offset, metres, and velocity of the current waypoint. Advances when one is passed.
@@ -113,11 +116,18 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
     fn decide(
         &mut self,
         input: &GuidanceInput<'_, S>,
-        _: &InPlane<'_, S>,
+        here: &InPlane<'_, S>,
         _: &mut Rng,
         (): &mut (),
     ) -> Result<Decision<S>, BadInput> {
-        self.head(input)
+        let mut decision = self.head(input)?;
+        let stays = decision.status.is_at_goal && !decision.status.makes_way;
+        if let Some(way) = self.make_way.way(input, here.obstacles, stays) {
+            decision.status = Status::default();
+            let wish_mps = way * self.speed_mps.min(input.body.max_speed_mps);
+            decision.action = Action::Velocity { wish_mps, way_m: None };
+        }
+        Ok(decision)
     }
 
     fn assign_waypoint(&mut self, index: u8, waypoint: &Waypoint<S>) -> bool {

@@ -128,6 +128,17 @@ fn exported_counters_are_not_fresh_after_import() {
 }
 
 #[test]
+fn an_import_of_the_newest_counter_ends_the_window() {
+    for (imported, is_late) in [(7, true), (8, false), (9, false)] {
+        let mut guard = ReplayGuard::<3>::new();
+        assert_eq!(guard.admit(4, 8), Freshness::New);
+        assert!(guard.import(4, imported));
+        assert_eq!(guard.admit(4, 6), if is_late { Freshness::Late } else { Freshness::Replayed }, "{imported}");
+        assert_eq!(guard.newest(4), Some(imported.max(8)));
+    }
+}
+
+#[test]
 fn counters_of_unknown_senders_start_at_the_floor() {
     let mut guard = ReplayGuard::<3>::new();
     guard.set_floor(50);

@@ -108,6 +108,9 @@ fn costs_restart_for_each_direction_and_point_to_the_place() {
     assert_eq!(price.get(Dir::East), crate::cost::TICK);
     let by_top = distances(&params, Cell::new(5, 10), Some(Cell::new(7, 10)), &[]);
     assert_eq!(by_top.get(Dir::East), crate::cost::TICK);
+    // Half of each: 3 cells from the top leader's place, 1 cell from the member's.
+    let by_both = distances(&params, Cell::new(5, 10), Some(Cell::new(9, 10)), &found.members);
+    assert_eq!(by_both.get(Dir::East), 2 * crate::cost::TICK);
     let alone = distances(&params, Cell::new(5, 10), None, &[]);
     assert_eq!(alone, crate::cost::Weights::new([0; 8]));
 }
@@ -169,6 +172,10 @@ fn land_is_priced_for_all_robots_that_would_cross_it() {
     assert_eq!(price(Footprint::Mean(8)), [5, 1, 9, BLOCKED]);
     assert_eq!(price(Footprint::Mean(16)), [9, 1, 9, BLOCKED]);
     assert_eq!(price(Footprint::Dearest), [9, 1, 9, BLOCKED]);
+    // Sixteenths are rounded to the nearest class: 3, 3.5, 4, 8.5 and 9.
+    for (share, wanted) in [(4, 3), (5, 4), (6, 4), (15, 9), (16, 9)] {
+        assert_eq!(price(Footprint::Mean(share))[0], wanted, "{share}");
+    }
     let around = (Cell::new(20, 5), 1);
     assert!(blended(&window, around, &[entry], Footprint::Dearest, &mut [0; 1]).is_none());
     let mut near = [0; 2];
@@ -296,6 +303,29 @@ mod in_plane {
         assert_eq!((drive.leads_at(0.0, 0.0), drive.leads_at(0.0, 1.0)), (0.0, 0.5));
         let drive = Drive::new(&Body { max_acceleration_mps2: f32::MAX, ..body() });
         assert_eq!(drive.halt_m(), 2.0);
+    }
+
+    #[test]
+    fn a_robot_rests_within_a_quarter_of_its_radius_and_leaves_beyond_half() {
+        let drive = Drive::new(&Body { radius_m: 2.0, ..body() });
+        assert_eq!((drive.tolerance_m(false), drive.tolerance_m(true)), (0.5, 1.0));
+    }
+
+    /// 1 m/s^2 in steps of 0.1 s: 0.05 m/s a step to speed up or turn, 0.1 m/s to brake.
+    #[test]
+    fn a_leader_speeds_up_and_turns_half_as_fast_as_it_brakes() {
+        let drive = Drive::new(&body());
+        let east = |x| Vec2::new(x, 0.0);
+        for (wish, wanted) in [
+            (east(2.0), east(1.05)),
+            (east(0.0), east(0.9)),
+            (east(-2.0), east(0.9)),
+            (east(0.95), east(0.95)),
+            (Vec2::new(1.0, 1.0), Vec2::new(1.0, 0.05)),
+        ] {
+            let off: Vec2<f32> = drive.gently(east(1.0), wish) - wanted;
+            assert!(off.norm() < 1e-6, "{wish:?}: {off:?}");
+        }
     }
 
     #[test]

@@ -45,14 +45,22 @@ const TOLERANCE_UM: i32 = 200;
 /// time counts, not the braking distance of the closing speed alone. Straight braking then remains
 /// possible in the next step, and the robot takes it if it can reach no allowed velocity.
 ///
+/// *Lag:* a body that is commanded to stand still covers its velocity times the lag, in a straight
+/// line. That much of a gap is taken already, by the own body and by a neighbour that comes nearer.
+///
 /// *Lost robots:* their balls stop growing at `max_m` only while at least half of all robots are
-/// fresh, or if [`may_be_alone`](Self::may_be_alone) is set.
+/// fresh (of the lost ones, those count that have not [stood](Self::stands_after) for
+/// long), or if the robot [may be alone](Self::may_be_alone).
 #[derive(Clone, Copy, Debug)]
 pub struct GapLimit<'a, S> {
     /// Own body.
     pub body: &'a Body<S>,
     /// Own position.
     pub own: Position,
+    /// Own velocity, m/s; matters with a lag only, when that of `body` is its last command.
+    pub own_mps: Vec3<S>,
+    /// Time constant with which all bodies follow their commands (first order), seconds.
+    pub lag_s: S,
     /// Current time.
     pub now: Instant,
     /// Age of the latest states in normal operation: a step, or the latency of the radio if longer.
@@ -60,8 +68,10 @@ pub struct GapLimit<'a, S> {
     pub news: Duration,
     /// Growth of the balls around silent robots.
     pub inflation: StalenessInflation<S>,
-    /// Whether lost robots count as stationary even when most robots are lost.
+    /// Whether lost robots count as standing even when most robots are lost.
     pub may_be_alone: bool,
+    /// Silence after which a lost robot counts as standing in any case.
+    pub stands_after: Duration,
 }
 
 #[derive(Clone, Copy)]
@@ -122,7 +132,9 @@ impl<S: Scalar> GapLimit<'_, S> {
         let (known, lost, ages) = (table.as_slice(), table.lost(), table.ages());
         let is_fresh = |other: &&Neighbor<S, P>| other.age(self.now).is_some_and(|age| age <= ages.stale_after);
         let fresh = known.iter().filter(is_fresh).count();
-        let is_bad = !self.may_be_alone && fresh + fresh < known.len() + lost.len();
+        let stands = |other: &&Neighbor<S, P>| other.age(self.now).is_none_or(|age| age > self.stands_after);
+        let lost = lost.len() - lost.iter().filter(stands).count();
+        let is_bad = !self.may_be_alone && fresh + fresh < known.len() + lost;
         let mut limits = Vec::<Limit<S>, N>::new();
         let mut is_hidden = false;
         for other in &mut table.entries {
@@ -175,7 +187,12 @@ impl<S: Scalar> GapLimit<'_, S> {
             }
         }
         for (other, limit) in table.entries.iter_mut().zip(&limits) {
-            other.gap_m = other.gap_m * S::HALF - limit.taken(reached, step_s);
+            let mut taken_m = limit.taken(reached, step_s);
+            if self.lag_s > S::ZERO {
+                // The body moves at a velocity between the present one and the commanded one.
+                taken_m = taken_m.max(limit.taken(self.own_mps, step_s));
+            }
+            other.gap_m = other.gap_m * S::HALF - taken_m;
         }
         (!is_hidden).then_some(v)
     }
@@ -186,7 +203,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         let age = other.age(self.now).unwrap_or(Duration::MAX);
         let silent = age.as_micros().saturating_sub(self.news.as_micros()).max(0);
         let silent_s = S::from_micro(silent);
-        let is_parked = other.is_lost && !is_bad;
+        let is_parked = other.is_lost() && (!is_bad || age > self.stands_after);
         let mut grown = inflation.growth_mps * silent_s;
         if is_parked {
             grown = grown.min(inflation.max_m);
@@ -219,18 +236,14 @@ impl<S: Scalar> GapLimit<'_, S> {
         } else if silent > 0 {
             (gap * S::HALF, comes_mps.max(S::ZERO) * S::HALF)
         } else {
-            ((gap * S::HALF).min(gap - self.way_to_stand(comes_mps)), S::ZERO)
+            let other_m = body.braking_m(comes_mps) + comes_mps.max(S::ZERO) * self.lag_s;
+            ((gap * S::HALF).min(gap - other_m), S::ZERO)
         };
+        // What a body with a lag still covers, if it is commanded to stand.
+        let lag_m = if self.lag_s > S::ZERO { self.own_mps.dot(ahead) * self.lag_s } else { S::ZERO };
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
-        let left_m = left_m.max(-S::from_micro(TOLERANCE_UM));
+        let left_m = (left_m - lag_m).max(-S::from_micro(TOLERANCE_UM));
         (Limit { ahead, slant, left_m, growth_mps }, silent > 0 && grown >= distance)
-    }
-
-    /// Braking distance, metres; 0 without inertia.
-    fn way_to_stand(&self, speed_mps: S) -> S {
-        let most = self.body.max_acceleration_mps2;
-        let speed = speed_mps.max(S::ZERO);
-        if most >= S::MAX { S::ZERO } else { (speed * speed * S::HALF).checked_div(most).unwrap_or(S::ZERO) }
     }
 
     /// Time to brake to rest, seconds; 0 without inertia.

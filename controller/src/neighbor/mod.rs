@@ -5,6 +5,7 @@
 //! 32-bit clock cannot distinguish a neighbour silent for 71.6 minutes from a fresh one. Entries
 //! are sorted by id, so results do not depend on the order in which packets arrive.
 
+use crate::body::Body;
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::list::sink_last;
@@ -33,8 +34,11 @@ pub use tie::tie;
 pub use track::Track;
 pub use tracker::{SIGHTINGS, TRACKS, Tracker};
 
-/// Where a lost robot is out of range, thousandths of the distance to the farthest fresh robot.
-const LEAVES_FROM: i32 = 750;
+/// Where a receding robot leaves radio range, thousandths of [`NeighborTable::reach_m`].
+const LEAVES_FROM: i32 = 900;
+/// Age at which the state of a lost robot stops ageing, so that the 32-bit clock never wraps.
+/// In hundredths of a second it fits [`LostRobot::age_cs`](crate::wire::LostRobot::age_cs).
+const OLDEST: Duration = Duration::from_millis(650_000);
 
 /// The last known state of one robot. `P` is the payload of its guidance law, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,15 +68,34 @@ pub struct Neighbor<S, P = ()> {
     pub slot: u8,
     /// The mode that it last reported.
     pub mode: Mode,
-    /// It has been silent for longer than [`Ages::expire_after`]; only its last state is known.
-    pub is_lost: bool,
+    /// How its last beacon was received.
+    pub trace: Trace,
     /// Lower bound of the gap to the own body while it is silent, metres; kept by [`GapLimit`].
     pub gap_m: S,
     /// The last payload of its guidance law; the default until one arrives.
     pub payload: P,
 }
 
+/// How the last beacon of a robot was received.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Trace {
+    /// Well within radio range, or while it came nearer.
+    #[default]
+    Heard,
+    /// While it was about to leave radio range: its silence will mean that it has left.
+    Leaving,
+    /// Too long ago: it stands, dead or without a radio, near the place that it last reported.
+    Lost,
+}
+
 impl<S: Scalar, P> Neighbor<S, P> {
+    /// Whether it has been silent for longer than [`Ages::expire_after`] without having left.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        self.trace == Trace::Lost
+    }
+
     /// Returns the time since its state was received; `None` beyond half of the clock's range.
     #[must_use]
     pub fn age(&self, now: Instant) -> Option<Duration> {
@@ -160,15 +183,23 @@ type Entries<S, const N: usize, P> = crate::list::SparseVec<Neighbor<S, P>, N>;
 pub struct NeighborTable<S, const N: usize, P = ()> {
     entries: Entries<S, N, P>,
     ages: Ages,
-    /// Greatest distance to the farthest fresh robot when another one was lost, metres; 0: never.
-    range_m: S,
+    /// Greatest distance at which a beacon was received, metres.
+    reach_m: S,
 }
 
 impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// Creates an empty table.
     #[must_use]
     pub const fn new(ages: Ages) -> Self {
-        Self { entries: Entries::new(), ages, range_m: S::ZERO }
+        Self { entries: Entries::new(), ages, reach_m: S::ZERO }
+    }
+
+    /// Sets the least distance at which the radio is known to work, metres. Without it, a robot
+    /// that dies as the farthest one so far, while it recedes, counts as having left.
+    #[must_use]
+    pub const fn with_reach(mut self, reach_m: S) -> Self {
+        self.reach_m = reach_m;
+        self
     }
 
     /// Returns the age limits of the table.
@@ -179,11 +210,10 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
 
     /// Stores `newcomer`, replacing the previous state of that robot. O(N).
     ///
-    /// A full table removes the first of these candidates; a robot for which `protect` returns true
-    /// (the leader, members of the formation's template) only if it is lost:
-    /// 1. the robot with the oldest state, if older than [`Ages::expire_after`];
-    /// 2. the robot farthest from `own`, if the newcomer is nearer or protected;
-    /// 3. otherwise the newcomer is refused.
+    /// In a full table the farthest robot makes way for a newcomer that is nearer or protected. A
+    /// robot for which `protect` returns true (the leader, members of the formation's template)
+    /// never makes way. Lost robots do so only for each other, while they take more than half of
+    /// the table: nothing else tells the robot where they stand.
     ///
     /// A [duplicate id](RobotId::duplicate) only replaces another duplicate, so that forged ids
     /// cannot crowd out other robots. The smaller id wins a tie; an unknown distance (NaN) is the
@@ -233,65 +263,84 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
         protect: impl Fn(RobotId) -> bool,
     ) -> Option<RobotId> {
         let is_double = newcomer.id.duplicate_of().is_some();
-        let may_go = |entry: &&Neighbor<S, P>| {
-            entry.is_lost || !protect(entry.id) && (!is_double || entry.id.duplicate_of().is_some())
+        let lost = self.lost().len().saturating_add(usize::from(newcomer.is_lost()));
+        let too_many_lost = lost > N >> 1;
+        let may_go = |entry: &&Neighbor<S, P>| match (entry.is_lost(), newcomer.is_lost()) {
+            (true, _) => too_many_lost,
+            (false, true) if too_many_lost => false,
+            (false, _) => !protect(entry.id) && (!is_double || entry.id.duplicate_of().is_some()),
         };
-        let candidates = || self.entries.iter().filter(may_go);
-        let age = |entry: &Neighbor<S, P>| entry.age(now).unwrap_or(Duration::MAX);
-        let stalest = candidates()
-            .filter(|entry| !entry.is_lost && age(entry) > self.ages.expire_after)
-            .max_by_key(|entry| (age(entry), entry.id));
-        if let Some(stalest) = stalest {
-            return Some(stalest.id);
-        }
         let distance = |entry: &Neighbor<S, P>| {
             let offset_m = entry.offset_at(own, now, self.ages.stale_after);
             (offset_m.length_key(), entry.id)
         };
-        let farthest = candidates().map(distance).max()?;
+        let farthest = self.entries.iter().filter(may_go).map(distance).max()?;
         let comes_in = protect(newcomer.id) || distance(newcomer) < farthest;
         comes_in.then_some(farthest.1)
     }
 
+    /// Notes the distance at which `received` was received, and whether it is about to leave radio
+    /// range: it recedes, and within [`Ages::stale_after`] it will be about as far away as any
+    /// robot that was ever received. Call it before [`put`](Self::put).
+    pub fn note_reception(&mut self, received: &mut Neighbor<S, P>, own: Position, own_mps: Vec3<S>) {
+        let offset_m = received.position.since::<S>(own);
+        let distance_m = offset_m.norm();
+        if distance_m.is_finite() {
+            self.reach_m = self.reach_m.max(distance_m);
+        }
+        let rate = (received.velocity_mps - own_mps).dot(offset_m);
+        let rest_m = self.reach_m * S::from_milli(LEAVES_FROM) - distance_m;
+        let ahead_s = S::from_micro(self.ages.stale_after.as_micros());
+        let leaves = rate > S::ZERO
+            && (rest_m <= S::ZERO || rate.checked_div(distance_m).is_some_and(|rate_mps| rate_mps * ahead_s >= rest_m));
+        received.trace = if leaves { Trace::Leaving } else { Trace::Heard };
+    }
+
     /// Moves neighbours silent for longer than `longest` (at most [`Ages::expire_after`]) to the
-    /// list of lost robots, reports each in the order of ids, and forgets robots silent for longer
-    /// than `remember`. Call it at the start of each step. O(N), and O(N) for each lost robot.
+    /// list of lost robots and reports each in the order of ids. Call it at the start of each
+    /// step. O(N), and O(N) for each lost robot.
     ///
+    /// A lost robot may have stopped at once, or after another step, and braking and lagging like
+    /// the own `body`: its ball grows to contain both places. It stays in the list until it is
+    /// received again or [cleared](Self::clear_lost).
     /// These robots are not remembered:
-    /// - A robot that left radio range: its extrapolated position is at least 3/4 as far from `own`
-    ///   as the farthest fresh robot; without fresh robots, at least as far as any robot in contact
-    ///   while another one was lost. If that never happened, all robots are remembered.
+    /// - All, without `remembers`.
+    /// - A robot that [left](Trace::Leaving) radio range.
     /// - One of two robots with one id, while the other is fresh: the robot was moved.
     pub fn expire(
         &mut self,
-        own: Position,
+        (body, lag_s): (&Body<S>, S),
         now: Instant,
-        (longest, remember): (Duration, Duration),
+        (longest, remembers): (Duration, bool),
         mut lost: impl FnMut(RobotId),
     ) {
         let ages = self.ages;
         let longest = longest.min(ages.expire_after);
-        let distance = |entry: &Neighbor<S, P>| entry.offset_at(own, now, ages.expire_after).norm();
         let is_within = |entry: &Neighbor<S, P>, longest| entry.age(now).is_some_and(|age| age <= longest);
         while let Some(&silent) = self.as_slice().iter().find(|entry| !is_within(entry, longest)) {
             lost(silent.id);
             self.entries.retain(|entry| entry.id != silent.id);
-            let fresh = self.as_slice().iter().filter(|entry| is_within(entry, ages.stale_after));
-            let farthest_m = fresh.map(distance).fold(S::ZERO, Scalar::max);
-            // Without contact the own radio may have failed, unless earlier losses give the range.
-            let range_m = if farthest_m > S::ZERO { farthest_m * S::from_milli(LEAVES_FROM) } else { self.range_m };
-            self.range_m = self.range_m.max(farthest_m);
-            // The other robot with this id is fresh: it was moved.
             let is_moved = || {
                 let mut others = self.as_slice().iter();
                 others.any(|entry| entry.id.duplicate() == silent.id.duplicate() && is_within(entry, ages.stale_after))
             };
-            if (range_m <= S::ZERO || distance(&silent) < range_m) && !is_moved() {
-                let _ = self.entries.push(Neighbor { is_lost: true, ..silent });
+            if remembers && silent.trace == Trace::Heard && !is_moved() {
+                let speed_mps = silent.velocity_mps.norm();
+                let half_m = (body.braking_m(speed_mps) + speed_mps * (body.step_s + lag_s)) * S::HALF;
+                let ahead_m = silent.velocity_mps.normalized().unwrap_or(Vec3::ZERO) * half_m;
+                let _ = self.entries.push(Neighbor {
+                    trace: Trace::Lost,
+                    position: silent.position.moved(ahead_m).unwrap_or(silent.position),
+                    velocity_mps: Vec3::ZERO,
+                    radius_m: silent.radius_m + half_m,
+                    ..silent
+                });
                 self.sort_last();
             }
         }
-        self.entries.retain(|entry| !entry.is_lost || is_within(entry, remember));
+        for entry in self.entries.iter_mut().filter(|entry| entry.is_lost() && !is_within(entry, OLDEST)) {
+            entry.heard = now - OLDEST;
+        }
     }
 
     /// Stores the payload of robot `id`, if known; ignores an invalid one (`None`). O(log N).
@@ -307,9 +356,14 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     pub fn forget(&mut self, id: RobotId) -> bool {
         let is_known = self.place(id).is_some();
         if is_known {
-            self.entries.retain(|entry| entry.is_lost || entry.id != id);
+            self.entries.retain(|entry| entry.is_lost() || entry.id != id);
         }
         is_known
+    }
+
+    /// Removes the lost robot `id`: it is elsewhere. O(N).
+    pub fn clear_lost(&mut self, id: RobotId) {
+        self.entries.retain(|entry| !entry.is_lost() || entry.id != id);
     }
 
     /// Moves all robots, also lost ones; on a torus, to the image nearest to the own robot. O(N).
@@ -327,7 +381,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     }
 
     fn sort_last(&mut self) {
-        sink_last(&mut self.entries, |before, after| (before.is_lost, before.id) > (after.is_lost, after.id));
+        sink_last(&mut self.entries, |before, after| (before.is_lost(), before.id) > (after.is_lost(), after.id));
     }
 
     /// Returns the knowledge about robot `id`. O(log N).
@@ -373,7 +427,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
 
     fn count(&self) -> usize {
         match self.entries.last() {
-            Some(last) if last.is_lost => self.entries.partition_point(|entry| !entry.is_lost),
+            Some(last) if last.is_lost() => self.entries.partition_point(|entry| !entry.is_lost()),
             _ => self.entries.len(),
         }
     }

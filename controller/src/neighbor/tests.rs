@@ -29,6 +29,15 @@ fn nearest_ids<const N: usize, const K: usize>(table: &NeighborTable<f32, N>, ow
     nearest.iter().map(|near| near.id.0).collect()
 }
 
+/// A body that brakes from 1 m/s within half a metre.
+const BODY: Body<f32> = Body {
+    id: RobotId(100),
+    velocity_mps: Vec3 { x: 0.0, y: 0.0, z: 0.0 },
+    radius_m: 0.1,
+    max_speed_mps: 1.0,
+    max_acceleration_mps2: 1.0,
+    step_s: 0.1,
+};
 const INFLATION: StalenessInflation<f32> = StalenessInflation { growth_mps: 1.0, max_m: 1.0 };
 
 fn put<const N: usize>(table: &mut NeighborTable<f32, N>, n: Neighbor<f32>, now: Instant) -> Put {
@@ -41,7 +50,7 @@ fn ids<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
 
 fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> StdVec<u32> {
     let mut lost = StdVec::new();
-    table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::ZERO), |id| lost.push(id.0));
+    table.expire((&BODY, 0.0), now, (Duration::MAX, false), |id| lost.push(id.0));
     lost
 }
 
@@ -82,19 +91,6 @@ fn known_robot_is_updated_in_a_full_table() {
     assert_eq!(table.len(), 4);
     let known = table.get(RobotId(3), at(7)).fresh().unwrap();
     assert_eq!((known.position.mm[0], known.heard), (99_000, at(7)));
-}
-
-#[test]
-fn full_table_evicts_the_stalest_expired_one_even_for_a_far_newcomer() {
-    let mut table = full::<4>(at(0));
-    let _ = put(&mut table, standing(2, 2.0, at(100)), at(100));
-    let _ = put(&mut table, standing(4, 4.0, at(9_000_000)), at(9_000_000));
-    let now = at(9_000_000);
-    // 1 and 3 are equally old: the larger id is removed.
-    assert_eq!(put(&mut table, standing(8, 800.0, now), now), Put::Evicted(RobotId(3)));
-    assert_eq!(put(&mut table, standing(9, 900.0, now), now), Put::Evicted(RobotId(1)));
-    assert_eq!(put(&mut table, standing(7, 700.0, now), now), Put::Evicted(RobotId(2)));
-    assert_eq!(ids(&table), [4, 7, 8, 9]);
 }
 
 #[test]
@@ -205,77 +201,85 @@ fn expiry_reports_each_lost_robot_once_in_order() {
     assert_eq!(ids(&table), [2]);
 }
 
+fn lost<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
+    table.lost().iter().map(|robot| robot.id.0).collect()
+}
+
 #[test]
-fn lost_robots_are_remembered_until_they_are_received_or_too_old() {
+fn lost_robots_block_their_places_until_they_are_received() {
     let mut table = full::<4>(at(0));
     let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
-    // Robot 2 is not fresh, so it does not determine the radio range.
-    let remember = Duration::from_millis(20_000);
-    let lost = |table: &NeighborTable<f32, 4>| table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>();
-    let mut told = StdVec::new();
-    for now in [5_000_001, 5_100_000] {
-        table.expire(Position::ORIGIN, at(now), (Duration::MAX, remember), |id| told.push(id.0));
-        assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
-    }
-    assert_eq!(told, [1, 3, 4], "each once");
+    let expire = |table: &mut NeighborTable<f32, 4>, now| {
+        let mut told = StdVec::new();
+        table.expire((&BODY, 0.0), at(now), (Duration::MAX, true), |id| told.push(id.0));
+        told
+    };
+    assert_eq!(expire(&mut table, 5_000_001), [1, 3, 4]);
+    assert_eq!((ids(&table), lost(&table)), ([2].into(), [1, 3, 4].into()));
+    assert!(expire(&mut table, 5_100_000).is_empty(), "each once");
     assert_eq!(table.get(RobotId(3), at(5_100_000)), Knowledge::Unknown);
     let now = at(6_000_000);
     assert_eq!(put(&mut table, standing(3, 3.0, now), now), Put::Inserted, "found again");
     assert_eq!((ids(&table), lost(&table)), ([2, 3].into(), [1, 4].into()));
-    // The farthest is removed, even if lost; a reported loss is not reported again.
-    assert_eq!(put(&mut table, standing(9, 1.5, now), now), Put::Inserted);
-    assert_eq!((ids(&table), lost(&table)), ([2, 3, 9].into(), [1].into()));
-    table.expire(Position::ORIGIN, at(20_000_001), (Duration::MAX, remember), |_| {});
-    assert_eq!((table.len(), lost(&table)), (0, [2, 3, 9].into()));
+    // Lost robots take half of the table: a farther robot makes way, they do not.
+    assert_eq!(put(&mut table, standing(9, 1.5, now), now), Put::Evicted(RobotId(3)));
+    assert_eq!((ids(&table), lost(&table)), ([2, 9].into(), [1, 4].into()));
+    table.clear_lost(RobotId(4));
+    assert_eq!((ids(&table), lost(&table)), ([2, 9].into(), [1].into()));
+    // The 32-bit clock wraps twice.
+    for minutes in 1..150_u32 {
+        let _ = expire(&mut table, minutes.wrapping_mul(60_000_000));
+        let ages = table.lost().iter().map(|robot| robot.age(at(minutes.wrapping_mul(60_000_000))));
+        assert!(ages.into_iter().all(|age| age.is_some_and(|age| age <= OLDEST)));
+    }
+    assert_eq!(lost(&table), [1, 2, 9]);
+}
+
+/// Receives one robot at `x` metres with a velocity, and returns its trace.
+fn trace(table: &mut NeighborTable<f32, 4>, x: f32, velocity: f32, own_mps: f32) -> Trace {
+    let mut robot = Neighbor { velocity_mps: Vec3::new(velocity, 0.0, 0.0), ..standing(1, x, at(0)) };
+    table.note_reception(&mut robot, Position::ORIGIN, Vec3::new(own_mps, 0.0, 0.0));
+    robot.trace
 }
 
 #[test]
-fn a_robot_lost_beyond_all_fresh_ones_is_not_remembered() {
+fn a_robot_leaves_only_if_it_recedes_near_the_greatest_distance() {
+    let mut table = NeighborTable::<f32, 4>::new(AGES).with_reach(10.0);
+    assert_eq!(trace(&mut table, 8.9, 0.05, 0.0), Trace::Heard);
+    assert_eq!(trace(&mut table, 9.1, 0.05, 0.0), Trace::Leaving);
+    assert_eq!(trace(&mut table, 8.1, 1.0, 0.0), Trace::Leaving, "at 9.1 m within a second");
+    assert_eq!(trace(&mut table, 9.1, -0.05, 0.0), Trace::Heard, "it comes nearer");
+    assert_eq!(trace(&mut table, 9.1, 0.0, 0.0), Trace::Heard);
+    assert_eq!(trace(&mut table, 9.1, 0.5, 1.0), Trace::Heard, "the own robot follows faster");
+    assert_eq!(trace(&mut table, 9.1, 0.0, -0.1), Trace::Leaving, "the own robot recedes");
+    assert_eq!(trace(&mut table, 20.0, 0.0, 0.0), Trace::Heard);
+    assert_eq!(trace(&mut table, 17.9, 0.05, 0.0), Trace::Heard, "the radio reaches farther than was known");
+    assert_eq!(trace(&mut table, 18.1, 0.05, 0.0), Trace::Leaving);
+}
+
+#[test]
+fn a_robot_that_left_is_not_remembered() {
     let mut table = full::<4>(at(0));
-    let now = at(5_000_001);
-    let _ = put(&mut table, standing(3, 3.0, now), now);
+    let mut gone = Neighbor { trace: Trace::Leaving, ..standing(3, 3.0, at(0)) };
+    let _ = put(&mut table, gone, at(0));
+    gone.id = RobotId(4);
+    gone.trace = Trace::Heard;
+    let _ = put(&mut table, gone, at(0));
     let mut told = StdVec::new();
-    table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::from_millis(20_000)), |id| told.push(id.0));
-    assert_eq!(told, [1, 2, 4]);
-    assert_eq!(table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>(), [1, 2]);
+    table.expire((&BODY, 0.0), at(5_000_001), (Duration::MAX, true), |id| told.push(id.0));
+    assert_eq!((told, lost(&table)), ([1, 2, 3, 4].into(), [1, 2, 4].into()));
 }
 
 #[test]
-fn a_robot_that_drives_out_of_range_is_not_remembered() {
+fn a_lost_robot_may_have_stopped_at_once_or_after_braking() {
     let mut table = NeighborTable::<f32, 4>::new(AGES);
-    let moving = |id, x, now| Neighbor { velocity_mps: Vec3::new(0.3, 0.0, 0.0), ..standing(id, x, now) };
-    for neighbor in [moving(1, 1.0, at(0)), moving(2, 2.0, at(0)), standing(4, 2.0, at(0))] {
-        let _ = put(&mut table, neighbor, at(0));
-    }
-    for step in 1..60_u32 {
-        let (now, x) = (at(step * 100_000), 0.03 * step as f32);
-        let own = place(x, 0.0).unwrap();
-        let _ = table.put(moving(3, x + 2.1, now), own, now, |_| false);
-        table.expire(own, now, (Duration::MAX, Duration::from_millis(20_000)), |_| {});
-    }
-    assert_eq!((ids(&table), table.lost().iter().map(|n| n.id.0).collect()), ([3].into(), std::vec![1, 4]));
-}
-
-#[test]
-fn the_last_robot_out_of_range_is_remembered_unless_others_left_earlier() {
-    let left = |others: &[(u32, f32)]| {
-        let mut table = NeighborTable::<f32, 4>::new(AGES);
-        for step in 0..200_u32 {
-            let (now, x) = (at(step * 100_000), 0.03 * step as f32);
-            for &(id, until_m) in others {
-                let velocity_mps = Vec3::new(0.3, 0.0, 0.0);
-                if x < until_m {
-                    let _ = put(&mut table, Neighbor { velocity_mps, ..standing(id, x, now) }, now);
-                }
-            }
-            table.expire(Position::ORIGIN, now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
-        }
-        assert!(table.is_empty());
-        table.lost().iter().map(|n| n.id.0).collect::<StdVec<_>>()
-    };
-    assert_eq!(left(&[(1, 2.0)]), [1], "its radio may be dead");
-    assert_eq!(left(&[(1, 2.0), (2, 2.0)]), [1, 2], "the own radio may be dead");
-    assert_eq!(left(&[(1, 0.5), (2, 2.0)]), [0_u32; 0]);
+    let robot = Neighbor { velocity_mps: Vec3::new(0.0, -1.0, 0.0), ..standing(1, 3.0, at(0)) };
+    let radius_m = robot.radius_m;
+    let _ = put(&mut table, robot, at(0));
+    table.expire((&BODY, 0.0), at(5_000_001), (Duration::MAX, true), |_| {});
+    let [lost] = table.lost() else { panic!("lost") };
+    assert_eq!((lost.position.mm, lost.velocity_mps), ([3000, -300, 0], Vec3::ZERO));
+    assert_eq!(lost.radius_m, radius_m + 0.3);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::sighting::{Sighted, Sighting, TrackParams};
 use super::track::Track;
-use super::{Neighbor, NeighborTable};
+use super::{Neighbor, NeighborTable, Trace};
 use crate::geom::{Position, Vec3};
 use crate::grid::{Cell, Dir};
 use crate::list;
@@ -340,7 +340,7 @@ fn stranger<S: Scalar, P: Default>(track: &Track<S>, flock: u8) -> Neighbor<S, P
         heading: Dir::Stay,
         slot: flock,
         mode: Mode::Cruise,
-        is_lost: false,
+        trace: Trace::Heard,
         gap_m: S::ZERO,
         payload: P::default(),
     }

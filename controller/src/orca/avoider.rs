@@ -225,6 +225,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
     #[inline(never)]
     fn robots(&self, body: &Body<S>, nearby: &[Nearby<S>], constraints: &mut Vec<HalfSpace<P::Velocity>, K>) {
         let own = own_velocity(body);
+        let horizon_s = self.params.horizon_s.max(body.least_horizon_s());
         for other in nearby {
             let tie = if body.id < other.id { -S::ONE } else { S::ONE };
             let ball = MovingBall {
@@ -234,7 +235,7 @@ impl<S: Scalar, const K: usize, P: HalfSpaces<S>> Avoider<S, K, P> {
                 tie: Vec3::new(tie, S::ZERO, S::ZERO).into(),
             };
             let params = Params {
-                horizon_s: self.params.horizon_s,
+                horizon_s,
                 separation_s: body.step_s,
                 share: if other.gives_way { self.params.share } else { S::ONE },
             };

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AvoidParams<S> {
     /// Time ahead without collisions with robots, seconds; more than 0, usually 1 to 5. A longer
-    /// time makes robots give way earlier and slows crowds; less than the time to stop (speed /
-    /// acceleration) is not safe.
+    /// time makes robots give way earlier and slows crowds. A body with inertia looks ahead for at
+    /// least twice its braking time ([`Body::least_horizon_s`](crate::body::Body)).
     pub horizon_s: S,
     /// Time ahead without collisions with static obstacles, seconds. A robot in front of a wall
     /// slows to (distance / this time), so a long time makes it slow in narrow places.

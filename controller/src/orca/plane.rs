@@ -1,7 +1,7 @@
 //! ORCA in the plane: the half-plane of one neighbour (ORCA section 4; Tolok et al., the functional
 //! voxel model, FVM, eqs. 6 to 13), and linear programming on one border (RVO2's `linearProgram1`).
 
-use super::deadlock::{Patience, RightOfWay, lean};
+use super::deadlock::{Patience, RightOfWay, around, lean};
 use super::dimension::{Aim, Dimension, HalfPlane, HalfSpace, MovingBall, Situation, leave_ball};
 use super::{AvoidParams, Params};
 use crate::geom::{Vec2, Vec3};
@@ -45,7 +45,10 @@ impl<S: Scalar> Dimension for Vec2<S> {
         let (right_of_way, stuck) = memory;
         let patience = params.deadlock.patience_radii;
         let at_gap = right_of_way.wish(situation, goal, patience, rng);
-        let wish = at_gap.unwrap_or_else(|| lean(params, situation, goal));
+        let wish = at_gap.unwrap_or_else(|| {
+            let wish = around(situation, goal);
+            lean(params, &Situation { wish, ..*situation }, goal)
+        });
         // A robot that waits for its turn must not back off: its turn comes.
         if right_of_way.takes_turns() { wish } else { stuck.wish(situation, wish, patience, rng) }
     }

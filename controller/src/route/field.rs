@@ -45,6 +45,9 @@ pub struct CostField<const CELLS: usize> {
     closed: usize,
     /// The next bucket, in an endless numbering of the ring: costs below it are final.
     at: u32,
+    /// Buckets that the last search visited.
+    #[cfg(test)]
+    turns: u32,
 }
 
 impl<const CELLS: usize> Default for CostField<CELLS> {
@@ -81,6 +84,8 @@ impl<const CELLS: usize> CostField<CELLS> {
             learns: false,
             closed: 0,
             at: 0,
+            #[cfg(test)]
+            turns: 0,
         }
     }
 
@@ -198,6 +203,11 @@ impl<const CELLS: usize> CostField<CELLS> {
         (weights.get(dir) <= here).then_some(dir)
     }
 
+    #[cfg(test)]
+    pub(super) const fn turns(&self) -> u32 {
+        self.turns
+    }
+
     fn index(&self, cell: Cell) -> Option<usize> {
         let dx = u16::try_from(i32::from(cell.x) - i32::from(self.origin.x)).ok()?;
         let dy = u16::try_from(i32::from(cell.y) - i32::from(self.origin.y)).ok()?;
@@ -262,6 +272,10 @@ impl<const CELLS: usize> CostField<CELLS> {
             *cost = if u == BLOCKED { 0 } else { EXCLUDED };
         }
         self.queue.clear(used);
+        #[cfg(test)]
+        {
+            self.turns = 0;
+        }
         self.closed = query.from;
         if let Some(own) = self.cost.get_mut(query.from) {
             *own = 0;
@@ -286,6 +300,10 @@ impl<const CELLS: usize> CostField<CELLS> {
         while !self.queue.is_empty() && !around.is_some_and(|cell| self.has_settled_around(cell)) {
             let at = self.queue.next_from(self.at);
             idle += 1;
+            #[cfg(test)]
+            {
+                self.turns += 1;
+            }
             while let Some(cell) = self.queue.pop(at) {
                 let cost = self.cost.get(cell).copied().unwrap_or(0);
                 let due = cost >> self.shift;

@@ -1,6 +1,7 @@
 use super::*;
 use crate::cost::{Cost, EXCLUDED, TICK, Weights};
 use crate::grid::{BLOCKED, Cell, DIAGONAL, Dir, Window};
+use crate::rand::Rng;
 use proptest::prelude::*;
 use std::vec::Vec;
 
@@ -151,6 +152,60 @@ fn plan_does_not_hold_when_a_corner_beside_it_closes() {
 }
 
 #[test]
+fn costs_are_final_or_withheld_until_the_search_is_complete() {
+    let params = RouteParams::default();
+    let mut field = CostField::<169>::new();
+    let (mut early, mut withheld) = (0, 0);
+    for seed in 0..100 {
+        let mut rng = Rng::new(seed);
+        let cells: Vec<u8> = (0..121).map(|_| 1 + rng.below(9) as u8).collect();
+        let window = Window::new(&cells, Cell::new(-5, -5), 11, 11).unwrap();
+        let target = Cell::new(4, rng.below(9) as i16 - 4);
+        field.weights(&params, &window, Cell::default(), target, [], NO_VISITS).unwrap();
+        let all = || (-5..=5).flat_map(|y| (-5..=5).map(move |x| Cell::new(x, y)));
+        let costs: Vec<_> = all().map(|cell| field.cost(cell)).collect();
+        field.complete(&params);
+        for (cell, cost) in all().zip(costs) {
+            let last = field.cost(cell);
+            assert_eq!(last.is_some(), cell != Cell::default(), "{cell:?}");
+            assert!(cost.is_none() || cost == last, "seed {seed}, {cell:?}: {cost:?} before {last:?}");
+            early += i32::from(cost.is_some());
+            withheld += i32::from(cost.is_none() && last.is_some());
+        }
+        assert_eq!((field.cost(target), field.cost(Cell::new(6, 0))), (Some(0), None));
+    }
+    assert!(early > 1000 && withheld > 1000, "{early} early, {withheld} withheld");
+}
+
+#[test]
+fn a_dear_cell_closes_no_route() {
+    let most = Gain::from_sixteenths(u16::MAX);
+    let params = RouteParams { a0: most, a1: most, a2: most, ..RouteParams::default() };
+    let (cells, width, height) = ([BLOCKED, BLOCKED, BLOCKED, 1, 255, 1, BLOCKED, BLOCKED, BLOCKED], 3, 3);
+    let window = Window::new(&cells, Cell::default(), width, height).unwrap();
+    let others = [Cell::new(1, 1); 900];
+    let mut field = CostField::<25>::new();
+    let found = field.weights(&params, &window, Cell::new(0, 1), Cell::new(2, 1), others, NO_VISITS).unwrap();
+    assert_eq!((found.get(Dir::East), found.best()), (EXCLUDED - 1, Some(Dir::East)));
+}
+
+/// The only route enters a cell that costs 18 million buckets more than the others.
+#[test]
+fn a_wide_range_of_costs_takes_no_longer() {
+    let mut cells = [BLOCKED; 121];
+    cells[55..66].fill(1);
+    let window = Window::new(&cells, Cell::new(-5, -5), 11, 11).unwrap();
+    let params = RouteParams { a2: Gain::from_sixteenths(u16::MAX), ..RouteParams::default() };
+    let mut visits = VisitMemory::<4>::new();
+    for cell in [Cell::new(3, 0), Cell::new(-2, 0)] {
+        (0..300).for_each(|_| visits.enter(cell));
+    }
+    let mut field = CostField::<169>::new();
+    field.weights(&params, &window, Cell::default(), Cell::new(20, 0), [], Some(&visits)).unwrap();
+    assert!(field.turns() <= 66 * 11, "{} buckets", field.turns());
+}
+
+#[test]
 fn extreme_gains_neither_close_a_route_nor_take_long() {
     let cells = [1; 121];
     let window = Window::new(&cells, Cell::new(-5, -5), 11, 11).unwrap();
@@ -166,6 +221,8 @@ fn extreme_gains_neither_close_a_route_nor_take_long() {
                 let found = field.weights(&params, &window, Cell::default(), target, others, Some(&visits));
                 let best = found.unwrap().best().unwrap();
                 assert!(a3 == Gain::ZERO || best.offset().x >= 0, "{a0:?} {a3:?} {best:?}");
+                // At most 65 empty buckets before each of the 121 cells.
+                assert!(field.turns() <= 66 * 121, "{a0:?} {a3:?}: {} buckets", field.turns());
                 let small = RouteParams { radius: 2, ..params };
                 let found = field.weights(&small, &window, Cell::default(), target, others, Some(&visits));
                 assert!(found.is_ok());

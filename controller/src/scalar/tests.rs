@@ -181,16 +181,27 @@ proptest! {
     }
 
     #[test]
-    fn any_integers_convert(n: i32, d: i32) {
-        fn all<S: Scalar>(n: i32, d: i32) {
-            for x in [S::from_i32(n), S::from_milli(n), S::from_micro(n), S::from_ratio(n, d)] {
-                assert!(x.to_f64().is_nan() || (x < S::ZERO) == (x.to_f64() < 0.0));
+    fn any_integers_convert(n: i32, d: i32, shifts in any::<[u8; 2]>()) {
+        fn all<S: Scalar>(n: i32, d: i32, t: &Tolerance) -> Result<(), TestCaseError> {
+            let (whole, below, most) = (f64::from(n), f64::from(d), S::MAX.to_f64());
+            for (x, exact) in [
+                (S::from_i32(n), whole),
+                (S::from_milli(n), whole / 1e3),
+                (S::from_micro(n), whole / 1e6),
+                (S::from_ratio(n, d), if d == 0 { f64::NAN } else { whole / below }),
+            ] {
+                // Numerator, denominator and quotient are rounded.
+                if !exact.is_nan() {
+                    near(x.to_f64(), exact.clamp(-most - S::EPSILON.to_f64(), most), 1.05 * t.step, 2.0 * t.relative)?;
+                }
             }
+            Ok(())
         }
-        all::<f32>(n, d);
-        all::<f64>(n, d);
-        all::<Q16>(n, d);
-        all::<Fast32>(n, d);
+        let [n, d] = [n >> (shifts[0] % 32), d >> (shifts[1] % 32)];
+        all::<f32>(n, d, &F32)?;
+        all::<f64>(n, d, &Tolerance { relative: 3e-16, ..F32 })?;
+        all::<Q16>(n, d, &Q16_)?;
+        all::<Fast32>(n, d, &FAST)?;
     }
 
     #[test]

@@ -107,6 +107,10 @@ pub fn message() -> impl Strategy<Value = Message> {
         (cell(), any::<[u8; 32]>()).prop_map(|(corner, bytes)| Message::Land(LandPatch::from_bytes(corner, bytes)));
     let payload = vec(any::<u8>(), 0..=MAX_PAYLOAD);
     let payload = payload.prop_map(|bytes| Message::Payload(PayloadBytes::new(&bytes).unwrap_or_default()));
+    let lost = (robot(), any::<bool>(), any::<u16>(), any::<[i32; 3]>(), any::<u16>());
+    let lost = lost.prop_map(|(id, is_lost, age_cs, position_mm, radius_mm)| {
+        Message::Lost(LostRobot { id, is_lost, age_cs, position_mm, radius_mm })
+    });
     let keys = prop_oneof![key, held];
-    prop_oneof![beacon(), request, ack, template(), goal, place, keys, land, payload]
+    prop_oneof![beacon(), request, ack, template(), goal, place, keys, land, payload, lost]
 }

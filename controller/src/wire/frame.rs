@@ -21,8 +21,8 @@
 //! Flash on a Cortex-M0 (`opt-level = "s"`): CRC table 512 bytes, [`encode`] and [`decode`] 7 KiB.
 
 use super::message::{
-    Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, Message, Request, TEMPLATE_PART, TemplateAssignment,
-    WaypointAssignment,
+    Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, LostRobot, Message, Request, TEMPLATE_PART,
+    TemplateAssignment, WaypointAssignment,
 };
 use super::payload::{MAX_PAYLOAD, PayloadBytes};
 use crate::land::{LandPatch, PATCH_TILES};
@@ -105,6 +105,11 @@ impl PayloadBytes {
     pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + 1 + MAX_PAYLOAD;
 }
 
+impl LostRobot {
+    /// Maximum length of its frame in bytes, with tag and delimiter.
+    pub const MAX_FRAME_LEN: usize = OVERHEAD + 1 + ID + 1 + 2 + 3 * 4 + 2;
+}
+
 /// Maximum length of any frame in bytes, with tag and delimiter.
 pub const MAX_FRAME_LEN: usize = {
     let lens = [
@@ -118,6 +123,7 @@ pub const MAX_FRAME_LEN: usize = {
         KeyHeld::MAX_FRAME_LEN,
         LandPatch::MAX_FRAME_LEN,
         PayloadBytes::MAX_FRAME_LEN,
+        LostRobot::MAX_FRAME_LEN,
     ];
     let mut max = 0;
     let mut rest = lens.as_slice();

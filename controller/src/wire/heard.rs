@@ -2,7 +2,7 @@
 
 use super::Beacon;
 use crate::geom::{Position, Vec3};
-use crate::neighbor::Neighbor;
+use crate::neighbor::{Neighbor, Trace};
 use crate::robot::RobotId;
 use crate::scalar::Scalar;
 use crate::time::{Duration, Instant};
@@ -25,7 +25,7 @@ impl<S: Scalar, P: Default> Neighbor<S, P> {
             heading: beacon.heading,
             slot: beacon.slot,
             mode: beacon.mode,
-            is_lost: false,
+            trace: Trace::Heard,
             gap_m: S::ZERO,
             payload: P::default(),
         }

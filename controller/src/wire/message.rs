@@ -151,6 +151,26 @@ pub struct WaypointAssignment {
     pub velocity_mmps: [i16; 3],
 }
 
+/// What the sender knows of a robot that others may miss. Robots send it in turn, behind their
+/// beacons, and an operator sends it to clear the place of a robot that was carried away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct LostRobot {
+    /// The robot.
+    pub id: RobotId,
+    /// True: it fell silent near the position. False: it was heard since, or is no longer there.
+    pub is_lost: bool,
+    /// Time since its last beacon, or since it is known not to be there: hundredths of a second.
+    #[serde(with = "fixint")]
+    pub age_cs: u16,
+    /// The position of its last beacon, mm.
+    #[serde(with = "fixint")]
+    pub position_mm: [i32; 3],
+    /// Radius of the smallest disc (ball) around its body, mm.
+    #[serde(with = "fixint")]
+    pub radius_mm: u16,
+}
+
 /// The stages of a key change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -215,6 +235,8 @@ pub enum Message {
     Land(LandPatch),
     /// Data of the sender's guidance law for robots with the same law.
     Payload(PayloadBytes),
+    /// A lost robot, or one that was wrongly taken for lost.
+    Lost(LostRobot),
 }
 
 impl Message {
@@ -222,7 +244,7 @@ impl Message {
     #[must_use]
     pub const fn addressee(&self) -> Option<RobotId> {
         let to = match self {
-            Self::Beacon(_) | Self::Land(_) | Self::Payload(_) => return None,
+            Self::Beacon(_) | Self::Land(_) | Self::Payload(_) | Self::Lost(_) => return None,
             Self::Request(request) => request.to,
             Self::Ack(ack) => ack.to,
             Self::Template(part) => part.to,

@@ -24,8 +24,8 @@ pub use frame::{
     decode_verified, encode, encode_tagged, frames,
 };
 pub use message::{
-    Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, KeyPhase, Message, Request, RequestKind, TEMPLATE_PART,
-    TemplateAssignment, WaypointAssignment,
+    Ack, Beacon, GoalAssignment, KeyAssignment, KeyHeld, KeyPhase, LostRobot, Message, Request, RequestKind,
+    TEMPLATE_PART, TemplateAssignment, WaypointAssignment,
 };
 pub use newest::Newest;
 #[cfg(feature = "auth")]

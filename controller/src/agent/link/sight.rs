@@ -34,10 +34,7 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
                 self.contact = ContactState::InContact(now);
             }
             let put = self.table.put(neighbor, own, now, |id| needed.contains(&id));
-            if let Put::Evicted(evicted) = put {
-                self.windows.retain(|(id, _)| *id != evicted);
-                report(out, Event::NeighborEvicted(evicted));
-            }
+            self.note_eviction(put, out);
             if matches!(put, Put::Inserted | Put::Evicted(_)) {
                 let _ = self.windows.push((id, SequenceWindow::new()));
                 report(out, Event::NeighborFound(id));

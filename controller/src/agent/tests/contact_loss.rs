@@ -6,6 +6,7 @@ use crate::neighbor::StalenessInflation;
 use crate::orca::AvoidParams;
 use crate::rand::Rng;
 use crate::scalar::Q16;
+use crate::wire::{LostRobot, Message, decode};
 
 pub(super) type Mover<S> = Robot<S, WaypointGuidance<S>, OrcaSafety<S, 16>>;
 
@@ -122,6 +123,63 @@ fn a_dead_robot_in_the_way_is_remembered_and_avoided() {
     check::<Q16>();
 }
 
+const DEFAULT: ContactLossPolicy<f32> = ContactLossPolicy { listen: Duration::ZERO, ..ContactLossPolicy::DEFAULT };
+
+#[test]
+fn a_robot_listens_before_it_moves() {
+    let contact_loss = ContactLossPolicy { listen: STEP.saturating_mul(3), ..DEFAULT };
+    let config = AgentConfig { contact_loss, ..in_plane(1) };
+    let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
+    let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));
+    for n in 0..6 {
+        let wait = robot.step(step_number(n), &[]).wait;
+        assert_eq!((length(robot.velocity_mps) > 0.0, wait), (n > 2, (n <= 2).then_some(Wait::Radio)), "step {n}");
+    }
+}
+
+/// A robot announces a lost robot to one that never heard it, and the place is then avoided; a
+/// robot in contact is announced as such; and the sender does not take itself for lost.
+#[test]
+fn lost_robots_are_told_and_errors_corrected() {
+    let told = |id, is_lost, age_cs| {
+        let lost = LostRobot { id: RobotId(id), is_lost, age_cs, position_mm: [5000, 100, 0], radius_mm: 200 };
+        Message::Lost(lost)
+    };
+    let lost_in = |outbox: &[u8]| {
+        let frames = outbox.split(|byte| *byte == 0).filter_map(|frame| decode(frame).ok()?.message.into());
+        frames.filter_map(|said| if let Message::Lost(lost) = said { Some(lost) } else { None }).next()
+    };
+    let mut robot = Robot::new(&in_plane(1), waypoint::<f32>(), orca(), [0.0; 2]);
+    let mut hear = |n: u16, messages: &[Message]| {
+        let out = robot.step(step_number(n.into()), &bytes(2, 0, n, messages));
+        (lost_in(&out.outbox), robot.agent.link.table.lost().iter().map(|lost| lost.id.0).collect::<Vec<_>>())
+    };
+    let near = || super::plane::body_at([-3000, 0], [0, 0], Mode::Idle);
+    let (said, lost) = hear(0, &[near(), told(3, true, 50)]);
+    let said = said.unwrap();
+    assert_eq!((said.id, said.is_lost, said.age_cs, said.position_mm), (RobotId(3), true, 51, [5000, 100, 0]));
+    assert_eq!(lost, [3]);
+    assert_eq!(hear(1, &[near()]).0, None, "four times a second");
+    // An older statement changes nothing, a newer one clears the place.
+    assert_eq!(hear(10, &[near(), told(3, false, 200)]).1, [3]);
+    assert_eq!(hear(20, &[near(), told(3, false, 0)]), (None, vec![]));
+    // Errors of others about robots that are there.
+    let (said, lost) = hear(30, &[near(), told(2, true, 40)]);
+    assert_eq!((said.map(|said| (said.id, said.is_lost)), lost), (Some((RobotId(2), false)), vec![]));
+    let (said, lost) = hear(40, &[near(), told(1, true, 40)]);
+    assert_eq!((said.map(|said| (said.id, said.is_lost)), lost), (Some((RobotId(1), false)), vec![]));
+    // Somebody else has corrected it in the meantime.
+    assert_eq!(hear(50, &[near(), told(2, true, 40), told(2, false, 0)]), (None, vec![]));
+    let (mut ages, mut previous) = (0, 0);
+    for n in 60..70 {
+        let (said, _) = hear(n, &[near(), told(4 + u32::from(n % 2), true, 50)]);
+        let Some(said) = said else { continue };
+        assert_ne!(said.id.0, previous, "in turn");
+        (previous, ages) = (said.id.0, ages + 1);
+    }
+    assert!(ages >= 3);
+}
+
 /// Six seconds of silence. Returns speed, mode, and whether a loss was reported.
 fn left_alone(hears: bool, silence: ContactLossPolicy<f32>) -> (f64, Mode, bool) {
     let config = AgentConfig { contact_loss: silence, ..in_plane(1) };
@@ -133,13 +191,13 @@ fn left_alone(hears: bool, silence: ContactLossPolicy<f32>) -> (f64, Mode, bool)
         let out = robot.step(step_number(n), if n == 0 && hears { &inbox } else { &[] });
         is_told |= out.events.contains(&Event::ContactLost);
     }
-    (length(robot.velocity_mps), robot.agent.mode(), is_told)
+    (libm::round(1e6 * length(robot.velocity_mps)) / 1e6, robot.agent.mode(), is_told)
 }
 
 #[test]
 fn a_robot_without_contact_stands_unless_it_may_be_alone() {
-    let after = |alone_mps| ContactLossPolicy { remember: STEP.saturating_mul(50), alone_mps };
-    assert_eq!(left_alone(true, ContactLossPolicy::DEFAULT), (1.0, Mode::Cruise, true), "a minute is not over");
+    let after = |alone_mps| ContactLossPolicy { stands_after: STEP.saturating_mul(50), alone_mps, ..DEFAULT };
+    assert_eq!(left_alone(true, DEFAULT), (1.0, Mode::Cruise, true), "a minute is not over");
     assert_eq!(left_alone(true, after(0.0)), (0.0, Mode::Hold, true));
     assert_eq!(left_alone(true, after(0.25)), (0.25, Mode::Cruise, true));
     assert_eq!(left_alone(true, after(f32::MAX)), (1.0, Mode::Cruise, true));
@@ -148,13 +206,14 @@ fn a_robot_without_contact_stands_unless_it_may_be_alone() {
         (1.0, Mode::Cruise, false),
         "a robot that never heard another one is the first"
     );
-    let forgetful = ContactLossPolicy { remember: Duration::ZERO, alone_mps: 0.0 };
-    assert_eq!(left_alone(true, forgetful), (0.0, Mode::Hold, true), "no robot is remembered");
+    let expecting = ContactLossPolicy { expects_others: true, ..DEFAULT };
+    assert_eq!(left_alone(false, expecting), (0.0, Mode::Hold, false), "others exist");
+    assert_eq!(left_alone(true, expecting), (1.0, Mode::Cruise, true));
 }
 
 #[test]
 fn a_robot_continues_when_contact_is_restored() {
-    let silence = ContactLossPolicy { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
+    let silence = ContactLossPolicy { stands_after: STEP.saturating_mul(40), ..DEFAULT };
     let mut robot =
         Robot::new(&AgentConfig { contact_loss: silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));

@@ -185,16 +185,31 @@ proptest! {
 #[test]
 fn a_robot_that_was_moved_is_forgotten_at_its_previous_position() {
     let mut robot = Robot::new(&in_plane(7), waypoint::<f32>(), orca(), [0.0; 2]);
+    let mut events = Vec::new();
     for n in 0..100_u16 {
         let x_mm = if n < 20 { 2000 } else { -3000 };
-        let _ = robot.step(step_number(n.into()), &frame(5, 0, n, &standing(x_mm)));
-        let places: Vec<_> = robot.agent.neighbors().iter().map(|other| (other.id.0, other.position.mm[0])).collect();
+        // The far robot keeps the others in range.
+        let inbox = [frame(5, 0, n, &standing(x_mm)), frame(4, 0, n, &standing(9000))].concat();
+        let out = robot.step(step_number(n.into()), &inbox);
+        let others = robot.agent.neighbors().iter().filter(|other| other.id != RobotId(4));
+        let places: Vec<_> = others.map(|other| (other.id.0, other.position.mm[0])).collect();
         match n {
             0..20 => assert_eq!(places, [(5, 2000)], "step {n}"),
             20..50 => assert_eq!(places, [(5, 2000), (5 | 1 << 31, -3000)], "step {n}"),
-            50..80 => assert_eq!(places.first(), Some(&(5, -3000)), "step {n}"),
+            50..80 => assert_eq!(places, [(5, -3000), (5 | 1 << 31, -3000)], "step {n}"),
             _ => assert_eq!(places, [(5, -3000)], "step {n}"),
         }
         assert!(robot.agent.link.table.lost().is_empty());
+        events.extend(out.events.iter().map(|&event| (n, event)));
     }
+    let [first, second] = [RobotId(5), RobotId(5 | 1 << 31)];
+    let expected = [
+        (0, Event::NeighborFound(first)),
+        (0, Event::NeighborFound(RobotId(4))),
+        (20, Event::DuplicateId(first)),
+        (50, Event::NeighborLost(first)),
+        (50, Event::NeighborFound(first)),
+        (80, Event::NeighborLost(second)),
+    ];
+    assert_eq!(events, expected);
 }

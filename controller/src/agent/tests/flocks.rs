@@ -62,11 +62,7 @@ fn an_alpha_flock_limits_an_absurd_speed() {
     robot.velocity_mps = [f64::MAX, 0.0];
     let _ = robot.agent.assign_waypoint(0, &place(1000, 0));
     let out = robot.step(step_number(0), &[]);
-    let is_sane = match out.command {
-        Command::Velocity(v) => v.norm() <= 1.001,
-        Command::Hold | Command::Move(_) => true,
-    };
-    assert!(is_sane, "{:?}", out.command);
+    assert!(matches!(out.command, Command::Velocity(v) if v.norm() <= 1.001), "{:?}", out.command);
 }
 
 #[test]
@@ -167,4 +163,25 @@ fn goal_flocks_of_different_numbers_do_not_gather() {
     };
     assert!(parted(3) < 1.2);
     assert!(parted(4) > 1.49 && parted(0) > 1.49);
+}
+
+#[test]
+fn each_flock_reports_the_parameters_that_it_was_given() {
+    /// Numbers of known and of accepted parameters.
+    fn keeps(mut law: impl Guidance<f32>) -> [usize; 2] {
+        let mut counts = [0; 2];
+        for &(name, parameter) in <Parameter as crate::names::Named>::NAMES {
+            let before = law.parameter(parameter);
+            let is_accepted = law.tune(parameter, 0.75);
+            assert_eq!(law.parameter(parameter), if is_accepted { Some(0.75) } else { before }, "{name}");
+            assert!(before.is_some_and(|value| value != 0.0 && value != 0.75) || !is_accepted, "{name}: {before:?}");
+            counts[0] += usize::from(before.is_some());
+            counts[1] += usize::from(is_accepted);
+        }
+        counts
+    }
+    let boids = BoidsGuidance::new(BoidsParams::new(0.3, 30.0, 0.05, 0.02), 0.5);
+    let goal = GoalFlockGuidance::new(GoalParams::new(0.5, 1.0), 1.0, 7);
+    let lattice = LatticeGuidance::new(LatticeParams::<f32>::new(1.0), true);
+    assert_eq!([keeps(boids), keeps(goal), keeps(lattice)], [[5, 5], [7, 6], [11, 10]]);
 }

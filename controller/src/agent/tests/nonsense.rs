@@ -51,7 +51,7 @@ pub(super) fn frame() -> impl Strategy<Value = (Header, Message)> {
             Message::Key(key) => key.to = to,
             Message::KeyHeld(held) => held.to = to,
             Message::Land(patch) if to == OWN => patch.corner = crate::land::tile_of(here),
-            Message::Land(_) | Message::Payload(_) => {}
+            Message::Land(_) | Message::Payload(_) | Message::Lost(_) => {}
         }
         let header = Header { boot, sender, sequence };
         (header, message)

@@ -18,11 +18,12 @@ pub(super) fn step_number(n: i32) -> Instant {
 }
 
 pub(super) fn in_plane<S: Scalar>(id: u32) -> AgentConfig<S> {
-    AgentConfig { seed: 1, ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP) }
+    let contact_loss = ContactLossPolicy { listen: Duration::ZERO, ..ContactLossPolicy::DEFAULT };
+    AgentConfig { seed: 1, contact_loss, ..AgentConfig::new(RobotId(id), S::from_milli(RADIUS_MM), STEP) }
 }
 
 pub(super) fn one_step_late<S: Scalar>(id: u32) -> AgentConfig<S> {
-    AgentConfig { latency: STEP, ..in_plane(id) }
+    AgentConfig { latency: STEP, contact_loss: ContactLossPolicy::DEFAULT, ..in_plane(id) }
 }
 
 pub(super) fn orca<S: Scalar>() -> OrcaSafety<S, 16> {

@@ -38,7 +38,11 @@ fn robots_in_the_way_are_reported() {
 
 #[test]
 fn a_robot_without_contact_waits_for_the_radio() {
-    let silence = ContactLossPolicy { remember: STEP.saturating_mul(40), alone_mps: 0.0 };
+    let silence = ContactLossPolicy {
+        stands_after: STEP.saturating_mul(40),
+        listen: Duration::ZERO,
+        ..ContactLossPolicy::DEFAULT
+    };
     let mut robot =
         Robot::new(&AgentConfig { contact_loss: silence, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
     let _ = robot.agent.assign_waypoint(0, &place(90_000, 0));

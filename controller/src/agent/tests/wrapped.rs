@@ -90,3 +90,75 @@ fn the_tracking_wrapper_forwards_all() {
     passes_orders_on(&mut law, NeighborTracking::inside);
     passes_land_on(&mut law, NeighborTracking::inside);
 }
+
+/// A law of which all answers are the same.
+#[derive(Clone, Copy)]
+struct Answers(bool);
+
+impl Teamwork for Answers {}
+
+impl Guidance<f32> for Answers {
+    type Input<'a> = InPlane<'a, f32>;
+    type Destination = Roams;
+    type Workspace = ();
+    type Payload = ();
+
+    fn decide(
+        &mut self,
+        _: &GuidanceInput<'_, f32>,
+        _: &InPlane<'_, f32>,
+        _: &mut Rng,
+        (): &mut (),
+    ) -> Result<Decision<f32>, BadInput> {
+        Err(BadInput)
+    }
+
+    fn goes_to_cells(&self) -> bool {
+        self.0
+    }
+
+    fn goes_by_velocity(&self) -> bool {
+        self.0
+    }
+
+    fn has_own_goal(&self) -> bool {
+        self.0
+    }
+
+    fn assign_waypoint(&mut self, _: u8, _: &Waypoint<f32>) -> bool {
+        self.0
+    }
+
+    fn parameter(&self, _: Parameter) -> Option<f32> {
+        self.0.then_some(0.5)
+    }
+
+    fn tune(&mut self, _: Parameter, _: f32) -> bool {
+        self.0
+    }
+}
+
+fn passes_answers_on<L: Guidance<f32>>(mut law: L, answer: bool) {
+    assert_eq!([law.goes_to_cells(), law.goes_by_velocity(), law.has_own_goal()], [answer; 3]);
+    assert_eq!(law.assign_waypoint(0, &super::plane::place(0, 0)), answer);
+    let parameter = Parameter::Horizon;
+    assert_eq!((law.parameter(parameter), law.tune(parameter, 0.5)), (answer.then_some(0.5), answer));
+}
+
+#[test]
+fn wrappers_forward_the_answers_of_the_law() {
+    for answer in [true, false] {
+        passes_answers_on(AnyWorld(Answers(answer)), answer);
+        passes_answers_on(MapSharing::<_, 0>::new(Answers(answer), None), answer);
+        passes_answers_on(NeighborTracking::<f32, _>::new(Answers(answer), None), answer);
+        passes_answers_on(Commanded::new(Answers(answer), 1.0_f32, 0.1), answer);
+    }
+}
+
+#[test]
+fn a_law_without_teamwork_accepts_no_template() {
+    let (to, offset, entries) = (RobotId(1), Cell::default(), heapless::Vec::new());
+    let part = TemplateAssignment { to, version: 1, part: 0, parts: 1, slot: 3, offset, entries };
+    assert!(!Answers(true).assign_template(&part, false));
+    assert_eq!((Answers(true).goal_offset(), Answers(true).needs(RobotId(9))), (Cell::default(), false));
+}

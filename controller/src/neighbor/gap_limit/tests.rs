@@ -7,8 +7,11 @@ use crate::wire::Beacon;
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
 
+mod passive;
+
 const STEP: Duration = Duration::from_millis(100);
 const RADIUS_M: f64 = 0.15;
+const STANDS_AFTER: Duration = Duration::from_millis(60_000);
 
 fn moment(step: i32) -> Instant {
     Instant::from_micros(1) + STEP.saturating_mul(step)
@@ -47,12 +50,22 @@ impl<S: Scalar> Mover<S> {
     fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
         let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
         let (own, now) = (self.position(), moment(step));
-        table.expire(own, now, (Duration::MAX, Duration::from_millis(60_000)), |_| {});
+        table.expire((&self.body, S::ZERO), now, (Duration::MAX, true), |_| {});
         for &neighbor in heard {
             let _ = table.put(neighbor, own, now, |_| false);
         }
         let inflation = StalenessInflation { growth_mps: S::ONE, max_m: body.radius_m };
-        let room = GapLimit { body: &body, own, now, news: STEP, inflation, may_be_alone: false };
+        let room = GapLimit {
+            body: &body,
+            own,
+            own_mps: Vec3::ZERO,
+            lag_s: S::ZERO,
+            now,
+            news: STEP,
+            inflation,
+            may_be_alone: false,
+            stands_after: STANDS_AFTER,
+        };
         let wish = wish.cast().clamp_norm(body.max_speed_mps);
         let velocity_mps = body.reach(room.limit(&mut table, &[], wish).unwrap_or(Vec3::ZERO));
         body.velocity_mps = velocity_mps;
@@ -159,10 +172,13 @@ fn a_robot_turned_aside_is_not_turned_into_a_wall() {
     let room = GapLimit {
         body: &mover.body,
         own: Position::ORIGIN,
+        own_mps: Vec3::ZERO,
+        lag_s: 0.0,
         now: moment(1),
         news: STEP,
         inflation,
         may_be_alone: false,
+        stands_after: STANDS_AFTER,
     };
     let east = Vec3::new(1.0, 0.0, 0.0);
     let open = room.limit(&mut table, &[], east).unwrap();
@@ -182,7 +198,17 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
         let (own, now) = (mover.position(), moment(step));
         let _ = mover.table.put(other.news(step - 1), own, now, |_| false);
         let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
-        let room = GapLimit { body: &mover.body, own, now, news: STEP, inflation, may_be_alone: false };
+        let room = GapLimit {
+            body: &mover.body,
+            own,
+            own_mps: Vec3::ZERO,
+            lag_s: 0.0,
+            now,
+            news: STEP,
+            inflation,
+            may_be_alone: false,
+            stands_after: STANDS_AFTER,
+        };
         let v = room.limit(&mut mover.table, &wall, Vec3::new(1.0, 0.0, 0.0)).unwrap();
         mover.at_m += v.cast() * 0.1;
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);

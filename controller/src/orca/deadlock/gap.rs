@@ -1,5 +1,6 @@
 //! Finds narrow places between walls, which robots must share.
 
+use super::detour::{crosses, distance, is_hidden, nearest, rest, walls};
 use crate::geom::Vec2;
 use crate::obstacle::Obstacle;
 use crate::scalar::Scalar;
@@ -17,6 +18,7 @@ pub(super) struct Gap<S> {
 }
 
 pub(super) struct Wanted<S> {
+    pub(super) radius_m: S,
     pub(super) least_m: S,
     pub(super) most_m: S,
     /// Longest passage among gaps that are not narrow, metres.
@@ -72,9 +74,15 @@ impl<S: Scalar> Gap<S> {
             .all(|place| obstacles.iter().filter_map(|obstacle| distance(obstacle, place)).any(|near| near < self.half))
     }
 
+    /// Whether nothing is as near to the middle as the posts, such as other corners of a crossing.
     fn is_clear(&self, obstacles: &[Obstacle<S>]) -> bool {
+        let side = self.ahead.perp() * self.half;
         let room = self.half - self.half * S::from_milli(1);
-        obstacles.iter().filter_map(|obstacle| distance(obstacle, self.middle)).all(|distance| distance >= room)
+        let is_post = |point: Vec2<S>| (point - side).norm().min((point + side).norm()) < self.half * S::HALF;
+        let mut nearest = obstacles.iter().filter_map(|obstacle| nearest(obstacle, self.middle));
+        nearest.all(|(point, distance)| {
+            distance >= room && (distance > self.half + self.half * S::from_milli(50) || is_post(point))
+        })
     }
 
     /// Joined with the other end of the same passage. An end farther away than
@@ -82,7 +90,8 @@ impl<S: Scalar> Gap<S> {
     fn joined(self, other: &Self, wanted: &Wanted<S>, obstacles: &[Obstacle<S>]) -> Self {
         let way = other.middle - self.middle;
         let Vec2 { x, y } = self.turn(way);
-        let is_same_way = self.ahead.dot(other.ahead) > S::from_milli(990);
+        // From a target inside, the other end looks the opposite way.
+        let is_same_way = self.ahead.dot(other.ahead).abs() > S::from_milli(990);
         if !is_same_way || y.abs() > self.half * S::HALF {
             return self;
         }
@@ -91,7 +100,11 @@ impl<S: Scalar> Gap<S> {
             return self;
         }
         let (low, high) = ((-self.depth).min(x), self.depth.max(x));
-        Self { middle: self.middle + self.ahead * ((low + high) * S::HALF), depth: (high - low) * S::HALF, ..self }
+        let middle = self.middle + self.ahead * ((low + high) * S::HALF);
+        let joined = Self { middle, depth: (high - low) * S::HALF, ..self };
+        // The ends of a corridor that this one crosses.
+        let own = joined.place(Vec2::ZERO);
+        if own.x == S::ZERO && own.y.abs() > self.half { self } else { joined }
     }
 }
 
@@ -99,21 +112,22 @@ impl<S: Scalar> Gap<S> {
 /// through a gap; also for a robot in the gap or just behind it. O(walls^2), and O(obstacles) for
 /// each pair of ends with the right distance.
 pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, wanted: &Wanted<S>) -> Option<Gap<S>> {
-    let mut best: Option<(bool, S, Gap<S>)> = None;
+    let is_blocked = is_hidden(obstacles, target);
+    let mut best: Option<(S, Gap<S>)> = None;
     for_each_gap(obstacles, target, wanted, &mut |gap| {
-        if gap.is_passed(wanted) {
+        // Two ends of walls are no gap unless both are seen: a solid may lie between them.
+        let side = gap.ahead.perp() * gap.half;
+        // Behind a gap but before a wall, the robot need not have come through the gap.
+        let is_behind = gap.is_passed(wanted) || is_blocked && gap.place(Vec2::ZERO).x > S::ZERO;
+        if is_behind || [side, -side].into_iter().any(|side| is_hidden(obstacles, gap.middle + side)) {
             return;
         }
-        let detour = gap.middle.norm() + (target - gap.middle).norm();
-        // A gap behind another wall is not the next one.
-        let is_hidden = walls(obstacles).any(|ends| crosses(gap.middle, ends));
-        if best
-            .is_none_or(|(was_hidden, least, _)| !is_hidden && was_hidden || is_hidden == was_hidden && detour < least)
-        {
-            best = Some((is_hidden, detour, gap));
+        let detour = gap.middle.norm() + rest(obstacles, gap.middle, target, wanted.radius_m);
+        if best.is_none_or(|(least, _)| detour < least) {
+            best = Some((detour, gap));
         }
     });
-    let (_, _, mut gap) = best?;
+    let (_, mut gap) = best?;
     for_each_gap(obstacles, target, wanted, &mut |other| {
         gap = gap.joined(&other, wanted, obstacles);
     });
@@ -124,14 +138,7 @@ pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, 
     let side = gap.ahead.perp() * gap.half;
     let is_free = own.x >= S::ZERO || crosses(target, [gap.middle - side, gap.middle + side]);
     gap.is_only_way = !is_free;
-    (is_free || walls(obstacles).any(|ends| crosses(target, ends))).then_some(gap)
-}
-
-fn walls<S: Scalar>(obstacles: &[Obstacle<S>]) -> impl Iterator<Item = [Vec2<S>; 2]> {
-    obstacles.iter().filter_map(|obstacle| match obstacle {
-        Obstacle::Wall(ends) => Some(*ends),
-        _ => None,
-    })
+    (is_free || is_blocked).then_some(gap)
 }
 
 fn for_each_gap<S: Scalar>(
@@ -156,22 +163,4 @@ fn for_each_gap<S: Scalar>(
             }
         }
     }
-}
-
-fn crosses<S: Scalar>(target: Vec2<S>, [a, b]: [Vec2<S>; 2]) -> bool {
-    let along = b - a;
-    let sides = (along.det(-a) > S::ZERO) != (along.det(target - a) > S::ZERO);
-    let ends = (target.det(a) > S::ZERO) != (target.det(b) > S::ZERO);
-    sides && ends
-}
-
-fn distance<S: Scalar>(obstacle: &Obstacle<S>, from: Vec2<S>) -> Option<S> {
-    let moved = match *obstacle {
-        Obstacle::Wall([a, b]) => Obstacle::Wall([a - from, b - from]),
-        Obstacle::Ball { center_m, radius_m } => {
-            Obstacle::Ball { center_m: (center_m.xy() - from).extend(S::ZERO), radius_m }
-        }
-        Obstacle::Plane { .. } => return None,
-    };
-    moved.nearest_point().map(|(_, distance)| distance)
 }

@@ -138,7 +138,10 @@ impl<S: Scalar> RightOfWay<S> {
         self.goes = self.may_go(&approach, &traffic, has_lanes, is_impatient);
         let aim =
             if self.goes { Some(approach.way_through(has_lanes)) } else { approach.place_to_wait(&traffic, has_lanes) };
-        let way = aim.map_or(Vec2::ZERO, |place| approach.gap.way(place));
+        let mut way = aim.map_or(Vec2::ZERO, |place| approach.gap.way(place));
+        if self.goes && !approach.gap.is_only_way && goal.norm() < way.norm() {
+            way = goal;
+        }
         let most = way.norm().checked_div(situation.body.step_s);
         let speed = situation.wish.norm();
         let pace = most.map_or(speed, |most| most.min(speed));
@@ -184,6 +187,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
             return None;
         }
         let wanted = Wanted {
+            radius_m: radius,
             least_m: radii(2_020),
             most_m: radii(WIDEST),
             deepest_m: radii(DEEPEST),
@@ -243,13 +247,14 @@ impl<'a, S: Scalar> Approach<'a, S> {
             if place.x.abs() < other.radius_m + self.radii(500) && is_beside_axis < self.gap.half {
                 traffic.ahead |= speed_ahead > slow;
                 traffic.flows |= self.is_narrow && !is_parked;
-                let stands_there = speed_ahead <= slow && place.x > S::ZERO && is_nearer;
+                let stands_there = !is_parked && speed_ahead <= slow && place.x > S::ZERO && is_nearer;
                 traffic.against |= speed_ahead < -slow || stands_there;
                 let along = self.gap.turn(other.offset_m.xy() - self.gap.middle).x;
                 // Lower bounds of the distances to the middle.
                 let (own_rest, rest) = (-own_along, along);
                 let is_first = rest < own_rest - tie || rest <= own_rest + tie && other.id < self.situation.body.id;
-                let has_right = speed_ahead <= slow && is_first;
+                // A parked robot makes way.
+                let has_right = !is_parked && speed_ahead <= slow && is_first;
                 if along > own_along && next.is_none() {
                     next = Some(has_right);
                 }
@@ -320,3 +325,6 @@ impl<'a, S: Scalar> Approach<'a, S> {
         moves_there.then_some(spot)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -85,6 +85,7 @@ fn bound(message: &Message) -> usize {
         Message::Key(_) => KeyAssignment::MAX_FRAME_LEN,
         Message::KeyHeld(_) => KeyHeld::MAX_FRAME_LEN,
         Message::Land(_) => LandPatch::MAX_FRAME_LEN,
+        Message::Lost(_) => LostRobot::MAX_FRAME_LEN,
         Message::Payload(_) => PayloadBytes::MAX_FRAME_LEN,
     }
 }

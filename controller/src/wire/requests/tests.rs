@@ -52,6 +52,23 @@ fn a_request_is_sent_at_once_and_then_once_per_interval() {
     assert_eq!(poll(&mut requests, again), [Due::Send(expected)]);
 }
 
+/// After more than half of the clock's range a past moment seems to lie ahead.
+#[test]
+fn a_request_is_due_at_once_after_a_long_pause() {
+    let mut requests = requests::<2>();
+    requests.ask(A, OWN, Stop, 60_000, START).unwrap();
+    assert_eq!(poll(&mut requests, START).len(), 1);
+    let due = requests.poll_at(START).unwrap();
+    for now in [after(100), due - Duration::from_micros(1)] {
+        assert_eq!(requests.poll_at(now), Some(due), "not yet");
+    }
+    assert_eq!(requests.poll_at(after(i32::MAX / 1000)), Some(due), "due long ago");
+    let late = after(i32::MAX / 1000) + Duration::from_millis(600_000);
+    assert!(late.is_before(due));
+    assert_eq!(requests.poll_at(late), Some(late));
+    assert!(requests.poll(late).is_some());
+}
+
 #[test]
 fn an_unacknowledged_request_expires_after_all_attempts() {
     for attempts in [0, 1, 2, 5] {

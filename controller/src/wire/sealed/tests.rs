@@ -240,6 +240,21 @@ fn starts_are_accepted_up_to_the_limit_ahead_of_sender_receiver_or_mission() {
 }
 
 #[test]
+fn a_mission_is_refused_in_the_present_generation_of_the_key() {
+    let rolled = |starts: u32| {
+        let mut robot = sealed(starts);
+        robot.ring_mut().hear_key(3, &Key::of_passphrase(b"third"));
+        robot.ring_mut().speak(3);
+        robot.ring_mut().forget_before(3);
+        robot
+    };
+    let mut receiver = rolled(0);
+    receiver.refuse_before(5);
+    assert_eq!(receiver.decode(&said(&mut rolled(4), header(1, 9))), Err(DecodeError::Replayed));
+    assert!(receiver.decode(&said(&mut rolled(5), header(1, 0))).is_ok());
+}
+
+#[test]
 fn the_state_does_not_hold_the_key() {
     let of = |key: &Key| digest(&Sealed::<4>::at_start(key, 1));
     assert_eq!(of(&key()), of(&Key::of_passphrase(b"another")));
