@@ -30,8 +30,12 @@ pub(super) struct Arena {
 
 impl Arena {
     pub fn setup(&self, starts: Vec<Start>) -> PlaneSetup {
-        let abilities =
-            Abilities { max_speed_mps: self.max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
+        let abilities = Abilities {
+            max_speed_mps: self.max_speed_mps,
+            max_acceleration_mps2: f64::INFINITY,
+            lag_s: 0.0,
+            step_s: self.step_s,
+        };
         let group = RobotGroup {
             sight_m: self.sight_m,
             guidance: self.guidance.clone(),

@@ -10,7 +10,7 @@ pub mod waits;
 
 #[doc(hidden)]
 pub use formation::in_cells;
-pub use formation::{FORMED_AFTER_S, FormationMeter, FormationQuality, PlaceError, free_formation_s};
+pub use formation::{FORMED_AFTER_S, FormationMeter, FormationQuality, Member, PlaceError, free_formation_s};
 pub use formations::{FormationKept, FormationMeters};
 
 use rayon::prelude::*;

@@ -78,7 +78,8 @@ impl Conditions {
     }
 
     fn group_at(&self, max_speed_mps: f64, radius_m: f64, tolerance_m: f64) -> RobotGroup {
-        let abilities = Abilities { max_speed_mps, max_acceleration_mps2: f64::INFINITY, step_s: self.step_s };
+        let abilities =
+            Abilities { max_speed_mps, max_acceleration_mps2: f64::INFINITY, lag_s: 0.0, step_s: self.step_s };
         let group = RobotGroup::new(abilities, radius_m).to_places(tolerance_m);
         group.behind(self.safety, AvoidParams::default(), PushOutParams::new(1.0))
     }

@@ -242,7 +242,11 @@ impl Plan {
             terrain,
             changes: Vec::new(),
             scouting: None,
-            rules: MoveRules { norm: self.route.norm, corner_cutting: self.route.corner_cutting },
+            rules: MoveRules {
+                norm: self.route.norm,
+                corner_cutting: self.route.corner_cutting,
+                ..MoveRules::default()
+            },
             radio: RadioParams { range_m: f64::INFINITY, ..RadioParams::default() },
             robots: robots.collect(),
             plane: None,

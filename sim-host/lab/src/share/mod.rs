@@ -279,7 +279,7 @@ pub(crate) fn scenario(
         terrain,
         changes: Vec::new(),
         scouting: None,
-        rules: MoveRules { norm: route.norm, corner_cutting: route.corner_cutting },
+        rules: MoveRules { norm: route.norm, corner_cutting: route.corner_cutting, ..MoveRules::default() },
         radio: RadioParams { range_m: f64::INFINITY, loss: shared.unwrap_or(0.0), ..RadioParams::default() },
         faults: Vec::new(),
         robots,

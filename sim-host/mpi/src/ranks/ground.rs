@@ -6,7 +6,7 @@ use staya_controller::agent::Command;
 use staya_controller::grid::Cell;
 use staya_controller::robot::RobotId;
 use staya_sim::engine::{Grid, Ground, PlaneGround};
-use staya_sim::metrics::{FormationMeters, FormationQuality, in_cells};
+use staya_sim::metrics::{FormationMeters, FormationQuality, Member, in_cells};
 use staya_sim::world::border::{Beside, DEPTH, Settled};
 use staya_sim::world::plane::{self, Clearance};
 use staya_sim::world::scouts::Scouts;
@@ -44,7 +44,7 @@ pub trait Part: Ground {
 
     fn bodies(&self, tick: u32, region: &Region) -> Vec<u8>;
 
-    fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError>;
+    fn count_collisions_beside(&mut self, tick: u32, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError>;
 
     fn replace_clearance(&mut self, clearance: Clearance) -> Clearance;
 
@@ -53,12 +53,12 @@ pub trait Part: Ground {
     /// Position of a body for [`Part::keeping_of`], cells; `None` if there is no formation.
     fn place(&self, index: usize) -> Option<[f64; 2]>;
 
-    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality>;
+    fn keeping_of(&mut self, members: &[Member], counts: bool) -> Option<FormationQuality>;
 }
 
-fn measure(meter: Option<&mut FormationMeters>, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality> {
-    let meter = meter.filter(|_| !places.is_empty())?;
-    Some(if counts { meter.measure(places) } else { meter.look(places) })
+fn measure(meter: Option<&mut FormationMeters>, members: &[Member], counts: bool) -> Option<FormationQuality> {
+    let meter = meter.filter(|_| !members.is_empty())?;
+    Some(if counts { meter.measure(members) } else { meter.look(members) })
 }
 
 impl Part for Grid {
@@ -120,19 +120,19 @@ impl Part for Grid {
     }
 
     fn touches(&self, one: &Region, other: &Region) -> bool {
-        one.is_beside_in_cells(other, 0)
+        one.is_beside_in_cells(other, 1)
     }
 
     fn bodies(&self, tick: u32, region: &Region) -> Vec<u8> {
-        encode(&region.cells.map(|cells| self.world.near(tick, &cells, 0, None)).unwrap_or_default())
+        encode(&region.cells.map(|cells| self.world.near(tick, &cells, 1, None)).unwrap_or_default())
     }
 
-    fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError> {
+    fn count_collisions_beside(&mut self, tick: u32, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError> {
         let mut beside = Vec::<Beside>::new();
         for (rank, bytes) in bodies {
             beside.extend(decode::<Vec<Beside>>(*rank, "bodies", bytes)?);
         }
-        Ok(self.world.count_collisions_beside(&beside))
+        Ok(self.world.count_collisions_beside(tick, &beside))
     }
 
     fn replace_clearance(&mut self, clearance: Clearance) -> Clearance {
@@ -147,8 +147,8 @@ impl Part for Grid {
         self.meter.as_ref().map(|_| in_cells(self.world.bodies()[index].cell))
     }
 
-    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality> {
-        measure(self.meter.as_mut(), places, counts)
+    fn keeping_of(&mut self, members: &[Member], counts: bool) -> Option<FormationQuality> {
+        measure(self.meter.as_mut(), members, counts)
     }
 }
 
@@ -207,7 +207,7 @@ impl Part for PlaneGround {
         encode(&bodies.collect::<Vec<_>>())
     }
 
-    fn count_collisions_beside(&mut self, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError> {
+    fn count_collisions_beside(&mut self, _: u32, bodies: &[(usize, Vec<u8>)]) -> Result<u64, RankError> {
         let mut beside = Vec::<plane::Beside>::new();
         for (rank, bytes) in bodies {
             beside.extend(decode::<Vec<plane::Beside>>(*rank, "bodies", bytes)?);
@@ -233,8 +233,8 @@ impl Part for PlaneGround {
         Some([x / land.cell_m, y / land.cell_m])
     }
 
-    fn keeping_of(&mut self, places: &[[f64; 2]], counts: bool) -> Option<FormationQuality> {
+    fn keeping_of(&mut self, members: &[Member], counts: bool) -> Option<FormationQuality> {
         self.plane.terrain()?;
-        measure(self.meter.as_mut(), places, counts)
+        measure(self.meter.as_mut(), members, counts)
     }
 }

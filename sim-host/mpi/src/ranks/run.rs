@@ -13,7 +13,7 @@ use staya_controller::wire::Ring;
 use staya_sim::engine::CheckpointInterval;
 use staya_sim::engine::hash;
 use staya_sim::engine::{Engine, Grid, HostLaw, Moment, Outcome, PlaneGround, Saves, State, Watch, agents};
-use staya_sim::metrics::FormationQuality;
+use staya_sim::metrics::{FormationQuality, Member};
 use staya_sim::radio::Sent;
 use staya_sim::record::{PacketCounts, RobotRow, TickRow};
 use staya_sim::scenario::{AttackKind, Intervention, Scenario};
@@ -314,15 +314,16 @@ where
         }
         let engine = &self.engine;
         let own = engine.here.iter().enumerate();
-        let own = own.filter_map(|(index, &number)| Some((number, engine.ground.place(index)?)));
+        let member = |index| Some(Member { at: engine.ground.place(index)?, is_down: engine.is_down(index) });
+        let own = own.filter_map(|(index, &number)| Some((number, member(index)?)));
         let heard = self.wire.gather_first(encode(&own.collect::<Vec<_>>()))?;
-        let mut places = Vec::<(u32, [f64; 2])>::new();
+        let mut members = Vec::<(u32, Member)>::new();
         for (rank, bytes) in heard.iter().enumerate() {
-            places.extend(decode::<Vec<(u32, [f64; 2])>>(rank, "places", bytes)?);
+            members.extend(decode::<Vec<(u32, Member)>>(rank, "places", bytes)?);
         }
-        places.sort_unstable_by_key(|&(number, _)| number);
-        let places: Vec<_> = places.into_iter().map(|(_, place)| place).collect();
-        Ok(self.engine.ground.keeping_of(&places, counts))
+        members.sort_unstable_by_key(|&(number, _)| number);
+        let members: Vec<_> = members.into_iter().map(|(_, member)| member).collect();
+        Ok(self.engine.ground.keeping_of(&members, counts))
     }
 
     pub(super) fn places(&self) -> impl Iterator<Item = ([f64; 2], Cell)> + Clone + '_ {
@@ -348,10 +349,11 @@ where
     }
 
     fn collide(&mut self) -> Result<(), RankError> {
-        let (ground, tick) = (&self.engine.ground, self.engine.tick);
+        // The tick of the last moves.
+        let (ground, tick) = (&self.engine.ground, self.engine.tick.saturating_sub(1));
         self.wire.choose(|one, other| ground.touches(one, other));
         let bodies = self.wire.halo(|region| ground.bodies(tick, region))?;
-        self.engine.collisions += self.engine.ground.count_collisions_beside(&bodies)?;
+        self.engine.collisions += self.engine.ground.count_collisions_beside(tick, &bodies)?;
         Ok(())
     }
 

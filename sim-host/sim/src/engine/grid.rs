@@ -5,7 +5,7 @@ use super::body::Kinematics;
 use super::ground::{Ground, StateWords};
 use super::hash::grid_words;
 use super::intervene::Change;
-use crate::metrics::{FormationMeters, FormationQuality, in_cells};
+use crate::metrics::{FormationMeters, FormationQuality, Member, in_cells};
 use crate::record::Motion;
 use crate::scenario::{Robot, Scenario};
 use crate::terrain::Terrain;
@@ -199,8 +199,8 @@ impl Ground for Grid {
         self.world.advance(tick, commands);
     }
 
-    fn count_collisions(&mut self, _tick: u32) -> u64 {
-        self.world.count_collisions()
+    fn count_collisions(&mut self, tick: u32) -> u64 {
+        self.world.count_collisions(tick)
     }
 
     fn words(&self, index: usize, tick: u32, status: &Status) -> StateWords {
@@ -264,10 +264,11 @@ impl Ground for Grid {
         Some([x, y, 0.0])
     }
 
-    fn keeping(&mut self, counts: bool) -> Option<FormationQuality> {
+    fn keeping(&mut self, counts: bool, is_down: &dyn Fn(usize) -> bool) -> Option<FormationQuality> {
         let meter = self.meter.as_mut()?;
-        let bodies: Vec<_> = self.world.bodies().iter().map(|body| in_cells(body.cell)).collect();
-        Some(if counts { meter.measure(&bodies) } else { meter.look(&bodies) })
+        let member = |(index, body): (_, &Body)| Member { at: in_cells(body.cell), is_down: is_down(index) };
+        let members: Vec<_> = self.world.bodies().iter().enumerate().map(member).collect();
+        Some(if counts { meter.measure(&members) } else { meter.look(&members) })
     }
 
     fn formations(&self) -> Option<&FormationMeters> {

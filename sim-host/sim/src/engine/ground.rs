@@ -106,7 +106,8 @@ pub trait Ground: Send + Sync {
     fn change(&mut self, tick: u32, change: Change<'_>) -> Result<(), Refusal>;
 
     /// Current quality of the formations, if any; `counts` adds it to the run's statistics.
-    fn keeping(&mut self, _counts: bool) -> Option<FormationQuality> {
+    /// `is_down` is whether the computer of the body with that index is down.
+    fn keeping(&mut self, _counts: bool, _is_down: &dyn Fn(usize) -> bool) -> Option<FormationQuality> {
         None
     }
 

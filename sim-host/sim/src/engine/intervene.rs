@@ -169,7 +169,12 @@ where
     }
 
     pub(super) fn is_up(&self, index: usize) -> bool {
-        self.tick >= self.computers[index].down_until
+        !self.is_down(index)
+    }
+
+    /// Whether the computer of robot `index` is down.
+    pub fn is_down(&self, index: usize) -> bool {
+        self.tick < self.computers[index].down_until
     }
 }
 

@@ -45,8 +45,8 @@ pub use simulate::{Moment, Outcome, StartError, WIDE, Watch, simulate, simulate_
 pub use state::{Saves, State, StateError};
 pub use status::Status;
 
-use crate::metrics::Arrivals;
 use crate::metrics::waits::Waits;
+use crate::metrics::{Arrivals, FormationQuality};
 use crate::radio::{self, HostWire, Radio};
 use crate::record::{PacketCounts, TickRow};
 use crate::scenario::{Fault, Formation, Intervention, Robot, Scenario};
@@ -363,9 +363,15 @@ where
         self.ground.advance(self.tick, &self.commands);
         self.collisions += self.ground.count_collisions(self.tick);
         self.observe();
-        let keeping = self.ground.keeping(true);
+        let keeping = self.keeping(true);
         self.tick += 1;
         self.row(keeping, packets)
+    }
+
+    /// Quality of the formations, if any; `counts` adds it to the run's statistics.
+    fn keeping(&mut self, counts: bool) -> Option<FormationQuality> {
+        let (computers, tick) = (&self.computers, self.tick);
+        self.ground.keeping(counts, &|index| tick < computers[index].down_until)
     }
 
     /// Transmits the frames of this process.

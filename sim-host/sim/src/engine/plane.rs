@@ -11,7 +11,7 @@ use super::Status;
 use super::grid::Changed;
 use super::ground::{Ground, StateWords};
 use super::intervene::Change;
-use crate::metrics::{FormationMeters, FormationQuality};
+use crate::metrics::{FormationMeters, FormationQuality, Member};
 use crate::record::Motion;
 use crate::scenario::{Order, PlaneSetup, Robot, Scenario, Target, goals};
 use crate::terrain::Terrain;
@@ -20,8 +20,8 @@ use crate::world::plane::{Clearance, Disc, Plane, Sight, Solid, narrow};
 use crate::world::scouts::{Memory, Scouts};
 use crate::world::window_but;
 use staya_controller::agent::{
-    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, GuidanceKind, InCell, InCells, InPlane, Inputs,
-    KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS, Waypoint,
+    AgentConfig, AnyInputs, AnySurroundings, CellState, Command, ContactLossPolicy, GuidanceKind, InCell, InCells,
+    InPlane, Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS, Waypoint,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -34,6 +34,8 @@ use staya_controller::wire::Format;
 
 /// Most terrain walls that a robot sees at a time.
 const WALLS: usize = 16;
+/// A radio without a limit works this far, metres.
+const FARTHEST_M: f64 = 1e6;
 
 /// Bodies that move in the plane or in space.
 pub struct PlaneGround {
@@ -57,6 +59,7 @@ pub struct PlaneGround {
     radius: u8,
     tick_us: u32,
     delay_us: u32,
+    range_m: f32,
     since: Vec<u32>,
     format: Format,
     key: Option<Key>,
@@ -106,6 +109,7 @@ impl PlaneGround {
             radius: scenario.route.params.radius,
             tick_us: scenario.tick_us,
             delay_us: libm::round(scenario.radio.delay_ms * 1000.0) as u32,
+            range_m: scenario.radio.range_m.min(FARTHEST_M) as f32,
             orders: frames(&setup.orders, scenario.radio.format, scenario.key.as_ref()),
             since: vec![0; scenario.robots.len()],
             format: scenario.radio.format,
@@ -299,11 +303,14 @@ impl Ground for PlaneGround {
         now.overlaps + now.intrusions
     }
 
-    fn keeping(&mut self, counts: bool) -> Option<FormationQuality> {
+    fn keeping(&mut self, counts: bool, is_down: &dyn Fn(usize) -> bool) -> Option<FormationQuality> {
         let (meter, cell_m) = (self.meter.as_mut()?, self.plane.terrain()?.cell_m);
-        let places = self.plane.discs().iter().map(|disc| [disc.position_m[0] / cell_m, disc.position_m[1] / cell_m]);
-        let places: Vec<_> = places.collect();
-        Some(if counts { meter.measure(&places) } else { meter.look(&places) })
+        let member = |(index, disc): (_, &Disc)| {
+            let [x, y, _] = disc.position_m;
+            Member { at: [x / cell_m, y / cell_m], is_down: is_down(index) }
+        };
+        let members: Vec<_> = self.plane.discs().iter().enumerate().map(member).collect();
+        Some(if counts { meter.measure(&members) } else { meter.look(&members) })
     }
 
     fn formations(&self) -> Option<&FormationMeters> {
@@ -341,8 +348,13 @@ impl Ground for PlaneGround {
         let group = self.setup.group(number);
         AgentConfig {
             max_acceleration_mps2: group.abilities.max_acceleration_mps2 as f32,
+            lag_s: group.abilities.lag_s as f32,
             latency: Duration::from_micros(micros),
-            contact_loss: group.contact_loss,
+            contact_loss: ContactLossPolicy {
+                listen: group.listen.unwrap_or(Duration::from_micros(micros.saturating_add(2 * tick.as_micros()))),
+                reach_m: self.range_m,
+                ..group.contact_loss
+            },
             flock: group.flock,
             ..AgentConfig::new(self.robots[number].id, group.radius_m as f32, tick)
         }

@@ -13,7 +13,7 @@ where
     A: Safety<f32> + Send,
 {
     pub(super) fn first_row(&mut self) -> TickRow {
-        let keeping = self.ground.keeping(false);
+        let keeping = self.keeping(false);
         self.row(keeping, PacketCounts::default())
     }
 

@@ -163,6 +163,18 @@ fn a_down_robot_has_fault_mode_and_keeps_its_target() {
 }
 
 #[test]
+fn the_formation_error_is_measured_from_the_first_robot_that_is_not_down() {
+    let six = "formation = { rows = 2, columns = 3, spacing = [-2, -2], start = [5, 4], goal = [18, 17] }";
+    for fault in ["robot = 1\nat_s = 1\n", "robot = 4\nat_s = 1\n"] {
+        let scenario = scenario(six, &format!("[[fault]]\n{fault}down_s = 1000\n"));
+        let outcome = simulate(&scenario, watch_nothing).expect("free starts");
+        let error = outcome.formation.expect("a formation").error_per_agent;
+        // Thirteen cells lie between start and goal.
+        assert!(error < 2.0, "{error} cells with {fault}");
+    }
+}
+
+#[test]
 fn overlapping_faults_end_together_and_a_fault_without_length_is_a_restart() {
     let faults = "[[fault]]\nrobot = 1\nat_s = 1\ndown_s = 2\n[[fault]]\nrobot = 1\nat_s = 2\ndown_s = 2\n\
                   [[fault]]\nrobot = 2\nat_s = 1\n";
@@ -327,6 +339,7 @@ proptest! {
 }
 
 mod attack;
+mod crossing;
 mod external;
 mod intervene;
 mod intruder;
@@ -337,6 +350,7 @@ mod safety_scenes;
 mod sensing;
 mod state;
 mod torus;
+mod waiting_scenes;
 
 /// A swarm may have a million robots, so the size of one is pinned; rare data is on the heap.
 #[test]

@@ -8,7 +8,8 @@ use staya_controller::grid::Cell;
 /// Quality of a formation at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FormationQuality {
-    /// Mean of |desired - actual| over the robots, cells, with the graph at the leader (error 0).
+    /// Mean of |desired - actual| over robots that are not down, cells, with the graph at the first
+    /// of them (error 0).
     pub error_per_agent: f64,
     /// The mean error with the graph at its least-squares place: distortion without mere lag.
     pub best_fit_error_per_agent: f64,
@@ -27,12 +28,22 @@ impl std::ops::AddAssign for FormationQuality {
 /// Time that a formation may take to form before its error counts, seconds.
 pub const FORMED_AFTER_S: f64 = 10.0;
 
-/// Distance of robots in the plane from their places relative to robot 1, after [`FORMED_AFTER_S`].
+/// A robot's body as [`FormationMeter`] sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Member {
+    /// Position of the body, cells.
+    pub at: [f64; 2],
+    /// Its computer is down: it neither leads nor counts in mean errors.
+    pub is_down: bool,
+}
+
+/// Distance of robots in the plane from their places relative to the first robot that is not down,
+/// after [`FORMED_AFTER_S`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaceError {
-    /// Mean over robots (robot 1 counts, with 0) and ticks, metres.
+    /// Mean over robots that are not down (the first counts, with 0) and ticks, metres.
     pub mean_m: f64,
-    /// Largest error of any robot in any tick, metres.
+    /// Largest error of any such robot in any tick, metres.
     pub worst_m: f64,
     /// Place of that robot, from 1; 0 if all errors are 0.
     pub robot: u32,
@@ -44,10 +55,11 @@ pub struct PlaceError {
 /// |desired - actual|, here per robot, and the graph distance.
 ///
 /// The graph distance is m0 + m1 + kappa * sum of |desired - actual| over the common vertices, with
-/// kappa = 1 / diagonal of the map and the graph placed at the top leader. A vertex is common if
-/// its robot is within `eps` cells (along either axis, as in algorithm 5) of its place. m0 counts
-/// missed places. m1 counts those within `eps` of another robot that has itself lost its place;
-/// otherwise every robot of a formation narrower than eps would stand in for all others.
+/// kappa = 1 / diagonal of the map and the graph placed at the first robot that is not down. A
+/// vertex is common if its robot is within `eps` cells (along either axis, as in algorithm 5) of
+/// its place. m0 counts missed places. m1 counts those within `eps` of another robot that has
+/// itself lost its place; otherwise every robot of a formation narrower than eps would stand in for
+/// all others.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FormationMeter {
     places: Vec<[f64; 2]>,
@@ -97,7 +109,7 @@ impl FormationMeter {
     ///
     /// # Panics
     /// If there are no bodies, or more bodies than places.
-    pub fn measure(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
+    pub fn measure(&mut self, bodies: &[Member]) -> FormationQuality {
         let now = self.look(bodies);
         self.sum += now;
         self.ticks += 1;
@@ -106,7 +118,8 @@ impl FormationMeter {
             let Steady { ticks, sum, worst } = &mut self.steady;
             *ticks += 1;
             *sum += now.error_per_agent;
-            for (robot, error) in (1..).zip(&self.errors) {
+            let up = (1..).zip(&self.errors).zip(bodies).filter(|(_, body)| !body.is_down);
+            for ((robot, error), _) in up {
                 let error_m = error * self.cell_m;
                 if error_m > worst.worst_m {
                     *worst = PlaceError { worst_m: error_m, robot, at_s, ..*worst };
@@ -123,20 +136,23 @@ impl FormationMeter {
         (ticks > 0).then(|| PlaceError { mean_m: sum / f64::from(ticks) * self.cell_m, ..worst })
     }
 
-    /// Measures the current quality; `bodies[i]` is the position of the robot of place i, in cells.
-    /// O(n), and O(m^2) for m lost robots.
+    /// Measures the current quality; `bodies[i]` is the robot of place i. O(n), and O(m^2) for m
+    /// lost robots. If all are down, errors are 0 and the graph is at the first robot.
     ///
     /// # Panics
     /// If there are no bodies, or more bodies than places.
-    pub fn look(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
-        let top = offset(bodies[0], self.places[0]);
+    pub fn look(&mut self, bodies: &[Member]) -> FormationQuality {
+        let leader = bodies.iter().position(|body| !body.is_down).unwrap_or(0);
+        let top = offset(bodies[leader].at, self.places[leader]);
         self.errors.clear();
         self.missing.clear();
         let (mut graph, mut mean) = (0.0, [0.0; 2]);
-        for (index, &body) in bodies.iter().enumerate() {
-            let [x, y] = offset(body, self.places[index]);
+        for (index, body) in bodies.iter().enumerate() {
+            let [x, y] = offset(body.at, self.places[index]);
             let off = [x - top[0], y - top[1]];
-            mean = [mean[0] + x, mean[1] + y];
+            if !body.is_down {
+                mean = [mean[0] + x, mean[1] + y];
+            }
             let error = length(off);
             self.errors.push(error);
             if off.iter().all(|d| d.abs() <= self.eps) {
@@ -145,33 +161,32 @@ impl FormationMeter {
                 self.missing.push(index);
             }
         }
-        let count = bodies.len() as f64;
+        let up = || bodies.iter().enumerate().filter(|(_, body)| !body.is_down);
+        let count = up().count().max(1) as f64;
         let mean = mean.map(|sum| sum / count);
-        let fit: f64 = bodies
-            .iter()
-            .zip(&self.places)
-            .map(|(&body, &place)| {
-                let [x, y] = offset(body, place);
+        let fit: f64 = up()
+            .map(|(index, body)| {
+                let [x, y] = offset(body.at, self.places[index]);
                 length([x - mean[0], y - mean[1]])
             })
             .sum();
         FormationQuality {
-            error_per_agent: self.errors.iter().sum::<f64>() / count,
+            error_per_agent: up().map(|(index, _)| self.errors[index]).sum::<f64>() / count,
             best_fit_error_per_agent: fit / count,
             graph_distance: graph + (self.missing.len() + self.taken(bodies, top)) as f64,
         }
     }
 
-    fn taken(&self, bodies: &[[f64; 2]], top: [f64; 2]) -> usize {
+    fn taken(&self, bodies: &[Member], top: [f64; 2]) -> usize {
         let is_near = |place: usize, robot: usize| {
-            let [x, y] = offset(bodies[robot], self.places[place]);
+            let [x, y] = offset(bodies[robot].at, self.places[place]);
             (x - top[0]).abs() <= self.eps && (y - top[1]).abs() <= self.eps
         };
         let missing = self.missing.iter();
         missing.filter(|&&place| self.missing.iter().any(|&robot| is_near(place, robot))).count()
     }
 
-    /// Last distance of each robot from its place relative to the top leader, cells.
+    /// Last distance of each robot from its place relative to the first that is not down, cells.
     #[must_use]
     pub fn errors(&self) -> &[f64] {
         &self.errors
@@ -226,8 +241,27 @@ fn length([x, y]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
-    fn bodies(cells: &[(i16, i16)]) -> Vec<[f64; 2]> {
-        cells.iter().map(|&(x, y)| in_cells(Cell::new(x, y))).collect()
+    fn bodies(cells: &[(i16, i16)]) -> Vec<Member> {
+        cells.iter().map(|&(x, y)| Member { at: in_cells(Cell::new(x, y)), is_down: false }).collect()
+    }
+
+    #[test]
+    fn errors_are_measured_at_the_first_robot_that_is_not_down_and_only_of_such_robots() {
+        let mut meter = meter(&[(0, 0), (-3, 0), (-6, 0)], 5);
+        let mut bodies = bodies(&[(10, 0), (70, 0), (67, 4)]);
+        bodies[0].is_down = true;
+        let now = meter.measure(&bodies);
+        assert_eq!(meter.errors(), [63.0, 0.0, 4.0]);
+        assert_eq!((now.error_per_agent, now.best_fit_error_per_agent), (2.0, 2.0));
+        assert_eq!(now.graph_distance, 1.0 + 4.0 / 5.0, "the place of the dead robot is missed");
+        for _ in 0..2 {
+            meter.measure(&bodies);
+        }
+        let error = PlaceError { mean_m: 2.0, worst_m: 4.0, robot: 3, at_s: 12.0 };
+        assert_eq!(meter.place_error(), Some(error));
+        bodies.iter_mut().for_each(|body| body.is_down = true);
+        let now = meter.measure(&bodies);
+        assert_eq!((now.error_per_agent, now.best_fit_error_per_agent), (0.0, 0.0));
     }
 
     fn meter(places: &[(i16, i16)], eps: u8) -> FormationMeter {
@@ -295,7 +329,9 @@ mod tests {
             assert_eq!(meter.place_error(), None, "8 s at most");
         }
         meter.measure(&bodies(&[(10, 10), (7, 10)]));
-        meter.measure(&[[10.0, 10.0], [7.0, 10.5]]);
+        let mut off = bodies(&[(10, 10), (7, 10)]);
+        off[1].at[1] += 0.5;
+        meter.measure(&off);
         let error = PlaceError { mean_m: 0.125, worst_m: 0.5, robot: 2, at_s: 16.0 };
         assert_eq!(meter.place_error(), Some(error));
     }

@@ -1,6 +1,6 @@
 //! Quality of the formations of a swarm, separately and together.
 
-use super::{FormationMeter, FormationQuality, PlaceError};
+use super::{FormationMeter, FormationQuality, Member, PlaceError};
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -44,16 +44,16 @@ impl FormationMeters {
     ///
     /// # Panics
     /// If there are fewer bodies than members.
-    pub fn measure(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
+    pub fn measure(&mut self, bodies: &[Member]) -> FormationQuality {
         self.over(|members, meter| meter.measure(&bodies[members]))
     }
 
     /// Measures the quality of all formations as [`FormationMeter::look`] does: errors are means
-    /// over robots, graph distances are summed. `bodies[i]` is the position of robot i, cells.
+    /// over robots, graph distances are summed. `bodies[i]` is robot i.
     ///
     /// # Panics
     /// If there are fewer bodies than members.
-    pub fn look(&mut self, bodies: &[[f64; 2]]) -> FormationQuality {
+    pub fn look(&mut self, bodies: &[Member]) -> FormationQuality {
         self.over(|members, meter| meter.look(&bodies[members]))
     }
 
@@ -102,7 +102,8 @@ impl FormationMeters {
         each.collect()
     }
 
-    /// Last distance of robot `index` from its place at its own top leader, cells; NaN without one.
+    /// Last distance of robot `index` from its place at its own leader ([`Member`]), cells; NaN
+    /// without one.
     #[must_use]
     pub fn error_of(&self, index: usize) -> f64 {
         let own = self.each.iter().find(|(members, _)| members.contains(&index));
@@ -142,11 +143,11 @@ mod tests {
             [[robots.formation]]\nrows = 1\ncolumns = 3\nstart = [20, 4]\ngoal = [20, 30]\n";
         let scenario = Scenario::parse(text, "s.toml".as_ref(), &Overrides::default()).expect("two formations");
         let mut meters = FormationMeters::new(&scenario).expect("two formations");
-        let place = |cell: staya_controller::grid::Cell| super::super::in_cells(cell);
+        let place = |cell| Member { at: super::super::in_cells(cell), is_down: false };
         let mut bodies: Vec<_> = scenario.robots.iter().map(|robot| place(robot.start)).collect();
         // The second formation is displaced as a whole; robot 5 is off by a further (3, 4).
-        bodies[2..].iter_mut().for_each(|[_, y]| *y += 11.0);
-        bodies[4] = [bodies[4][0] + 3.0, bodies[4][1] + 4.0];
+        bodies[2..].iter_mut().for_each(|body| body.at[1] += 11.0);
+        bodies[4].at = [bodies[4].at[0] + 3.0, bodies[4].at[1] + 4.0];
         for _ in 0..2 {
             assert_eq!(meters.measure(&bodies).error_per_agent, 1.0);
         }

@@ -78,7 +78,7 @@ impl serde::de::Error for Error {
 }
 
 /// Earlier names of fields, each with the present one.
-const RENAMED: [(&str, &str); 2] = [("eyes", "sensing"), ("claims", "plausibility")];
+const RENAMED: [(&str, &str); 3] = [("eyes", "sensing"), ("claims", "plausibility"), ("remember_s", "stands_after_s")];
 
 /// The known name that is most similar to `name`, if any is similar.
 pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {

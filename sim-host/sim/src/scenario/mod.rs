@@ -284,7 +284,11 @@ impl Scenario {
             terrain,
             changes,
             scouting,
-            rules: MoveRules { norm: file.grid.norm, corner_cutting: file.grid.corner_cutting },
+            rules: MoveRules {
+                norm: file.grid.norm,
+                corner_cutting: file.grid.corner_cutting,
+                crossing: published.is_some(),
+            },
             radio: file.radio.clone(),
             robots,
             formations,

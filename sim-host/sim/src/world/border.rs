@@ -1,7 +1,7 @@
 //! Moves on the grid near the borders between MPI ranks.
 //!
-//! Whether a robot may enter a cell depends on the moves before it by priority, a chain that may
-//! cross borders several times. A rank therefore gets the bodies of other ranks within [`DEPTH`]
+//! Whether a robot may move depends on the moves before it by priority, a chain that may cross
+//! borders several times. A rank therefore gets the bodies of other ranks within [`DEPTH`]
 //! cells with their preferred moves, processes all by priority, and leaves moves undecided that
 //! depend on bodies farther away. While any move in the world is undecided, ranks exchange their
 //! decisions and start another round, which decides at least the first undecided move; usually one
@@ -66,6 +66,8 @@ impl CellBounds {
 pub struct Beside {
     pub(crate) id: RobotId,
     pub(crate) cell: Cell,
+    /// The diagonal move by which it is entering its cell.
+    pub(crate) diagonal: Dir,
     pub(crate) wish: Option<heapless::Vec<Dir, 8>>,
 }
 
@@ -89,6 +91,12 @@ struct Mover {
     is_told: bool,
 }
 
+impl Mover {
+    const fn mark(&self) -> u32 {
+        if self.body & BESIDE == 0 { self.body + 1 } else { self.body }
+    }
+}
+
 /// Moves of one tick, until all are decided.
 pub struct Contest {
     now: u64,
@@ -96,6 +104,20 @@ pub struct Contest {
     beside: HashMap<RobotId, usize>,
     cells: Vec<Cell>,
     before: Vec<(usize, u32)>,
+    /// Diagonal moves that are under way: of the bodies of this rank, then of other ranks.
+    diagonals: Diagonals,
+}
+
+struct Diagonals {
+    all: Vec<Dir>,
+    own: usize,
+}
+
+impl Diagonals {
+    /// Place of the body with an occupancy mark.
+    const fn place(&self, mark: u32) -> usize {
+        if mark & BESIDE == 0 { mark as usize - 1 } else { self.own + (mark & !BESIDE) as usize }
+    }
 }
 
 impl World {
@@ -108,7 +130,7 @@ impl World {
                 Some(Command::Move(wish)) if body.free_at <= now => Some(wish.clone()),
                 _ => None,
             };
-            Beside { id: body.id, cell: body.cell, wish }
+            Beside { id: body.id, cell: body.cell, diagonal: body.diagonal(now), wish }
         })
         .collect()
     }
@@ -144,8 +166,10 @@ impl World {
         }
         let cells = beside.iter().map(|body| body.cell).collect();
         let mut marks = Vec::with_capacity(beside.len());
-        for (number, Beside { id, cell, wish }) in (0..).zip(beside) {
+        let mut diagonals: Vec<_> = self.bodies.iter().map(|body| body.diagonal(now)).collect();
+        for (number, Beside { id, cell, diagonal, wish }) in (0..).zip(beside) {
             marks.push((cell, number | BESIDE));
+            diagonals.push(diagonal);
             if let Some(wish) = wish {
                 let is_seen = own.is_some_and(|own| own.distance(cell) <= i32::from(DEPTH) - 2);
                 movers.push(mover(id, number | BESIDE, cell, wish, is_seen));
@@ -159,7 +183,8 @@ impl World {
         movers.sort_unstable_by_key(|mover| (mover.priority, mover.id));
         let others = movers.iter().enumerate().filter(|(_, mover)| mover.body & BESIDE != 0);
         let beside = others.map(|(at, mover)| (mover.id, at)).collect();
-        Contest { now, movers, beside, cells, before: Vec::new() }
+        let diagonals = Diagonals { all: diagonals, own: self.bodies.len() };
+        Contest { now, movers, beside, cells, before: Vec::new(), diagonals }
     }
 
     /// Keeps only the bodies with the indices `here`, in this order.
@@ -193,32 +218,54 @@ impl World {
     }
 
     /// Collisions that [`World::count_collisions`] cannot see: cells shared with a body of another
-    /// rank. Counted by this rank if the other body has a lower id than all bodies here.
-    pub fn count_collisions_beside(&self, beside: &[Beside]) -> u64 {
+    /// rank, counted by this rank if the other body has a lower id than all bodies here, and
+    /// crossed diagonal moves, counted by the rank of the body with the higher id.
+    pub fn count_collisions_beside(&self, tick: u32, beside: &[Beside]) -> u64 {
+        let now = u64::from(tick) * u64::from(UNIT);
+        let diagonal = |other: &&Beside| other.diagonal != Dir::Stay;
+        let diagonals: HashMap<_, _> = beside.iter().filter(diagonal).map(|other| (other.cell, other)).collect();
+        let crossed = |body: &&Body| {
+            let (dir, from) = (body.diagonal(now), body.cell - body.diagonal(now).offset());
+            let ends = [Cell::new(from.x, body.cell.y), Cell::new(body.cell.x, from.y)];
+            let others = ends.iter().filter_map(|end| diagonals.get(end));
+            others.filter(|other| other.id < body.id).any(|other| dir.crosses(from, other.diagonal, other.cell))
+        };
+        let crossed = if diagonals.is_empty() { 0 } else { self.bodies.iter().filter(crossed).count() as u64 };
         let mut least = HashMap::<Cell, RobotId>::new();
         for other in beside.iter().filter(|other| self.terrain.is_passable(other.cell)) {
             let id = least.entry(other.cell).or_insert(other.id);
             *id = other.id.min(*id);
         }
         if least.is_empty() {
-            return 0;
+            return crossed;
         }
         let mut own = HashMap::<Cell, RobotId>::new();
         for body in self.bodies.iter().filter(|body| least.contains_key(&body.cell)) {
             let id = own.entry(body.cell).or_insert(body.id);
             *id = body.id.min(*id);
         }
-        own.iter().filter(|(cell, id)| least[cell] < **id).count() as u64
+        crossed + own.iter().filter(|(cell, id)| least[cell] < **id).count() as u64
     }
 
     /// Index and occupancy of the next cell; `None` if the terrain does not allow the move.
     fn at_end_of(&self, from: Cell, dir: Dir) -> Option<(usize, u32)> {
-        let to = from + dir.offset();
-        let passable = |x, y| self.terrain.is_passable(Cell::new(x, y));
-        let may = self.terrain.is_passable(to)
-            && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)));
-        let at = self.terrain.index(to).filter(|_| may)?;
+        let at = self.terrain.index(from + dir.offset()).filter(|_| self.is_passable(from, dir))?;
         Some((at, self.occupancy[at]))
+    }
+
+    /// Whether a move crosses a diagonal that is under way; `None` if it depends on an undecided
+    /// move.
+    fn is_crossed(&self, from: Cell, dir: Dir, diagonals: &Diagonals) -> Option<bool> {
+        let mut is_open = false;
+        for side in self.sides(from, dir) {
+            match self.terrain.index(side).map_or(0, |at| self.occupancy[at]) {
+                0 => {}
+                OPEN => is_open = true,
+                mark if dir.crosses(from, diagonals.all[diagonals.place(mark)], side) => return Some(true),
+                _ => {}
+            }
+        }
+        (!is_open).then_some(false)
     }
 }
 
@@ -231,7 +278,7 @@ impl Contest {
                 continue;
             };
             if mover.by.is_none() && mover.is_seen {
-                mover.by = choose(world, mover.cell, &mover.wish);
+                mover.by = choose(world, &self.diagonals, mover.cell, &mover.wish);
             }
             let mut set = |at: usize, mark: u32| {
                 self.before.push((at, world.occupancy[at]));
@@ -240,22 +287,27 @@ impl Contest {
             match mover.by {
                 Some(Dir::Stay) => {}
                 Some(by) => {
-                    let mark = if mover.body & BESIDE == 0 { mover.body + 1 } else { mover.body };
+                    let mark = mover.mark();
                     let to = world.terrain.index(mover.cell + by.offset());
                     set(from, 0);
                     if let Some(to) = to {
                         set(to, mark);
+                    }
+                    if by.is_diagonal() {
+                        let place = self.diagonals.place(mark);
+                        self.diagonals.all[place] = by;
                     }
                 }
                 None => {
                     open += u64::from(mover.body & BESIDE == 0);
                     set(from, OPEN);
                     for &dir in mover.wish.iter().take_while(|&&dir| dir != Dir::Stay) {
-                        if let Some((at, 0)) = world.at_end_of(mover.cell, dir) {
+                        let crossed = world.is_crossed(mover.cell, dir, &self.diagonals);
+                        if let (Some((at, 0)), Some(false) | None) = (world.at_end_of(mover.cell, dir), crossed) {
                             self.before.push((at, 0));
                             world.occupancy[at] = OPEN;
                             // All competitors are known, so it stops here at the latest.
-                            if mover.is_seen {
+                            if mover.is_seen && crossed == Some(false) {
                                 break;
                             }
                         }
@@ -265,6 +317,10 @@ impl Contest {
         }
         while let Some((at, mark)) = self.before.pop() {
             world.occupancy[at] = mark;
+        }
+        for mover in &self.movers {
+            let place = self.diagonals.place(mover.mark());
+            self.diagonals.all[place] = Dir::Stay;
         }
         open
     }
@@ -317,14 +373,17 @@ impl Contest {
     }
 }
 
-/// First preferred move whose cell is free; `None` if it depends on an undecided move.
-fn choose(world: &World, from: Cell, wish: &[Dir]) -> Option<Dir> {
+/// First preferred open move; `None` if it depends on an undecided move.
+fn choose(world: &World, diagonals: &Diagonals, from: Cell, wish: &[Dir]) -> Option<Dir> {
     for &dir in wish {
         if dir == Dir::Stay {
             return Some(Dir::Stay);
         }
         match world.at_end_of(from, dir) {
-            Some((_, 0)) => return Some(dir),
+            Some((_, 0)) => match world.is_crossed(from, dir, diagonals) {
+                Some(true) => {}
+                crossed => return crossed.map(|_| dir),
+            },
             Some((_, OPEN)) => return None,
             _ => {}
         }

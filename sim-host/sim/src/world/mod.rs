@@ -32,6 +32,8 @@ pub struct MoveRules {
     pub norm: Norm,
     /// Whether a diagonal move may cut the corner of one or two walls; robots there never block it.
     pub corner_cutting: bool,
+    /// Whether a diagonal move may cross one that is under way, which counts as a collision.
+    pub crossing: bool,
 }
 
 /// A robot's body.
@@ -54,6 +56,11 @@ pub struct Body {
 impl Body {
     pub(crate) const fn at_rest(id: RobotId, cell: Cell) -> Self {
         Self { id, cell, entered_by: Dir::Stay, free_at: 0, crossing: 0, is_shut_in: false }
+    }
+
+    /// The diagonal move by which it is entering its cell; `Stay` if it is not in such a move.
+    fn diagonal(&self, now: u64) -> Dir {
+        if self.free_at > now && self.entered_by.is_diagonal() { self.entered_by } else { Dir::Stay }
     }
 }
 
@@ -90,7 +97,7 @@ pub struct World {
     /// Per cell of the terrain: index of its body plus 1, or 0.
     occupancy: Vec<u32>,
     movers: Vec<(u64, RobotId, u32)>,
-    /// Scratch of the collision check: a bit per cell with a body. Empty between checks.
+    /// Scratch of the collision check: a bit per cell. Empty between checks.
     seen: Vec<u64>,
 }
 
@@ -204,9 +211,11 @@ impl World {
     ///
     /// A body that may leave takes the first of its preferred moves whose cell is passable and
     /// free, also if another body left that cell earlier in the tick; the order is that of this
-    /// tick's priorities. Entering cell c by move d keeps the body busy for length(d) * u(c) ticks
-    /// (eq. 6). A body that moves again as soon as it is free keeps the remaining fraction of a
-    /// tick, so a journey takes exactly the sum of eq. 7.
+    /// tick's priorities. A diagonal move must also not cross one that is under way in this tick
+    /// ([`Dir::crosses`]), unless [`MoveRules::crossing`] allows it. Entering cell c by move d
+    /// keeps the body busy for length(d) * u(c) ticks (eq. 6). A body that moves again as soon as
+    /// it is free keeps the remaining fraction of a tick, so a journey takes exactly the sum of
+    /// eq. 7.
     ///
     /// # Panics
     /// If there are fewer commands than bodies.
@@ -231,7 +240,7 @@ impl World {
 
     fn move_body(&mut self, index: usize, preferred: &[Dir], now: u64) {
         let body = self.bodies[index];
-        let open = preferred.iter().find(|&&dir| dir == Dir::Stay || self.is_open(body.cell, dir));
+        let open = preferred.iter().find(|&&dir| dir == Dir::Stay || self.is_open(body.cell, dir, now));
         let Some(&dir) = open else { return };
         let to = body.cell + dir.offset();
         let (Some(from_at), Some(to_at)) = (self.terrain.index(body.cell), self.terrain.index(to)) else {
@@ -253,18 +262,37 @@ impl World {
         Body { id: body.id, cell, entered_by: dir, free_at: start + crossing, crossing, is_shut_in: false }
     }
 
-    fn is_open(&self, from: Cell, dir: Dir) -> bool {
-        let step = dir.offset();
-        let to = from + step;
+    fn is_open(&self, from: Cell, dir: Dir, now: u64) -> bool {
+        let to = from + dir.offset();
+        let diagonal = |index: usize| self.bodies[index].diagonal(now);
+        self.is_passable(from, dir)
+            && self.body_at(to).is_none()
+            && !self
+                .sides(from, dir)
+                .any(|side| self.body_at(side).is_some_and(|body| dir.crosses(from, diagonal(body), side)))
+    }
+
+    /// Whether the terrain allows the move.
+    fn is_passable(&self, from: Cell, dir: Dir) -> bool {
+        let to = from + dir.offset();
         let passable = |x, y| self.terrain.is_passable(Cell::new(x, y));
         self.terrain.is_passable(to)
-            && self.body_at(to).is_none()
             && (self.rules.corner_cutting || !dir.is_diagonal() || (passable(to.x, from.y) && passable(from.x, to.y)))
     }
 
-    /// Number of bodies in a shared cell, or in a blocked cell that did not close around them. Does
-    /// not use the occupancy table of [`World::advance`], so that it finds errors in it. O(robots).
-    pub fn count_collisions(&mut self) -> u64 {
+    /// The ends of diagonal moves that must not be under way during a move.
+    fn sides(&self, from: Cell, dir: Dir) -> impl Iterator<Item = Cell> + use<> {
+        let to = from + dir.offset();
+        let count = if dir.is_diagonal() && !self.rules.crossing { 2 } else { 0 };
+        [Cell::new(from.x, to.y), Cell::new(to.x, from.y)].into_iter().take(count)
+    }
+
+    /// Number of bodies in a shared cell, in a blocked cell that did not close around them, or in a
+    /// diagonal move that crosses one counted before. Does not use the occupancy table of
+    /// [`World::advance`], so that it finds errors in it. `tick` is that of the last moves.
+    /// O(robots).
+    pub fn count_collisions(&mut self, tick: u32) -> u64 {
+        let now = u64::from(tick) * u64::from(UNIT);
         let mut collisions = 0;
         for body in &self.bodies {
             let is_open = |at: &usize| self.terrain.cells()[*at] != BLOCKED || body.is_shut_in;
@@ -276,6 +304,20 @@ impl World {
             }
         }
         for at in self.bodies.iter().filter_map(|body| self.terrain.index(body.cell)) {
+            self.seen[at / 64] = 0;
+        }
+        // Diagonals through one point: both lie in the four cells north-east of the same cell.
+        let corner = |body: &Body| {
+            let from = body.cell - body.diagonal(now).offset();
+            self.terrain.index(Cell::new(from.x.min(body.cell.x), from.y.min(body.cell.y)))
+        };
+        let diagonals = || self.bodies.iter().filter(|body| body.diagonal(now) != Dir::Stay).filter_map(corner);
+        for at in diagonals() {
+            let (word, bit) = (&mut self.seen[at / 64], 1 << (at % 64));
+            collisions += u64::from(*word & bit != 0);
+            *word |= bit;
+        }
+        for at in diagonals() {
             self.seen[at / 64] = 0;
         }
         collisions

@@ -117,6 +117,72 @@ fn two_robots_never_swap_cells() {
     }
 }
 
+/// Four cells, row by row from the south-west, with the robots `ids` in the southern two.
+fn square(classes: [u8; 4], ids: [u32; 2], rules: MoveRules) -> World {
+    let terrain = Terrain::from_cells(2, 2, classes.to_vec()).expect("fits");
+    let starts = ids.into_iter().map(RobotId).zip([Cell::new(0, 0), Cell::new(1, 0)]);
+    World::new(terrain, rules, 7, starts).expect("starts are free")
+}
+
+#[test]
+fn two_diagonals_through_one_point_are_never_under_way_at_once() {
+    let both = [moves(&[Dir::NorthEast]), moves(&[Dir::NorthWest])];
+    for (ids, classes) in [[1, 2], [2, 1]].into_iter().flat_map(|ids| [(ids, [1; 4]), (ids, [1, 1, 7, 2])]) {
+        for late in 0..4 {
+            let mut world = square(classes, ids, MoveRules::default());
+            let mut under_way = [0_u64; 2];
+            for tick in 0..20 {
+                let commands = if tick < late { [both[0].clone(), Command::Hold] } else { both.clone() };
+                world.advance(tick, &commands);
+                assert_eq!(world.count_collisions(tick), 0);
+                let now = u64::from(tick * UNIT);
+                let is_under_way = [0, 1].map(|body| world.bodies()[body].free_at > now);
+                assert_ne!(is_under_way, [true; 2], "tick {tick} of {ids:?} {classes:?}");
+                for (ticks, is) in under_way.iter_mut().zip(is_under_way) {
+                    *ticks += u64::from(is);
+                }
+            }
+            let cells = [0, 1].map(|body| world.bodies()[body].cell);
+            assert_eq!(cells, [Cell::new(1, 1), Cell::new(0, 1)], "the second goes when the first is there");
+            assert!(under_way.iter().all(|&ticks| ticks > 0));
+        }
+    }
+}
+
+#[test]
+fn a_world_that_allows_crossing_counts_it_while_both_are_under_way() {
+    let rules = MoveRules { crossing: true, ..MoveRules::default() };
+    // Robot 1 is under way for 2 * 1.41 ticks, robot 2 for 1.41 or 5 * 1.41.
+    for (class, late, crossed) in [(1, 0, 2), (5, 0, 3), (5, 1, 2), (5, 2, 1), (5, 3, 0)] {
+        for ids in [[1, 2], [2, 1]] {
+            let mut world = square([1, 1, class, 2], ids, rules);
+            let mut counts = 0;
+            for tick in 0..20 {
+                let second = if tick < late { Command::Hold } else { moves(&[Dir::NorthWest]) };
+                world.advance(tick, &[moves(&[Dir::NorthEast]), second]);
+                counts += world.count_collisions(tick);
+            }
+            assert_eq!(counts, crossed, "{late} ticks later");
+        }
+    }
+}
+
+#[test]
+fn a_crossed_diagonal_goes_to_each_robot_equally_often_or_leaves_an_alternative() {
+    let mut wins = [0_u32; 2];
+    for tick in 0..3000 {
+        let mut world = square([1; 4], [1, 2], MoveRules::default());
+        world.advance(tick, &[moves(&[Dir::NorthEast]), moves(&[Dir::NorthWest, Dir::North])]);
+        let [first, second] = [0, 1].map(|body| world.bodies()[body].cell);
+        assert_ne!((first, second), (Cell::new(1, 1), Cell::new(0, 1)));
+        wins[0] += u32::from(first == Cell::new(1, 1));
+        wins[1] += u32::from(second == Cell::new(0, 1));
+        assert!(second.y == 1 || first == Cell::new(1, 1));
+    }
+    // Three standard deviations of a binomial(3000, 1/2) are 82.
+    assert!(wins.iter().all(|&w| w.abs_diff(1500) < 85), "{wins:?}");
+}
+
 #[test]
 fn a_contested_cell_goes_to_each_robot_equally_often() {
     let mut wins = [0_u32; 3];
@@ -147,13 +213,13 @@ fn a_queue_moves_together_when_the_first_has_priority() {
 #[test]
 fn the_collision_check_does_not_trust_the_occupancy_table() {
     let mut world = world(Terrain::flat(3, 1), MoveRules::default(), &[(0, 0), (1, 0), (2, 0)]);
-    assert_eq!(world.count_collisions(), 0);
+    assert_eq!(world.count_collisions(0), 0);
     world.bodies[0].cell = Cell::new(1, 0);
-    assert_eq!(world.count_collisions(), 1);
+    assert_eq!(world.count_collisions(0), 1);
     world.terrain.set(Cell::new(2, 0), BLOCKED);
-    assert_eq!(world.count_collisions(), 2);
+    assert_eq!(world.count_collisions(0), 2);
     world.bodies[2].cell = Cell::new(-1, 0);
-    assert_eq!(world.count_collisions(), 2);
+    assert_eq!(world.count_collisions(0), 2);
 }
 
 #[test]
@@ -205,7 +271,7 @@ fn any_command() -> impl Strategy<Value = Command<f32>> {
 
 proptest! {
     #[test]
-    fn no_commands_bring_two_robots_into_one_cell(
+    fn no_commands_bring_two_robots_into_one_cell_or_across_each_other(
         cells in prop::collection::vec(0_u8..4, 36),
         corner_cutting: bool,
         seed: u64,
@@ -219,12 +285,16 @@ proptest! {
         let starts: Vec<_> = (1..).map(RobotId)
             .zip(all.filter(|&c| terrain.is_passable(c)).step_by(2))
             .collect();
-        let rules = MoveRules { norm: Norm::Euclidean, corner_cutting };
+        let rules = MoveRules { corner_cutting, ..MoveRules::default() };
         let mut world = World::new(terrain, rules, seed, starts).expect("starts are free");
         for (tick, commands) in (0..).zip(&rounds) {
             let before = world.bodies().to_vec();
             world.advance(tick, commands);
-            prop_assert_eq!(world.count_collisions(), 0);
+            prop_assert_eq!(world.count_collisions(tick), 0);
+            for pair in (0..before.len()).flat_map(|one| (0..one).map(move |other| [one, other])) {
+                let [one, other] = pair.map(|index| (before[index].cell, world.bodies()[index].cell));
+                prop_assert!(one.0 != other.1 || one.1 != other.0, "a swap of {:?}", one);
+            }
             for (old, new) in before.iter().zip(world.bodies()) {
                 prop_assert!(old.cell.chebyshev(new.cell) <= 1);
                 prop_assert!(old.cell == new.cell || old.free_at <= u64::from(tick) * u64::from(UNIT));

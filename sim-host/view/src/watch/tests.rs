@@ -97,7 +97,7 @@ fn a_selected_robot_shows_the_details_of_the_run() {
     assert_eq!(robot["facts"], json!([["companion", "steers"]]));
     let neighbors = robot["neighbors"].as_array().expect("it knows some");
     let error_m = neighbors[0]["error_m"].as_f64().expect("the first one is measured");
-    assert!((0.8..1.0).contains(&error_m), "{error_m}");
+    assert!((0.8..=1.0).contains(&error_m), "{error_m}");
     assert_eq!((&neighbors[1]["index"], &neighbors[1]["error_m"]), (&json!(2), &Value::Null));
     assert_eq!((&neighbors[2]["index"], &neighbors[2]["error_m"]), (&Value::Null, &Value::Null));
     let pairs = text(&mut page, "links")["pairs"].as_str().map(|pairs| BASE64_STANDARD.decode(pairs));

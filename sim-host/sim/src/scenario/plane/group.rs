@@ -32,6 +32,8 @@ pub struct RobotGroup {
     pub safety: SafetySetup,
     /// Reaction to loss of contact.
     pub contact_loss: ContactLossPolicy<f32>,
+    /// How long its robots listen before they move. `None`: as long as the radio needs.
+    pub listen: Option<Duration>,
     /// Flock number; robots of different flocks avoid each other but do not flock together.
     pub flock: u8,
 }
@@ -52,6 +54,7 @@ impl RobotGroup {
             guidance: waypoint(cruise_mps, tolerance_m),
             safety: SafetySetup::Orca { params: AvoidParams::default(), inflation, source: AnyHalfPlanes::Analytic },
             contact_loss: ContactLossPolicy::DEFAULT,
+            listen: None,
             flock: 0,
         }
     }
@@ -110,6 +113,7 @@ impl Spec {
         self.within(source, "radius_m", self.radius_m, [0.001, 65.0], "metres")?;
         self.within(source, "max_speed_mps", self.max_speed_mps, [0.001, 32.0], "m/s")?;
         self.within(source, "sight_m", self.sight_m, [0.0, far], "metres")?;
+        self.within(source, "lag_s", self.lag_s, [0.0, 10.0], "seconds")?;
         if self.max_acceleration_mps2.is_nan() || self.max_acceleration_mps2 <= 0.0 {
             let what = format!("{} is out of range", short(self.max_acceleration_mps2));
             let remedy = "give more than 0, in m/s^2, or inf";
@@ -124,6 +128,7 @@ impl Spec {
             abilities: Abilities {
                 max_speed_mps: self.max_speed_mps,
                 max_acceleration_mps2: self.max_acceleration_mps2,
+                lag_s: self.lag_s,
                 step_s: f64::from(super::super::ranges::micros(file.tick_s)) / 1e6,
             },
             radius_m: self.radius_m,
@@ -133,6 +138,7 @@ impl Spec {
             guidance: self.guidance(source, file, cruise_mps, tolerance_m)?,
             safety: self.safety(source)?,
             contact_loss: self.silence(source)?,
+            listen: self.seconds(source, "orca.listen_s", self.orca.listen_s)?,
             flock: self.flock,
         };
         self.unused(source)?;
@@ -196,10 +202,10 @@ impl Spec {
         let (table, mut params) = (&self.orca, AvoidParams::<f32>::default());
         // A body with inertia must see a conflict early enough to brake for it: one braking time
         // for its own speed and one for the other's.
-        let brake_s = (2.0 * self.max_speed_mps / self.max_acceleration_mps2).min(60.0);
+        let brake_s = (2.0 * (self.max_speed_mps / self.max_acceleration_mps2 + self.lag_s)).min(60.0);
         params.horizon_s = params.horizon_s.max(brake_s as f32);
         if let Some(given) = table.horizon_s.filter(|&given| given < brake_s) {
-            let what = format!("{} is less than 2 max_speed_mps / max_acceleration_mps2", short(given));
+            let what = format!("{} is less than 2 (max_speed_mps / max_acceleration_mps2 + lag_s)", short(given));
             let remedy = format!("give {} seconds or more, or leave it out", short(brake_s));
             return Err(source.error(&self.field(source, "orca.horizon_s"), what, remedy));
         }
@@ -219,15 +225,21 @@ impl Spec {
 
     fn silence(&self, source: &Source<'_>) -> Result<ContactLossPolicy<f32>, ScenarioError> {
         let mut silence = ContactLossPolicy::DEFAULT;
-        if let Some(remember_s) = self.orca.remember_s {
-            self.within(source, "orca.remember_s", remember_s, [0.0, 1800.0], "seconds")?;
-            silence.remember = Duration::from_micros(libm::round(remember_s * 1e6) as i32);
+        if let Some(stands_after) = self.seconds(source, "orca.stands_after_s", self.orca.stands_after_s)? {
+            silence.stands_after = stands_after;
         }
+        silence.expects_others = self.orca.expects_others.unwrap_or_default();
         if let Some(alone_mps) = self.orca.alone_mps {
             self.within(source, "orca.alone_mps", alone_mps, [0.0, f64::INFINITY], "m/s")?;
             silence.alone_mps = alone_mps.min(f64::from(f32::MAX)) as f32;
         }
         Ok(silence)
+    }
+
+    fn seconds(&self, source: &Source<'_>, field: &str, value: Option<f64>) -> Result<Option<Duration>, ScenarioError> {
+        let Some(value) = value else { return Ok(None) };
+        self.within(source, field, value, [0.0, 600.0], "seconds")?;
+        Ok(Some(Duration::from_micros(libm::round(value * 1e6) as i32)))
     }
 
     fn push_out(&self, source: &Source<'_>) -> Result<PushOutParams<f32>, ScenarioError> {

@@ -16,6 +16,9 @@ pub struct PlaneTable {
     /// Highest acceleration, m/s^2. Default: no limit.
     #[serde(default = "infinite")]
     pub max_acceleration_mps2: f64,
+    /// Time constant with which the velocity follows a command, seconds. Default: 0, at once.
+    #[serde(default)]
+    pub lag_s: f64,
     /// Preferred speed, m/s. Default: the highest.
     pub cruise_mps: Option<f64>,
     /// Distance at which a goal counts as reached, metres. Default: a tenth of the radius.
@@ -176,6 +179,8 @@ pub struct GroupTable {
     pub max_speed_mps: Option<f64>,
     /// Highest acceleration, m/s^2.
     pub max_acceleration_mps2: Option<f64>,
+    /// Time constant with which the velocity follows a command, seconds.
+    pub lag_s: Option<f64>,
     /// Preferred speed, m/s.
     pub cruise_mps: Option<f64>,
     /// Distance at which a goal counts as reached, metres.
@@ -380,8 +385,13 @@ pub struct OrcaTable {
     pub inflation_m: Option<f64>,
     /// In space: ratio of the vertical to the horizontal separation. Default: 1.
     pub downwash: Option<f64>,
-    /// How long a lost robot is remembered, seconds.
-    pub remember_s: Option<f64>,
+    /// Silence after which a lost robot counts as standing even if most are lost, seconds.
+    pub stands_after_s: Option<f64>,
+    /// How long a robot stands and listens after its start, seconds. Default: two beacon periods
+    /// and the delay of the radio.
+    pub listen_s: Option<f64>,
+    /// Whether a robot that has not heard another one stands. Default: false.
+    pub expects_others: Option<bool>,
     /// Speed of a robot that has lost all others, m/s; `inf`: unchanged.
     pub alone_mps: Option<f64>,
 }
@@ -391,10 +401,10 @@ impl OrcaTable {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         let Self { horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m, .. } = self;
-        let Self { downwash, remember_s, alone_mps, .. } = self;
+        let Self { downwash, stands_after_s, listen_s, expects_others, alone_mps, .. } = self;
         let fields = [horizon_s, wall_horizon_s, share, margin_m, inflation_mps, inflation_m];
-        let fields = fields.into_iter().chain([downwash, remember_s, alone_mps]);
-        fields.into_iter().all(Option::is_none)
+        let fields = fields.into_iter().chain([downwash, stands_after_s, listen_s, alone_mps]);
+        expects_others.is_none() && fields.into_iter().all(Option::is_none)
     }
 }
 

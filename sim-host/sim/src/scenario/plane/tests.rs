@@ -52,17 +52,20 @@ fn the_smallest_plane_has_the_documented_defaults() {
     let [one, two] = &plane.starts[..] else { panic!("two robots") };
     assert_eq!(one.places[0].position_m, [5.0, 0.0, 0.0]);
     assert_eq!((two.position_m, two.places.len()), ([3.0, 0.0, 1.0], 0));
-    assert_eq!(
-        plane.general.contact_loss,
-        ContactLossPolicy { remember: Duration::from_millis(60_000), alone_mps: 0.0 }
-    );
+    assert_eq!(plane.general.contact_loss, ContactLossPolicy::DEFAULT);
 }
 
 #[test]
 fn the_reaction_to_silence_is_read() {
-    let table = "[plane.orca]\nremember_s = 2.5\nalone_mps = inf\n";
-    let silence = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general.contact_loss;
-    assert_eq!(silence, ContactLossPolicy { remember: Duration::from_millis(2500), alone_mps: f32::MAX });
+    let table = "[plane.orca]\nstands_after_s = 2.5\nlisten_s = 0.5\nexpects_others = true\nalone_mps = inf\n";
+    let group = setup(&format!("{HEAD}{PLANE}{table}{TWO}")).general;
+    let given = ContactLossPolicy {
+        stands_after: Duration::from_millis(2500),
+        alone_mps: f32::MAX,
+        expects_others: true,
+        ..ContactLossPolicy::DEFAULT
+    };
+    assert_eq!((group.contact_loss, group.listen), (given, Some(Duration::from_millis(500))));
 }
 
 #[test]
@@ -271,7 +274,11 @@ fn every_mistake_is_named_with_line_field_and_remedy() {
             format!("{}[plane.orca]\ndownwash = 0.5\n", with("safety = \"fly\"\n")),
             "s.toml:10: plane.orca.downwash: 0.5 is out of range; give 1 to 10",
         ),
-        (after("[plane.orca]\nremember_s = 1801\n"), "s.toml:9: plane.orca.remember_s: 1801 is out of range"),
+        (after("[plane.orca]\nlisten_s = 601\n"), "s.toml:9: plane.orca.listen_s: 601 is out of range"),
+        (
+            after("[plane.orca]\nremember_s = 60\n"),
+            "s.toml:9: plane.orca.remember_s: unknown field `remember_s`; the field is called `stands_after_s` now",
+        ),
         (after("[plane.orca]\nalone_mps = -1\n"), "s.toml:9: plane.orca.alone_mps: -1 is out of range"),
         (after("[plane.orca]\ninflation_m = -1\n"), "s.toml:9: plane.orca.inflation_m: -1 is out of range"),
         (

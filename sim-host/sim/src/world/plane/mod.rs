@@ -54,6 +54,8 @@ pub struct Abilities {
     pub max_speed_mps: f64,
     /// Highest acceleration, m/s^2; may be infinite.
     pub max_acceleration_mps2: f64,
+    /// Time constant with which the velocity follows a command (first order), seconds; 0: at once.
+    pub lag_s: f64,
     /// Length of a tick, seconds.
     pub step_s: f64,
 }
@@ -296,8 +298,8 @@ impl Plane {
         max_speed_mps(self.terrain(), &self.shut[index], &self.discs[index].abilities, position_m)
     }
 
-    /// Moves the bodies by one tick; `commands[i]` belongs to body `i`. A body has constant
-    /// velocity within the tick. A hold command or a command for cells makes it brake.
+    /// Moves the bodies by one tick; `commands[i]` belongs to body `i`. A body without lag has
+    /// constant velocity within the tick. A hold command or a command for cells makes it brake.
     ///
     /// # Panics
     /// If there are fewer commands than bodies.
@@ -319,9 +321,21 @@ impl Plane {
                 max_acceleration_mps2: disc.abilities.max_acceleration_mps2,
                 step_s: disc.abilities.step_s,
             };
-            let v = limits.reach(wish);
-            disc.velocity_mps = [v.x, v.y, v.z];
-            disc.go();
+            let Abilities { lag_s, step_s, .. } = disc.abilities;
+            if lag_s > 0.0 {
+                let left = libm::exp(-step_s / lag_s);
+                // The velocity changes by no more in a tick than that of a body without lag.
+                let command = Limits { step_s: step_s / (1.0 - left), ..limits }.reach(wish);
+                let mean = command + (limits.velocity_mps - command) * (lag_s * (1.0 - left) / step_s);
+                let last = command + (limits.velocity_mps - command) * left;
+                disc.velocity_mps = [mean.x, mean.y, mean.z];
+                disc.go();
+                disc.velocity_mps = [last.x, last.y, last.z];
+            } else {
+                let v = limits.reach(wish);
+                disc.velocity_mps = [v.x, v.y, v.z];
+                disc.go();
+            }
             if space.period().is_some() {
                 // The height is not periodic.
                 let [x, y, _] = space.fold(disc.position_m);

@@ -1,6 +1,7 @@
 use super::*;
 
-const ABILITIES: Abilities = Abilities { max_speed_mps: 2.0, max_acceleration_mps2: f64::INFINITY, step_s: 0.5 };
+const ABILITIES: Abilities =
+    Abilities { max_speed_mps: 2.0, max_acceleration_mps2: f64::INFINITY, lag_s: 0.0, step_s: 0.5 };
 
 fn disc(id: u32, x: f64, y: f64) -> Disc {
     Disc {
