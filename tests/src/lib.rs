@@ -1,5 +1,9 @@
 //! Helpers shared by the cross-crate tests.
 
+mod story;
+
+pub use story::gaps;
+
 use staya_sim::engine::{Outcome, simulate};
 use staya_sim::record::{RobotRow, TickRow};
 use staya_sim::scenario::{Overrides, Scenario};
@@ -55,10 +59,13 @@ pub fn run(scenario: &Scenario) -> (Outcome, Vec<(TickRow, Vec<RobotRow>)>) {
 }
 
 /// Compares `actual` with the file `tests/golden/<name>.txt`, or writes it for `cargo xtask bless`.
+/// `gaps` are the parts of the story that the run lacks ([`gaps`]); the file names each of them
+/// with its reason.
 ///
 /// # Panics
-/// If they differ, or the file cannot be read or written.
-pub fn golden(name: &str, actual: &str) {
+/// If they differ, a gap has no reason or a reason no gap, or the file cannot be read or written.
+pub fn golden(name: &str, actual: &str, gaps: &[String]) {
+    let actual = format!("{actual}{}", story::exceptions(name, gaps));
     let path = root().join("tests/golden").join(format!("{name}.txt"));
     if std::env::var_os(BLESS).is_some() {
         fs::write(&path, actual).unwrap_or_else(|error| panic!("{}: {error}", path.display()));

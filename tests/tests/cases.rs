@@ -9,5 +9,5 @@ fn golden_hashes_of_the_canned_swarms() {
         let (hash, steps) = (summary.hash, summary.steps);
         writeln!(table, "{name} {number} {hash:016x} {steps}").expect("strings take everything");
     });
-    staya_tests::golden("cases", &table);
+    staya_tests::golden("cases", &table, &[]);
 }

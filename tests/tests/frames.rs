@@ -6,15 +6,15 @@ use staya_controller::robot::{Mode, RobotId};
 use staya_controller::template::TemplateEntry;
 use staya_controller::time::Instant;
 use staya_controller::wire::{
-    Ack, Beacon, Frame, GoalAssignment, Header, Message, PayloadBytes, Request, RequestKind, TemplateAssignment,
-    WaypointAssignment,
+    Ack, Beacon, Frame, GoalAssignment, Header, LostRobot, Message, PayloadBytes, Request, RequestKind,
+    TemplateAssignment, WaypointAssignment,
 };
 use staya_mavlink::wire::{decode, encode};
 use std::fmt::Write as _;
 
 const TO: RobotId = RobotId(254);
 
-fn messages() -> [(&'static str, Message, &'static str); 9] {
+fn messages() -> [(&'static str, Message, &'static str); 10] {
     let entry = |x, id, hops| TemplateEntry { offset: Cell::new(x, -x), id: RobotId(id), hops };
     let template = |entries: &[TemplateEntry]| {
         Message::Template(TemplateAssignment {
@@ -90,6 +90,17 @@ fn messages() -> [(&'static str, Message, &'static str); 9] {
             Message::Payload(PayloadBytes::of(&(7_u8, -300_i16, 1.5_f32)).expect("fits")),
             "count=7 bytes=7,215,4,0,0,192,63,0,0,0,0,0,0,0,0,0",
         ),
+        (
+            "STAYA_LOST",
+            Message::Lost(LostRobot {
+                id: TO,
+                is_lost: true,
+                age_cs: 6_553,
+                position_mm: [-1, 2_000_000, 3],
+                radius_mm: 250,
+            }),
+            "x_mm=-1 y_mm=2000000 z_mm=3 radius_mm=250 age_cs=6553 robot=254 is_lost=1",
+        ),
     ]
 }
 
@@ -105,5 +116,5 @@ fn golden_mavlink_frames() {
         let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
         writeln!(table, "{name} {hex} {fields}").expect("strings take everything");
     }
-    staya_tests::golden("mavlink-frames", &table);
+    staya_tests::golden("mavlink-frames", &table, &[]);
 }

@@ -6,7 +6,7 @@ use staya_sim::engine::Outcome;
 use staya_sim::metrics::waits::WaitCount;
 use staya_sim::record::{RobotRow, TickRow};
 use staya_sim::scenario::Scenario;
-use staya_tests::{golden, run, scenario};
+use staya_tests::{gaps, golden, run, scenario};
 use std::fmt::Write as _;
 
 const SHOWN: usize = 6;
@@ -84,7 +84,7 @@ fn check(name: &str, ticks: Option<u32>) {
     let scenario = scenario(name, ticks);
     let (outcome, rows) = run(&scenario);
     let table = table(&scenario, &outcome, &rows).expect("memory takes every line");
-    golden(name, &table);
+    golden(name, &table, &gaps(&scenario, &outcome));
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn golden_scale_in_its_first_ticks() {
 #[test]
 fn golden_orca_table() {
     let sample = Sample { pairs: 20_000, seed: 1 };
-    golden("orca-table", &sample.report().to_string());
+    golden("orca-table", &sample.report().to_string(), &[]);
 }
 
 #[test]
