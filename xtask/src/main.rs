@@ -23,6 +23,7 @@ mod language;
 mod layers;
 mod minimal;
 mod mpi;
+mod mutants;
 mod options;
 mod plants;
 mod project;
@@ -48,7 +49,7 @@ type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
 
 /// The commands. Of lines that begin with the same word, the first that fits counts.
 #[rustfmt::skip]
-const COMMANDS: [Command; 28] = [
+const COMMANDS: [Command; 29] = [
     ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
     ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, Short)),
     ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, All)),
@@ -72,6 +73,8 @@ const COMMANDS: [Command; 28] = [
         install::run_command),
     ("mpi", "one world over ranks of OpenMPI, on this machine", |s, _| mpi::run(s)),
     ("mpi [--scaling]", "times of 200,000 robots on 1, 2 and 4 ranks", |s, _| mpi::run_scaling(s)),
+    ("mutants [--shard K/N]", "changes of the controller that its tests must notice",
+        |s, o| mutants::run_shard(s, o.value("--shard"))),
     ("new", "what `staya new` makes, compiled and tested", |s, _| project::run(s, All)),
     ("plants", "panics planted in the firmware's sources: the linker refuses each", |s, _| plants::run(s, true)),
     ("python", "the package for Python: its wheel, types and tests", |s, _| python::package(s)),

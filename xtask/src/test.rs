@@ -65,5 +65,6 @@ pub fn run(s: &mut Session, extent: Extent) {
     let fuzz = ["test", "--locked", "--no-default-features"];
     let mut fuzz = s.repo.cargo_in("tests/fuzz", &fuzz);
     s.report.part("fuzz targets on random bytes", || counted(&mut fuzz, ""));
+    crate::mutants::run_shard(s, None);
     crate::bench::run_goals(s);
 }

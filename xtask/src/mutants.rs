@@ -1,0 +1,113 @@
+//! `cargo xtask mutants`: changes that the tests of the controller must notice.
+//!
+//! `cargo-mutants` plants them in a copy of the sources. `.cargo/mutants.toml` lists the modules,
+//! and the survivors that are accepted, each with its reason.
+
+use crate::files;
+use crate::repo::{Repo, output_of, run};
+use crate::report::Counts;
+use crate::session::Session;
+use std::path::{Path, PathBuf};
+
+/// The share that `cargo xtask test --all` plants: some 23 of 4,500, in a minute and a half per
+/// ten on two processors.
+const SHARD: &str = "0/200";
+/// Least share of viable mutants that the tests notice, percent.
+const CAUGHT: u64 = 95;
+/// Long simulations and random bytes, which take most of the time: the other tests must suffice.
+const SKIPPED: [&str; 2] = ["simulation", "tests::nonsense"];
+const TESTED: [&str; 5] = ["agent::", "auth::", "neighbor::", "orca::", "wire::"];
+/// Without optimisation a mutant compiles in a fifth of the time; its tests need more stack.
+const ENVIRONMENT: [(&str, &str); 5] = [
+    ("CARGO_PROFILE_DEV_INCREMENTAL", "true"),
+    ("CARGO_PROFILE_DEV_OPT_LEVEL", "0"),
+    ("PROPTEST_CASES", "64"),
+    ("PROPTEST_RNG_SEED", "1"),
+    ("RUST_MIN_STACK", "16000000"),
+];
+
+/// Plants the mutants of a shard, `K/N`: every N-th one from the K-th on.
+pub fn run_shard(s: &mut Session, shard: Option<&str>) {
+    let shard = shard.unwrap_or(SHARD);
+    let name = format!("mutants, shard {shard}");
+    if output_of(s.repo.command("cargo").args(["mutants", "--version"])).is_none() {
+        return s.report.skip(&name, "no cargo-mutants; run `cargo install cargo-mutants --locked`");
+    }
+    let repo = &s.repo;
+    s.report.part(&name, || match planted(repo, shard) {
+        Ok(found) => found,
+        Err(reason) => {
+            println!("failed: {reason}");
+            (Counts { failed: 1, ..Counts::default() }, reason)
+        }
+    });
+}
+
+fn planted(repo: &Repo, shard: &str) -> Result<(Counts, String), String> {
+    let folder = repo.target.join("mutants");
+    let sources = copied(repo, &folder)?;
+    let mut command = repo.command("cargo");
+    command
+        .args(["mutants", "--in-place", "--package", "staya-controller", "--features", "host,published"])
+        .args(["--cargo-arg=--lib", "--sharding", "round-robin", "--shard", shard, "--colors", "never"])
+        .args(["--timeout-multiplier", "5", "--minimum-test-timeout", "60", "--output"])
+        .arg(&folder)
+        .args(["--", "--"])
+        .args(TESTED)
+        .args(SKIPPED.iter().flat_map(|name| ["--skip", name]))
+        .current_dir(sources)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        .envs(ENVIRONMENT);
+    // A survivor is not an error here: the share decides.
+    let ended = run(&mut command);
+    let outcomes = files::read(&folder.join("mutants.out/outcomes.json")).map_err(|error| match &ended {
+        Err(reason) => format!("cargo mutants: {reason}"),
+        Ok(()) => error,
+    })?;
+    judged(&outcomes)
+}
+
+/// The sources without what git ignores, so that an interrupted run leaves no mutant behind.
+fn copied(repo: &Repo, folder: &Path) -> Result<PathBuf, String> {
+    let sources = folder.join("sources");
+    let listed = output_of(repo.command("git").args(["ls-files", "--cached", "--others", "--exclude-standard"]));
+    for file in listed.ok_or("git ls-files fails")?.lines().map(Path::new) {
+        let (from, to) = (repo.root.join(file), sources.join(file));
+        let is_same = files::bytes(&to).is_ok_and(|old| files::bytes(&from).is_ok_and(|new| new == old));
+        if from.is_file() && !is_same {
+            files::make(to.parent().unwrap_or(folder))?;
+            files::copy(&from, &to)?;
+        }
+    }
+    Ok(sources)
+}
+
+/// One failure if the tests notice too few.
+fn judged(outcomes: &str) -> Result<(Counts, String), String> {
+    let outcomes: serde_json::Value = serde_json::from_str(outcomes).map_err(|error| error.to_string())?;
+    let count = |field: &str| outcomes[field].as_u64().ok_or_else(|| format!("outcomes.json has no number {field}"));
+    let (caught, missed, unviable) = (count("caught")? + count("timeout")?, count("missed")?, count("unviable")?);
+    let viable = caught + missed;
+    let failed = u64::from(viable == 0 || caught * 100 < viable * CAUGHT);
+    let note = format!("{caught} of {viable} noticed (at least {CAUGHT} %), {unviable} did not compile");
+    Ok((Counts { passed: caught, failed, skipped: 0 }, note))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn too_many_survivors_are_one_failure() {
+        let of = |caught, missed, timeout| {
+            let text = format!(
+                "{{\"caught\": {caught}, \"missed\": {missed}, \"timeout\": {timeout}, \"unviable\": 3, \"x\": [1]}}"
+            );
+            judged(&text).map(|(counts, _)| (counts.passed, counts.failed))
+        };
+        assert_eq!(of(18, 1, 1), Ok((19, 0)));
+        assert_eq!(of(18, 2, 0), Ok((18, 1)));
+        assert_eq!(of(0, 0, 0), Ok((0, 1)), "nothing was planted");
+        assert!(judged("{}").is_err());
+    }
+}
