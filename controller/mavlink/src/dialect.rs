@@ -4244,7 +4244,7 @@ impl MessageData for STAYA_LOST_DATA {
     type Message = MavMessage;
     const ID: u32 = 9500009u32;
     const NAME: &'static str = "STAYA_LOST";
-    const EXTRA_CRC: u8 = 86u8;
+    const EXTRA_CRC: u8 = 64u8;
     const ENCODED_LEN: usize = 21usize;
     fn deser(
         _version: MavlinkVersion,
