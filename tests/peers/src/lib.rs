@@ -1,6 +1,7 @@
 //! Tasks that Staya and comparable crates both solve, with equal results.
 
 pub mod crowd;
+pub mod drones;
 pub mod flockers;
 pub mod swarm;
 
