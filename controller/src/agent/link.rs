@@ -154,7 +154,8 @@ impl<S: Scalar, const N: usize, W: Wire, P: Payload> Link<S, N, W, P> {
         };
         let longest = Duration::from_micros(patience.as_micros().saturating_add(latency.as_micros()));
         let missed = patience.as_micros().checked_div(period.as_micros()).unwrap_or(0);
-        self.table.expire((body, config.lag_s), now, (longest, remembers), |lost| {
+        let on_s = S::from_micro(period.as_micros()).max(body.step_s) + config.lag_s;
+        self.table.expire((body, on_s), now, (longest, remembers), |lost| {
             loss.gave_up(u16::try_from(missed).unwrap_or(u16::MAX));
             windows.retain(|(id, _)| *id != lost);
             report(out, Event::NeighborLost(lost));

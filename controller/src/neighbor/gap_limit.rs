@@ -239,11 +239,14 @@ impl<S: Scalar> GapLimit<'_, S> {
             let other_m = body.braking_m(comes_mps) + comes_mps.max(S::ZERO) * self.lag_s;
             ((gap * S::HALF).min(gap - other_m), S::ZERO)
         };
-        // What a body with a lag still covers, if it is commanded to stand.
-        let lag_m = if self.lag_s > S::ZERO { self.own_mps.dot(ahead) * self.lag_s } else { S::ZERO };
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
-        let left_m = (left_m - lag_m).max(-S::from_micro(TOLERANCE_UM));
-        (Limit { ahead, slant, left_m, growth_mps }, silent > 0 && grown >= distance)
+        let mut limit = Limit { ahead, slant, left_m, growth_mps };
+        if self.lag_s > S::ZERO {
+            // What the body still covers, if it is commanded to stand.
+            limit.left_m -= limit.taken(self.own_mps, self.lag_s);
+        }
+        limit.left_m = limit.left_m.max(-S::from_micro(TOLERANCE_UM));
+        (limit, silent > 0 && grown >= distance)
     }
 
     /// Time to brake to rest, seconds; 0 without inertia.

@@ -300,16 +300,17 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
     /// list of lost robots and reports each in the order of ids. Call it at the start of each
     /// step. O(N), and O(N) for each lost robot.
     ///
-    /// A lost robot may have stopped at once, or after another step, and braking and lagging like
-    /// the own `body`: its ball grows to contain both places. It stays in the list until it is
-    /// received again or [cleared](Self::clear_lost).
+    /// A lost robot may have stopped at once, or have driven on for `on_s` (a beacon period and the
+    /// lag), then braked like the own `body`: its ball grows to contain both places. It stays in
+    /// the list until it is received again or [cleared](Self::clear_lost).
+    ///
     /// These robots are not remembered:
     /// - All, without `remembers`.
     /// - A robot that [left](Trace::Leaving) radio range.
     /// - One of two robots with one id, while the other is fresh: the robot was moved.
     pub fn expire(
         &mut self,
-        (body, lag_s): (&Body<S>, S),
+        (body, on_s): (&Body<S>, S),
         now: Instant,
         (longest, remembers): (Duration, bool),
         mut lost: impl FnMut(RobotId),
@@ -326,7 +327,7 @@ impl<S: Scalar, const N: usize, P: Copy> NeighborTable<S, N, P> {
             };
             if remembers && silent.trace == Trace::Heard && !is_moved() {
                 let speed_mps = silent.velocity_mps.norm();
-                let half_m = (body.braking_m(speed_mps) + speed_mps * (body.step_s + lag_s)) * S::HALF;
+                let half_m = (body.braking_m(speed_mps) + speed_mps * on_s) * S::HALF;
                 let ahead_m = silent.velocity_mps.normalized().unwrap_or(Vec3::ZERO) * half_m;
                 let _ = self.entries.push(Neighbor {
                     trace: Trace::Lost,

@@ -50,7 +50,7 @@ fn ids<const N: usize>(table: &NeighborTable<f32, N>) -> StdVec<u32> {
 
 fn expired<const N: usize>(table: &mut NeighborTable<f32, N>, now: Instant) -> StdVec<u32> {
     let mut lost = StdVec::new();
-    table.expire((&BODY, 0.0), now, (Duration::MAX, false), |id| lost.push(id.0));
+    table.expire((&BODY, 0.1), now, (Duration::MAX, false), |id| lost.push(id.0));
     lost
 }
 
@@ -211,7 +211,7 @@ fn lost_robots_block_their_places_until_they_are_received() {
     let _ = put(&mut table, standing(2, 2.0, at(3_000_000)), at(3_000_000));
     let expire = |table: &mut NeighborTable<f32, 4>, now| {
         let mut told = StdVec::new();
-        table.expire((&BODY, 0.0), at(now), (Duration::MAX, true), |id| told.push(id.0));
+        table.expire((&BODY, 0.1), at(now), (Duration::MAX, true), |id| told.push(id.0));
         told
     };
     assert_eq!(expire(&mut table, 5_000_001), [1, 3, 4]);
@@ -266,7 +266,7 @@ fn a_robot_that_left_is_not_remembered() {
     gone.trace = Trace::Heard;
     let _ = put(&mut table, gone, at(0));
     let mut told = StdVec::new();
-    table.expire((&BODY, 0.0), at(5_000_001), (Duration::MAX, true), |id| told.push(id.0));
+    table.expire((&BODY, 0.1), at(5_000_001), (Duration::MAX, true), |id| told.push(id.0));
     assert_eq!((told, lost(&table)), ([1, 2, 3, 4].into(), [1, 2, 4].into()));
 }
 
@@ -276,7 +276,7 @@ fn a_lost_robot_may_have_stopped_at_once_or_after_braking() {
     let robot = Neighbor { velocity_mps: Vec3::new(0.0, -1.0, 0.0), ..standing(1, 3.0, at(0)) };
     let radius_m = robot.radius_m;
     let _ = put(&mut table, robot, at(0));
-    table.expire((&BODY, 0.0), at(5_000_001), (Duration::MAX, true), |_| {});
+    table.expire((&BODY, 0.1), at(5_000_001), (Duration::MAX, true), |_| {});
     let [lost] = table.lost() else { panic!("lost") };
     assert_eq!((lost.position.mm, lost.velocity_mps), ([3000, -300, 0], Vec3::ZERO));
     assert_eq!(lost.radius_m, radius_m + 0.3);

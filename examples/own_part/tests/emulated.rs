@@ -83,8 +83,9 @@ impl Guidance<f32> for Changed {
 
 #[test]
 fn law_that_differs_from_the_firmware_is_detected_at_once() {
+    // Until step 3 a robot listens.
     let error = refusal(&Own::new(package!(), |_| Changed(Patrol::RING)));
-    assert!(error.contains("robot 1 on qemu:stm32f405") && error.contains("differs at step 0"), "{error}");
+    assert!(error.contains("robot 1 on qemu:stm32f405") && error.contains("differs at step 3"), "{error}");
 }
 
 #[test]

@@ -50,7 +50,7 @@ impl<S: Scalar> Mover<S> {
     fn decide(&self, step: i32, wish: Vec3<f64>, heard: &[Neighbor<S>]) -> Self {
         let Self { mut table, mut body, at_m } = Self { table: self.table.clone(), ..*self };
         let (own, now) = (self.position(), moment(step));
-        table.expire((&self.body, S::ZERO), now, (Duration::MAX, true), |_| {});
+        table.expire((&self.body, self.body.step_s), now, (Duration::MAX, true), |_| {});
         for &neighbor in heard {
             let _ = table.put(neighbor, own, now, |_| false);
         }
@@ -214,4 +214,31 @@ fn a_robot_pressed_against_a_wall_does_not_creep_into_it() {
         let gaps = (0.155 + mover.at_m.y - RADIUS_M, (other.at_m - mover.at_m).norm() - 2.0 * RADIUS_M);
         assert!(gaps.0 > 1e-3 && gaps.1 > 1e-3, "{gaps:?} in step {step}");
     }
+}
+
+/// The place of a silent robot is uncertain, so a body that slides past it may slide towards it.
+#[test]
+fn a_body_with_a_lag_that_slides_past_a_silent_robot_takes_no_more_of_the_gap() {
+    let other = Mover::<f32>::new(2, [2.0, 0.0, 0.0], f64::MAX);
+    let speed_ahead = |own_mps, lag_s| {
+        let mut mover = Mover::<f32>::new(1, [0.0; 3], f64::MAX);
+        mover.body.max_speed_mps = 9.0;
+        let _ = mover.table.put(other.news(0), Position::ORIGIN, moment(1), |_| false);
+        let inflation = StalenessInflation { growth_mps: 1.0, max_m: 0.1 };
+        let room = GapLimit {
+            body: &mover.body,
+            own: Position::ORIGIN,
+            own_mps,
+            lag_s,
+            now: moment(11),
+            news: STEP,
+            inflation,
+            may_be_alone: false,
+            stands_after: STANDS_AFTER,
+        };
+        room.limit(&mut mover.table, &[], Vec3::new(9.0, 0.0, 0.0)).unwrap().x
+    };
+    let without = speed_ahead(Vec3::ZERO, 0.0);
+    let past = speed_ahead(Vec3::new(-1.0, 4.0, 0.0), 0.3);
+    assert!(without > 1.0 && past < without, "{past}, without a lag {without}");
 }
