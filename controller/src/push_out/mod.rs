@@ -225,6 +225,9 @@ impl<'a, S: Scalar> Scene<'a, S> {
     }
 }
 
+/// Depths that differ by less are equal, micrometres: rounding.
+const EQUAL_UM: i32 = 1;
+
 /// The least deep step so far, then the one nearest to the wish, then the first.
 struct Best<S> {
     depth: S,
@@ -240,7 +243,8 @@ impl<S: Scalar> Best<S> {
             return;
         }
         let depth = depth(self.depth);
-        if depth < self.depth || (depth == self.depth && change < self.change) {
+        let equal = S::from_micro(EQUAL_UM);
+        if depth < self.depth - equal || (depth <= self.depth + equal && change < self.change) {
             *self = Self { depth, change, step: evading };
         }
     }

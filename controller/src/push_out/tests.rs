@@ -381,6 +381,16 @@ proptest! {
     }
 
     #[test]
+    fn rounding_does_not_choose_between_sides(angle in -3.1..3.1_f64) {
+        let (sin, cos) = Scalar::sin_cos(angle);
+        let turn = |v: V| v.xy().rotate(cos, sin).extend(0.0);
+        let places = [turn(v(1.0457, -1.3649)), turn(v(-0.4132, 1.2685))];
+        let wish = turn(v(1.8661, 0.5277));
+        let got = answer::<f64>(Model::Tangential, wish, &places);
+        prop_assert!((got - wish).norm() < 0.1, "{:?}", got);
+    }
+
+    #[test]
     fn the_result_is_finite_and_within_the_speed_for_any_bits(bits: [u32; 12]) {
         let f = bits.map(f32::from_bits);
         let at = |i: usize| Vec3::new(f[i], f[i + 1], f[i + 2]);
