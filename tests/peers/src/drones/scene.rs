@@ -128,7 +128,7 @@ impl Scene {
         self
     }
 
-    /// The distance of each drone from its goal, or from its station around the mean of all, metres.
+    /// Distance of each drone from its goal, or from its station around the mean of all, metres.
     pub(super) fn errors_m(&self, bodies: &[Body], goals: &[Vector]) -> Vec<f64> {
         let Task::Wedge(spacing_m) = self.task else {
             return bodies.iter().zip(goals).map(|(body, &goal)| distance_m(body.at_m, goal)).collect();

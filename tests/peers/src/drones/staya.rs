@@ -27,8 +27,8 @@ const CELL_M: f64 = 4.0;
 const VIEW: u16 = 11;
 /// Distance of neighbours in a flock, metres.
 const SPACING_M: f32 = 10.0;
-/// Pull of the goal on a flock. `stable_for` would reduce it with the gains between robots, although
-/// the goal is known without delay.
+/// Pull of the goal on a flock. `stable_for` would reduce it with the gains between robots,
+/// although the goal is known without delay.
 const C_GAMMA: f32 = 0.05;
 /// Look-ahead of the collision avoidance, seconds; the default is 2.
 const HORIZON_S: f32 = 3.0;
