@@ -242,7 +242,7 @@ impl<S: Scalar> GapLimit<'_, S> {
         let slant = grown.checked_div(distance).unwrap_or(S::ZERO);
         let mut limit = Limit { ahead, slant, left_m, growth_mps };
         if self.lag_s > S::ZERO {
-            // What the body still covers, if it is commanded to stand.
+            // Distance that the body still covers, if it is commanded to stand.
             limit.left_m -= limit.taken(self.own_mps, self.lag_s);
         }
         limit.left_m = limit.left_m.max(-S::from_micro(TOLERANCE_UM));

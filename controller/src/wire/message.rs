@@ -151,8 +151,8 @@ pub struct WaypointAssignment {
     pub velocity_mmps: [i16; 3],
 }
 
-/// What the sender knows of a robot that others may miss. Robots send it in turn, behind their
-/// beacons, and an operator sends it to clear the place of a robot that was carried away.
+/// A lost robot, as the sender knows it. Robots send it in turn, behind their beacons, and an
+/// operator sends it to clear the place of a robot that was carried away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct LostRobot {

@@ -14,10 +14,10 @@ const TELL_EVERY: Duration = Duration::from_millis(250);
 /// more than this, so that no state gets younger on its way.
 const UNIT: Duration = Duration::from_millis(10);
 
-/// What to tell next.
+/// The next announcement.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct LostNews {
-    /// The lost robot that was told last.
+    /// The lost robot announced last.
     told: RobotId,
     /// A robot in contact that another robot takes for lost.
     refuted: RobotId,

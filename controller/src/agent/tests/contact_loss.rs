@@ -168,7 +168,7 @@ fn lost_robots_are_told_and_errors_corrected() {
     assert_eq!((said.map(|said| (said.id, said.is_lost)), lost), (Some((RobotId(2), false)), vec![]));
     let (said, lost) = hear(40, &[near(), told(1, true, 40)]);
     assert_eq!((said.map(|said| (said.id, said.is_lost)), lost), (Some((RobotId(1), false)), vec![]));
-    // Somebody else has corrected it in the meantime.
+    // Another robot has corrected it in the meantime.
     assert_eq!(hear(50, &[near(), told(2, true, 40), told(2, false, 0)]), (None, vec![]));
     let (mut ages, mut previous) = (0, 0);
     for n in 60..70 {

@@ -115,7 +115,7 @@ pub(super) fn gap_on_way<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, 
     let is_blocked = is_hidden(obstacles, target);
     let mut best: Option<(S, Gap<S>)> = None;
     for_each_gap(obstacles, target, wanted, &mut |gap| {
-        // Two ends of walls are no gap unless both are seen: a solid may lie between them.
+        // Two ends of walls are a gap only if both are seen: a solid may lie between them.
         let side = gap.ahead.perp() * gap.half;
         // Behind a gap but before a wall, the robot need not have come through the gap.
         let is_behind = gap.is_passed(wanted) || is_blocked && gap.place(Vec2::ZERO).x > S::ZERO;
