@@ -4202,15 +4202,15 @@ impl MessageData for STAYA_LAND_DATA {
 ///ID: 9500009
 #[derive(Debug, Clone, PartialEq)]
 pub struct STAYA_LOST_DATA {
-    ///Position of its last beacon, east.
+    ///Centre of the ball in which it stands, east.
     pub x_mm: i32,
     ///The same, north.
     pub y_mm: i32,
     ///The same, up.
     pub z_mm: i32,
-    ///Radius of the ball around its body.
+    ///Radius of that ball.
     pub radius_mm: u16,
-    ///Time since that beacon.
+    ///Time since its last beacon.
     pub age_cs: u16,
     ///Counts the sender's Staya messages; wraps.
     pub sequence: u16,

@@ -28,7 +28,7 @@ const FARTHER: i32 = 8_000;
 /// Differences of distances below this are rounding; thousandths of the own radius.
 const TIE: i32 = 100;
 /// Speed below which a robot stands, thousandths of the top speed.
-const SLOW: i32 = 100;
+pub(super) const SLOW: i32 = 100;
 
 /// Decides whether the place that a robot heads for is free.
 ///

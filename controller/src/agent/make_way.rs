@@ -1,6 +1,7 @@
 //! An arrived robot makes way for a robot that it blocks in a narrow place.
 
 use super::GuidanceInput;
+use super::goal_occupancy::SLOW;
 use crate::geom::{Vec2, Vec3};
 use crate::neighbor::Nearby;
 use crate::obstacle::Obstacle;
@@ -16,8 +17,6 @@ const FAR: i32 = 8_000;
 const SPACE: i32 = 3_000;
 /// A wall nearer than this ahead turns the way aside, thousandths of the own radius.
 const AHEAD: i32 = 1_600;
-/// Speed below which a robot stands, thousandths of the top speed.
-const SLOW: i32 = 100;
 /// How often it makes way for one robot, so that two arrived robots do not push each other forever.
 const TIMES: u8 = 3;
 

@@ -163,10 +163,10 @@ pub struct LostRobot {
     /// Time since its last beacon, or since it is known not to be there: hundredths of a second.
     #[serde(with = "fixint")]
     pub age_cs: u16,
-    /// The position of its last beacon, mm.
+    /// Centre of the ball in which it stands, mm.
     #[serde(with = "fixint")]
     pub position_mm: [i32; 3],
-    /// Radius of the smallest disc (ball) around its body, mm.
+    /// Radius of that ball, mm.
     #[serde(with = "fixint")]
     pub radius_mm: u16,
 }

@@ -180,6 +180,20 @@ fn lost_robots_are_told_and_errors_corrected() {
     assert!(ages >= 3);
 }
 
+/// Beacons every half second, and a lag of 0.3 s: a robot of 1 m/s that falls silent may have
+/// driven on for 0.8 m.
+#[test]
+fn a_robot_may_have_driven_on_for_a_beacon_period_and_the_lag() {
+    let config = AgentConfig { beacon_period: STEP.saturating_mul(5), lag_s: 0.3, ..in_plane(1) };
+    let mut robot = Robot::new(&config, waypoint::<f32>(), orca(), [0.0; 2]);
+    let inbox = bytes(2, 0, 0, &[super::plane::body_at([-9000, 0], [1000, 0], Mode::Cruise)]);
+    for n in 0..40 {
+        let _ = robot.step(step_number(n), if n == 0 { &inbox } else { &[] });
+    }
+    let [lost] = robot.agent.link.table.lost() else { panic!("lost") };
+    assert_eq!((lost.position.mm[0], lost.radius_m.to_milli()), (-8600, Some(600)));
+}
+
 /// Six seconds of silence. Returns speed, mode, and whether a loss was reported.
 fn left_alone(hears: bool, silence: ContactLossPolicy<f32>) -> (f64, Mode, bool) {
     let config = AgentConfig { contact_loss: silence, ..in_plane(1) };

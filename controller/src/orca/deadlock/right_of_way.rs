@@ -92,6 +92,24 @@ struct Traffic<S> {
     largest: S,
 }
 
+impl<S> Traffic<S> {
+    const fn none(largest: S) -> Self {
+        Self {
+            rank: 0,
+            ahead: false,
+            against: false,
+            bars: false,
+            flows: false,
+            is_behind: false,
+            crowds: None,
+            comes_out: false,
+            opposite: false,
+            opposite_is_nearer: false,
+            largest,
+        }
+    }
+}
+
 impl<S: Scalar> RightOfWay<S> {
     pub(in crate::orca) const NEW: Self =
         Self { last_went_ahead: None, turn_m: S::ZERO, idle: None, goes: false, is_narrow: false };
@@ -216,19 +234,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
     }
 
     fn traffic(&self) -> Traffic<S> {
-        let mut traffic = Traffic {
-            rank: 0,
-            ahead: false,
-            against: false,
-            bars: false,
-            flows: false,
-            is_behind: false,
-            crowds: None,
-            comes_out: false,
-            opposite: false,
-            opposite_is_nearer: false,
-            largest: self.situation.body.radius_m,
-        };
+        let mut traffic = Traffic::none(self.situation.body.radius_m);
         let slow = self.situation.body.max_speed_mps * S::from_milli(100);
         let tie = self.situation.body.radius_m * S::from_micro(TIE);
         let own_distance = self.own.norm();

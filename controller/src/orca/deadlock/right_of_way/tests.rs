@@ -21,19 +21,7 @@ fn with_approach<T>(gap: Gap<f64>, nearby: &[Nearby<f64>], see: impl FnOnce(&App
     see(&Approach { gap, situation: &situation, own, is_narrow: true })
 }
 
-const NO_TRAFFIC: Traffic<f64> = Traffic {
-    rank: 0,
-    ahead: false,
-    against: false,
-    bars: false,
-    flows: false,
-    is_behind: false,
-    crowds: None,
-    comes_out: false,
-    opposite: false,
-    opposite_is_nearer: false,
-    largest: 0.15,
-};
+const NO_TRAFFIC: Traffic<f64> = Traffic::none(0.15);
 
 /// Whether a robot in front of the door may go, patient and impatient.
 fn may_go(memory: &RightOfWay<f64>, traffic: Traffic<f64>, gap: Gap<f64>, has_lanes: bool) -> [bool; 2] {

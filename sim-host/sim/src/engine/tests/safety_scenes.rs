@@ -69,6 +69,17 @@ fn a_lone_robot_with_inertia_stops_at_its_goal_in_time() {
     }
 }
 
+/// The end of a list of robots that exchange places across a circle.
+fn across(draw: &mut Draw, count: u32, ring_m: f64) -> String {
+    let mut list = String::new();
+    for i in 0..count {
+        let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU + draw.within(-0.2, 0.2);
+        let [x, y] = [ring_m * libm::cos(angle), ring_m * libm::sin(angle)];
+        let _ = writeln!(list, "{{ start_m = [{x}, {y}], goal_m = [{}, {}] }},", -x, -y);
+    }
+    list + "]\n"
+}
+
 /// Bodies with inertia that cross in one place from all sides.
 fn crossing(seed: u32) -> String {
     let mut draw = Draw::new(3, seed);
@@ -77,17 +88,12 @@ fn crossing(seed: u32) -> String {
     let speed = draw.within(0.5, 8.0) * radius_m;
     let most = speed / brake_s;
     let ring_m = (2.0 * speed * brake_s).max(1.5 * radius_m * f64::from(count)) * draw.within(1.0, 1.5);
-    let mut text = format!(
+    let text = format!(
         "name = \"crossing\"\nseed = {seed}\nticks = {}\ntick_s = 0.1\n[plane]\nradius_m = {radius_m}\n\
          max_speed_mps = {speed}\nmax_acceleration_mps2 = {most}\n[plane.robots]\nlist = [\n",
         (30.0 * ring_m / speed / 0.1) as u32
     );
-    for i in 0..count {
-        let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU + draw.within(-0.2, 0.2);
-        let [x, y] = [ring_m * libm::cos(angle), ring_m * libm::sin(angle)];
-        let _ = writeln!(text, "{{ start_m = [{x}, {y}], goal_m = [{}, {}] }},", -x, -y);
-    }
-    text + "]\n"
+    text + &across(&mut draw, count, ring_m)
 }
 
 #[test]
@@ -203,19 +209,14 @@ fn delayed(seed: u32) -> String {
     let (count, radius_m) = (draw.whole(2, 8), draw.within(0.1, 1.0));
     let (speed, step_ms) = (draw.within(0.5, 4.0) * radius_m, draw.whole(2, 10) * 10);
     let ring_m = (8.0 * radius_m).max(2.0 * radius_m * f64::from(count)) * draw.within(1.0, 1.5);
-    let mut text = format!(
+    let text = format!(
         "name = \"delayed\"\nseed = {seed}\nticks = {}\ntick_s = {}\n[radio]\ndelay_ms = {}\n[plane]\n\
          radius_m = {radius_m}\nmax_speed_mps = {speed}\n[plane.robots]\nlist = [\n",
         (20.0 * ring_m / speed * 1000.0 / f64::from(step_ms)) as u32,
         f64::from(step_ms) / 1000.0,
         draw.whole(50, 400)
     );
-    for i in 0..count {
-        let angle = f64::from(i) / f64::from(count) * std::f64::consts::TAU + draw.within(-0.2, 0.2);
-        let [x, y] = [ring_m * libm::cos(angle), ring_m * libm::sin(angle)];
-        let _ = writeln!(text, "{{ start_m = [{x}, {y}], goal_m = [{}, {}] }},", -x, -y);
-    }
-    text + "]\n"
+    text + &across(&mut draw, count, ring_m)
 }
 
 #[test]
