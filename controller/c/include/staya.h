@@ -401,7 +401,7 @@ enum StayaWait
      */
     STAYA_WAIT_RADIO = 4,
     /**
-     * Others go first through a door.
+     * Others go first through a narrow place, such as a door.
      */
     STAYA_WAIT_TURN = 5,
     /**

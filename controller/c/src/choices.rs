@@ -104,7 +104,7 @@ pub enum StayaWait {
     Route = 3,
     /// It does not know where others are, since it does not receive them.
     Radio = 4,
-    /// Others go first through a door.
+    /// Others go first through a narrow place, such as a door.
     Turn = 5,
     /// Other robots are in its way.
     Robots = 6,

@@ -271,7 +271,7 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             Mode::Hold if status.is_stuck => Some(Wait::Route),
             Mode::Hold => Some(Wait::Stopped),
             _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Robots),
-            _ => None,
+            _ => status.waits_for.filter(|&wait| wait == Wait::Turn),
         };
         match &decision.action {
             Action::Velocity { wish_mps, .. } if goes => out.command = Command::Velocity(*wish_mps),

@@ -28,7 +28,7 @@ named! {
         Route = "route",
         /// It does not know where silent robots are.
         Radio = "radio",
-        /// Other robots go first through a door.
+        /// Other robots go first through a narrow place, such as a door.
         Turn = "turn",
         /// Other robots are in its way.
         Robots = "robots",

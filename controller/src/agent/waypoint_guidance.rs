@@ -4,7 +4,7 @@ use super::goal_occupancy::{Claim, GoalOccupancy};
 use super::guidance::{Action, BadInput, Decision, Guidance, GuidanceInput, Status, Teamwork, ToWaypoints};
 use super::make_way::MakeWay;
 use super::{InPlane, Parameter, WAYPOINTS, Wait, Waypoint};
-use crate::geom::Vec3;
+use crate::geom::{Vec2, Vec3};
 use crate::rand::Rng;
 use crate::scalar::Scalar;
 use heapless::Vec;
@@ -24,7 +24,7 @@ pub struct WaypointGuidance<S> {
     course: Vec<Waypoint<S>, WAYPOINTS, u8>,
     leg: u8,
     beside: GoalOccupancy<S>,
-    make_way: MakeWay,
+    make_way: MakeWay<S>,
     tolerance_m: S,
     speed_mps: S,
 }
@@ -52,6 +52,21 @@ impl<S: Scalar> WaypointGuidance<S> {
             way = waypoint.way(input.state.position, input.now);
         }
         Some((way, waypoint.velocity_mps))
+    }
+
+    /// Heads for the waypoint before again, if other robots pushed this one far away from it.
+    fn goes_back<P>(&mut self, input: &GuidanceInput<'_, S, P>, is_pushed: bool) {
+        let GuidanceInput { state, now, body, .. } = input;
+        let mut way = |leg: u8| Some(self.course.get_mut(usize::from(leg))?.way(state.position, *now));
+        let before = self.leg.saturating_sub(1);
+        let (Some(next), Some(last)) = (way(self.leg), way(before)) else {
+            return;
+        };
+        let far_m = self.tolerance_m.max(body.radius_m * S::from_i32(PASSED_RADII)) * S::TWO;
+        let leaves = |way: Vec3<S>| way.dot(body.velocity_mps) < S::ZERO;
+        if leaves(last) && (is_pushed || leaves(next)) && last.norm() > far_m {
+            self.leg = before;
+        }
     }
 
     /// The rest of the course, metres, with `distance` to the current waypoint.
@@ -117,13 +132,21 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         &mut self,
         input: &GuidanceInput<'_, S>,
         here: &InPlane<'_, S>,
-        _: &mut Rng,
+        rng: &mut Rng,
         (): &mut (),
     ) -> Result<Decision<S>, BadInput> {
         let mut decision = self.head(input)?;
+        let to_goal = match decision.action {
+            Action::Velocity { way_m: Some(way), .. } => way.xy(),
+            _ => Vec2::ZERO,
+        };
         let stays = decision.status.is_at_goal && !decision.status.makes_way;
-        if let Some(way) = self.make_way.way(input, here.obstacles, stays) {
-            decision.status = Status::default();
+        let away = self.make_way.way(input, here.obstacles, stays, to_goal, rng);
+        if MakeWay::is_blocked(input, here.obstacles) {
+            self.goes_back(input, away.is_some());
+        }
+        if let Some(way) = away {
+            decision.status = Status { waits_for: Some(Wait::Turn), ..Status::default() };
             let wish_mps = way * self.speed_mps.min(input.body.max_speed_mps);
             decision.action = Action::Velocity { wish_mps, way_m: None };
         }

@@ -38,6 +38,7 @@ mod fast32;
 mod fixtures;
 
 pub use avoider::{Analytic, Avoider, HalfSpaces, InSpace};
+pub(crate) use deadlock::detour;
 pub use dimension::{Dimension, HalfPlane, HalfSpace, MovingBall};
 pub use linear_program::{Solution, solve};
 pub use params::{AvoidParams, DeadlockParams, Params};

@@ -11,7 +11,7 @@ const CORNERS: u8 = 3;
 
 /// The first place of the shortest way to `target` if a wall blocks the straight one: outside a
 /// corner that is seen. O(walls x obstacles).
-pub(super) fn detour<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, radius_m: S) -> Option<Vec2<S>> {
+pub(crate) fn detour<S: Scalar>(obstacles: &[Obstacle<S>], target: Vec2<S>, radius_m: S) -> Option<Vec2<S>> {
     first_wall(obstacles, Vec2::ZERO, target)?;
     let is_free = |place: &Vec2<S>| {
         !is_hidden(obstacles, *place)

@@ -16,6 +16,7 @@ mod patience;
 mod right_of_way;
 mod spread;
 
+pub(crate) use detour::detour;
 pub(super) use patience::Patience;
 pub(super) use right_of_way::RightOfWay;
 pub(super) use spread::spread;
@@ -34,7 +35,7 @@ const LEAN_AHEAD: i32 = 800;
 /// The wish, towards the next corner on the way to `goal` if a wall is in between.
 pub(super) fn around<S: Scalar>(situation: &Situation<'_, Vec2<S>>, goal: Vec2<S>) -> Vec2<S> {
     let Situation { wish, body, obstacles, .. } = *situation;
-    let place = (wish != Vec2::ZERO).then(|| detour::detour(obstacles, goal, body.radius_m)).flatten();
+    let place = (wish != Vec2::ZERO).then(|| detour(obstacles, goal, body.radius_m)).flatten();
     place.and_then(Vec2::normalized).map_or(wish, |ahead| ahead * wish.norm())
 }
 

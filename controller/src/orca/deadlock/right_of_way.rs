@@ -22,10 +22,12 @@
 //! turn at once, their distances in the gap decide.
 
 use super::gap::{Gap, Wanted, gap_on_way};
-use crate::geom::Vec2;
+use crate::geom::{Vec2, Vec3};
+use crate::obstacle::Obstacle;
 use crate::orca::dimension::Situation;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
+use core::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 
 /// Longest passage whose walls are not checked between its ends, thousandths of the own radius.
@@ -171,7 +173,8 @@ impl<S: Scalar> RightOfWay<S> {
     }
 
     fn may_go(&self, approach: &Approach<'_, S>, traffic: &Traffic<S>, has_lanes: bool, is_impatient: bool) -> bool {
-        let is_inside = approach.own.x > -approach.radii(1_200) && approach.own.y.abs() < approach.gap.half;
+        let is_inside = approach.own.x > -approach.radii(1_200) && approach.own.y.abs() < approach.gap.half
+            || !has_lanes && approach.is_between_walls();
         if has_lanes {
             return traffic.rank == 0 || is_inside || is_impatient && !traffic.ahead;
         }
@@ -226,6 +229,16 @@ impl<'a, S: Scalar> Approach<'a, S> {
     fn has_lanes(&self, largest: S) -> bool {
         let two = self.situation.body.radius_m + largest;
         self.gap.half + self.gap.half >= two + two + self.radii(PLAY)
+    }
+
+    /// Whether the robot is in a passage for one, such as one that leads to the gap.
+    fn is_between_walls(&self) -> bool {
+        let points = || self.situation.obstacles.iter().filter_map(Obstacle::nearest_point);
+        let Some((wall, near)) = points().min_by(|(_, a), (_, b)| a.partial_cmp(b).unwrap_or(Ordering::Equal)) else {
+            return false;
+        };
+        let is_opposite = |point: Vec3<S>, distance: S| point.dot(wall) < -near * distance * S::HALF;
+        points().any(|(point, distance)| near + distance < self.radii(4_000) && is_opposite(point, distance))
     }
 
     /// Lateral position in the gap, to the right of its axis.

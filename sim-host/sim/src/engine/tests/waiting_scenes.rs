@@ -150,8 +150,7 @@ fn corridors(seed: u32, kind: u32, widths: Range<f64>) -> Scene {
             let past = long + 4.0 + 3.0 * f64::from(each - 1 - k);
             let start = [x * off + y * aside, y * off - x * aside];
             let goal = [to_x * past - to_y * 5.0, to_y * past + to_x * 5.0];
-            let via = if (end + 2) % 4 == other { &[][..] } else { &[[0.0, 0.0]][..] };
-            sheet.robot(start, via, goal);
+            sheet.robot(start, &[[0.0, 0.0]], goal);
         }
     }
     let quarter = |sx: f64, sy: f64| [[sx * h, sy * long], [sx * h, sy * h], [sx * long, sy * h]];
@@ -231,12 +230,19 @@ fn robots_pass_where_corridors_for_two_meet() {
     all_arrive_in_time(4, |seed| corridors(seed, 4, 2.2..3.0));
 }
 
-/// Where corridors for one meet, some robots still wait forever.
+/// In about one scene of ten where two corridors meet, some robots still wait forever.
 #[test]
-fn robots_do_not_touch_where_corridors_for_one_meet() {
-    for (seed, kind) in (0..2).flat_map(|seed| [2, 3, 4].map(|kind| (seed, kind))) {
-        let Scene { text, .. } = corridors(seed, kind, 1.15..1.9);
-        let outcome = simulate(&scenario(&text), |_, _| ControlFlow::Continue(())).expect("placed");
-        assert_eq!(outcome.collisions, 0, "seed {seed}\n{text}");
+fn nearly_all_arrive_where_corridors_for_one_meet() {
+    for kind in [2, 3, 4] {
+        let seeds = (0..8).chain(UNSEEN..UNSEEN + 8);
+        let complete = seeds.filter(|&seed| {
+            let Scene { text, .. } = corridors(seed, kind, 1.15..1.9);
+            let scene = scenario(&text);
+            let outcome = simulate(&scene, |_, _| ControlFlow::Continue(())).expect("placed");
+            assert_eq!(outcome.collisions, 0, "seed {seed}\n{text}");
+            outcome.arrived == scene.robots.len()
+        });
+        let complete = complete.count();
+        assert!(complete >= 14, "{kind} corridors: all arrive in {complete} scenes of 16");
     }
 }
