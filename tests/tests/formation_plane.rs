@@ -61,6 +61,12 @@ const SCENES: &[Scene<'_>] = &[
         1.0,
         1.2,
     ),
+    (
+        "with a lag of 0.8 s",
+        &[("max_acceleration_mps2 =", "max_acceleration_mps2 = 1\nlag_s = 0.8"), ("horizon_s =", "horizon_s = 5.6")],
+        1.0,
+        1.2,
+    ),
     ("no delay", &[("delay_ms =", "delay_ms = 0")], 1.0, 1.2),
     ("300 ms of delay", &[("delay_ms =", "delay_ms = 300")], 1.0, 1.2),
     ("30 % lost", &[("delay_ms =", "delay_ms = 100\nloss = 0.3")], 1.0, 1.2),

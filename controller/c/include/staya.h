@@ -1630,7 +1630,8 @@ typedef struct StayaNeighbor {
 } StayaNeighbor;
 
 /**
- * The body of this robot.
+ * The body of this robot. One that follows commands with a lag gives the point ahead of it, at its
+ * velocity times the lag, as its position, and its last command as its velocity.
  */
 typedef struct StayaBody {
     /**

@@ -31,7 +31,8 @@ pub const STAYA_NEARBY: usize = 16;
 
 const _: () = assert!(size_of::<StayaAvoider>() <= STAYA_ORCA_SIZE && align_of::<StayaAvoider>() <= 8);
 
-/// The body of this robot.
+/// The body of this robot. One that follows commands with a lag gives the point ahead of it, at its
+/// velocity times the lag, as its position, and its last command as its velocity.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct StayaBody {

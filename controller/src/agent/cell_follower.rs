@@ -156,10 +156,13 @@ fn follow<S: Scalar, P>(
             decision
         }
     };
-    let way = way(&decision);
+    let mut way = way(&decision);
     let is_last = decision.action.moves().first().is_none_or(|dir| cell + dir.offset() == decision.target);
     let needed = match is_last {
-        true => input.body.stopping_speed(way.norm()),
+        true => {
+            way -= input.ahead_m.xy();
+            input.body.stopping_speed(way.norm())
+        }
         false => way.norm().checked_div(input.body.step_s).unwrap_or(speed),
     };
     let ahead = way.normalized().unwrap_or_default();

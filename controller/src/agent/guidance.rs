@@ -264,8 +264,12 @@ pub struct GuidanceInput<'a, S, P = ()> {
     pub now: Instant,
     /// Time in which a robot crosses a cell of impassability 1.
     pub tick: Duration,
-    /// Own position and velocity.
+    /// Own position and velocity; with a lag, those of the point ahead that is steered.
     pub state: KinematicState<S>,
+    /// Position in `state` minus that of the body, metres; zero without a lag.
+    pub ahead_m: Vec3<S>,
+    /// Time constant with which bodies follow their commands, seconds.
+    pub lag_s: S,
     /// The goal cell; any cell for a law that has another kind of goal.
     pub goal: Cell,
     /// Own body.

@@ -82,13 +82,16 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
     /// its velocity times the lag, moves exactly as commanded, as a body without a lag does; the
     /// body itself follows it on the straight line. [`GapLimit`] keeps that line free.
     fn steered(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> KinematicState<S> {
-        let (state, lag_s) = (inputs.state, self.config.lag_s);
-        if lag_s <= S::ZERO {
+        let state = inputs.state;
+        if self.config.lag_s <= S::ZERO {
             return state;
         }
-        let ahead_m = state.velocity_mps * lag_s;
-        let position = state.position.moved(ahead_m).unwrap_or(state.position);
+        let position = state.position.moved(self.ahead_m(inputs)).unwrap_or(state.position);
         KinematicState { position, velocity_mps: self.commanded_mps }
+    }
+
+    fn ahead_m(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Vec3<S> {
+        inputs.state.velocity_mps * self.config.lag_s.max(S::ZERO)
     }
 
     fn body(&self, inputs: &Inputs<'_, S, G::Input<'_>>) -> Body<S> {
@@ -202,6 +205,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             now,
             tick: self.config.tick,
             state: self.steered(inputs),
+            ahead_m: self.ahead_m(inputs),
+            lag_s: self.config.lag_s,
             goal,
             body: self.body(inputs),
             nearby,

@@ -59,6 +59,7 @@ async fn robot(p: Peripherals) -> Option<()> {
     let mut config = AgentConfig::new(RobotId(1), ahead.radius(BODY_M) + 0.02, TICK);
     config.boot = rng::Rng::new(p.RNG, Irqs).next_u32() as u8;
     config.max_acceleration_mps2 = ahead.max_speed(limits.acceleration_mps2, TRACK_M);
+    config.lag_s = 0.1; // measured: time until a wheel has made 63 % of a change of speed
     let max_speed_mps = ahead.max_speed(limits.speed_mps, TRACK_M);
     let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
     let law = WaypointGuidance::new(max_speed_mps, 0.02);

@@ -51,10 +51,12 @@ impl<S: Scalar> Step<'_, S> {
         self.metres(cell - self.cell) - self.offset_m
     }
 
-    /// Offset of a place `offset` cells from another robot, extrapolated by its velocity, metres.
+    /// Offset of a place `offset` cells from another robot, extrapolated by its velocity, from the
+    /// own body, metres.
     #[inline(never)]
     fn beside(&self, input: &GuidanceInput<'_, S>, other: &Neighbor<S>, offset: Cell) -> Vec2<S> {
-        other.offset_at(input.state.position, input.now, input.ages.expire_after).xy() + self.metres(offset)
+        let offset_m = other.offset_at(input.state.position, input.now, input.ages.expire_after);
+        (offset_m + input.ahead_m).xy() + self.metres(offset)
     }
 
     fn is_straight(&self, way_m: Vec2<S>, is_good: &dyn Fn(Cell) -> bool) -> bool {

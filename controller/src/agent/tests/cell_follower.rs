@@ -68,6 +68,8 @@ fn told(cell: Cell, offset_m: [f32; 2], max_speed_mps: f32, n: i32) -> Told {
         now: Instant::from_micros(0) + STEP.saturating_mul(n),
         tick: STEP,
         state: KinematicState::default(),
+        ahead_m: Vec3::ZERO,
+        lag_s: 0.0,
         goal: Cell::new(9, 5),
         body: Body {
             id: RobotId(1),

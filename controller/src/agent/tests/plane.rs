@@ -193,6 +193,23 @@ fn beacons_carry_the_next_velocity() {
 }
 
 #[test]
+fn a_body_with_a_lag_sends_the_velocity_that_it_will_have() {
+    for lag_s in [0.001, 0.1, 0.4, 2.0_f32] {
+        let mut robot = Robot::new(&AgentConfig { lag_s, ..in_plane(1) }, waypoint::<f32>(), orca(), [0.0; 2]);
+        let _ = robot.agent.assign_waypoint(0, &place(-60_000, 80_000));
+        let own = [0.3, 0.25];
+        robot.velocity_mps = own;
+        let beacon = said(&robot.step(step_number(0), &[]));
+        let part = 1.0 - libm::exp(-0.1 / f64::from(lag_s));
+        for ((own, command), sent) in own.into_iter().zip(robot.velocity_mps).zip(beacon.velocity_mmps) {
+            let next = own + (command - own) * part;
+            assert!((command - own).abs() > 0.5, "{command}");
+            assert!((f64::from(sent) / 1000.0 - next).abs() < 0.06 * part, "lag {lag_s} s: {sent} mm/s, {next} m/s");
+        }
+    }
+}
+
+#[test]
 fn an_invalid_radius_is_sent_as_zero() {
     for radius_m in [-1.0, f32::NAN, f32::NEG_INFINITY] {
         let config = AgentConfig { radius_m, ..in_plane(1) };

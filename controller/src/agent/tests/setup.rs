@@ -110,6 +110,16 @@ fn lived<S: Scalar>(setup: &Setup, steps: u32) -> std::vec::Vec<u64> {
 }
 
 #[test]
+fn each_law_states_whether_it_goes_to_cells_and_by_velocities() {
+    let goes = guidances().map(|setup| {
+        let law: AnyGuidance<f32, CELLS, VISITS, TEMPLATE> = setup.guidance();
+        (law.goes_to_cells(), law.goes_by_velocity())
+    });
+    let (by_waypoints, on_grid, in_cells) = ((false, true), (true, false), (true, true));
+    assert_eq!(goes, [by_waypoints, by_waypoints, by_waypoints, by_waypoints, by_waypoints, on_grid, in_cells]);
+}
+
+#[test]
 fn a_setup_sent_over_a_link_creates_an_identical_robot() {
     for setup in setups() {
         let bytes = {

@@ -64,6 +64,80 @@ fn non_finite_input_gives_no_half_plane() {
     assert_eq!(solution.velocity_mps, V::ZERO);
 }
 
+/// On the border y = 0.6, of which the disc of speed 1 leaves -0.8 to 0.8.
+#[test]
+fn each_half_plane_cuts_off_its_side_of_a_border() {
+    let plane = |x: f64, y: f64, nx: f64, ny: f64| HalfPlane { point: v(x, y), normal: v(nx, ny) };
+    let border = plane(0.3, 0.6, 0.0, 1.0);
+    let rises = |x: f64| plane(x, 3.0, 1.0, 0.0);
+    let falls = |x: f64| plane(x, -2.0, -1.0, 0.0);
+    let above = |y: f64| plane(0.0, y, 0.0, 1.0);
+    // Crosses the border at x = gap / slope, unless it counts as parallel.
+    let nearly_along = |slope: f64, gap: f64| plane(0.0, 0.6 + gap, slope, 1.0);
+    let e = f64::EPSILON;
+    for (before, range) in [
+        (&[][..], Some([-0.8, 0.8])),
+        (&[rises(0.25)], Some([0.25, 0.8])),
+        (&[falls(-0.5)], Some([-0.8, -0.5])),
+        (&[rises(-0.5), rises(0.25), rises(-0.25)], Some([0.25, 0.8])),
+        (&[falls(0.5), falls(-0.25), falls(0.25)], Some([-0.8, -0.25])),
+        (&[rises(0.25), falls(0.5)], Some([0.25, 0.5])),
+        (&[rises(0.25), falls(0.25)], Some([0.25, 0.25])),
+        (&[rises(0.25), falls(0.125)], None),
+        (&[rises(0.9)], None),
+        (&[above(0.5)], Some([-0.8, 0.8])),
+        (&[above(0.6)], Some([-0.8, 0.8])),
+        (&[above(0.7)], None),
+        (&[plane(0.0, 0.9, 0.6, 0.8)], Some([0.4, 0.8])),
+        (&[nearly_along(64.0 * e, 16.0 * e)], Some([-0.8, 0.8])),
+        (&[nearly_along(64.0 * e, 40.0 * e)], None),
+        (&[nearly_along(-64.0 * e, 40.0 * e)], None),
+        (&[nearly_along(80.0 * e, 40.0 * e)], Some([0.5, 0.8])),
+        (&[nearly_along(-80.0 * e, 40.0 * e)], Some([-0.8, -0.5])),
+    ] {
+        let best = |aim: Aim<V>| best_on_line(&border, before, 1.0, aim).map(|at| (at.x, at.y));
+        let near = |x: f64| best(Aim::Near(v(x, -7.0)));
+        let along = |x: f64| best(Aim::Along(v(x, 1.0)));
+        let Some([low, high]) = range else {
+            assert_eq!([near(0.0), along(1.0), along(-1.0)], [None; 3], "{before:?}");
+            continue;
+        };
+        let middle = (low + high) / 2.0;
+        for (found, x) in
+            [(near(-5.0), low), (near(middle), middle), (near(5.0), high), (along(-1.0), low), (along(1.0), high)]
+        {
+            assert!(found.is_some_and(|(at, y)| (at - x).abs() < 1e-12 && y == 0.6), "{found:?} {x} {before:?}");
+        }
+    }
+    let touches = plane(0.0, 1.0, 0.0, 1.0);
+    for (speed, at) in [(1.0, Some(v(0.0, 1.0))), (0.999, None)] {
+        assert_eq!(best_on_line(&touches, &[], speed, Aim::Near(V::ZERO)), at);
+        let below = plane(0.0, -1.0, 0.0, 1.0);
+        assert_eq!(best_on_line(&below, &[], speed, Aim::Near(V::ZERO)), at.map(|at| -at));
+    }
+}
+
+/// A parallel border that lies farther ahead by no more than rounding is the same one.
+#[test]
+fn the_tolerance_of_parallel_borders_grows_with_the_numbers() {
+    let e = f64::EPSILON;
+    for (speed, x, y, most) in [(1.0, 0.0, 0.0, 16.0 * e), (0.5, 0.0, 0.25, 16.0 * e), (8.0, -2.0, 5.0, 240.0 * e)] {
+        let border = HalfPlane { point: v(0.0, y), normal: v(0.0, 1.0) };
+        for (share, is_same) in [(0.5, true), (0.9, true), (1.1, false), (2.0, false)] {
+            let other = HalfPlane { point: v(x, y + share * most), ..border };
+            let found = best_on_line(&border, &[other], speed, Aim::Near(V::ZERO));
+            assert_eq!(found.is_some(), is_same, "{share} of {most} at {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn a_disc_without_a_size_gives_no_half_plane() {
+    for radii in [0.0, -1.0] {
+        assert_eq!(half_plane(V::ZERO, &ball(v(3.0, 0.0), V::ZERO, radii), &params(2.0, 0.5)), None);
+    }
+}
+
 #[test]
 fn speed_limit_and_preference_alone() {
     assert_eq!(solve::<_, 4>(&[], 0, v(0.3, 0.4), 1.0).velocity_mps, v(0.3, 0.4));

@@ -98,6 +98,56 @@ fn contradictions_are_met_halfway_and_hard_constraints_are_obeyed() {
     assert_eq!(one.velocity_mps, v(0.0, 0.0, 0.5));
 }
 
+/// On the line through (0, 0, 0.6) along x, of which the ball of speed 1 leaves -0.8 to 0.8.
+#[test]
+fn each_half_space_cuts_off_its_side_of_a_line() {
+    let line = Line { foot: v(0.0, 0.0, 0.6), direction: v(1.0, 0.0, 0.0) };
+    let space = |point: V, normal: V| HalfSpace { point, normal };
+    let rises = |x: f64| space(v(x, 3.0, -2.0), v(1.0, 0.0, 0.0));
+    let falls = |x: f64| space(v(x, -1.0, 5.0), v(-1.0, 0.0, 0.0));
+    let above = |z: f64| space(v(9.0, -9.0, z), v(0.0, 0.0, 1.0));
+    let nearly_along = |slope: f64, gap: f64| space(v(0.0, gap, 0.6), v(slope, 1.0, 0.0));
+    let oblique = space(v(0.0, 0.0, 0.9), v(0.6, 0.0, 0.8));
+    let e = f64::EPSILON;
+    for (before, range) in [
+        (&[][..], Some([-0.8, 0.8])),
+        (&[rises(0.25)], Some([0.25, 0.8])),
+        (&[falls(-0.5)], Some([-0.8, -0.5])),
+        (&[rises(-0.5), rises(0.25), rises(-0.25)], Some([0.25, 0.8])),
+        (&[falls(0.5), falls(-0.25), falls(0.25)], Some([-0.8, -0.25])),
+        (&[rises(0.25), falls(0.5)], Some([0.25, 0.5])),
+        (&[rises(0.25), falls(0.25)], Some([0.25, 0.25])),
+        (&[rises(0.25), falls(0.125)], None),
+        (&[rises(0.9)], None),
+        (&[above(0.5)], Some([-0.8, 0.8])),
+        (&[above(0.6)], Some([-0.8, 0.8])),
+        (&[above(0.7)], None),
+        (&[oblique], Some([0.4, 0.8])),
+        (&[nearly_along(e, 0.5 * e)], None),
+        (&[nearly_along(2.0 * e, e)], Some([0.5, 0.8])),
+        (&[nearly_along(-2.0 * e, e)], Some([-0.8, -0.5])),
+    ] {
+        let best = |aim: Aim<V>| {
+            best_on_line(&line, before, 1.0, aim).map(|at| (at.x, (at - line.foot).y.abs() + (at - line.foot).z.abs()))
+        };
+        let near = |x: f64| best(Aim::Near(v(x, 7.0, -7.0)));
+        let along = |x: f64| best(Aim::Along(v(x, 1.0, 1.0)));
+        let Some([low, high]) = range else {
+            assert_eq!([near(0.0), along(1.0), along(-1.0)], [None; 3], "{before:?}");
+            continue;
+        };
+        let middle = (low + high) / 2.0;
+        for (found, x) in
+            [(near(-5.0), low), (near(middle), middle), (near(5.0), high), (along(-1.0), low), (along(1.0), high)]
+        {
+            assert!(found.is_some_and(|(at, off)| (at - x).abs() < 1e-12 && off == 0.0), "{found:?} {x} {before:?}");
+        }
+    }
+    let touches = Line { foot: v(0.0, 0.0, 1.0), ..line };
+    assert_eq!(best_on_line(&touches, &[], 1.0, Aim::Near(V::ZERO)), Some(touches.foot));
+    assert_eq!(best_on_line(&touches, &[], 0.999, Aim::Near(V::ZERO)), None);
+}
+
 fn vector(most: f64) -> impl Strategy<Value = V> {
     (-most..most, -most..most, -most..most).prop_map(|(x, y, z)| v(x, y, z))
 }

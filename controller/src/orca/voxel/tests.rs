@@ -93,6 +93,18 @@ fn errors_against_the_analytic_form_are_bounded() {
 }
 
 #[test]
+fn the_series_for_unit_vectors_agrees_with_the_root() {
+    for step in 0..=80 {
+        let squared = 0.9 + 0.0025 * f64::from(step);
+        let at = v(0.6, -0.8) * squared.sqrt();
+        let found = unit(at).unwrap();
+        let most = if (1.0 - squared).abs() > 1.0 / 32.0 { 1e-15 } else { 1e-8 };
+        assert!((found - v(0.6, -0.8)).norm() < most, "{squared}: {found:?}");
+    }
+    assert_eq!(unit(V::ZERO), None);
+}
+
+#[test]
 fn worked_example_of_the_paper_within_the_tables_error() {
     let other = ball(v(-4.0, 6.0), v(3.0, -1.5), 2.0);
     let plane = looked_up(v(1.5, 1.0), &other);

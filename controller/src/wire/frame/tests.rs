@@ -1,11 +1,12 @@
 use super::*;
 use crate::grid::{Cell, Dir};
+use crate::land::Tile;
 use crate::rand::Rng;
 use crate::robot::Mode;
 use crate::template::TemplateEntry;
 use crate::time::Instant;
-use crate::wire::RequestKind;
 use crate::wire::arbitrary::{header, message};
+use crate::wire::{KeyPhase, RequestKind};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::vec::Vec as StdVec;
@@ -39,7 +40,7 @@ fn beacon() -> Message {
     })
 }
 
-fn longest() -> [(Message, usize); 6] {
+fn longest() -> [(Message, usize); 11] {
     let entry = TemplateEntry { offset: FAR, id: LAST, hops: u8::MAX };
     [
         (Message::Beacon(Beacon { leader: LAST, ..Beacon::default() }), Beacon::MAX_FRAME_LEN),
@@ -70,6 +71,17 @@ fn longest() -> [(Message, usize); 6] {
                 velocity_mmps: [i16::MIN; 3],
             }),
             WaypointAssignment::MAX_FRAME_LEN,
+        ),
+        (
+            Message::Key(KeyAssignment { to: LAST, generation: 0, phase: KeyPhase::Hear, wrapped: [0; 32] }),
+            KeyAssignment::MAX_FRAME_LEN,
+        ),
+        (Message::KeyHeld(KeyHeld { to: LAST, generation: 0, phase: KeyPhase::Hear }), KeyHeld::MAX_FRAME_LEN),
+        (Message::Land(LandPatch { corner: FAR, tiles: [Tile::default(); PATCH_TILES] }), LandPatch::MAX_FRAME_LEN),
+        (Message::Payload(PayloadBytes::new(&[0; MAX_PAYLOAD]).unwrap()), PayloadBytes::MAX_FRAME_LEN),
+        (
+            Message::Lost(LostRobot { id: LAST, is_lost: true, age_cs: 0, position_mm: [0; 3], radius_mm: 0 }),
+            LostRobot::MAX_FRAME_LEN,
         ),
     ]
 }

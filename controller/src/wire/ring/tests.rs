@@ -102,6 +102,37 @@ fn a_robot_without_the_new_key_is_excluded_after_the_change() {
 }
 
 #[test]
+fn only_generations_before_the_one_in_use_are_forgotten() {
+    let seed = |generation| master().seed(generation);
+    let made = |ring: &Ring, generation: u16| {
+        let of = Mac::new(&seed(generation).key(generation));
+        ring.signer(|mac| mac.of(&[b"any"]) == of.of(&[b"any"])) == Some(Signer::Swarm(generation))
+    };
+    let accepts = |ring: &Ring| [4, 5, 6].map(|generation| made(ring, generation));
+    let mut ring = Ring::of_generation(5, &seed(5));
+    ring.hear(4, &seed(4));
+    ring.hear(u16::MAX, &seed(6));
+    assert_eq!((accepts(&ring), ring.held()), ([false, true, false], (5, KeyPhase::Forget)));
+    ring.hear(6, &seed(6));
+    for generation in [4, 5, 6, 7] {
+        ring.forget_before(generation);
+        assert_eq!((accepts(&ring), ring.held()), ([false, true, true], (6, KeyPhase::Hear)), "{generation}");
+    }
+    for generation in [4, 5, 7] {
+        ring.speak(generation);
+        assert_eq!(ring.generation(), 5);
+    }
+    ring.speak(6);
+    ring.speak(5);
+    for generation in [4, 5, 7] {
+        ring.forget_before(generation);
+        assert_eq!((accepts(&ring), ring.held()), ([false, true, true], (6, KeyPhase::Speak)), "{generation}");
+    }
+    ring.forget_before(6);
+    assert_eq!((accepts(&ring), ring.held()), ([false, false, true], (6, KeyPhase::Forget)));
+}
+
+#[test]
 fn only_the_operator_can_give_orders() {
     let mut operator = operator();
     let (mut insider, mut listener) = (robot(1, 0, 0), robot(2, 0, 0));

@@ -113,6 +113,7 @@ void appMain(void)
     setup.boot = (uint8_t)usecTimestamp(); /* random: the copter has no boot counter */
     setup.latency_us = TICK_MS * 1000;
     setup.max_acceleration_mps2 = 2.0f;
+    setup.lag_s = 0.2f; /* measured: time until 63 % of a commanded change of velocity */
     setup.orca.growth_mps = setup.speed_mps;
     setup.orca.margin_m = 0.05f;
     if (!is_well(staya_init(memory, sizeof memory, &setup, &agent)) ||

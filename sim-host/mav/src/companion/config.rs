@@ -120,7 +120,7 @@ pub struct VehicleSetup {
 pub struct Config {
     /// The scenario, with geographic goals converted to metres.
     pub scenario: Scenario,
-    /// The bodies: `scenario.plane`.
+    /// The bodies: `scenario.plane`, with a lag of at least `rules.lag_s`.
     pub plane: PlaneSetup,
     /// Geographic position of the scenario's (0, 0).
     pub origin: Origin,
@@ -136,8 +136,6 @@ pub struct Config {
     pub lines: Vec<Endpoint>,
     /// Vehicles sorted by robot number.
     pub vehicles: Vec<VehicleSetup>,
-    /// Time constant with which vehicles follow a velocity, seconds.
-    pub lag_s: f64,
     /// Largest distance from the origin at which vehicles are controlled, metres.
     pub reach_m: f64,
     /// Largest position error of a vehicle with stale or untrusted telemetry, metres.
@@ -175,6 +173,10 @@ impl Config {
         // A vehicle with an uncertain position adds the error to its radius, and may jump later.
         scenario.plausibility.max_radius_m += file.rules.error_m as f32;
         scenario.plausibility.slack_m += file.rules.error_m as f32;
+        if let Some(plane) = &mut scenario.plane {
+            let groups = core::iter::once(&mut plane.general).chain(&mut plane.groups);
+            groups.for_each(|group| group.raise_lag(file.rules.lag_s));
+        }
         check_scenario(&source, &scenario)?;
         let air = air(&source, &file.air)?;
         let (lines, vehicles) = vehicles(&source, &file, &origin, &mut scenario)?;
@@ -194,7 +196,6 @@ impl Config {
             link_key: file.link_key.as_ref().map(beside),
             lines,
             vehicles,
-            lag_s: file.rules.lag_s,
             reach_m: file.rules.reach_m,
             error_m: file.rules.error_m,
         })

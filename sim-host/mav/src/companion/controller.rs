@@ -1,8 +1,8 @@
 //! The controller of one vehicle: telemetry and the scenario's map in, a velocity out.
 
 use staya_controller::agent::{
-    Agent, AgentConfig, AnyGuidance, AnySafety, AnySurroundings, Command, Commanded, GridWorkspace, HALF_PLANES,
-    InCells, LEARNED, NEIGHBORS, Outputs, Parameter, TEMPLATE, VISITS, Wait, Wish,
+    Agent, AgentConfig, AnyGuidance, AnySafety, Command, Commanded, GridWorkspace, HALF_PLANES, LEARNED, NEIGHBORS,
+    Outputs, Parameter, TEMPLATE, VISITS, Wait, Wish,
 };
 use staya_controller::agent::{GuidanceKind, SafetyKind, SafetySetup};
 use staya_controller::geom::{Position, Vec3};
@@ -25,12 +25,6 @@ pub struct Body {
     pub error_m: f64,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Brake {
-    place_m: [f64; 3],
-    tolerance_m: f64,
-}
-
 type Guided = Commanded<f32, AnyGuidance<f32, WIDE, VISITS, TEMPLATE, LEARNED>>;
 type ControllerAgent<W> = Agent<f32, Guided, NEIGHBORS, AnySafety<f32, HALF_PLANES>, W>;
 
@@ -43,11 +37,8 @@ pub struct Controller<W> {
     senses: Sensor,
     out: Outputs<f32>,
     is_in_space: bool,
-    brake: Option<Brake>,
-    max_acceleration_mps2: f64,
-    lag_s: f64,
+    goal_m: Option<[f64; 3]>,
     radius_m: f64,
-    commanded_mps: Option<[f64; 3]>,
     stepped: Option<(Instant, Position, [f64; 3])>,
 }
 
@@ -56,14 +47,7 @@ impl<W: Wire> Controller<W> {
     /// starts. Lost neighbours get a margin of at least `error_m`, because an autopilot whose
     /// companion died keeps moving for a while.
     #[must_use]
-    pub fn new(
-        scenario: &Scenario,
-        ground: &Arc<PlaneGround>,
-        index: usize,
-        boot: u8,
-        [lag_s, error_m]: [f64; 2],
-        wire: W,
-    ) -> Self {
+    pub fn new(scenario: &Scenario, ground: &Arc<PlaneGround>, index: usize, boot: u8, error_m: f64, wire: W) -> Self {
         let tick = time::Duration::from_micros(i32::try_from(scenario.tick_us).unwrap_or(i32::MAX));
         let config = AgentConfig {
             boot,
@@ -80,13 +64,10 @@ impl<W: Wire> Controller<W> {
         let plane = scenario.plane.as_ref();
         let group = plane.map(|plane| plane.group(index));
         let places = plane.and_then(|plane| plane.starts.get(index)).map(|start| &start.places);
-        let brake = group.zip(places).and_then(|(group, places)| {
-            let place = match group.guidance.kind() {
-                kind if kind.is_on_grid() => None,
-                GuidanceKind::Waypoint => places.last(),
-                _ => places.first(),
-            };
-            Some(Brake { place_m: place?.position_m, tolerance_m: group.tolerance_m })
+        let goal = group.zip(places).and_then(|(group, places)| match group.guidance.kind() {
+            kind if kind.is_on_grid() => None,
+            GuidanceKind::Waypoint => places.last(),
+            _ => places.first(),
         });
         let safety = group.map(|group| group.safety.kind());
         Self {
@@ -97,11 +78,8 @@ impl<W: Wire> Controller<W> {
             senses: Sensor::default(),
             out: Outputs::default(),
             is_in_space: safety == Some(SafetyKind::Fly),
-            brake,
-            max_acceleration_mps2: f64::from(config.max_acceleration_mps2),
-            lag_s,
+            goal_m: goal.map(|goal| goal.position_m),
             radius_m: f64::from(config.radius_m),
-            commanded_mps: None,
             stepped: None,
         }
     }
@@ -131,8 +109,8 @@ impl<W: Wire> Controller<W> {
 
     /// Goal, metres; `None` if the guidance has none.
     #[must_use]
-    pub fn goal_m(&self) -> Option<[f64; 3]> {
-        self.brake.map(|brake| brake.place_m)
+    pub const fn goal_m(&self) -> Option<[f64; 3]> {
+        self.goal_m
     }
 
     /// Neighbours and their positions at the last step. O(neighbours).
@@ -157,23 +135,14 @@ impl<W: Wire> Controller<W> {
     /// telemetry) still sends beacons: it does not give way, and its radius includes the position
     /// error.
     pub fn step(&mut self, body: &Body, steers: bool, inbox: &[u8], now: Duration) -> &Outputs<f32> {
-        let [x, y, z] = body.position_m;
         // In the plane heights have no meaning, and altitudes of two receivers differ by metres.
-        let position_m = [x, y, if self.is_in_space { z } else { 0.0 }];
-        let velocity_mps = self.own_velocity(body.velocity_mps);
+        let flat = |[x, y, z]: [f64; 3]| [x, y, if self.is_in_space { z } else { 0.0 }];
+        let (position_m, velocity_mps) = (flat(body.position_m), flat(body.velocity_mps));
         let mut inputs = self.ground.sense_at(self.index, position_m, velocity_mps, &mut self.senses);
         inputs.inbox = inbox;
         let wish = if steers { Wish::Own } else { Wish::Off };
         if *self.agent.guidance().wish() != wish {
             let _ = self.agent.guidance_mut().command(wish);
-        }
-        let plane = match &mut inputs.surroundings {
-            AnySurroundings::InPlane(plane) | AnySurroundings::InCells(InCells { plane, .. }) => Some(plane),
-            AnySurroundings::OnGrid(_) => None,
-        };
-        if let (Some(plane), Some(brake)) = (plane, self.brake) {
-            let limit = speed_before(&brake, position_m, self.max_acceleration_mps2, self.lag_s);
-            plane.max_speed_mps = plane.max_speed_mps.min(limit as f32);
         }
         let [least, greatest] = Parameter::Radius.range();
         let radius_m = (self.radius_m + body.error_m) as f32;
@@ -182,7 +151,6 @@ impl<W: Wire> Controller<W> {
         let now = Instant::from_micros(now.as_micros() as u32);
         self.stepped = Some((now, inputs.state.position, position_m));
         self.agent.step_into(&inputs, now, &mut self.workspace, &mut self.out);
-        self.commanded_mps = steers.then(|| self.velocity_mps());
         &self.out
     }
 
@@ -194,37 +162,6 @@ impl<W: Wire> Controller<W> {
             Command::Hold | Command::Move(_) => [0.0; 3],
         }
     }
-
-    /// The last command, limited to the velocities in reach of the measured one. With an
-    /// acceleration limited from the measured velocity, a lagging vehicle would never speed up.
-    fn own_velocity(&self, measured_mps: [f64; 3]) -> [f64; 3] {
-        let Some(commanded) = self.commanded_mps else {
-            return measured_mps;
-        };
-        let off = [0, 1, 2].map(|axis| commanded[axis] - measured_mps[axis]);
-        let length = off.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let most = self.max_acceleration_mps2 * self.lag_s;
-        let share = if length > most { most / length } else { 1.0 };
-        [0, 1, 2].map(|axis| measured_mps[axis] + off[axis] * share)
-    }
-}
-
-/// Largest speed from which the vehicle stops at its goal with its lag and half its acceleration.
-fn speed_before(brake: &Brake, position_m: [f64; 3], acceleration_mps2: f64, lag_s: f64) -> f64 {
-    let way = [0, 1, 2].map(|axis| brake.place_m[axis] - position_m[axis]);
-    let distance_m = way.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if lag_s <= 0.0 {
-        return f64::INFINITY;
-    }
-    let slow = brake.tolerance_m / (2.0 * lag_s);
-    // v^2 / a + v lag = remaining distance, solved for v, with half of the acceleration a.
-    let by_lag = acceleration_mps2 * lag_s / 2.0;
-    let fast = if acceleration_mps2.is_finite() {
-        (by_lag * by_lag + acceleration_mps2 * distance_m).sqrt() - by_lag
-    } else {
-        distance_m / (2.0 * lag_s)
-    };
-    slow.max(fast)
 }
 
 fn with_room(mut safety: SafetySetup, error_m: f64) -> SafetySetup {

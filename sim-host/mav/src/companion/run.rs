@@ -157,7 +157,7 @@ impl<'a> Companions<'a> {
                 &ground,
                 setup.index,
                 boot,
-                [config.lag_s, config.error_m],
+                config.error_m,
                 seal.map_or_else(|| HostWire::new(format), |seal| seal.wire(format)),
             ),
             peer: None,

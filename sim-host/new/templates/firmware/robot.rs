@@ -42,6 +42,8 @@ const DEAD_DUTY: f32 = 0.1;
 const IS_INVERTED: [bool; 2] = [false, true];
 /// Limits of the commands to the wheels.
 const LIMITS: Limits<f32> = Limits { speed_mps: 0.5, acceleration_mps2: 1.0 };
+/// Time until a wheel has made 63 % of a commanded change of speed, seconds.
+const LAG_S: f32 = 0.1;
 /// Time between two steps. The `PERIOD` of a watchdog must be longer.
 const TICK: Duration = Duration::from_millis(50);
 
@@ -86,6 +88,7 @@ where
     let mut config = AgentConfig::new(NUMBER, ahead.radius(BODY_M) + 0.02, TICK);
     config.boot = boot;
     config.max_acceleration_mps2 = ahead.max_speed(LIMITS.acceleration_mps2, TRACK_M);
+    config.lag_s = LAG_S;
     let safety = OrcaSafety::new(AvoidParams::default(), StalenessInflation { growth_mps: 0.1, max_m: 0.2 });
     let law = Law::new(max_speed_mps, 0.02, 0.6);
     let mut agent: Agent<f32, Law, NEIGHBORS, OrcaSafety<f32, HALF_PLANES>> =

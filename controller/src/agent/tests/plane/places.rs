@@ -115,3 +115,98 @@ fn a_course_is_followed_in_order_and_replaced_by_a_new_one() {
     }
     assert!(length(robot.at_m) < 0.02 && robot.agent.mode() == Mode::Arrived, "{:?}", robot.at_m);
 }
+
+/// The direction and speed of the first step on a course in millimetres, and the mode after it.
+fn first_step(config: &AgentConfig<f32>, tolerance_m: f32, course: &[[i32; 2]], own_mps: f64) -> ([f64; 2], Mode) {
+    let mut robot = Robot::new(config, WaypointGuidance::new(1.0, tolerance_m), orca(), [0.0; 2]);
+    for (index, [x, y]) in (0..).zip(course) {
+        assert!(robot.agent.assign_waypoint(index, &place(*x, *y)));
+    }
+    robot.velocity_mps = [own_mps, 0.0];
+    let _ = robot.step(step_number(0), &[]);
+    (robot.velocity_mps, robot.agent.mode())
+}
+
+/// The radius is 0.2 m.
+#[test]
+fn a_waypoint_is_passed_within_its_tolerance_or_three_radii() {
+    for (tolerance_m, within, beyond) in [(1.0, 1000, 1001), (0.01, 590, 610)] {
+        let goes_on = |x_mm: i32| {
+            let ([x, y], mode) = first_step(&in_plane(1), tolerance_m, &[[x_mm, 0], [x_mm, 9000], [0, 9000]], 0.0);
+            assert_eq!(mode, Mode::Cruise);
+            y > x
+        };
+        assert_eq!((goes_on(within), goes_on(beyond)), (true, false), "{tolerance_m}");
+        let is_there = |x_mm: i32| first_step(&in_plane(1), tolerance_m, &[[x_mm, 0]], 0.0).1 == Mode::Arrived;
+        let most = (tolerance_m * 1000.0) as i32;
+        assert_eq!((is_there(most), is_there(most + 1)), (true, false));
+    }
+}
+
+/// Within reach of the present speed, the next one is that from which the body stops at the end.
+#[test]
+fn a_body_brakes_for_the_end_of_its_course_and_not_for_waypoints_before_it() {
+    let config = AgentConfig { radius_m: 0.01, max_acceleration_mps2: 1.0, ..in_plane(1) };
+    for (course, left_m) in [
+        (&[[200, 0]][..], 0.2),
+        (&[[200, 0], [200, 100]], 0.3),
+        (&[[200, 0], [200, 50], [120, 50]], 0.33),
+        (&[[10, 0], [310, 0], [310, 40], [350, 40]], 0.39),
+    ] {
+        let body = crate::body::Body {
+            id: RobotId(1),
+            velocity_mps: Vec3::ZERO,
+            radius_m: 0.01,
+            max_speed_mps: 1.0,
+            max_acceleration_mps2: 1.0,
+            step_s: 0.1,
+        };
+        let expected: f32 = body.stopping_speed(left_m);
+        let ([x, y], _) = first_step(&config, 0.005, course, f64::from(expected) - 0.03);
+        assert!((x - f64::from(expected)).abs() < 1e-5 && y.abs() < 1e-6, "{course:?}: {x} {y}, expected {expected}");
+    }
+}
+
+/// Runs an agent whose body follows commands exactly with its lag. Returns body, velocity and mode
+/// after each step.
+fn run_lagging(lag_s: f64, goal: &Waypoint<f64>, tolerance_m: f64, steps: i32) -> Vec<([f64; 2], [f64; 2], Mode)> {
+    let config = AgentConfig { lag_s, max_acceleration_mps2: 1.5, ..in_plane(1) };
+    let mut robot = Robot::new(&config, WaypointGuidance::new(1.0, tolerance_m), orca(), [0.0; 2]);
+    assert!(robot.agent.assign_waypoint(0, goal));
+    let (left, mut own) = (libm::exp(-0.1 / lag_s), [0.0; 2]);
+    let step = |n| {
+        robot.velocity_mps = own;
+        let before = robot.at_m;
+        let _ = robot.step(step_number(n), &[]);
+        for (axis, command) in robot.velocity_mps.into_iter().enumerate() {
+            robot.at_m[axis] = before[axis] + command * 0.1 + (own[axis] - command) * lag_s * (1.0 - left);
+            own[axis] = command + (own[axis] - command) * left;
+        }
+        (robot.at_m, own, robot.agent.mode())
+    };
+    (0..steps).map(step).collect()
+}
+
+#[test]
+fn a_body_with_a_lag_arrives_when_it_is_there_itself() {
+    for (lag_s, tolerance_m) in [(0.1, 0.3), (0.4, 0.3), (1.0, 0.1), (2.0, 0.5)] {
+        let moments = run_lagging(lag_s, &place(4000, 3000), tolerance_m, 400);
+        let off_m = |[x, y]: [f64; 2]| length([x - 4.0, y - 3.0]);
+        let first = moments.iter().position(|(.., mode)| *mode == Mode::Arrived).expect("it arrives");
+        // The position before the step in which it decides.
+        assert!(off_m(moments[first - 1].0) <= tolerance_m + 1e-3, "lag {lag_s} s: {:?}", moments[first - 1]);
+        assert!(moments[first..].iter().all(|(at, _, mode)| *mode == Mode::Arrived && off_m(*at) < tolerance_m));
+    }
+}
+
+#[test]
+fn a_body_with_a_lag_does_not_fall_behind_a_moving_waypoint() {
+    for lag_s in [0.1, 0.4, 1.0] {
+        let goal = Waypoint { velocity_mps: Vec3::new(0.3, -0.4, 0.0), ..place(1000, 500) };
+        let moments = run_lagging(lag_s, &goal, 0.05, 300);
+        let ([x, y], [vx, vy], _) = moments[299];
+        let off = [x - 1.0 - 0.3 * 30.0, y - 0.5 + 0.4 * 30.0];
+        assert!(length(off) < 0.06, "lag {lag_s} s: {off:?} m");
+        assert!(length([vx - 0.3, vy + 0.4]) < 0.02, "lag {lag_s} s: {vx} {vy}");
+    }
+}

@@ -28,6 +28,26 @@ fn defaults_are_cautious() {
 }
 
 #[test]
+fn bodies_have_the_longer_lag_of_rules_and_scenario() {
+    let lags = |rules: &str, scenario: &str| {
+        let config = parse(&text(rules, "").replace(SCENARIO, scenario)).unwrap();
+        let plane = config.scenario.plane.as_ref().unwrap();
+        assert_eq!((&plane.general, &plane.groups), (&config.plane.general, &config.plane.groups));
+        let groups = core::iter::once(&plane.general).chain(&plane.groups);
+        groups.map(|group| group.abilities.lag_s).collect::<Vec<_>>()
+    };
+    assert_eq!(lags("", SCENARIO), [0.5]);
+    assert_eq!(lags("[rules]\nlag_s = 0", SCENARIO), [0.0]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lags.toml");
+    let bodies = "name = \"lags\"\nticks = 9\ntick_s = 0.1\n[radio]\nrange_m = 99\n[plane]\nradius_m = 1\nmax_speed_mps = 2\n\
+                  lag_s = 0.7\n[[plane.group]]\nrobots = { list = [{ start_m = [0, 0] }] }\nlag_s = 0.2\n\
+                  [[plane.group]]\nrobots = { list = [{ start_m = [9, 0] }, { start_m = [0, 9] }] }\n";
+    std::fs::write(&path, bodies).unwrap();
+    assert_eq!(lags("[rules]\nlag_s = 0.4", path.to_str().unwrap()), [0.7, 0.4, 0.7]);
+}
+
+#[test]
 fn vehicles_may_share_links_and_are_sorted() {
     let more = "[[vehicle]]\nrobot = 1\nsystem = 9\nlink = \"udpin:127.0.0.1:14550\"\nautopilot = \"px4\"\n\
                 [[vehicle]]\nrobot = 2\nlink = \"tcpout:127.0.0.1:5760\"\nautopilot = \"px4-rover\"";

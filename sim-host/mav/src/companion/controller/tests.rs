@@ -5,13 +5,19 @@ use std::path::Path;
 
 const TICK: Duration = Duration::from_millis(100);
 
+/// With the lag that the configuration gives by default.
 fn controllers(count: usize) -> Vec<Controller<Postcard>> {
+    lagging(count, 0.5)
+}
+
+fn lagging(count: usize, lag_s: f64) -> Vec<Controller<Postcard>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../companions/crossing.toml");
     let mut scenario = Scenario::load(&path, &Overrides::default()).unwrap();
     scenario.plausibility.max_radius_m += 10.0;
+    scenario.plane.as_mut().unwrap().general.raise_lag(lag_s);
     let plane = scenario.plane.as_ref().unwrap();
     let ground = Arc::new(PlaneGround::new(&scenario, plane));
-    let controller = |index| Controller::new(&scenario, &ground, index, 1, [0.5, 10.0], Postcard);
+    let controller = |index| Controller::new(&scenario, &ground, index, 1, 10.0, Postcard);
     (0..count).map(controller).collect()
 }
 
@@ -46,26 +52,68 @@ fn an_uncontrolled_vehicle_is_passive_and_gets_no_command() {
     assert_eq!(controller.velocity_mps(), [0.0; 3]);
 }
 
-#[test]
-fn a_lagging_vehicle_does_not_overshoot_its_tolerance() {
-    let mut controller = controllers(1).remove(0);
-    let mut body = at(30.0, 0.0);
-    let mut farthest = 0.0_f64;
-    for step in 0..400 {
-        let _ = controller.step(&body, true, &[], TICK * step);
-        let wish = controller.velocity_mps();
-        for _ in 0..10 {
-            for (axis, wish) in wish.into_iter().enumerate() {
-                let change = (wish - body.velocity_mps[axis]) / 0.5;
-                body.velocity_mps[axis] += change.clamp(-1.0, 1.0) * 0.01;
-                body.position_m[axis] += body.velocity_mps[axis] * 0.01;
-            }
+/// One tick of a body that follows a velocity with a lag.
+fn follow(body: &mut Body, wish_mps: [f64; 3], lag_s: f64) {
+    for _ in 0..10 {
+        for (axis, wish) in wish_mps.into_iter().enumerate() {
+            let change = (wish - body.velocity_mps[axis]) / lag_s;
+            body.velocity_mps[axis] += change.clamp(-1.0, 1.0) * 0.01;
+            body.position_m[axis] += body.velocity_mps[axis] * 0.01;
         }
-        farthest = farthest.max(body.position_m[0]);
     }
-    assert_eq!(controller.mode(), Mode::Arrived);
-    assert!(farthest < 51.0, "{farthest}");
-    assert!((body.position_m[0] - 50.0).abs() < 1.0);
+}
+
+#[test]
+fn a_lagging_vehicle_stops_at_its_goal_without_overshoot() {
+    for lag_s in [0.1, 0.5, 1.5] {
+        let mut controller = lagging(1, lag_s).remove(0);
+        let mut body = at(30.0, 0.0);
+        let mut farthest = 0.0_f64;
+        for step in 0..400 {
+            let _ = controller.step(&body, true, &[], TICK * step);
+            follow(&mut body, controller.velocity_mps(), lag_s);
+            farthest = farthest.max(body.position_m[0]);
+        }
+        assert_eq!(controller.mode(), Mode::Arrived);
+        assert!(farthest < 50.1, "lag {lag_s} s: {farthest} m");
+        assert!((body.position_m[0] - 50.0).abs() < 1.0, "lag {lag_s} s: {:?}", body.position_m);
+    }
+}
+
+/// Both exchange places on one line, 40 m apart, with half a metre between their courses.
+#[test]
+fn lagging_vehicles_that_meet_do_not_touch() {
+    for lag_s in [0.1, 0.5, 1.5] {
+        let mut both: Vec<_> = lagging(6, lag_s).into_iter().skip(1).step_by(3).collect();
+        let mut bodies = [at(10.0, 0.0), at(40.0, 0.5)];
+        let (mut said, mut least) = ([Vec::new(), Vec::new()], f64::INFINITY);
+        for step in 0..400 {
+            let heard = said.clone();
+            for (one, controller) in both.iter_mut().enumerate() {
+                let out = controller.step(&bodies[one], true, &heard[1 - one], TICK * step);
+                said[one] = out.outbox.to_vec();
+            }
+            for (controller, body) in both.iter().zip(&mut bodies) {
+                follow(body, controller.velocity_mps(), lag_s);
+            }
+            let off = [0, 1].map(|axis| bodies[0].position_m[axis] - bodies[1].position_m[axis]);
+            least = least.min(libm::hypot(off[0], off[1]));
+        }
+        assert!(least > 2.0, "lag {lag_s} s: {least} m");
+        assert!(both.iter().all(|controller| controller.mode() == Mode::Arrived), "lag {lag_s} s: {bodies:?}");
+    }
+}
+
+/// A copter in the plane keeps its height by itself.
+#[test]
+fn a_vertical_velocity_in_the_plane_changes_nothing() {
+    let commanded = |climbs_mps| {
+        let mut controller = controllers(1).remove(0);
+        let body = Body { velocity_mps: [1.0, 0.0, climbs_mps], ..at(48.0, 0.0) };
+        (0..20).for_each(|step| drop(controller.step(&body, true, &[], TICK * step).clone()));
+        controller.velocity_mps()
+    };
+    assert_eq!(commanded(1.5), commanded(0.0));
 }
 
 /// Smallest distance to an uncontrolled vehicle that stands beside the path.
@@ -101,17 +149,6 @@ fn a_vehicle_with_a_position_error_gets_more_distance() {
         let least = least_distance(error_m);
         assert!(least >= 2.0 + error_m, "{least} m with an error of {error_m} m");
     }
-}
-
-#[test]
-fn braking_speed_grows_with_distance_and_has_a_minimum_near_the_goal() {
-    let brake = Brake { place_m: [0.0; 3], tolerance_m: 1.0 };
-    let speed = |distance| speed_before(&brake, [distance, 0.0, 0.0], 1.0, 0.5);
-    assert_eq!(speed(0.0), 1.0);
-    assert!(speed(100.0) > speed(10.0) && speed(10.0) > speed(2.0));
-    let v = speed(10.0);
-    assert!((v * v + v * 0.5 - 10.0).abs() < 1e-9, "{v}");
-    assert_eq!(speed_before(&brake, [5.0, 0.0, 0.0], 1.0, 0.0), f64::INFINITY);
 }
 
 #[test]

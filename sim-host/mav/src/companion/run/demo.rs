@@ -57,10 +57,11 @@ impl Demo {
     pub fn new(config: &Config, tlog: Option<Tlog>, is_real_time: bool) -> Self {
         let autopilot = |setup: &VehicleSetup| {
             let [x, y, _] = config.plane.starts[setup.index].position_m;
+            let abilities = config.plane.group(setup.index).abilities;
             Autopilot {
                 setup: setup.clone(),
-                lag_s: config.lag_s.max(STEP.as_secs_f64()),
-                max_speed_mps: config.plane.group(setup.index).abilities.max_speed_mps,
+                lag_s: abilities.lag_s.max(STEP.as_secs_f64()),
+                max_speed_mps: abilities.max_speed_mps,
                 position_m: [x, y, 0.0],
                 velocity_mps: [0.0; 3],
                 wish_mps: [0.0; 3],

@@ -59,6 +59,15 @@ impl RobotGroup {
         }
     }
 
+    /// Raises the lag of the bodies to at least `lag_s`, and the look-ahead for robots as needed.
+    pub fn raise_lag(&mut self, lag_s: f64) {
+        self.abilities.lag_s = self.abilities.lag_s.max(lag_s);
+        let least_s = self.abilities.least_horizon_s() as f32;
+        if let SafetySetup::Orca { params, .. } | SafetySetup::Fly { params, .. } = &mut self.safety {
+            params.horizon_s = params.horizon_s.max(least_s);
+        }
+    }
+
     /// Returns this group with the waypoint law and the given arrival tolerance, metres.
     #[must_use]
     pub fn to_places(mut self, tolerance_m: f64) -> Self {
@@ -124,19 +133,20 @@ impl Spec {
         self.within(source, "cruise_mps", cruise_mps, [slowest_mps, self.max_speed_mps], "m/s")?;
         let tolerance_m = self.tolerance_m.unwrap_or(self.radius_m / 10.0);
         self.within(source, "tolerance_m", tolerance_m, [0.001, far], "metres")?;
+        let abilities = Abilities {
+            max_speed_mps: self.max_speed_mps,
+            max_acceleration_mps2: self.max_acceleration_mps2,
+            lag_s: self.lag_s,
+            step_s: f64::from(super::super::ranges::micros(file.tick_s)) / 1e6,
+        };
         let group = RobotGroup {
-            abilities: Abilities {
-                max_speed_mps: self.max_speed_mps,
-                max_acceleration_mps2: self.max_acceleration_mps2,
-                lag_s: self.lag_s,
-                step_s: f64::from(super::super::ranges::micros(file.tick_s)) / 1e6,
-            },
+            abilities,
             radius_m: self.radius_m,
             cruise_mps,
             tolerance_m,
             sight_m: self.sight_m,
             guidance: self.guidance(source, file, cruise_mps, tolerance_m)?,
-            safety: self.safety(source)?,
+            safety: self.safety(source, &abilities)?,
             contact_loss: self.silence(source)?,
             listen: self.seconds(source, "orca.listen_s", self.orca.listen_s)?,
             flock: self.flock,
@@ -173,8 +183,8 @@ impl Spec {
         Ok(GuidanceSetup::Formation { route, formation, template: Template::default(), speed_mps })
     }
 
-    fn safety(&self, source: &Source<'_>) -> Result<SafetySetup, ScenarioError> {
-        let orca = self.orca(source)?;
+    fn safety(&self, source: &Source<'_>, abilities: &Abilities) -> Result<SafetySetup, ScenarioError> {
+        let orca = self.orca(source, abilities)?;
         let mut inflation = inflation(self.max_speed_mps, self.radius_m);
         for (field, value, unit, param) in [
             ("inflation_mps", self.orca.inflation_mps, "m/s", &mut inflation.growth_mps),
@@ -198,11 +208,9 @@ impl Spec {
         Ok(setup)
     }
 
-    fn orca(&self, source: &Source<'_>) -> Result<AvoidParams<f32>, ScenarioError> {
+    fn orca(&self, source: &Source<'_>, abilities: &Abilities) -> Result<AvoidParams<f32>, ScenarioError> {
         let (table, mut params) = (&self.orca, AvoidParams::<f32>::default());
-        // A body with inertia must see a conflict early enough to brake for it: one braking time
-        // for its own speed and one for the other's.
-        let brake_s = (2.0 * (self.max_speed_mps / self.max_acceleration_mps2 + self.lag_s)).min(60.0);
+        let brake_s = abilities.least_horizon_s();
         params.horizon_s = params.horizon_s.max(brake_s as f32);
         if let Some(given) = table.horizon_s.filter(|&given| given < brake_s) {
             let what = format!("{} is less than 2 (max_speed_mps / max_acceleration_mps2 + lag_s)", short(given));

@@ -37,6 +37,22 @@ fn staleness_inflation_accepts_its_former_names() {
 }
 
 #[test]
+fn a_raised_lag_is_as_one_in_the_file() {
+    for safety in ["orca", "push_out", "fly"] {
+        let table = if safety == "push_out" { "[plane.push_out]\nmin_distance_m = 1\n" } else { "" };
+        let with = |lag_s| {
+            let bodies = format!("max_acceleration_mps2 = 0.5\nlag_s = {lag_s}\nsafety = \"{safety}\"\n{table}");
+            setup(&format!("{HEAD}{PLANE}{bodies}{TWO}")).general
+        };
+        let mut group = with(0.2);
+        for (lag_s, raised_s) in [(0.1, 0.2), (0.7, 0.7), (0.3, 0.7)] {
+            group.raise_lag(lag_s);
+            assert_eq!(group, with(raised_s), "{safety}");
+        }
+    }
+}
+
+#[test]
 fn the_smallest_plane_has_the_documented_defaults() {
     let scenario = parse(&format!("{HEAD}{PLANE}{TWO}")).expect("good");
     assert_eq!(scenario.robots.len(), 2);

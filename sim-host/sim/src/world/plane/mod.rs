@@ -60,6 +60,15 @@ pub struct Abilities {
     pub step_s: f64,
 }
 
+impl Abilities {
+    /// Least look-ahead for other robots, at most a minute: the time to brake from the highest speed
+    /// for the own speed, and once more for the other's, seconds.
+    #[must_use]
+    pub fn least_horizon_s(&self) -> f64 {
+        (2.0 * (self.max_speed_mps / self.max_acceleration_mps2 + self.lag_s)).min(60.0)
+    }
+}
+
 /// Bodies, terrain and obstacles.
 #[derive(Clone, Debug)]
 pub struct Plane {
