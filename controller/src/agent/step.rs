@@ -276,7 +276,8 @@ impl<S: Scalar, G: Guidance<S>, const N: usize, A: Safety<S>, W: Wire> Agent<S, 
             Mode::Hold if status.is_stuck => Some(Wait::Route),
             Mode::Hold => Some(Wait::Stopped),
             _ if goes && heading != Dir::Stay && cell == before => Some(Wait::Robots),
-            _ => status.waits_for.filter(|&wait| wait == Wait::Turn),
+            Mode::Cruise if status.makes_way && inputs.surroundings.in_plane().is_some() => Some(Wait::Turn),
+            _ => None,
         };
         match &decision.action {
             Action::Velocity { wish_mps, .. } if goes => out.command = Command::Velocity(*wish_mps),

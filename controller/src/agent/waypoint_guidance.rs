@@ -152,7 +152,7 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
             self.goes_back(input, away.is_some());
         }
         if let Some(way) = away {
-            decision.status = Status { waits_for: Some(Wait::Turn), ..Status::default() };
+            decision.status = Status { makes_way: true, ..Status::default() };
             let wish_mps = way * self.speed_mps.min(input.body.max_speed_mps);
             decision.action = Action::Velocity { wish_mps, way_m: None };
         }
