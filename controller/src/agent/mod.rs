@@ -200,9 +200,9 @@ pub type OrcaAgent = Agent<f32, WaypointGuidance<f32>, NEIGHBORS, OrcaSafety<f32
 const BYTES: [usize; 4] =
     [size_of::<RouteAgent>(), size_of::<FormationAgent>(), size_of::<OrcaAgent>(), size_of::<GridWorkspace<CELLS>>()];
 #[cfg(all(target_pointer_width = "32", not(feature = "host")))]
-const _: () = assert!(BYTES[0] <= 4448 && BYTES[1] <= 4720 && BYTES[2] <= 2056 && BYTES[3] <= 2720);
+const _: () = assert!(BYTES[0] <= 4448 && BYTES[1] <= 4720 && BYTES[2] <= 2072 && BYTES[3] <= 2720);
 #[cfg(all(target_pointer_width = "64", not(feature = "host")))]
-const _: () = assert!(matches!(BYTES, [4456, 4728, 2072, 2720]));
+const _: () = assert!(matches!(BYTES, [4456, 4728, 2080, 2720]));
 
 /// The controller of one robot: guidance law `G`, at most `N` known neighbours, safety layer `A`,
 /// wire format `W`.
@@ -213,7 +213,7 @@ const _: () = assert!(matches!(BYTES, [4456, 4728, 2072, 2720]));
 /// | --- | --- | --- |
 /// | [`RouteAgent`], of which 2 KiB for learned costs | at most 4448 | 4456 |
 /// | [`FormationAgent`], of which 2 KiB for learned costs | at most 4720 | 4728 |
-/// | [`OrcaAgent`] | at most 2056 | 2072 |
+/// | [`OrcaAgent`] | at most 2072 | 2080 |
 /// | workspace, shared by all grid agents of a processor | at most 2720 | 2720 |
 ///
 /// With the feature `host`, lists take only the memory of their entries.

@@ -148,7 +148,7 @@ impl<S: Scalar> Guidance<S> for WaypointGuidance<S> {
         };
         let stays = decision.status.is_at_goal && !decision.status.makes_way;
         let away = self.make_way.way(input, here.obstacles, stays, to_goal, rng);
-        if MakeWay::is_blocked(input, here.obstacles) {
+        if self.leg > 0 && MakeWay::is_blocked(input, here.obstacles) {
             self.goes_back(input, away.is_some());
         }
         if let Some(way) = away {
