@@ -61,8 +61,8 @@ pub struct Abilities {
 }
 
 impl Abilities {
-    /// Least look-ahead for other robots, at most a minute: the time to brake from the highest speed
-    /// for the own speed, and once more for the other's, seconds.
+    /// Least look-ahead for other robots, seconds, at most a minute: the time to brake from the
+    /// highest speed, once for the own speed and once for the other's.
     #[must_use]
     pub fn least_horizon_s(&self) -> f64 {
         (2.0 * (self.max_speed_mps / self.max_acceleration_mps2 + self.lag_s)).min(60.0)
