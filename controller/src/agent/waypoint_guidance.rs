@@ -82,8 +82,8 @@ impl<S: Scalar> WaypointGuidance<S> {
     pub(super) fn head<P>(&mut self, input: &GuidanceInput<'_, S, P>) -> Result<Decision<S>, BadInput> {
         input.can_go()?;
         let (way, velocity_mps) = self.next(input).ok_or(BadInput)?;
+        let from_body = way + input.ahead_m;
         // The body itself, behind the point ahead, keeps up with a moving waypoint.
-        let body_m = (way + input.ahead_m).norm();
         let way = way + velocity_mps * input.lag_s;
         let is_last = usize::from(self.leg) + 1 >= self.course.len();
         let distance = way.norm();
@@ -105,9 +105,9 @@ impl<S: Scalar> WaypointGuidance<S> {
         // A body that is too fast to stop there passes the goal.
         let slides_m = if velocity_mps == Vec3::ZERO { input.body.stopping_way() } else { Vec3::ZERO };
         let is_near = is_last && distance.max((way - slides_m).norm()) <= self.tolerance_m;
-        let is_at_goal = is_near && body_m <= self.tolerance_m || is_beside;
-        // The body follows the point ahead, which waits for it.
-        let pace = if is_near && !is_at_goal { S::ZERO } else { pace };
+        let is_at_goal = is_near && from_body.norm() <= self.tolerance_m || is_beside;
+        // A point ahead that is a little past the goal does not turn the body back.
+        let pace = if is_near && way.dot(from_body) < S::ZERO { S::ZERO } else { pace };
         Ok(Decision {
             // A robot that lets another one go first does not head anywhere, so it is not in a jam.
             action: Action::Velocity {

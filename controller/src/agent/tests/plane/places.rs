@@ -167,10 +167,15 @@ fn a_body_brakes_for_the_end_of_its_course_and_not_for_waypoints_before_it() {
     }
 }
 
-/// Runs an agent whose body follows commands exactly with its lag. Returns body, velocity and mode
-/// after each step.
-fn run_lagging(lag_s: f64, goal: &Waypoint<f64>, tolerance_m: f64, steps: i32) -> Vec<([f64; 2], [f64; 2], Mode)> {
-    let config = AgentConfig { lag_s, max_acceleration_mps2: 1.5, ..in_plane(1) };
+/// Runs an agent whose body follows commands exactly with a lag. Returns body, velocity,
+/// command and mode after each step.
+fn run_lagging(
+    [stated_s, lag_s]: [f64; 2],
+    goal: &Waypoint<f64>,
+    tolerance_m: f64,
+    steps: i32,
+) -> Vec<([f64; 2], [[f64; 2]; 2], Mode)> {
+    let config = AgentConfig { lag_s: stated_s, max_acceleration_mps2: 1.5, ..in_plane(1) };
     let mut robot = Robot::new(&config, WaypointGuidance::new(1.0, tolerance_m), orca(), [0.0; 2]);
     assert!(robot.agent.assign_waypoint(0, goal));
     let (left, mut own) = (libm::exp(-0.1 / lag_s), [0.0; 2]);
@@ -182,7 +187,7 @@ fn run_lagging(lag_s: f64, goal: &Waypoint<f64>, tolerance_m: f64, steps: i32) -
             robot.at_m[axis] = before[axis] + command * 0.1 + (own[axis] - command) * lag_s * (1.0 - left);
             own[axis] = command + (own[axis] - command) * left;
         }
-        (robot.at_m, own, robot.agent.mode())
+        (robot.at_m, [own, robot.velocity_mps], robot.agent.mode())
     };
     (0..steps).map(step).collect()
 }
@@ -190,7 +195,7 @@ fn run_lagging(lag_s: f64, goal: &Waypoint<f64>, tolerance_m: f64, steps: i32) -
 #[test]
 fn a_body_with_a_lag_arrives_when_it_is_there_itself() {
     for (lag_s, tolerance_m) in [(0.1, 0.3), (0.4, 0.3), (1.0, 0.1), (2.0, 0.5)] {
-        let moments = run_lagging(lag_s, &place(4000, 3000), tolerance_m, 400);
+        let moments = run_lagging([lag_s; 2], &place(4000, 3000), tolerance_m, 400);
         let off_m = |[x, y]: [f64; 2]| length([x - 4.0, y - 3.0]);
         let first = moments.iter().position(|(.., mode)| *mode == Mode::Arrived).expect("it arrives");
         // The position before the step in which it decides.
@@ -203,10 +208,21 @@ fn a_body_with_a_lag_arrives_when_it_is_there_itself() {
 fn a_body_with_a_lag_does_not_fall_behind_a_moving_waypoint() {
     for lag_s in [0.1, 0.4, 1.0] {
         let goal = Waypoint { velocity_mps: Vec3::new(0.3, -0.4, 0.0), ..place(1000, 500) };
-        let moments = run_lagging(lag_s, &goal, 0.05, 300);
-        let ([x, y], [vx, vy], _) = moments[299];
+        let moments = run_lagging([lag_s; 2], &goal, 0.05, 300);
+        let ([x, y], [[vx, vy], _], _) = moments[299];
         let off = [x - 1.0 - 0.3 * 30.0, y - 0.5 + 0.4 * 30.0];
         assert!(length(off) < 0.06, "lag {lag_s} s: {off:?} m");
         assert!(length([vx - 0.3, vy + 0.4]) < 0.02, "lag {lag_s} s: {vx} {vy}");
+    }
+}
+
+#[test]
+fn a_body_slower_than_stated_is_not_turned_back_at_its_goal() {
+    for (stated_s, tolerance_m, x_mm) in [(0.2, 0.05, 700), (0.3, 0.1, 700), (0.3, 0.1, 6050), (0.5, 0.2, 6000)] {
+        let moments = run_lagging([stated_s, 1.1 * stated_s], &place(x_mm, 0), tolerance_m, 300);
+        assert!(moments.iter().all(|(_, [_, command], _)| command[0] >= 0.0), "lag {stated_s} s");
+        let ([x, _], _, mode) = moments[299];
+        let off_m = (x - f64::from(x_mm) / 1000.0).abs();
+        assert!(mode == Mode::Arrived && off_m < tolerance_m, "lag {stated_s} s: {mode:?}, {off_m} m off");
     }
 }
