@@ -47,6 +47,7 @@ const TOLERANCE_UM: i32 = 200;
 ///
 /// *Lag:* a body that is commanded to stand still covers its velocity times the lag, in a straight
 /// line. That much of a gap is taken already, by the own body and by a neighbour that comes nearer.
+/// So it is of the distance to an obstacle, before which the body has to stop.
 ///
 /// *Lost robots:* their balls stop growing at `max_m` only while at least half of all robots are
 /// fresh (of the lost ones, those count that have not [stood](Self::stands_after) for
@@ -144,6 +145,7 @@ impl<S: Scalar> GapLimit<'_, S> {
             let _ = limits.push(limit);
         }
         let step_s = self.body.step_s;
+        let lags = self.lag_s > S::ZERO;
         let mut v = if is_hidden { Vec3::ZERO } else { velocity_mps };
         let mut brake_s = self.brake_s(v);
         for _ in 0..ROUNDS {
@@ -162,14 +164,9 @@ impl<S: Scalar> GapLimit<'_, S> {
                 break;
             }
         }
-        // The safety layer has considered obstacles for the original velocity only.
-        if v != velocity_mps {
-            for (point, distance) in obstacles.iter().filter_map(Obstacle::nearest_point) {
-                let ahead = point.normalized().unwrap_or(Vec3::ZERO);
-                let room_m = distance - self.body.radius_m - S::from_milli(ROUNDING_MM);
-                let most = room_m.max(S::ZERO).checked_div(step_s).unwrap_or(S::ZERO);
-                v -= ahead * (v.dot(ahead) - most).max(S::ZERO);
-            }
+        // The safety layer has considered obstacles for the original velocity only, without a lag.
+        if lags || v != velocity_mps {
+            v = self.before(obstacles, v);
         }
         let allowed = |v: Vec3<S>| {
             let brake_s = self.brake_s(v);
@@ -181,7 +178,8 @@ impl<S: Scalar> GapLimit<'_, S> {
         if self.body.has_inertia() {
             reached = self.body.reach(v);
             // From the present velocity the body may reach none that is allowed.
-            if allowed(reached) < S::ONE {
+            let off_mps = if lags { self.before(obstacles, reached) - reached } else { Vec3::ZERO };
+            if allowed(reached) < S::ONE || off_mps.norm() > S::from_micro(TOLERANCE_UM) {
                 v = Vec3::ZERO;
                 reached = self.body.reach(v);
             }
@@ -247,6 +245,24 @@ impl<S: Scalar> GapLimit<'_, S> {
         }
         limit.left_m = limit.left_m.max(-S::from_micro(TOLERANCE_UM));
         (limit, silent > 0 && grown >= distance)
+    }
+
+    /// Turns a velocity aside so that a step with it ends before the obstacles; a body with a lag
+    /// can also brake along it before them.
+    #[inline(never)]
+    fn before(&self, obstacles: &[Obstacle<S>], mut v: Vec3<S>) -> Vec3<S> {
+        let (mut span_s, mut rolls_m) = (self.body.step_s, Vec3::ZERO);
+        if self.lag_s > S::ZERO {
+            span_s += self.brake_s(v) * S::HALF;
+            rolls_m = self.own_mps * self.lag_s;
+        }
+        for (point, distance) in obstacles.iter().filter_map(Obstacle::nearest_point) {
+            let ahead = point.normalized().unwrap_or(Vec3::ZERO);
+            let room_m = distance - self.body.radius_m - S::from_milli(ROUNDING_MM) - rolls_m.dot(ahead);
+            let most = room_m.max(S::ZERO).checked_div(span_s).unwrap_or(S::ZERO);
+            v -= ahead * (v.dot(ahead) - most).max(S::ZERO);
+        }
+        v
     }
 
     /// Time to brake to rest, seconds; 0 without inertia.

@@ -242,3 +242,64 @@ fn a_body_with_a_lag_that_slides_past_a_silent_robot_takes_no_more_of_the_gap() 
     let past = speed_ahead(Vec3::new(-1.0, 4.0, 0.0), 0.3);
     assert!(without > 1.0 && past < without, "{past}, without a lag {without}");
 }
+
+/// A body that follows each command exactly with its lag, with a wish at an angle to two walls; the
+/// angle of the second one is to the first. Returns the least room, the last room and velocity.
+fn into_a_corner(lag_s: f64, [speed, most, room_m]: [f64; 3], angles: [f64; 2]) -> (f64, f64, Vec3<f64>) {
+    use crate::geom::Vec2;
+    let mut mover = Mover::<f64>::new(1, [0.0; 3], most);
+    mover.body.max_speed_mps = speed;
+    let step_s = mover.body.step_s;
+    let towards = |angle: f64| Vec2::new(libm::sin(angle), libm::cos(angle));
+    let (wish, left) = (towards(angles[0]).extend(0.0) * speed, libm::exp(-step_s / lag_s));
+    let (mut at_m, mut own_mps) = (Vec3::ZERO, Vec3::<f64>::ZERO);
+    let (mut least_m, mut last_m) = (f64::MAX, 0.0);
+    for step in 1..1500 {
+        let walls = [0.0, angles[1]].map(towards);
+        let away_m = walls.map(|ahead| RADIUS_M + room_m - at_m.xy().dot(ahead));
+        last_m = away_m[0].min(away_m[1]) - RADIUS_M;
+        least_m = least_m.min(last_m);
+        let room = GapLimit {
+            body: &mover.body,
+            own: Position::ORIGIN,
+            own_mps,
+            lag_s,
+            now: moment(step),
+            news: STEP,
+            inflation: StalenessInflation { growth_mps: 1.0, max_m: 0.1 },
+            may_be_alone: false,
+            stands_after: STANDS_AFTER,
+        };
+        let wall = |one: usize| [-99.0, 99.0].map(|along| walls[one] * away_m[one] + walls[one].perp() * along);
+        let walls = [0, 1].map(|one| Obstacle::Wall(wall(one)));
+        let command = mover.body.reach(room.limit(&mut mover.table, &walls, wish).unwrap());
+        at_m += command * step_s + (own_mps - command) * (lag_s * (1.0 - left));
+        own_mps = command + (own_mps - command) * left;
+        mover.body.velocity_mps = command;
+    }
+    (least_m, last_m, own_mps)
+}
+
+#[test]
+fn a_body_with_a_lag_that_leaves_one_wall_does_not_drift_into_another() {
+    let (least_m, ..) = into_a_corner(
+        0.02,
+        [3.9868672048254665, 4.059969165583248, 4.521906200311978],
+        [-0.34857750415964317, -0.6211719813638684],
+    );
+    assert!(least_m > 0.0, "{least_m}");
+}
+
+proptest! {
+    #[test]
+    fn a_body_with_a_lag_stops_before_walls(
+        lag_s in 0.02..2.0_f64, speed in 0.2..4.0_f64, most in 0.3..5.0_f64, room_m in 0.01..15.0_f64,
+        angle in -1.2..1.2_f64, corner in prop_oneof![Just(0.0), -1.4..1.4_f64],
+    ) {
+        let (least_m, last_m, own_mps) = into_a_corner(lag_s, [speed, most, room_m], [angle, corner]);
+        prop_assert!(least_m > 0.0 && last_m < 0.02, "{least_m} {last_m}");
+        // Along a single wall nothing holds it up.
+        let along_mps = libm::sin(angle).abs() * speed;
+        prop_assert!(corner != 0.0 || own_mps.x.abs() > 0.9 * along_mps, "{own_mps:?} of {along_mps}");
+    }
+}
