@@ -55,7 +55,7 @@ impl<S: Scalar> WaypointGuidance<S> {
     }
 
     /// Heads for the waypoint before again, if other robots pushed this one far away from it.
-    fn goes_back<P>(&mut self, input: &GuidanceInput<'_, S, P>, is_pushed: bool) {
+    fn goes_back<P>(&mut self, input: &GuidanceInput<'_, S, P>, makes_way: bool) {
         let GuidanceInput { state, now, body, .. } = input;
         let mut way = |leg: u8| Some(self.course.get_mut(usize::from(leg))?.way(state.position, *now));
         let before = self.leg.saturating_sub(1);
@@ -64,7 +64,7 @@ impl<S: Scalar> WaypointGuidance<S> {
         };
         let far_m = self.tolerance_m.max(body.radius_m * S::from_i32(PASSED_RADII)) * S::TWO;
         let leaves = |way: Vec3<S>| way.dot(body.velocity_mps) < S::ZERO;
-        if leaves(last) && (is_pushed || leaves(next)) && last.norm() > far_m {
+        if leaves(last) && (makes_way || leaves(next)) && last.norm() > far_m {
             self.leg = before;
         }
     }

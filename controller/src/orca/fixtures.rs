@@ -63,3 +63,23 @@ pub fn vector<S: Scalar, const D: usize>(components: [f64; D]) -> Vec3<S> {
 pub fn rng_of(robot: u32, tick: u32) -> Rng {
     Rng::keyed(1, 5, robot, tick)
 }
+
+/// Checks the points of a line that a linear program finds nearest to an x, and farthest along the
+/// line; each as its x and its distance from the line. `range`: the x that the constraints leave.
+pub fn check_range(
+    range: Option<[f64; 2]>,
+    near: impl Fn(f64) -> Option<(f64, f64)>,
+    along: impl Fn(f64) -> Option<(f64, f64)>,
+    case: &dyn core::fmt::Debug,
+) {
+    let Some([low, high]) = range else {
+        assert_eq!([near(0.0), along(1.0), along(-1.0)], [None; 3], "{case:?}");
+        return;
+    };
+    let middle = (low + high) / 2.0;
+    for (found, x) in
+        [(near(-5.0), low), (near(middle), middle), (near(5.0), high), (along(-1.0), low), (along(1.0), high)]
+    {
+        assert!(found.is_some_and(|(at, off)| (at - x).abs() < 1e-12 && off == 0.0), "{found:?} {x} {case:?}");
+    }
+}

@@ -27,7 +27,6 @@ use crate::obstacle::Obstacle;
 use crate::orca::dimension::Situation;
 use crate::rand::Rng;
 use crate::scalar::Scalar;
-use core::cmp::Ordering;
 use serde::{Deserialize, Serialize};
 
 /// Longest passage whose walls are not checked between its ends, thousandths of the own radius.
@@ -234,7 +233,7 @@ impl<'a, S: Scalar> Approach<'a, S> {
     /// Whether the robot is in a passage for one, such as one that leads to the gap.
     fn is_between_walls(&self) -> bool {
         let points = || self.situation.obstacles.iter().filter_map(Obstacle::nearest_point);
-        let Some((wall, near)) = points().min_by(|(_, a), (_, b)| a.partial_cmp(b).unwrap_or(Ordering::Equal)) else {
+        let Some((wall, near)) = points().min_by(|(_, one), (_, other)| one.order(*other)) else {
             return false;
         };
         let is_opposite = |point: Vec3<S>, distance: S| point.dot(wall) < -near * distance * S::HALF;

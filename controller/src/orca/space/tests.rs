@@ -1,6 +1,6 @@
 use super::*;
 use crate::geom::Vec2;
-use crate::orca::fixtures::{ball, params, scalar, worst};
+use crate::orca::fixtures::{ball, check_range, params, scalar, worst};
 use crate::orca::{half_plane, solve};
 use crate::scalar::Q16;
 use proptest::prelude::*;
@@ -132,16 +132,7 @@ fn each_half_space_cuts_off_its_side_of_a_line() {
         };
         let near = |x: f64| best(Aim::Near(v(x, 7.0, -7.0)));
         let along = |x: f64| best(Aim::Along(v(x, 1.0, 1.0)));
-        let Some([low, high]) = range else {
-            assert_eq!([near(0.0), along(1.0), along(-1.0)], [None; 3], "{before:?}");
-            continue;
-        };
-        let middle = (low + high) / 2.0;
-        for (found, x) in
-            [(near(-5.0), low), (near(middle), middle), (near(5.0), high), (along(-1.0), low), (along(1.0), high)]
-        {
-            assert!(found.is_some_and(|(at, off)| (at - x).abs() < 1e-12 && off == 0.0), "{found:?} {x} {before:?}");
-        }
+        check_range(range, near, along, &before);
     }
     let touches = Line { foot: v(0.0, 0.0, 1.0), ..line };
     assert_eq!(best_on_line(&touches, &[], 1.0, Aim::Near(V::ZERO)), Some(touches.foot));

@@ -4,7 +4,7 @@ mod orders;
 mod state;
 
 pub(super) use orders::frames;
-use orders::waypoint;
+use orders::{course, waypoint};
 pub use state::{PlaneBody, PlaneShared};
 
 use super::Status;
@@ -21,7 +21,7 @@ use crate::world::scouts::{Memory, Scouts};
 use crate::world::window_but;
 use staya_controller::agent::{
     AgentConfig, AnyInputs, AnySurroundings, CellState, Command, ContactLossPolicy, GuidanceKind, InCell, InCells,
-    InPlane, Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS, Waypoint,
+    InPlane, Inputs, KinematicState, OnGrid, SafetyKind, Task, WAYPOINTS,
 };
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec2, Vec3};
@@ -368,20 +368,11 @@ impl Ground for PlaneGround {
         let first = (0..).zip(&self.setup.starts[number].places);
         let first = first.map(|(index, target)| (index, 0, target));
         let later = self.ordered(number, tick).map(|order| (order.index, order.tick, &order.target));
-        let mut waypoints = heapless::Vec::<(u8, Waypoint<f32>), WAYPOINTS>::new();
-        for (index, since, target) in first.chain(later) {
+        let aged = first.chain(later).map(|(index, since, target)| {
             let age_s = f64::from(tick - since) * f64::from(self.tick_us) / 1e6;
-            if guidance == GuidanceKind::Waypoint && index == 0 {
-                waypoints.clear();
-            }
-            let waypoint = waypoint(target, age_s);
-            match waypoints.iter_mut().find(|(known, _)| *known == index) {
-                Some((_, known)) => *known = waypoint,
-                // Cannot fail: the scenario was checked for the number of goals.
-                None => drop(waypoints.push((index, waypoint))),
-            }
-        }
-        Task::Waypoints(waypoints)
+            (index, waypoint(target, age_s))
+        });
+        Task::Waypoints(course(aged, guidance == GuidanceKind::Waypoint))
     }
 
     fn terrain(&self) -> Option<&Terrain> {

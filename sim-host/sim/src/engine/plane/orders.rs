@@ -2,7 +2,7 @@
 
 use crate::radio;
 use crate::scenario::{Order, Target};
-use staya_controller::agent::Waypoint;
+use staya_controller::agent::{WAYPOINTS, Waypoint};
 use staya_controller::auth::Key;
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::robot::RobotId;
@@ -36,6 +36,25 @@ pub(in crate::engine) fn frames(orders: &[Order], format: Format, key: Option<&K
         }
     }
     frames
+}
+
+/// The waypoints after all orders; `restarts`: the first index begins a new course.
+pub(super) fn course(
+    orders: impl Iterator<Item = (u8, Waypoint<f32>)>,
+    restarts: bool,
+) -> heapless::Vec<(u8, Waypoint<f32>), WAYPOINTS> {
+    let mut waypoints = heapless::Vec::<(u8, Waypoint<f32>), WAYPOINTS>::new();
+    for (index, waypoint) in orders {
+        if restarts && index == 0 {
+            waypoints.clear();
+        }
+        match waypoints.iter_mut().find(|(known, _)| *known == index) {
+            Some((_, known)) => *known = waypoint,
+            // Cannot fail: the scenario was checked for the number of goals.
+            None => drop(waypoints.push((index, waypoint))),
+        }
+    }
+    waypoints
 }
 
 /// Converts a goal at age `age_s`, relative to the start of a robot's clock.

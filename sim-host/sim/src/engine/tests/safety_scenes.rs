@@ -177,7 +177,7 @@ fn convoy(seed: u32, lag_s: f64) -> String {
 }
 
 /// As many seeds of each kind as the variable `SCENES` says, or `count`.
-fn seeds(count: u32) -> impl Iterator<Item = u32> {
+pub(super) fn seeds(count: u32) -> impl Iterator<Item = u32> {
     let count = std::env::var("SCENES").map_or(count, |text| text.parse().expect("a number"));
     (0..count).chain(UNSEEN..UNSEEN + count)
 }
