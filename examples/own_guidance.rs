@@ -8,7 +8,7 @@ use patrol::Patrol;
 use staya_plot::motion_pictures;
 use staya_record::recording::RunRecorder;
 use staya_sim::engine::simulate_own;
-use staya_sim::record::{Options, Recorder};
+use staya_sim::record::{Options, Output, Recorder};
 use staya_sim::scenario::{Overrides, Scenario};
 use std::path::{Path, PathBuf};
 use std::{error::Error, f64::consts::TAU, fs, ops::ControlFlow};
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some(folder) => {
             fs::create_dir_all(folder)?;
             let path = folder.join("patrol.staya");
-            Some(RunRecorder::new(fs::File::create(&path)?, &path, &scenario, 1)?)
+            Some(RunRecorder::new(Output::create(&path)?, &path, &scenario, 1)?)
         }
         None => None,
     };
@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         },
     )?;
     if let (Some(folder), Some(recording), Some(plane)) = (folder, recording, &scenario.plane) {
-        recording.finish(&())?;
+        recording.finish(&())?.finish()?;
         for file in motion_pictures(&scenario, plane, &recorder.finish()?, &folder)? {
             println!("{}", file.display());
         }

@@ -8,8 +8,9 @@ use staya_record::page;
 use staya_record::recording::{Reader, RecordingError, RunRecorder};
 use staya_sim::engine::{Moment, simulate};
 use staya_sim::file::{MAP, read, read_remedy};
-use staya_sim::record::{RobotRow, write_atomically};
+use staya_sim::record::{Error, Files, RobotRow};
 use staya_sim::scenario::Scenario;
+use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -46,10 +47,16 @@ impl PageArgs {
         let path = self.source.path();
         let stop = Stop::on_ctrl_c()?;
         let is_scenario = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-        let bytes = match is_scenario {
-            true => recorded(&self.source.load()?, self.every, &stop, global)?,
+        let (bytes, mut output) = match is_scenario {
+            true => {
+                let scenario = self.source.load()?;
+                let output = Files::reading(&scenario.files).create(&self.out)?;
+                (recorded(&scenario, self.every, &stop, global)?, output)
+            }
             false => {
-                read(path, MAP).map_err(|error| anyhow!("{}: {error}; {}", path.display(), read_remedy(&error)))?
+                let output = Files::reading([path]).create(&self.out)?;
+                let error = |error| anyhow!("{}: {error}; {}", path.display(), read_remedy(&error));
+                (read(path, MAP).map_err(error)?, output)
             }
         };
         let mut reader = Reader::new(std::io::Cursor::new(&bytes), path)?;
@@ -57,7 +64,8 @@ impl PageArgs {
         let (first_tick, last_tick) =
             reader.ticks().with_context(|| format!("{} has no frames; record the run again", path.display()))?;
         let page = page::with_recording(&bytes)?;
-        write_atomically(&self.out, page.as_bytes())?;
+        output.write_all(page.as_bytes()).map_err(Error::new("write", &self.out))?;
+        output.finish()?;
         let made =
             Made { page: self.out.clone(), bytes: page.len(), recording_bytes: bytes.len(), first_tick, last_tick };
         if global.json {

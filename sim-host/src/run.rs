@@ -14,7 +14,7 @@ use staya_record::recording::RecordingError;
 use staya_sim::checkpoint::{Checkpoint, Place};
 use staya_sim::engine::{Moment, Outcome, StartError, simulate, simulate_from};
 use staya_sim::expected::Expected;
-use staya_sim::record::{self, History, Options, Recorder, Results, RobotRow, write_summary};
+use staya_sim::record::{self, Files, History, Options, Recorder, Results, RobotRow, write_summary};
 use staya_sim::scenario::Scenario;
 use staya_sim::summary::Summary;
 use std::ops::ControlFlow;
@@ -44,7 +44,7 @@ pub struct RunArgs {
 }
 
 /// Creates the observers that the options of a run select.
-pub type Observers<'a> = dyn Fn(&RunArgs, &Scenario) -> Result<Vec<Box<dyn Observer>>> + 'a;
+pub type Observers<'a> = dyn Fn(&RunArgs, &Scenario, &mut Files) -> Result<Vec<Box<dyn Observer>>> + 'a;
 
 impl RunArgs {
     /// Whether an option needs an observer of `staya-view`: an MCAP file or a live page.
@@ -70,7 +70,7 @@ impl RunArgs {
     /// # Errors
     /// See [`RunArgs::run_with`].
     pub fn run(&self, global: &Global) -> Result<Ended> {
-        self.run_with(global, &|_, _| Ok(Vec::new()))
+        self.run_with(global, &|_, _, _| Ok(Vec::new()))
     }
 
     /// Runs the command with further observers.
@@ -88,14 +88,25 @@ impl RunArgs {
             eprintln!("the files of --record and --mcap start after tick {}", from.tick());
         }
         let before_seconds = from.as_ref().map_or(0.0, Checkpoint::wall_seconds);
-        let checkpoints = self.checkpoint.checkpoint.map(|every| {
-            let place = Place::new(out.with_added_extension("checkpoint"), &scenario);
-            Checkpoints::new(every, place, before_seconds)
-        });
-        let observers = observers(self, &scenario)?;
+        let mut files = Files::reading(&scenario.files);
+        files.claim(&out)?;
+        let checkpoints = match self.checkpoint.checkpoint {
+            Some(every) => {
+                let place = Place::new(out.with_added_extension("checkpoint"), &scenario)?;
+                place.files().iter().try_for_each(|path| files.claim(path))?;
+                Some(Checkpoints::new(every, place, before_seconds))
+            }
+            None => None,
+        };
+        // The checkpoint that the run continues may be replaced by its own, but by nothing else.
+        if let Some(from) = &self.checkpoint.from {
+            files.reads(from);
+        }
+        let observers = observers(self, &scenario, &mut files)?;
+        let outputs = RunOutputs::begin(&self.outputs, &scenario, &mut files, observers)?;
         let task =
             Task { scenario: &scenario, out: &out, keeps_robots: !self.no_trace, from, checkpoints, stop: &stop };
-        let summary = run(task, &self.outputs, observers, global)?;
+        let summary = run(task, outputs, global)?;
         if global.json {
             print_json(&summary)?;
         } else {
@@ -120,11 +131,11 @@ struct Task<'a> {
 }
 
 /// Earlier results stay until the new ones are complete.
-fn run(task: Task<'_>, outputs: &OutputArgs, observers: Vec<Box<dyn Observer>>, global: &Global) -> Result<Summary> {
-    let outputs = RunOutputs::begin(outputs, task.scenario, observers)?;
+fn run(task: Task<'_>, outputs: RunOutputs<'_>, global: &Global) -> Result<Summary> {
     let out = task.out;
     let results = Results::begin(out)?;
-    let whole = run_into(task, results.dir(), outputs, global).and_then(|summary| {
+    let mut incomplete = Vec::new();
+    let whole = run_into(task, results.dir(), outputs, &mut incomplete, global).and_then(|summary| {
         write_summary(results.dir(), &summary)?;
         Ok(summary)
     });
@@ -134,9 +145,10 @@ fn run(task: Task<'_>, outputs: &OutputArgs, observers: Vec<Box<dyn Observer>>, 
             Ok(summary)
         }
         Err(error) if error.is::<record::Error>() || error.is::<RecordingError>() => {
-            let kept = results.keep();
-            let (kept, out) = (kept.display(), out.display());
-            let what = format!("{out} is unchanged; {kept} has the incomplete results until the next run into {out}");
+            incomplete.push(results.keep());
+            let kept: Vec<_> = incomplete.iter().map(|path| path.display().to_string()).collect();
+            let (kept, out) = (kept.join(", "), out.display());
+            let what = format!("{out} is unchanged; the incomplete results stay in {kept} until the next run");
             Err(anyhow!("{}; {what}", staya_console::in_one_line(&error)))
         }
         Err(error) => Err(error),
@@ -144,7 +156,13 @@ fn run(task: Task<'_>, outputs: &OutputArgs, observers: Vec<Box<dyn Observer>>, 
 }
 
 /// Writes all but `summary.json`. `dir` later becomes the results folder.
-fn run_into(task: Task<'_>, dir: &Path, mut outputs: RunOutputs<'_>, global: &Global) -> Result<Summary> {
+fn run_into(
+    task: Task<'_>,
+    dir: &Path,
+    mut outputs: RunOutputs<'_>,
+    incomplete: &mut Vec<PathBuf>,
+    global: &Global,
+) -> Result<Summary> {
     let Task { scenario, out, keeps_robots, mut from, mut checkpoints, stop } = task;
     // A checkpoint without the robots' lines cannot continue them.
     let keeps_robots = keeps_robots && from.as_ref().is_none_or(Checkpoint::keeps_robots);
@@ -153,8 +171,14 @@ fn run_into(task: Task<'_>, dir: &Path, mut outputs: RunOutputs<'_>, global: &Gl
         None => Recorder::new(dir, Options { keeps_robots, ..Options::default() })?,
     };
     let began = Instant::now();
-    let (outcome, history) =
-        simulate_recorded(scenario, recorder, &mut outputs, from.as_ref(), checkpoints.as_mut(), stop, global)?;
+    let done = simulate_recorded(scenario, recorder, &mut outputs, from.as_ref(), checkpoints.as_mut(), stop, global);
+    let (outcome, history) = match done {
+        Ok(done) => done,
+        Err(error) => {
+            incomplete.extend(outputs.stop());
+            return Err(error);
+        }
+    };
     let wall_seconds = from.map_or(0.0, |from| from.wall_seconds()) + began.elapsed().as_secs_f64();
     let edges = scenario.numbered_edges();
     let names = ["summary.json", "series.csv", "series.schema.json", "trace.csv", "trace.schema.json"];
@@ -219,10 +243,7 @@ fn simulate_recorded(
     };
     progress.finish();
     match failed {
-        Some(error) => {
-            outputs.flush();
-            Err(error)
-        }
+        Some(error) => Err(error),
         None => Ok((outcome, recorder.finish()?)),
     }
 }

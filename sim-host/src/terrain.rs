@@ -6,6 +6,7 @@ use serde::Serialize;
 use staya_console::{Ended, Global, options, print, print_json};
 use staya_controller::grid::Norm;
 use staya_plot::terrain::{draw, scale_for};
+use staya_sim::record::Files;
 use staya_sim::terrain::generate::{ByMetrics, Hills, LandPlan, by_metrics, natural_by, uniform};
 use staya_sim::terrain::metrics::{Metrics, obstacles_of_entropy};
 use staya_sim::terrain::{LoadOptions, SlopeRule, Terrain, ros};
@@ -185,6 +186,8 @@ impl TerrainArgs {
             }
             Action::Draw { source, out, scale } => {
                 let terrain = source.load()?;
+                let inputs = [Some(source.file.clone()), Terrain::picture(&source.file)];
+                Files::reading(inputs.into_iter().flatten()).claim(out)?;
                 draw(&terrain, scale.unwrap_or(scale_for(&terrain, 1000)), out)?;
                 LandReport::new(out.clone(), &terrain).print(global)?;
             }

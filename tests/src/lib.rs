@@ -1,5 +1,6 @@
 //! Helpers shared by the cross-crate tests.
 
+pub mod mutants;
 mod story;
 
 pub use story::gaps;

@@ -2,6 +2,7 @@
 
 mod cases;
 mod crossing;
+mod damaged;
 mod dead_members;
 mod duplicates;
 mod faults;

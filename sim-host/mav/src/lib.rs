@@ -23,5 +23,5 @@ mod udp;
 pub use endpoint::{Endpoint, EndpointError};
 pub use inbox::{Peer, Received};
 pub use lines::{Lines, OpenError};
-pub use tlog::{Tlog, TlogError};
+pub use tlog::Tlog;
 pub use traffic::Counts;

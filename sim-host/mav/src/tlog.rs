@@ -1,4 +1,5 @@
-use std::fs::File;
+use staya_sim::record::{Error, Files};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -6,8 +7,9 @@ use std::time::{SystemTime, UNIX_EPOCH};
 /// Hours of a few vehicles.
 const LIMIT: u64 = 256 << 20;
 
-/// A tlog file: before each frame its time, microseconds since 1970 as a big-endian `u64`. At 256
-/// MiB the file replaces the one with `.1` appended, and a new one begins.
+/// A tlog file: before each frame its time, microseconds since 1970 as a big-endian `u64`. An
+/// earlier file, and each file at 256 MiB, replaces the one with `.1` appended, and a new one
+/// begins. The log is valid at each moment, so it is written in place.
 #[derive(Debug)]
 pub struct Tlog {
     file: BufWriter<File>,
@@ -16,34 +18,27 @@ pub struct Tlog {
     limit: u64,
 }
 
-/// A log cannot be written.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot write the log {}: {source}; {}", .path.display(), staya_sim::file::write_remedy(.source))]
-pub struct TlogError {
-    /// Path.
-    pub path: PathBuf,
-    /// Cause.
-    pub source: io::Error,
-}
-
 impl Tlog {
-    /// Creates a log and replaces an existing file.
+    /// Creates a log of a command that uses `files`.
     ///
     /// # Errors
-    /// The file cannot be created.
-    pub fn create(path: &Path) -> Result<Self, TlogError> {
-        let path = path.to_owned();
-        match File::create(&path) {
-            Ok(file) => Ok(Self { file: BufWriter::new(file), path, len: 0, limit: LIMIT }),
-            Err(source) => Err(TlogError { path, source }),
-        }
+    /// The file cannot be created, or it or its predecessor is one of `files`.
+    pub fn create(path: &Path, files: &mut Files) -> Result<Self, Error> {
+        let before = before(path);
+        files.claim(path)?;
+        files.claim(&before)?;
+        let error = Error::new("write", path);
+        let is_kept = fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0);
+        let kept = if is_kept { fs::rename(path, before) } else { Ok(()) };
+        let file = kept.and_then(|()| File::create(path)).map_err(error)?;
+        Ok(Self { file: BufWriter::new(file), path: path.to_owned(), len: 0, limit: LIMIT })
     }
 
     /// Appends a frame with the present time.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn add(&mut self, frame: &[u8]) -> Result<(), TlogError> {
+    pub fn add(&mut self, frame: &[u8]) -> Result<(), Error> {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         let micros = now.map_or(0, |time| time.as_micros());
         self.add_at(u64::try_from(micros).unwrap_or(u64::MAX), frame)
@@ -53,7 +48,7 @@ impl Tlog {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn add_at(&mut self, micros: u64, frame: &[u8]) -> Result<(), TlogError> {
+    pub fn add_at(&mut self, micros: u64, frame: &[u8]) -> Result<(), Error> {
         self.write(micros, frame).map_err(|source| self.error(source))
     }
 
@@ -70,9 +65,7 @@ impl Tlog {
 
     fn rotate(&mut self) -> io::Result<()> {
         self.file.flush()?;
-        let mut name = self.path.as_os_str().to_owned();
-        name.push(".1");
-        std::fs::rename(&self.path, PathBuf::from(name))?;
+        fs::rename(&self.path, before(&self.path))?;
         self.file = BufWriter::new(File::create(&self.path)?);
         self.len = 0;
         Ok(())
@@ -82,13 +75,18 @@ impl Tlog {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn finish(mut self) -> Result<(), TlogError> {
+    pub fn finish(mut self) -> Result<(), Error> {
         self.file.flush().map_err(|source| self.error(source))
     }
 
-    fn error(&self, source: io::Error) -> TlogError {
-        TlogError { path: self.path.clone(), source }
+    fn error(&self, source: io::Error) -> Error {
+        Error::new("write", &self.path)(source)
     }
+}
+
+/// Path of the log before.
+fn before(path: &Path) -> PathBuf {
+    path.with_added_extension("1")
 }
 
 #[cfg(test)]
@@ -99,7 +97,7 @@ mod tests {
     fn each_frame_follows_its_time() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.tlog");
-        let mut log = Tlog::create(&path).expect("a log");
+        let mut log = Tlog::create(&path, &mut Files::default()).expect("a log");
         log.add_at(0x0102, b"xyz").expect("room");
         log.finish().expect("room");
         let bytes = std::fs::read(&path).expect("the log");
@@ -110,7 +108,7 @@ mod tests {
     fn a_log_has_a_size_limit_and_keeps_the_last_frames() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("a.tlog");
-        let mut log = Tlog { limit: 40, ..Tlog::create(&path).expect("a log") };
+        let mut log = Tlog { limit: 40, ..Tlog::create(&path, &mut Files::default()).expect("a log") };
         for frame in 0..11 {
             log.add_at(frame, b"ab").expect("room");
         }
@@ -125,14 +123,30 @@ mod tests {
     }
 
     #[test]
+    fn an_earlier_log_is_kept_and_an_input_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a.tlog");
+        fs::write(&path, "old").expect("room");
+        let log = Tlog::create(&path, &mut Files::default()).expect("a log");
+        drop(log);
+        assert_eq!(fs::read(folder.path().join("a.tlog.1")).expect("the old log"), b"old");
+        let inputs = ["a.tlog", "a.tlog.1"].map(|name| folder.path().join(name));
+        for input in &inputs {
+            let error = Tlog::create(&path, &mut Files::reading([input])).expect_err("an input").to_string();
+            assert!(error.contains("it is also an input"), "{error}");
+        }
+        assert_eq!(fs::read(&inputs[1]).expect("the old log"), b"old");
+    }
+
+    #[test]
     fn a_missing_folder_is_an_error_with_the_path() {
-        let error = Tlog::create(Path::new("/no/such/folder/a.tlog")).expect_err("no folder");
+        let error = Tlog::create(Path::new("/no/such/folder/a.tlog"), &mut Files::default()).expect_err("no folder");
         assert!(error.to_string().contains("/no/such/folder/a.tlog"));
     }
 
     #[test]
     fn a_full_disk_is_an_error() {
-        if let Ok(mut log) = Tlog::create(Path::new("/dev/full")) {
+        if let Ok(mut log) = Tlog::create(Path::new("/dev/full"), &mut Files::default()) {
             log.add(&[0; 100]).expect("buffered");
             let error = log.finish().expect_err("full");
             assert!(error.to_string().contains("/dev/full"), "{error}");

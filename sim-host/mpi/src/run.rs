@@ -165,7 +165,8 @@ impl RunArgs {
             None => Recorder::new(dir, Options { keeps_robots: !self.no_trace, ..Options::default() })?,
         };
         let before_seconds = from.as_ref().map_or(0.0, Checkpoint::wall_seconds);
-        let place = Place::new(out.with_added_extension("checkpoint"), scenario);
+        let place = self.checkpoint.map(|_| Place::new(out.with_added_extension("checkpoint"), scenario));
+        let place = place.transpose()?;
         let mut progress = Progress::new(&scenario.name, scenario.ticks.into(), global);
         let (count, began) = (scenario.robots.len(), Instant::now());
         let mut failed = None;
@@ -175,7 +176,7 @@ impl RunArgs {
                 return ControlFlow::Break(());
             }
             let tick = moment.row.tick;
-            if let Some(run) = moment.run
+            if let Some((run, place)) = moment.run.zip(place.as_ref())
                 && let Err(error) =
                     place.write(tick, before_seconds + began.elapsed().as_secs_f64(), run, &mut recorder)
             {

@@ -1,7 +1,8 @@
 //! Pictures of terrain: darker is less passable (A. V. Kuznetsov 2017, figure 7), walls are black.
 
 use staya_controller::grid::BLOCKED;
-use staya_sim::terrain::{Terrain, TerrainError, parameter_error, rows::flip_row, write};
+use staya_sim::record::write_atomically;
+use staya_sim::terrain::{Terrain, TerrainError, parameter_error, rows::flip_row};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -82,7 +83,7 @@ pub fn draw(terrain: &Terrain, scale: u32, path: &Path) -> Result<(), TerrainErr
             ));
         }
     };
-    write(path, &bytes)
+    Ok(write_atomically(path, &bytes)?)
 }
 
 fn png(terrain: &Terrain, scale: u32) -> Result<Vec<u8>, TerrainError> {

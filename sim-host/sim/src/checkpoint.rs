@@ -7,18 +7,18 @@
 //!
 //! Integers are little-endian; head, state and history are in postcard format. The file is synced
 //! under a temporary name and renamed; the previous one is kept as `FILE.old`. Only its owner can
-//! read it, because it contains keys of the scenario.
+//! read it, because it contains keys of the scenario. Other files of these names are not replaced.
 
 pub use crate::engine::CheckpointInterval;
 
 use crate::engine::{Saves, StateError};
 use crate::file::{self, read_remedy};
-use crate::record::{self, Recorder};
+use crate::record::{self, Access, Output, Recorder, remove_stale};
 use crate::scenario::Scenario;
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Read, Seek as _, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -30,6 +30,8 @@ const PARTS: [&str; 5] = ["head", "state", "history", "trace.csv", "series.csv"]
 const TRACE: usize = 3;
 const SERIES: usize = 4;
 const FIRST: u64 = MAGIC.len() as u64 + 4;
+/// Longer than any head, bytes.
+const LONGEST_HEAD: u64 = 1 << 16;
 
 /// The file is damaged, or not a checkpoint of this scenario.
 #[derive(Debug, Error)]
@@ -58,10 +60,38 @@ pub struct Place {
 }
 
 impl Place {
-    /// Creates the location for a run of `scenario`.
+    /// Creates the location for a run of `scenario`, and removes what dead runs left there.
+    ///
+    /// # Errors
+    /// A file of that name, or of the name of its predecessor, is not a checkpoint of this run.
+    pub fn new(path: PathBuf, scenario: &Scenario) -> Result<Self, CheckpointError> {
+        let this = Self { path, scenario: scenario.name.clone(), fingerprint: scenario.fingerprint() };
+        for path in this.files() {
+            if !this.may_replace(&path) {
+                let what = "it is not a checkpoint of this run and would be replaced".to_owned();
+                return Err(CheckpointError { path, what, remedy: "move it, or choose another --out".to_owned() });
+            }
+            remove_stale(&path);
+        }
+        Ok(this)
+    }
+
+    /// Paths of the checkpoint and its predecessor.
     #[must_use]
-    pub fn new(path: PathBuf, scenario: &Scenario) -> Self {
-        Self { path, scenario: scenario.name.clone(), fingerprint: scenario.fingerprint() }
+    pub fn files(&self) -> [PathBuf; 2] {
+        [self.path.clone(), beside(&self.path, ".old")]
+    }
+
+    /// Reads the beginning of the file.
+    fn may_replace(&self, path: &Path) -> bool {
+        if path.symlink_metadata().is_err() {
+            return true;
+        }
+        let mut bytes = Vec::new();
+        let _ = file::open(path).and_then(|file| file.take(LONGEST_HEAD).read_to_end(&mut bytes));
+        let head = bytes.strip_prefix(MAGIC).and_then(|rest| rest.strip_prefix(&FORMAT.to_le_bytes()));
+        let head = head.and_then(|rest| postcard::take_from_bytes::<Head>(rest.get(8..)?).ok());
+        head.is_some_and(|(head, _)| head.fingerprint == self.fingerprint)
     }
 
     /// Path of the checkpoint file.
@@ -96,9 +126,9 @@ impl Place {
         };
         let parts = [encoded(&head), state, encoded(&recorder.saved())];
         let records = recorder.written()?;
-        let temporary = beside(&self.path, &format!(".{}.tmp", std::process::id()));
+        let mut output = Output::with(&self.path, Access::Private)?;
         let done = (|| {
-            let mut out = BufWriter::new(create_private(&temporary)?);
+            let mut out = BufWriter::new(&mut output);
             out.write_all(MAGIC)?;
             out.write_all(&FORMAT.to_le_bytes())?;
             for part in &parts {
@@ -110,32 +140,28 @@ impl Place {
                     None => write_part(&mut out, 0, &mut io::empty())?,
                 }
             }
-            out.into_inner()?.sync_all()?;
-            self.replace(&temporary)
+            out.flush()
         })();
-        done.map_err(|error| {
-            // Report the first error.
-            let _ = fs::remove_file(&temporary);
-            record::Error::new("write", &self.path)(error)
-        })
+        done.map_err(record::Error::new("write", &self.path))?;
+        output.finish_by(replace)
     }
+}
 
-    /// A checkpoint exists at every moment.
-    fn replace(&self, temporary: &Path) -> io::Result<()> {
-        let link = beside(&self.path, &format!(".old.{}.tmp", std::process::id()));
-        let old = beside(&self.path, ".old");
-        let kept = fs::hard_link(&self.path, &link).and_then(|()| fs::rename(&link, &old));
-        match kept {
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            // Without hard links, the checkpoint is missing for a moment.
-            Err(_) => fs::rename(&self.path, &old)?,
-            Ok(()) => {}
-        }
-        fs::rename(temporary, &self.path)?;
-        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
-        Ok(())
+/// A checkpoint exists at every moment.
+fn replace(temporary: &Path, path: &Path) -> io::Result<()> {
+    let link = beside(path, &format!(".old.{}.tmp", std::process::id()));
+    let old = beside(path, ".old");
+    let kept = fs::hard_link(path, &link).and_then(|()| fs::rename(&link, &old));
+    match kept {
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        // Without hard links, the checkpoint is missing for a moment.
+        Err(_) => fs::rename(path, &old)?,
+        Ok(()) => {}
     }
+    fs::rename(temporary, path)?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
+    Ok(())
 }
 
 fn encoded(value: &impl Serialize) -> Vec<u8> {
@@ -146,14 +172,6 @@ fn beside(path: &Path, end: &str) -> PathBuf {
     let mut name = OsString::from(path.file_name().unwrap_or_default());
     name.push(end);
     path.with_file_name(name)
-}
-
-fn create_private(path: &Path) -> io::Result<File> {
-    let mut options = OpenOptions::new();
-    options.write(true).create(true).truncate(true);
-    #[cfg(unix)]
-    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-    options.open(path)
 }
 
 fn write_part(out: &mut impl Write, length: u64, from: &mut dyn Read) -> io::Result<()> {

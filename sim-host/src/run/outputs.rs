@@ -3,11 +3,11 @@ use clap::Args;
 use serde::Serialize;
 use staya_console::file_ending;
 use staya_plot::movie::{self, Look};
-use staya_record::recording::{RecordingError, RunRecorder};
+use staya_record::recording::RunRecorder;
 use staya_sim::engine::Moment;
-use staya_sim::record::{History, RobotRow, write_atomically};
+use staya_sim::record::{Error, Files, History, Output, RobotRow};
 use staya_sim::scenario::Scenario;
-use std::fs::File;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Options of additional outputs.
@@ -60,27 +60,36 @@ pub trait Observer {
     /// # Errors
     /// Its file cannot be written.
     fn finish(self: Box<Self>) -> Result<()>;
+
+    /// Ends with a run that failed. Returns its incomplete file.
+    fn stop(self: Box<Self>) -> Option<PathBuf> {
+        None
+    }
 }
 
 /// Open files and observers.
 pub struct RunOutputs<'a> {
     args: &'a OutputArgs,
     scenario: &'a Scenario,
-    recording: Option<RunRecorder<File>>,
+    recording: Option<RunRecorder<Output>>,
+    gif: Option<Output>,
     observers: Vec<Box<dyn Observer>>,
 }
 
 impl<'a> RunOutputs<'a> {
-    pub fn begin(args: &'a OutputArgs, scenario: &'a Scenario, observers: Vec<Box<dyn Observer>>) -> Result<Self> {
+    /// A path that cannot be written fails before the run.
+    pub fn begin(
+        args: &'a OutputArgs,
+        scenario: &'a Scenario,
+        files: &mut Files,
+        observers: Vec<Box<dyn Observer>>,
+    ) -> Result<Self> {
         let recording = match &args.record {
-            Some(path) => Some(RunRecorder::new(create(path)?, path, scenario, args.record_every)?),
+            Some(path) => Some(RunRecorder::new(files.create(path)?, path, scenario, args.record_every)?),
             None => None,
         };
-        if let Some(path) = &args.gif {
-            // A path that cannot be written must fail before the run.
-            write_atomically(path, b"")?;
-        }
-        Ok(Self { args, scenario, recording, observers })
+        let gif = args.gif.as_ref().map(|path| files.create(path)).transpose()?;
+        Ok(Self { args, scenario, recording, gif, observers })
     }
 
     pub fn wants_rows(&mut self) -> bool {
@@ -101,26 +110,23 @@ impl<'a> RunOutputs<'a> {
         self.observers.iter_mut().try_for_each(|observer| observer.tick(moment, rows))
     }
 
-    /// After another error, if possible.
-    pub fn flush(&mut self) {
-        if let Some(recording) = &mut self.recording {
-            let _ = recording.flush();
-        }
+    /// Ends after an error. Returns the incomplete files.
+    pub fn stop(self) -> Vec<PathBuf> {
+        let recording = self.recording.map(|recording| recording.stop().keep());
+        recording.into_iter().chain(self.observers.into_iter().filter_map(Observer::stop)).collect()
     }
 
     pub fn finish(self, summary: &impl Serialize, history: &History) -> Result<()> {
         if let Some(recording) = self.recording {
-            recording.finish(summary)?;
+            recording.finish(summary)?.finish()?;
         }
         self.observers.into_iter().try_for_each(Observer::finish)?;
-        if let Some(path) = &self.args.gif {
+        if let Some(mut gif) = self.gif {
             let look = Look { width: self.args.gif_width, seconds: self.args.gif_seconds };
-            write_atomically(path, &movie::of_run(self.scenario, history, look)?)?;
+            let movie = movie::of_run(self.scenario, history, look)?;
+            gif.write_all(&movie).map_err(Error::new("write", gif.path()))?;
+            gif.finish()?;
         }
         Ok(())
     }
-}
-
-fn create(path: &Path) -> Result<File, RecordingError> {
-    File::create(path).map_err(RecordingError::writing(path))
 }

@@ -5,20 +5,20 @@ use staya::run::{Observer, RunArgs};
 use staya_record::frame::{FrameData, Framer};
 use staya_record::scene::{Mode, Scene};
 use staya_sim::engine::Moment;
-use staya_sim::record::RobotRow;
+use staya_sim::record::{Files, Output, RobotRow};
 use staya_sim::scenario::Scenario;
-use std::fs::File;
+use std::path::PathBuf;
 
 /// Creates the observers for `--mcap` and `--view` of `staya run`.
 ///
 /// # Errors
 /// A file cannot be written, or the page's address is not available.
-pub fn of_run(args: &RunArgs, scenario: &Scenario) -> Result<Vec<Box<dyn Observer>>> {
+pub fn of_run(args: &RunArgs, scenario: &Scenario, files: &mut Files) -> Result<Vec<Box<dyn Observer>>> {
     let mut observers: Vec<Box<dyn Observer>> = Vec::new();
     if let Some((path, every)) = args.mcap() {
         let scene = Scene::new(scenario, Mode::Recording);
         observers.push(Box::new(Mcap {
-            writer: McapWriter::create(path, &scene)?,
+            writer: McapWriter::new(files.create(path)?, path, &scene)?,
             framer: Framer::new(scenario),
             frame: FrameData::default(),
             every,
@@ -32,7 +32,7 @@ pub fn of_run(args: &RunArgs, scenario: &Scenario) -> Result<Vec<Box<dyn Observe
 }
 
 struct Mcap {
-    writer: McapWriter<File>,
+    writer: McapWriter<Output>,
     framer: Framer,
     frame: FrameData,
     every: u32,
@@ -57,7 +57,11 @@ impl Observer for Mcap {
         if !self.is_written {
             self.writer.frame(&self.frame)?;
         }
-        Ok(self.writer.finish()?)
+        Ok(self.writer.finish()?.finish()?)
+    }
+
+    fn stop(self: Box<Self>) -> Option<PathBuf> {
+        Some(self.writer.stop().keep())
     }
 }
 

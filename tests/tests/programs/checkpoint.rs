@@ -113,6 +113,26 @@ fn killed_and_stopped_runs_continue() {
 }
 
 #[test]
+fn checkpoints_of_other_runs_are_not_replaced() {
+    let (dir, [out]) = folders();
+    let path = scenario("figure-5.toml");
+    let checkpoint = format!("{out}.checkpoint");
+    let stale = format!("{checkpoint}.99999999.tmp");
+    fs::write(&stale, "").expect("it can be written");
+    run(&[&path, "--out", &out, "--ticks", "10", "--checkpoint", "5ticks"]);
+    assert!(!Path::new(&stale).exists());
+    run(&[&path, "--out", &out, "--ticks", "10", "--checkpoint", "4ticks"]);
+    let before = fs::read(&checkpoint).expect("it is there");
+    let other_seed = ["run", &path, "--out", &out, "--ticks", "10", "--checkpoint", "5ticks", "--seed", "2"];
+    let ended = staya(&other_seed).output().expect("staya starts");
+    let stderr = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert!(ended.status.code() == Some(1) && stderr.contains(&checkpoint), "{stderr}");
+    assert!(stderr.contains("not a checkpoint of this run") && stderr.contains("move it"), "{stderr}");
+    assert!(fs::read(&checkpoint).expect("it is there") == before);
+    assert_eq!(fs::read_dir(dir.path()).expect("a folder").count(), 3, "results and two checkpoints");
+}
+
+#[test]
 fn checkpoints_of_other_runs_are_refused_in_one_line() {
     let (_dir, [out, other]) = folders();
     let [path, another] = ["figure-5.toml", "figure-6.toml"].map(scenario);

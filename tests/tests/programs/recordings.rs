@@ -136,6 +136,58 @@ fn gif_and_mcap_files_are_valid() {
     assert!(bytes.starts_with(b"\x89MCAP0\r\n") && bytes.ends_with(b"\x89MCAP0\r\n"));
 }
 
+/// Every pair of an input and an option that writes a file, by its own name and through links.
+#[test]
+fn no_output_replaces_an_input_or_another_output() {
+    let folder = Folder::new();
+    let [out, path, map, picture] = ["out", "run.toml", "a.yaml", "a.pgm"].map(|name| folder.path(name));
+    let made = staya(&["terrain", "generate", "--width", "20", "--height", "20", "--obstacles", "1", "--out", &map]);
+    assert!(made.status.success());
+    let text = "name = \"t\"\nticks = 30\n[terrain]\nfile = \"a.yaml\"\n[robots.scattered]\ncount = 3\ntravel = 5\n";
+    fs::write(&path, text).expect("write");
+    let [recording, checkpoint] = [folder.path("kept.rec"), format!("{out}.checkpoint")];
+    run(&[&path, "--out", &out, "--record", &recording, "--checkpoint", "10ticks"]);
+    let inputs = [&path, &map, &picture, &checkpoint, &recording];
+    let before = inputs.map(|input| fs::read(input).expect("an input"));
+    let mut refused = 0;
+    let mut refuse = |arguments: &[&str]| {
+        let error = refusal(&[arguments, &["--quiet"]].concat());
+        assert!(error.contains("it is also an") && error.contains("; choose another name"), "{error}");
+        refused += 1;
+    };
+    for (number, input) in inputs.iter().enumerate() {
+        let mut names =
+            vec![(*input).clone(), format!("{}/out/../{}", folder.path(""), &input[folder.path("").len()..])];
+        #[cfg(unix)]
+        for ending in ["link.mcap", "link.gif"] {
+            names.push(folder.path(&format!("{number}{ending}")));
+            std::os::unix::fs::symlink(input, names.last().expect("a name")).expect("a link");
+        }
+        for name in &names {
+            let is_recording = input == &&recording;
+            if !is_recording {
+                let from: &[&str] = if input == &&checkpoint { &["--from", &checkpoint] } else { &[] };
+                refuse(&[&["run", &path, "--out", &out, "--record", name], from].concat());
+                if let Some((_, ending @ ("mcap" | "gif"))) = name.rsplit_once('.') {
+                    let option = format!("--{ending}");
+                    refuse(&[&["run", &path, "--out", &out, &option, name], from].concat());
+                }
+            }
+            if input != &&checkpoint {
+                refuse(&["page", if is_recording { &recording } else { &path }, "--out", name]);
+            }
+        }
+        for (input, before) in inputs.iter().zip(&before) {
+            assert!(fs::read(input).expect("an input") == *before, "{input}");
+        }
+    }
+    let [gif, mcap] = ["new.gif", "new.mcap"].map(|name| folder.path(name));
+    refuse(&["run", &path, "--out", &out, "--record", &gif, "--gif", &gif]);
+    refuse(&["run", &path, "--out", &out, "--record", &mcap, "--mcap", &mcap]);
+    refuse(&["run", &path, "--out", &out, "--record", &out]);
+    assert!(refused > 30 && !Path::new(&gif).exists() && !Path::new(&mcap).exists());
+}
+
 #[test]
 fn errors_name_the_file_the_byte_and_the_remedy() {
     let folder = Folder::new();

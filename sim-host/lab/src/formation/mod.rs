@@ -260,6 +260,7 @@ impl Plan {
             faults: Vec::new(),
             key: None,
             key_remark: None,
+            files: Vec::new(),
             keeping: None,
             interventions: Vec::new(),
             misnumbered: Vec::new(),

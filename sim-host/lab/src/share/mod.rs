@@ -294,6 +294,7 @@ pub(crate) fn scenario(
         sensing: None,
         key: None,
         key_remark: None,
+        files: Vec::new(),
         keeping: None,
         interventions: Vec::new(),
         misnumbered: Vec::new(),

@@ -75,7 +75,7 @@ impl Plan {
             let what = format!("{:?} cannot name a folder of results", file.name);
             return Err(source.error("name", what, "use 1 to 100 letters, digits, - and _").into());
         }
-        let scenario = source.folder().join(&file.scenario);
+        let scenario = source.file(&file.scenario);
         let scenario_text = read_text(&scenario, TEXT).map_err(|error| {
             source.error(
                 "scenario",

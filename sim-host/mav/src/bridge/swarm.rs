@@ -10,14 +10,14 @@ use super::report::{BridgeReport, LineReport, Refused, name};
 use super::streams::Streams;
 use super::vehicle::{Action, Out, Vehicle};
 use crate::geo::Origin;
-use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog, TlogError};
+use crate::{Counts, Endpoint, Lines, OpenError, Received, Tlog};
 use staya_mavlink::dialect::MavMessage;
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::mavlink_core::Message as _;
 use staya_mavlink::signing::{Signing, Verdict};
 use staya_sim::engine::{Moment, Operated, operated};
 use staya_sim::key::timestamp;
-use staya_sim::record::RobotRow;
+use staya_sim::record::{self, Files, RobotRow};
 use staya_sim::scenario::Scenario;
 use staya_sim::world::Misplaced;
 use std::collections::BTreeMap;
@@ -71,7 +71,7 @@ pub enum BridgeError {
     Line(#[from] OpenError),
     /// The log cannot be written.
     #[error(transparent)]
-    Log(#[from] TlogError),
+    Log(#[from] record::Error),
 }
 
 /// A callback that observes the swarm after each tick. It delays the next tick, so it must be fast.
@@ -133,7 +133,7 @@ impl Swarm {
         }
         let lines = Lines::open(&options.endpoints)?;
         let log = match &options.tlog {
-            Some(path) => Some(Tlog::create(path)?),
+            Some(path) => Some(Tlog::create(path, &mut Files::reading(&scenario.files))?),
             None => None,
         };
         let listing = Budget::per_second(parameters_per_s(&options.endpoints));

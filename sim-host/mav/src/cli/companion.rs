@@ -7,6 +7,7 @@ use clap::Args;
 use page::Page;
 use staya_console::WatchArgs;
 use staya_console::{Ended, Global, Stop, print, print_json};
+use staya_sim::record::Files;
 use staya_view::watch::Watcher;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -70,8 +71,11 @@ impl CompanionArgs {
             demo: self.demo,
             is_real_time: false,
             wait: (self.wait > 0.0).then(|| Duration::from_secs_f64(self.wait)),
-            tlog: self.tlog.as_deref().map(Tlog::create).transpose()?,
+            tlog: None,
         };
+        let inputs = config.scenario.files.iter().chain(&config.key).chain(&config.link_key);
+        let mut files = Files::reading(inputs);
+        options.tlog = self.tlog.as_deref().map(|path| Tlog::create(path, &mut files)).transpose()?;
         let stop = Stop::on_ctrl_c()?;
         let page = Watcher::by_options(&self.page, &config.scenario)?;
         options.is_real_time = page.is_some();

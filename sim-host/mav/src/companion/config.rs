@@ -169,7 +169,7 @@ impl Config {
             source.error("origin", "not a position on the Earth", remedy)
         })?;
         check_rules(&source, &file.rules)?;
-        let mut scenario = Scenario::load(&source.folder().join(&file.scenario), &Overrides::default())?;
+        let mut scenario = Scenario::load(&source.file(&file.scenario), &Overrides::default())?;
         // A vehicle with an uncertain position adds the error to its radius, and may jump later.
         scenario.plausibility.max_radius_m += file.rules.error_m as f32;
         scenario.plausibility.slack_m += file.rules.error_m as f32;
@@ -185,15 +185,17 @@ impl Config {
         };
         let overlap_s = file.air.overlap_s.unwrap_or(60.0);
         within(&source, "air.overlap_s", overlap_s, 2.0, 86_400.0, "seconds")?;
-        let beside = |path: &PathBuf| source.folder().join(path);
+        let beside = |path: &PathBuf| source.file(path);
+        let (key, link_key) = (file.air.key.as_ref().map(beside), file.link_key.as_ref().map(beside));
+        scenario.files.extend(source.files());
         Ok(Self {
             scenario,
             plane,
             origin,
             air,
-            key: file.air.key.as_ref().map(beside),
+            key,
             overlap: Duration::from_secs_f64(overlap_s),
-            link_key: file.link_key.as_ref().map(beside),
+            link_key,
             lines,
             vehicles,
             reach_m: file.rules.reach_m,

@@ -19,7 +19,7 @@ use super::report::CompanionReport;
 use super::roll::{Roll, Turn};
 use super::seal::Seal;
 use crate::geo::{Origin, ned};
-use crate::{Lines, Received, TlogError};
+use crate::{Lines, Received};
 use demo::Demo;
 use machine::{Host, Machine};
 use options::DEMO_S;
@@ -31,6 +31,7 @@ use staya_mavlink::signing::Signing;
 use staya_sim::engine::PlaneGround;
 use staya_sim::key::{self, KeyFile};
 use staya_sim::radio::HostWire;
+use staya_sim::record;
 use std::io::{self, Write as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -66,7 +67,7 @@ struct Companions<'a> {
     wire: AnyWire,
     roll: Roll,
     options: &'a Options,
-    log_error: Option<TlogError>,
+    log_error: Option<record::Error>,
     output_error: Option<io::Error>,
     has_said_farewell: bool,
 }
@@ -289,7 +290,7 @@ impl<'a> Companions<'a> {
         }
     }
 
-    fn log_fails(&mut self, error: TlogError) {
+    fn log_fails(&mut self, error: record::Error) {
         self.say(&format!("staya: {error}; continuing without a log"));
         self.log_error = Some(error);
         for index in 0..self.vehicles.len() {

@@ -82,12 +82,9 @@ impl<W: Sink> RunRecorder<W> {
         self.orders.push(json!({ "tick": self.seen, "order": order(what, &self.scene) }));
     }
 
-    /// Writes the buffered frames.
-    ///
-    /// # Errors
-    /// The recording cannot be written.
-    pub fn flush(&mut self) -> Result<(), RecordingError> {
-        self.writer.flush()
+    /// Ends an incomplete recording: writes the buffered frames, if possible. Returns the output.
+    pub fn stop(self) -> W {
+        self.writer.stop()
     }
 
     /// Writes the last frame, the orders and the summary.

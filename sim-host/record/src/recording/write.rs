@@ -2,7 +2,7 @@ use super::{BLOCK_HEAD, END, FRAMES, MAGIC, MOST_RAW, ORDERS, RecordingError, SC
 use crate::frame::FrameData;
 use crate::scene::Scene;
 use serde::Serialize;
-use std::fs::File;
+use staya_sim::record::Output;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -17,9 +17,9 @@ pub trait Sink: Write {
     fn cut(&mut self, length: u64);
 }
 
-impl Sink for File {
+impl Sink for Output {
     fn cut(&mut self, length: u64) {
-        let _ = self.set_len(length);
+        Self::cut(self, length);
     }
 }
 
@@ -39,17 +39,6 @@ pub struct Writer<W: Sink> {
     /// The previous frame, for the XOR.
     before: Vec<u8>,
     frame: Vec<u8>,
-}
-
-impl Writer<File> {
-    /// Creates a recording and replaces an existing file.
-    ///
-    /// # Errors
-    /// The file cannot be created or written.
-    pub fn create(path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
-        let file = File::create(path).map_err(RecordingError::writing(path))?;
-        Self::new(file, path, scene)
-    }
 }
 
 impl<W: Sink> Writer<W> {
@@ -108,6 +97,12 @@ impl<W: Sink> Writer<W> {
         self.raw = raw;
         self.raw.clear();
         done
+    }
+
+    /// Writes the buffered frames, if possible, and returns the output.
+    pub fn stop(mut self) -> W {
+        let _ = self.flush();
+        self.out
     }
 
     /// Writes the orders with their ticks and the summary. Returns the output.

@@ -20,7 +20,7 @@ fn run(dir: &Path, scenario: &Scenario, ticks: &[u32]) -> Place {
 }
 
 fn run_with(dir: &Path, scenario: &Scenario, ticks: &[u32], options: Options) -> Place {
-    let place = Place::new(dir.join("checkpoint"), scenario);
+    let place = Place::new(dir.join("checkpoint"), scenario).expect("the name is free");
     let mut recorder = Recorder::new(dir.join("whole"), options).expect("it can be made");
     simulate(scenario, |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
         recorder.tick(moment.row, robots).expect("it can be written");
@@ -185,26 +185,50 @@ fn another_version_of_the_program_is_refused() {
     assert!(error.contains("version 0.0.1, this is"), "{error}");
 }
 
-#[cfg(unix)]
 #[test]
 fn a_write_error_leaves_the_previous_checkpoint() {
     let dir = tempfile::tempdir().expect("a folder");
     let scenario = of("");
     let place = run(dir.path(), &scenario, &[3]);
     let before = fs::read(place.path()).expect("it is there");
-    // A symlink to a full device takes the place of the temporary file.
-    let temporary = beside(place.path(), &format!(".{}.tmp", std::process::id()));
-    std::os::unix::fs::symlink("/dev/full", &temporary).expect("a link");
     let mut recorder = Recorder::new(dir.path().join("again"), Options::default()).expect("it can be made");
     let mut failed = None;
     simulate(&scenario, |moment: &Moment<'_>, robots: &mut dyn Iterator<Item = RobotRow>| {
         recorder.tick(moment.row, robots).expect("it can be written");
+        fs::remove_file(dir.path().join("again/series.csv")).expect("it is there");
         failed = place.write(moment.row.tick, 0.0, moment.run.expect("a run"), &mut recorder).err();
         ControlFlow::Break(())
     })
     .expect("robots can be placed");
-    let error = failed.expect("the disk is full").to_string();
-    assert!(error.contains("free some space") && error.contains("checkpoint"), "{error}");
+    let error = failed.expect("its records are gone").to_string();
+    assert!(error.starts_with("cannot write") && error.contains("checkpoint"), "{error}");
     assert!(fs::read(place.path()).expect("it is there") == before);
-    assert!(!temporary.exists());
+    assert_eq!(fs::read_dir(dir.path()).expect("a folder").count(), 3, "checkpoint, whole, again");
+}
+
+#[test]
+fn foreign_files_and_other_runs_are_not_replaced() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let path = dir.path().join("checkpoint");
+    let (scenario, other) = (of(""), of("[radio]\nloss = 0.25\n"));
+    let old = dir.path().join("checkpoint.old");
+    let stale = dir.path().join("checkpoint.99999-0.tmp");
+    fs::write(&stale, "keys").expect("room");
+    run(dir.path(), &scenario, &[5, 6]);
+    assert!(!stale.exists() && old.exists());
+    Place::new(path.clone(), &scenario).expect("its own");
+    let refused = |scenario: &Scenario, file: &Path| {
+        let error = Place::new(path.clone(), scenario).expect_err("another's").to_string();
+        assert!(error.starts_with(&*file.to_string_lossy()) && error.ends_with("choose another --out"), "{error}");
+    };
+    refused(&other, &path);
+    for text in [&b""[..], b"a letter", &fs::read(&path).expect("a checkpoint")[..30]] {
+        for file in [&path, &old] {
+            let kept = fs::read(file).expect("a checkpoint");
+            fs::write(file, text).expect("room");
+            refused(&scenario, file);
+            assert_eq!(fs::read(file).expect("a letter"), text);
+            fs::write(file, kept).expect("room");
+        }
+    }
 }

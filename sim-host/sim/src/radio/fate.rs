@@ -10,7 +10,7 @@ const CHANNEL: u32 = 0x0052_0003;
 
 pub(super) enum Verdict {
     Lost,
-    Arrives { copies: u32 },
+    Arrives { copies: u8 },
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub(super) struct Fates {
     tick_us: u64,
     loss: u32,
     channel: Option<Channel>,
-    delay_us: u64,
+    delay_us: u32,
     jitter_us: u32,
     duplicate: u32,
     reorder: u32,
@@ -50,6 +50,15 @@ impl RadioParams {
 }
 
 impl Fates {
+    /// Mean number of ticks for which a packet is held.
+    pub(super) fn held_ticks(&self) -> f64 {
+        if self.is_always_in_time() {
+            return 0.0;
+        }
+        let mean_us = f64::from(self.delay_us) + f64::from(self.jitter_us) / 2.0;
+        (mean_us / self.tick_us as f64).max(1.0)
+    }
+
     pub(super) fn new(params: &RadioParams, seed: u64, tick_us: u32) -> Self {
         let us = |ms: f64| (ms * 1000.0) as u32;
         Self {
@@ -57,7 +66,7 @@ impl Fates {
             tick_us: u64::from(tick_us),
             loss: q32(params.loss),
             channel: params.burst.map(|burst| Channel::new(&burst, tick_us)),
-            delay_us: u64::from(us(params.delay_ms)),
+            delay_us: us(params.delay_ms),
             jitter_us: us(params.jitter_ms),
             duplicate: q32(params.duplicate),
             reorder: q32(params.reorder),
@@ -95,22 +104,34 @@ impl Fates {
         {
             return Verdict::Lost;
         }
-        let copies = 1 + u32::from(self.duplicate > 0 && draws.chance_q32(self.duplicate));
+        let copies = 1 + u8::from(self.duplicate > 0 && draws.chance_q32(self.duplicate));
         Verdict::Arrives { copies }
     }
 
-    /// In microseconds after the start; `None` if packets always arrive before the next step.
-    pub(super) fn due_us(&self, draws: &mut Rng, tick: u32) -> Option<u64> {
-        let always_in_time = self.delay_us == 0 && self.jitter_us == 0 && self.reorder == 0;
-        if always_in_time {
+    const fn is_always_in_time(&self) -> bool {
+        self.delay_us == 0 && self.jitter_us == 0 && self.reorder == 0
+    }
+
+    /// Ticks from the sending of a packet to its latest arrival; `None` if packets always arrive
+    /// before the next step.
+    pub(super) fn longest_ticks(&self) -> Option<u32> {
+        let overtaken_us = if self.reorder == 0 { 0 } else { self.reorder_us };
+        let longest_us = u64::from(self.delay_us) + u64::from(self.jitter_us) + u64::from(overtaken_us);
+        let ticks = u32::try_from(longest_us / self.tick_us + 1).unwrap_or(u32::MAX);
+        if self.is_always_in_time() { None } else { Some(ticks) }
+    }
+
+    /// In microseconds after the beginning of the tick; `None` if packets always arrive before the
+    /// next step.
+    pub(super) fn after_us(&self, draws: &mut Rng) -> Option<u32> {
+        if self.is_always_in_time() {
             return None;
         }
-        let mut due_us = u64::from(tick) * self.tick_us + self.delay_us;
-        due_us += u64::from(draws.below(self.jitter_us));
+        let mut after_us = self.delay_us.saturating_add(draws.below(self.jitter_us));
         if draws.chance_q32(self.reorder) {
-            due_us += u64::from(draws.below(self.reorder_us));
+            after_us = after_us.saturating_add(draws.below(self.reorder_us));
         }
-        Some(due_us)
+        Some(after_us)
     }
 
     pub(super) fn next_step_us(&self, tick: u32) -> u64 {

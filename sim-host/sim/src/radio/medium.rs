@@ -243,6 +243,10 @@ impl Medium {
         }
     }
 
+    pub(super) fn packets(&self) -> &[Packet] {
+        &self.packets
+    }
+
     pub(super) fn packet(&self, at: u32) -> &Packet {
         &self.packets[at as usize]
     }
@@ -251,6 +255,21 @@ impl Medium {
         let bytes = &self.parts[packet.part as usize].bytes;
         &bytes[packet.start as usize..][..packet.length.into()]
     }
+}
+
+/// Estimated number of ordered pairs of senders and receivers in range, for robots at these
+/// positions. O(n).
+pub(super) fn pairs_in_range(positions_m: &[[f64; 2]], range_m: f64) -> f64 {
+    let lattice = Lattice::over(positions_m, range_m);
+    let cells = lattice.columns * lattice.rows;
+    let mut counts = vec![0.0_f64; cells];
+    for position_m in positions_m {
+        counts[lattice.cell(*position_m)] += 1.0;
+    }
+    let block = 9.0 * lattice.side_m * lattice.side_m;
+    let share = if cells == 1 { 1.0 } else { (core::f64::consts::PI * range_m * range_m / block).min(1.0) };
+    let near = |at_m: &[f64; 2]| lattice.around(*at_m).map(|cells| counts[cells].iter().sum::<f64>()).sum::<f64>();
+    positions_m.iter().map(|at_m| near(at_m) * share).sum()
 }
 
 /// Splits an outbox into packets: a frame with its delimiter, if the format has one.

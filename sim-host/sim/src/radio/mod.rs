@@ -7,6 +7,7 @@
 
 mod border;
 mod fate;
+mod late;
 mod medium;
 mod params;
 mod state;
@@ -19,6 +20,7 @@ pub(crate) use state::{End, Weather};
 pub use wire::{HostWire, PEERS, operator, own_wire, ring_wire, wire};
 
 use fate::{Fates, Verdict};
+use late::{Air, Late};
 use medium::Medium;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -59,18 +61,6 @@ impl AddAssign for Counts {
     }
 }
 
-/// A delayed packet at one receiver. Arrivals are ordered by time, then by sender.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-struct Held {
-    due_us: u64,
-    sender: RobotId,
-    sent: u32,
-    number: u32,
-    copy: u32,
-    start: u32,
-    length: u32,
-}
-
 #[derive(Clone, Debug, Default)]
 struct Receiver {
     id: RobotId,
@@ -78,14 +68,6 @@ struct Receiver {
     inbox: Range<u32>,
     late: Option<Box<Late>>,
     log: Option<Vec<(RobotId, Reception)>>,
-}
-
-#[derive(Clone, Debug, Default)]
-struct Late {
-    held: Vec<Held>,
-    bytes: Vec<u8>,
-    /// Receives the bytes of packets that remain; swapped with `bytes`.
-    spare: Vec<u8>,
 }
 
 const BLOCK: usize = 64;
@@ -108,9 +90,25 @@ pub enum Reception {
 pub struct Radio {
     fates: Fates,
     medium: Medium,
+    /// Empty if no packet is delayed.
+    air: Air,
     receivers: Vec<Receiver>,
     inboxes: Vec<Inboxes>,
     total: Counts,
+}
+
+/// Bytes of a packet, measured for beacons of both wire formats.
+const PACKET_BYTES: f64 = 40.0;
+
+/// Estimated memory of the radio of robots at these positions, bytes, if each sends one packet in
+/// each tick. O(n).
+#[must_use]
+pub fn expected_bytes(params: &RadioParams, tick_us: u32, positions_m: &[[f64; 2]]) -> u64 {
+    let fates = Fates::new(params, 0, tick_us);
+    let held = fates.held_ticks() * late::HELD_BYTES as f64;
+    let sent = f64::from(fates.longest_ticks().unwrap_or(0)) * positions_m.len() as f64 * PACKET_BYTES;
+    let arrived = (1.0 - params.loss) * medium::pairs_in_range(positions_m, params.range_m);
+    (arrived * (PACKET_BYTES + held) + sent) as u64
 }
 
 impl Radio {
@@ -121,6 +119,7 @@ impl Radio {
         Self {
             fates: Fates::new(params, seed, tick_us),
             medium: Medium::new(params, seed, tick_us, receivers.len()),
+            air: Air::new(tick_us),
             inboxes: vec![Inboxes::new(); receivers.len().div_ceil(BLOCK)],
             receivers,
             total: Counts::default(),
@@ -185,7 +184,10 @@ impl Radio {
 
     fn deliver(&mut self, tick: u32, positions_m: &[[f64; 2]], sent: Counts) -> Counts {
         let positions_m = &positions_m[..self.receivers.len()];
-        let (medium, fates) = (&self.medium, &self.fates);
+        if let Some(ticks) = self.fates.longest_ticks() {
+            self.air.keep(tick, &self.medium, ticks);
+        }
+        let (medium, fates, air) = (&self.medium, &self.fates, &self.air);
         let blocks = (self.receivers.par_chunks_mut(BLOCK), positions_m.par_chunks(BLOCK), &mut self.inboxes);
         let received = blocks
             .into_par_iter()
@@ -193,7 +195,7 @@ impl Radio {
                 inboxes.clear();
                 let counts = receivers.iter_mut().zip(positions_m).map(|(receiver, &position_m)| {
                     medium.heard_at(position_m, receiver.id, heard);
-                    receiver.receive(tick, medium, heard, fates, inboxes)
+                    receiver.receive(tick, medium, heard, (fates, air), inboxes)
                 });
                 counts.fold(Counts::default(), Add::add)
             })
@@ -205,7 +207,14 @@ impl Radio {
 }
 
 impl Receiver {
-    fn receive(&mut self, tick: u32, medium: &Medium, heard: &[u32], fates: &Fates, inboxes: &mut Inboxes) -> Counts {
+    fn receive(
+        &mut self,
+        tick: u32,
+        medium: &Medium,
+        heard: &[u32],
+        (fates, air): (&Fates, &Air),
+        inboxes: &mut Inboxes,
+    ) -> Counts {
         let mut counts = Counts::default();
         let begin = inboxes.len();
         if let Some(log) = &mut self.log {
@@ -223,27 +232,21 @@ impl Receiver {
             };
             let damaged_before = counts.corrupted;
             for copy in 0..copies {
-                let due_us = fates.due_us(&mut draws, tick);
-                let buffer = match due_us {
-                    None => &mut *inboxes,
-                    Some(_) => &mut self.late.get_or_insert_default().bytes,
+                let after_us = fates.after_us(&mut draws);
+                let bytes = medium.bytes(packet);
+                let is_damaged = match after_us {
+                    None => {
+                        let start = inboxes.len();
+                        append(inboxes, bytes);
+                        fates.damage(&mut draws, &mut inboxes[start..])
+                    }
+                    Some(after_us) => {
+                        let late = self.late.get_or_insert_default();
+                        late.hold(tick, after_us, (at, bytes), copy, |bytes| fates.damage(&mut draws, bytes))
+                    }
                 };
-                let start = buffer.len();
-                append(buffer, medium.bytes(packet));
                 counts.delivered += 1;
-                counts.corrupted += u64::from(fates.damage(&mut draws, &mut buffer[start..]));
-                let length = (buffer.len() - start) as u32;
-                if let (Some(due_us), Some(late)) = (due_us, &mut self.late) {
-                    late.held.push(Held {
-                        due_us,
-                        sender: packet.sender,
-                        sent: tick,
-                        number: packet.number,
-                        copy,
-                        start: start as u32,
-                        length,
-                    });
-                }
+                counts.corrupted += u64::from(is_damaged);
             }
             if let Some(log) = &mut self.log {
                 let is_damaged = counts.corrupted > damaged_before;
@@ -251,33 +254,10 @@ impl Receiver {
             }
         }
         if let Some(late) = &mut self.late {
-            late.release(fates.next_step_us(tick), inboxes);
+            late.release(fates.next_step_us(tick), air, inboxes);
         }
         self.inbox = begin as u32..inboxes.len() as u32;
         counts
-    }
-}
-
-impl Late {
-    fn release(&mut self, now_us: u64, inbox: &mut Inboxes) {
-        if self.held.is_empty() {
-            return;
-        }
-        self.held.sort_unstable();
-        let due = self.held.partition_point(|held| held.due_us <= now_us);
-        self.spare.clear();
-        for (index, held) in self.held.iter_mut().enumerate() {
-            let start = held.start as usize;
-            let bytes = &self.bytes[start..start + held.length as usize];
-            if index < due {
-                append(inbox, bytes);
-            } else {
-                held.start = self.spare.len() as u32;
-                self.spare.extend_from_slice(bytes);
-            }
-        }
-        self.held.drain(..due);
-        std::mem::swap(&mut self.bytes, &mut self.spare);
     }
 }
 

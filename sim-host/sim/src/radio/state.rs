@@ -1,12 +1,13 @@
 //! Saves and restores the mutable state of the radio.
 
-use super::{BLOCK, Counts, Held, Late, Radio};
+use super::late::{Late, Saved};
+use super::{BLOCK, Counts, Radio};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct End {
     inbox: Vec<u8>,
-    held: Vec<Held>,
+    held: Vec<Saved>,
     bytes: Vec<u8>,
     tokens: Option<u64>,
 }
@@ -21,20 +22,14 @@ pub(crate) struct Weather {
 impl Radio {
     pub(crate) fn end(&self, index: usize) -> impl Serialize {
         let receiver = &self.receivers[index];
-        let (held, bytes) = receiver.late.as_ref().map_or((&[][..], &[][..]), |late| (&late.held, &late.bytes));
+        let (held, bytes) = receiver.late.as_ref().map(|late| late.saved(&self.air)).unwrap_or_default();
         (self.inbox(index), held, bytes, self.medium.tokens(index))
     }
 
     /// Fails if the state belongs to another radio, or is invalid.
     pub(crate) fn set_end(&mut self, index: usize, end: End) -> Result<(), &'static str> {
         let End { inbox, held, bytes, tokens } = end;
-        let is_there = |held: &Held| {
-            let end = u64::from(held.start) + u64::from(held.length);
-            end <= bytes.len() as u64
-        };
-        if !held.iter().all(is_there) {
-            return Err("a packet that is held back has no bytes");
-        }
+        let late = Late::restored(&held, &bytes, &mut self.air)?;
         if !self.medium.set_tokens(index, tokens) {
             return Err("the bandwidth is bounded there or here, but not in both");
         }
@@ -44,7 +39,7 @@ impl Radio {
         let begin = inboxes.len() as u32;
         inboxes.extend_from_slice(&inbox);
         receiver.inbox = begin..inboxes.len() as u32;
-        receiver.late = (!held.is_empty()).then(|| Box::new(Late { held, bytes, spare: Vec::new() }));
+        receiver.late = (!held.is_empty()).then(|| Box::new(late));
         Ok(())
     }
 

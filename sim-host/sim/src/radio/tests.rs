@@ -280,3 +280,31 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn delayed_bytes_are_shared_by_all_receivers() {
+    let delayed = RadioParams { delay_ms: 300.0, bit_error_rate: 1e-3, ..RadioParams::default() };
+    let mut radio = radio(delayed, 50);
+    let mut longest = 0;
+    for tick in 0..20 {
+        radio.carry(tick, &line(50), |_| &[7; 40]);
+        longest = longest.max(radio.air.bytes());
+    }
+    assert!(longest <= 5 * 50 * 40, "{longest} bytes of the packets of at most five ticks");
+}
+
+#[test]
+fn memory_is_estimated_from_pairs_in_range() {
+    let near = RadioParams { range_m: 10.0, ..RadioParams::default() };
+    let slow = RadioParams { delay_ms: 1000.0, ..near.clone() };
+    let all = RadioParams::default();
+    let square = |side: u32| (0..side * side).map(move |i| [f64::from(i % side), f64::from(i / side)]);
+    let expected = |params: &RadioParams, side: u32| {
+        let places: Vec<_> = square(side).collect();
+        expected_bytes(params, TICK_US, &places) as f64 / (places.len() as f64 * PACKET_BYTES)
+    };
+    // Robots in range of each: all 400, or the 317 of a circle of 10 m.
+    assert!((390.0..410.0).contains(&expected(&all, 20)), "{}", expected(&all, 20));
+    assert!((250.0..330.0).contains(&expected(&near, 100)), "{}", expected(&near, 100));
+    assert!(expected(&slow, 100) > 4.0 * expected(&near, 100));
+}

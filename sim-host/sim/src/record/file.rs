@@ -1,5 +1,6 @@
-//! Atomic file writes, and errors that name the file and the remedy.
+//! Errors that name the file and the remedy; directories, the summary and growing tables.
 
+use super::write_atomically;
 use crate::file::write_remedy;
 use serde::Serialize;
 use std::fs::File;
@@ -8,18 +9,26 @@ use std::path::{Path, PathBuf};
 
 /// A file or directory could not be written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {}: {source}; {}", path.display(), write_remedy(source))]
+#[error("cannot {action} {}: {source}; {remedy}", path.display())]
 pub struct Error {
     action: &'static str,
     path: PathBuf,
     source: io::Error,
+    remedy: &'static str,
 }
 
 impl Error {
     /// Converts a system error: `action` on `path` failed.
     pub fn new(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Self { action, path, source }
+        move |source| {
+            let remedy = write_remedy(&source);
+            Self { action, path, source, remedy }
+        }
+    }
+
+    pub(super) fn with_remedy(action: &'static str, path: &Path, source: io::Error, remedy: &'static str) -> Self {
+        Self { action, path: path.to_owned(), source, remedy }
     }
 
     /// The file or directory.
@@ -44,21 +53,6 @@ pub fn prepare_dir(dir: &Path) -> Result<(), Error> {
     let written = std::fs::write(&probe, "?").map_err(Error::new("write to", dir));
     let _ = std::fs::remove_file(&probe);
     written
-}
-
-/// Writes a file by way of a rename: readers see either the old or the complete new file.
-///
-/// # Errors
-/// The temporary file cannot be written or renamed; it is removed, the old file stays.
-pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(name);
-    std::fs::write(&temporary, bytes).and_then(|()| std::fs::rename(&temporary, path)).map_err(|source| {
-        // Report the first error.
-        let _ = std::fs::remove_file(&temporary);
-        Error::new("write", path)(source)
-    })
 }
 
 /// Writes `summary.json` to an existing directory, pretty-printed, in field order.

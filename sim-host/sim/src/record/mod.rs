@@ -8,11 +8,13 @@ mod csv;
 mod file;
 mod folder;
 mod history;
+mod output;
 
 pub use file::make_dir;
-pub use file::{Error, prepare_dir, write_atomically, write_summary};
+pub use file::{Error, prepare_dir, write_summary};
 pub use folder::Results;
 pub use history::{Frame, History, Sample, SeriesPoint};
+pub use output::{Access, Files, Output, remove_stale, write_atomically};
 
 use file::LineFile;
 use serde::{Deserialize, Serialize};
@@ -196,13 +198,13 @@ pub type Saved = (u32, History);
 /// Records a run, tick by tick.
 #[derive(Debug)]
 pub struct Recorder {
-    files: Option<Files>,
+    files: Option<Tables>,
     keeps_robots: bool,
     history: History,
 }
 
 #[derive(Debug)]
-struct Files {
+struct Tables {
     trace: Option<LineFile>,
     series: LineFile,
     trace_every: u32,
@@ -228,7 +230,7 @@ impl Recorder {
         let trace = options.keeps_robots.then(|| LineFile::create(&dir.join("trace.csv"), &csv::header(&csv::TRACE)));
         Ok(Self {
             keeps_robots: options.keeps_robots,
-            files: Some(Files {
+            files: Some(Tables {
                 trace: trace.transpose()?,
                 series: LineFile::create(&dir.join("series.csv"), &csv::header(&csv::SERIES))?,
                 trace_every: options.trace_every,
@@ -246,7 +248,7 @@ impl Recorder {
         write_schemas(out_dir, keeps_robots)?;
         let trace = keeps_robots.then(|| LineFile::resume(&out_dir.join("trace.csv"))).transpose()?;
         let series = LineFile::resume(&out_dir.join("series.csv"))?;
-        Ok(Self { files: Some(Files { trace, series, trace_every }), keeps_robots, history })
+        Ok(Self { files: Some(Tables { trace, series, trace_every }), keeps_robots, history })
     }
 
     /// State that is not in a file.

@@ -21,7 +21,7 @@ pub(super) fn key(source: &Source<'_>, file: &ScenarioFile, robots: &[Robot]) ->
         return Ok(None);
     };
     let from_file = |field: &str, name: &Path| {
-        let read = KeyFile::read(&source.folder().join(name)).map_err(|error| {
+        let read = KeyFile::read(&source.file(name)).map_err(|error| {
             let remedy = "file names are relative to the scenario file";
             source.error(&format!("authentication.{field}"), error.to_string(), remedy)
         })?;

@@ -1,9 +1,10 @@
 //! Checks that involve more than one field.
 
-use super::ranges::{short, within};
+use super::ranges::{micros, short, within};
 use super::source::Source;
 use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
 use crate::file::has_memory;
+use crate::radio;
 use crate::terrain::generate::{self, LandPlan};
 use crate::terrain::{Terrain, TerrainError};
 use staya_controller::formation::published::FormationLaw;
@@ -110,17 +111,24 @@ const CELL_BYTES: u64 = 4;
 pub(super) fn memory(
     source: &Source<'_>,
     file: &ScenarioFile,
-    robots: usize,
+    positions_m: &[[f64; 2]],
     land: &Terrain,
 ) -> Result<(), ScenarioError> {
-    let cells = u64::from(land.width()) * u64::from(land.height());
+    let (robots, cells) = (positions_m.len(), u64::from(land.width()) * u64::from(land.height()));
     let bytes = robots as u64 * ROBOT_BYTES + cells * CELL_BYTES;
-    if has_memory(bytes) {
+    let packets = radio::expected_bytes(&file.radio, micros(file.tick_s), positions_m);
+    let whole = bytes.saturating_add(packets);
+    if has_memory(whole) {
         return Ok(());
     }
-    let what = format!("{robots} robots and {cells} cells need {} MB of memory, which is not to be had", bytes >> 20);
-    let field = if file.plane.is_some() { "plane" } else { "robots" };
-    Err(source.error(field, what, "give fewer robots or less land, or close other programs"))
+    let (field, what, remedy) = if packets > bytes {
+        let what = format!("the packets of {robots} robots need {} MB of memory", packets >> 20);
+        ("radio", what, "give fewer robots, or a smaller range or delay")
+    } else {
+        let what = format!("{robots} robots and {cells} cells need {} MB of memory", bytes >> 20);
+        (if file.plane.is_some() { "plane" } else { "robots" }, what, "give fewer robots or less land")
+    };
+    Err(source.error(field, format!("{what}, which is not to be had"), format!("{remedy}, or close other programs")))
 }
 
 pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrain, ScenarioError> {
@@ -180,7 +188,10 @@ pub(super) fn map(source: &Source<'_>, file: &ScenarioFile, name: &Path) -> Resu
 }
 
 fn load(source: &Source<'_>, table: &TerrainTable, name: &Path) -> Result<Terrain, TerrainError> {
-    Terrain::load_with(&source.folder().join(name), &table.load)
+    let path = source.file(name);
+    let terrain = Terrain::load_with(&path, &table.load)?;
+    source.reads(Terrain::picture(&path));
+    Ok(terrain)
 }
 
 fn cropped(source: &Source<'_>, table: &TerrainTable, made: Terrain) -> Result<Terrain, ScenarioError> {

@@ -40,6 +40,7 @@ impl Scenario {
             name: _,
             seed,
             ticks: _,
+            files: _,
             tick_us,
             terrain,
             changes,

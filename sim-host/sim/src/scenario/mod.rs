@@ -61,7 +61,7 @@ use staya_controller::land::MapParams;
 use staya_controller::neighbor::PlausibilityLimits;
 use staya_controller::robot::RobotId;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 const LIST: &str = "scenarios/README.md";
 
@@ -196,6 +196,8 @@ pub struct Scenario {
     pub plausibility: PlausibilityLimits<f32>,
     /// Attackers.
     pub attacks: Vec<Attack>,
+    /// The files that the scenario was read from.
+    pub files: Vec<PathBuf>,
     /// Fields of the file with overrides applied, for result files; without secrets.
     pub parameters: serde_json::Value,
 }
@@ -255,7 +257,11 @@ impl Scenario {
         };
         let heard = plane.as_ref().map_or(0, PlaneSetup::heard);
         check::numbers(&source, &file, &robots, heard)?;
-        check::memory(&source, &file, robots.len(), &terrain)?;
+        let positions_m: Vec<[f64; 2]> = match &plane {
+            Some(setup) => setup.starts.iter().map(|start| [start.position_m[0], start.position_m[1]]).collect(),
+            None => robots.iter().map(|robot| terrain.center_m(robot.start)).collect(),
+        };
+        check::memory(&source, &file, &positions_m, &terrain)?;
         let keys = authentication::key(&source, &file, &robots)?;
         let (key, key_remark, keeping) =
             keys.map_or((None, None, None), |keys| (Some(keys.key), keys.remark, keys.keeping));
@@ -308,6 +314,7 @@ impl Scenario {
             keeping,
             plausibility: PlausibilityLimits::ANY,
             attacks,
+            files: source.files(),
             parameters: parameters(&source, &file),
         };
         scenario.plausibility = plausibility::said(&source, &file, &scenario.robots, scenario.usual_claims())?;

@@ -341,7 +341,7 @@ fn placed(
 }
 
 fn from_scen(source: &Source<'_>, entry: &ScenEntry, terrain: &Terrain) -> Result<Vec<Entry>, ScenarioError> {
-    let path = source.folder().join(&entry.file);
+    let path = source.file(&entry.file);
     let queries = movingai::load_scen(&path).map_err(|error| {
         source.error("robots.scen.file", error.to_string(), "file names are relative to the scenario file")
     })?;

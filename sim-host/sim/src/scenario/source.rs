@@ -3,6 +3,7 @@
 use super::de;
 use crate::file::read_remedy;
 use serde::Deserialize;
+use std::cell::RefCell;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -46,13 +47,14 @@ pub struct Source<'a> {
     path: &'a Path,
     text: &'a str,
     root: Spanned<DeTable<'a>>,
+    files: RefCell<Vec<PathBuf>>,
 }
 
 impl<'a> Source<'a> {
     /// Parses the TOML syntax; the meaning of fields is not checked.
     pub fn new(path: &'a Path, text: &'a str) -> Result<Self, ScenarioError> {
         match DeTable::parse(text) {
-            Ok(root) => Ok(Self { path, text, root }),
+            Ok(root) => Ok(Self { path, text, root, files: vec![path.to_owned()].into() }),
             Err(error) => Err(ScenarioError::Field {
                 path: path.to_owned(),
                 line: line_of(text, error.span()),
@@ -63,10 +65,24 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Folder of the file: file names in a scenario are relative to it.
+    /// Path of a file that the text names, relative to the folder of the text. Adds it to
+    /// [`files`](Self::files).
     #[must_use]
-    pub fn folder(&self) -> &Path {
-        self.path.parent().unwrap_or(Path::new(""))
+    pub fn file(&self, name: &Path) -> PathBuf {
+        let path = self.path.parent().unwrap_or(Path::new("")).join(name);
+        self.reads([path.clone()]);
+        path
+    }
+
+    /// Adds files to [`files`](Self::files).
+    pub fn reads(&self, files: impl IntoIterator<Item = PathBuf>) {
+        self.files.borrow_mut().extend(files);
+    }
+
+    /// Removes and returns the files that the settings were read from, with that of the text.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.files.take()
     }
 
     /// The whole text.

@@ -1,6 +1,7 @@
 //! Terrain errors, with place, cause and remedy.
 
-use crate::file::{self, read_remedy, write_remedy};
+use crate::file::{self, read_remedy};
+use crate::record;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -37,13 +38,8 @@ pub enum TerrainError {
         source: std::io::Error,
     },
     /// The file cannot be written.
-    #[error("cannot write {}: {source}; {}", .path.display(), write_remedy(.source))]
-    Write {
-        /// Path of the file.
-        path: PathBuf,
-        /// Cause, as reported by the system.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] record::Error),
     /// The content violates the file format.
     #[error("{}{place}: {what}; {remedy}", .path.display())]
     Format {
@@ -129,9 +125,4 @@ pub fn fits(path: &Path, width: u16, height: u16, cell_bytes: u64) -> Result<(),
 /// Reads a whole file.
 pub fn read(path: &Path) -> Result<Vec<u8>, TerrainError> {
     file::read(path, file::MAP).map_err(|source| TerrainError::Read { path: path.to_owned(), source })
-}
-
-/// Writes a file.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), TerrainError> {
-    std::fs::write(path, bytes).map_err(|source| TerrainError::Write { path: path.to_owned(), source })
 }

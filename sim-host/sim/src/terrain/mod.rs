@@ -22,10 +22,10 @@ pub use error::{MAX_SIDE, Place, TerrainError};
 pub use slope::SlopeRule;
 
 use error::format_error;
-pub use error::{parameter_error, read, write};
+pub use error::{parameter_error, read};
 use serde::{Deserialize, Serialize};
 use staya_controller::grid::{BLOCKED, Cell};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Options for the conversion of files to impassability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,6 +120,13 @@ impl Terrain {
             )),
             _ => Err(TerrainError::UnknownKind(path.to_owned())),
         }
+    }
+
+    /// The picture that a `.yaml` file names.
+    #[must_use]
+    pub fn picture(path: &Path) -> Option<PathBuf> {
+        let is_yaml = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+        if is_yaml { ros::picture(path).ok() } else { None }
     }
 
     /// The part of `width` x `height` cells whose south-west cell is column `x`, row `y`; its world

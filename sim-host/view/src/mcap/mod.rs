@@ -28,7 +28,6 @@ use mcap::records::MessageHeader;
 use mcap::{McapError, WriteOptions};
 use proto::Bytes;
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
@@ -65,17 +64,6 @@ pub struct McapWriter<W: Write + Seek> {
     channels: Vec<(u16, u32)>,
     goals: Vec<[u32; 3]>,
     modes: Vec<u8>,
-}
-
-impl McapWriter<File> {
-    /// Creates a file and replaces an existing one.
-    ///
-    /// # Errors
-    /// The file cannot be created or written.
-    pub fn create(path: &Path, scene: &Scene) -> Result<Self, RecordingError> {
-        let file = File::create(path).map_err(RecordingError::writing(path))?;
-        Self::new(file, path, scene)
-    }
 }
 
 impl<W: Write + Seek> McapWriter<W> {
@@ -128,13 +116,19 @@ impl<W: Write + Seek> McapWriter<W> {
         self.send(FIGURES, at_ns, figures.to_string().as_bytes())
     }
 
-    /// Completes the file.
+    /// Completes the file and returns the output.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn finish(&mut self) -> Result<(), RecordingError> {
+    pub fn finish(mut self) -> Result<W, RecordingError> {
         self.out.finish().map_err(failed(&self.path))?;
-        Ok(())
+        Ok(self.out.into_inner())
+    }
+
+    /// Ends the file early: writes its index, if possible. Returns the output.
+    pub fn stop(mut self) -> W {
+        let _ = self.out.finish();
+        self.out.into_inner()
     }
 
     fn begin(&mut self, at_ns: u64) -> Result<(), RecordingError> {
@@ -239,7 +233,6 @@ mod tests {
         let mut writer = McapWriter::new(&mut bytes, Path::new("a.mcap"), &scene).unwrap();
         frames.iter().for_each(|frame| writer.frame(frame).unwrap());
         writer.finish().unwrap();
-        drop(writer);
         bytes.into_inner()
     }
 

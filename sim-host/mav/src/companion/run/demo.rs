@@ -4,7 +4,7 @@ use super::machine::Machine;
 use crate::companion::config::{Config, VehicleSetup};
 use crate::companion::offboard::{ARM_DISARM, AUTOPILOT, DO_SET_MODE, Entry, NAV_TAKEOFF, SET_MESSAGE_INTERVAL};
 use crate::geo::{Origin, enu, ned};
-use crate::{Counts, Peer, Received, Tlog, TlogError};
+use crate::{Counts, Peer, Received, Tlog};
 use staya_mavlink::constants::{MAV_LANDED_STATE_IN_AIR, MAV_LANDED_STATE_ON_GROUND, MAV_LANDED_STATE_TAKEOFF};
 use staya_mavlink::dialect::{
     COMMAND_ACK_DATA, COMMAND_LONG_DATA, EKF_STATUS_REPORT_DATA, ESTIMATOR_STATUS_DATA, EXTENDED_SYS_STATE_DATA,
@@ -12,6 +12,7 @@ use staya_mavlink::dialect::{
 };
 use staya_mavlink::frame::{MAX_FRAME_LEN, RawFrame, Sender, encode_message};
 use staya_mavlink::mavlink_core::MessageData as _;
+use staya_sim::record;
 use std::collections::VecDeque;
 use std::io::{self, Write as _};
 use std::time::Duration;
@@ -269,11 +270,11 @@ impl Machine for Demo {
 
     fn tell_others(&mut self, _: &[u8]) {}
 
-    fn log(&mut self, frame: &[u8]) -> Result<(), TlogError> {
+    fn log(&mut self, frame: &[u8]) -> Result<(), record::Error> {
         self.tlog.as_mut().map_or(Ok(()), |tlog| tlog.add(frame))
     }
 
-    fn close_log(&mut self) -> Result<(), TlogError> {
+    fn close_log(&mut self) -> Result<(), record::Error> {
         self.tlog.take().map_or(Ok(()), Tlog::finish)
     }
 

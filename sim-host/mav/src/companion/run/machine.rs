@@ -2,8 +2,9 @@
 
 use crate::companion::medium::Medium;
 use crate::companion::roll::KeyWatch;
-use crate::{Counts, Lines, Peer, Received, Tlog, TlogError};
+use crate::{Counts, Lines, Peer, Received, Tlog};
 use staya_controller::auth::Key;
+use staya_sim::record;
 use std::io::{self, Write as _};
 use std::time::{Duration, Instant};
 
@@ -27,9 +28,9 @@ pub trait Machine {
     fn tell_others(&mut self, frames: &[u8]);
 
     /// After an error it is not called again.
-    fn log(&mut self, frame: &[u8]) -> Result<(), TlogError>;
+    fn log(&mut self, frame: &[u8]) -> Result<(), record::Error>;
 
-    fn close_log(&mut self) -> Result<(), TlogError>;
+    fn close_log(&mut self) -> Result<(), record::Error>;
 
     fn new_key(&mut self) -> Option<Result<Key, String>> {
         None
@@ -88,11 +89,11 @@ impl Machine for Host {
         self.medium.send(frames);
     }
 
-    fn log(&mut self, frame: &[u8]) -> Result<(), TlogError> {
+    fn log(&mut self, frame: &[u8]) -> Result<(), record::Error> {
         self.tlog.as_mut().map_or(Ok(()), |tlog| tlog.add(frame))
     }
 
-    fn close_log(&mut self) -> Result<(), TlogError> {
+    fn close_log(&mut self) -> Result<(), record::Error> {
         self.tlog.take().map_or(Ok(()), Tlog::finish)
     }
 

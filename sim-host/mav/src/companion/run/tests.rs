@@ -4,10 +4,11 @@ use super::*;
 use crate::geo::Global;
 use crate::{Counts, Peer};
 use staya_mavlink::dialect::{GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA};
+use staya_sim::record;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -186,16 +187,16 @@ impl Machine for Shared {
         let _ = self.0.borrow_mut().fails(Call::TellOthers);
     }
 
-    fn log(&mut self, _: &[u8]) -> Result<(), TlogError> {
+    fn log(&mut self, _: &[u8]) -> Result<(), record::Error> {
         let mut world = self.0.borrow_mut();
         world.logged += 1;
         if world.fails(Call::Log) {
-            return Err(TlogError { path: PathBuf::from("flight.tlog"), source: broken() });
+            return Err(record::Error::new("write", Path::new("flight.tlog"))(broken()));
         }
         Ok(())
     }
 
-    fn close_log(&mut self) -> Result<(), TlogError> {
+    fn close_log(&mut self) -> Result<(), record::Error> {
         Ok(())
     }
 

@@ -3,16 +3,20 @@
 
 use my_swarm::Law;
 use staya_sim::engine::simulate_own;
+use staya_sim::record::Files;
 use staya_sim::scenario::{Overrides, Scenario};
 use staya_record::recording::RunRecorder;
-use std::{error::Error, fs::File, ops::ControlFlow, path::Path};
+use std::{error::Error, ops::ControlFlow, path::Path};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/scenario.toml"));
     let scenario = Scenario::load(file, &Overrides::default())?;
     let to = std::env::args().nth(1);
     let mut recording = match &to {
-        Some(to) => Some(RunRecorder::new(File::create(to)?, Path::new(to), &scenario, 1)?),
+        Some(to) => {
+            let output = Files::reading(&scenario.files).create(Path::new(to))?;
+            Some(RunRecorder::new(output, Path::new(to), &scenario, 1)?)
+        }
         None => None,
     };
     let mut failed = None;
@@ -31,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err(error.into());
     }
     if let Some(recording) = recording {
-        recording.finish(&())?;
+        recording.finish(&())?.finish()?;
     }
     let (arrived, all, overlaps) = (outcome.arrived, scenario.robots.len(), outcome.collisions);
     println!("{arrived} of {all} robots arrived within {:.1} s, {overlaps} overlaps", outcome.seconds);

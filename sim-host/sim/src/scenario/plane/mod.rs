@@ -167,6 +167,7 @@ impl Scenario {
             scouting: None,
             rules: MoveRules::default(),
             radio,
+            files: Vec::new(),
             robots: setup.robots(&[], None),
             formations: Vec::new(),
             parts: Vec::new(),

@@ -15,9 +15,10 @@
 mod pgm;
 mod yaml;
 
-use super::error::{Place, TerrainError, format_error, parameter_error, read, write};
+use super::error::{Place, TerrainError, format_error, parameter_error, read};
 use super::rows::flip_rows;
 use super::{LoadOptions, Terrain};
+use crate::record::write_atomically;
 use pgm::Picture;
 use staya_controller::grid::BLOCKED;
 use std::path::{Path, PathBuf};
@@ -71,6 +72,12 @@ pub fn interpret(picture: &Picture, meta: &Meta, options: &LoadOptions) -> Resul
     Ok(terrain)
 }
 
+/// Path of the image that a YAML file names.
+pub fn picture(path: &Path) -> Result<PathBuf, TerrainError> {
+    let meta = parse_meta(&read(path)?, path)?;
+    Ok(path.parent().unwrap_or(Path::new("")).join(meta.image))
+}
+
 /// Reads a YAML file and the image that it names (relative to the YAML file).
 ///
 /// # Errors
@@ -116,8 +123,8 @@ pub fn save(terrain: &Terrain, path: &Path) -> Result<(), TerrainError> {
     flip_rows(&mut pixels, terrain.width());
     let mut picture = format!("P5\n{} {}\n255\n", terrain.width(), terrain.height()).into_bytes();
     picture.extend_from_slice(&pixels);
-    write(&image, &picture)?;
-    write(path, meta.as_bytes())
+    write_atomically(&image, &picture)?;
+    Ok(write_atomically(path, meta.as_bytes())?)
 }
 
 /// Inverse of [`impassability`]: rounding to a grey level shifts the class by less than one half.

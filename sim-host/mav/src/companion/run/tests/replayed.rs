@@ -43,11 +43,11 @@ impl Machine for Replay {
 
     fn tell_others(&mut self, _: &[u8]) {}
 
-    fn log(&mut self, _: &[u8]) -> Result<(), TlogError> {
+    fn log(&mut self, _: &[u8]) -> Result<(), record::Error> {
         Ok(())
     }
 
-    fn close_log(&mut self) -> Result<(), TlogError> {
+    fn close_log(&mut self) -> Result<(), record::Error> {
         Ok(())
     }
 
