@@ -12,7 +12,8 @@ pub struct Grid<const V: usize> {
     pub nodes: [u16; V],
 }
 
-const MOST_BYTES: usize = 64 << 20;
+/// Largest size of a model, bytes.
+pub(crate) const MOST_BYTES: usize = 64 << 20;
 
 /// Why a model cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -30,7 +31,9 @@ pub enum BuildError {
     #[error("a model of {0} bytes exceeds 64 MiB; give fewer nodes")]
     Size(usize),
     /// The function has no finite value at a node.
-    #[error("the function is not finite at {0:?}; exclude that point from the extent, or define the function there")]
+    #[error(
+        "the function is not finite in 32 bits at {0:?}; exclude that point from the extent, or define the function there"
+    )]
     NotFinite(Vec<f64>),
     /// The slope is too steep for the depth.
     #[error("the function is too steep at {at:?} for {depth} bits; give a greater depth")]
@@ -64,7 +67,7 @@ pub fn build<const V: usize>(function: &Function<V>, grid: &Grid<V>, depth: u8) 
             f64::from(header.first[axis]) + step(axis) * index as f64
         });
         let (value, gradient) = (function.value(at), function.gradient(at, half));
-        if !(value.is_finite() && gradient.iter().all(|slope| slope.is_finite())) {
+        if !((value as f32).is_finite() && gradient.iter().all(|slope| slope.is_finite())) {
             return Err(BuildError::NotFinite(at.to_vec()));
         }
         most = most.max(value.abs());
@@ -103,7 +106,8 @@ fn header<const V: usize>(grid: &Grid<V>, depth: u8) -> Result<Header, BuildErro
     let mut header = Header { variables: V as u8, depth, nodes: [1; 3], first: [0.0; 3], step: [0.0; 3], unit: 1.0 };
     for (axis, (&nodes, &[low, high])) in grid.nodes.iter().zip(&grid.extent).enumerate() {
         let (first, step) = (low as f32, ((high - low) / (f64::from(nodes) - 1.0)) as f32);
-        let is_sound = nodes >= 2 && first.is_finite() && step.is_normal() && step > 0.0;
+        let last = first + step * (f32::from(nodes) - 1.0);
+        let is_sound = nodes >= 2 && step.is_normal() && first < last && last.is_finite();
         if !is_sound {
             return Err(BuildError::Axis(axis + 1));
         }

@@ -3,6 +3,7 @@
 mod options;
 mod orca;
 
+use crate::build::MOST_BYTES;
 use crate::draw::{m_images, sheet};
 use crate::swarm::{Models, Outcome, Source, Swap};
 use crate::{
@@ -13,6 +14,7 @@ use clap::{Args, Subcommand};
 use options::{TemplateArgs, grid, numbers};
 use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
+use staya_sim::file::read_remedy;
 use staya_sim::record::prepare_dir;
 use staya_voxel::{Header, Local, Model, VoxelNeighbor};
 use std::fmt::Write as _;
@@ -171,7 +173,8 @@ fn made(template: &Templated, resolution: u16, depth: u8) -> Result<Vec<u8>> {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+    staya_sim::file::read(path, MOST_BYTES as u64)
+        .map_err(|error| anyhow!("cannot read {}: {error}; {}", path.display(), read_remedy(&error)))
 }
 
 #[derive(Debug, Serialize)]
@@ -424,5 +427,20 @@ impl SwarmArgs {
             )?;
         }
         print(&text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_larger_than_models_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("model.fvm");
+        std::fs::File::create(&file).unwrap().set_len((64 << 20) + 1).unwrap();
+        let said = read(&file).unwrap_err().to_string();
+        assert!(said.ends_with("it has 67108865 bytes of at most 67108864; choose a smaller file"), "{said}");
+        assert!(read(Path::new("/nowhere.fvm")).unwrap_err().to_string().ends_with("check the name"));
     }
 }

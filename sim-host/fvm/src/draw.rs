@@ -12,6 +12,19 @@ pub enum DrawError {
     /// The model is invalid.
     #[error("{0}")]
     Model(#[from] FileError),
+    /// An axis is too long for its numbers, or too short.
+    #[error(
+        "axis {axis} of the model goes from {low:e} to {high:e}; build it again with different ends, at most {most:e}",
+        most = f32::MAX
+    )]
+    Extent {
+        /// Number of the axis, from 1.
+        axis: usize,
+        /// Smallest coordinate.
+        low: f64,
+        /// Largest coordinate.
+        high: f64,
+    },
     /// The slice is outside the third axis.
     #[error("no slice at {at}; give {low} to {high} along the third axis")]
     Slice {
@@ -93,7 +106,7 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
     if Header::read(bytes)?.variables == 2 {
         let model = Model::<f64, 2>::from_bytes(bytes)?;
         let [nx, ny, _] = Header::read(bytes)?.nodes;
-        let [x, y] = model.extent();
+        let [x, y] = drawable(model.extent())?;
         let value = |x: f64, y: f64| model.blend([x, y]).map(|local| local.value);
         let distance = |x: f64, y: f64| model.blend([x, y])?.distance();
         let node =
@@ -103,7 +116,7 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
     }
     let model = Model::<f64, 3>::from_bytes(bytes)?;
     let [nx, ny, nz] = Header::read(bytes)?.nodes;
-    let [x, y, [low, high]] = model.extent();
+    let [x, y, [low, high]] = drawable(model.extent())?;
     let at = slice.unwrap_or(0.5 * (low + high));
     if !(low..=high).contains(&at) {
         return Err(DrawError::Slice { at, low, high });
@@ -115,6 +128,15 @@ pub fn sheet(bytes: &[u8], title: &str, slice: Option<f64>) -> Result<Canvas, Dr
     let fields: [Field<'_>; 1] = [("value", &value)];
     let title = format!("{title}, third variable {at:.3}");
     Ok(Sheet { extent: [x, y], nodes: [nx, ny], fields: &fields, names: NAMES[1], node: &node }.draw(&title))
+}
+
+/// Refuses axes without a finite length, from which the size of the picture would follow.
+fn drawable<const V: usize>(extent: [[f64; 2]; V]) -> Result<[[f64; 2]; V], DrawError> {
+    let is_drawable = |[low, high]: [f64; 2]| low < high && high <= f64::from(f32::MAX);
+    match (1..).zip(extent).find(|(_, ends)| !is_drawable(*ends)) {
+        Some((axis, [low, high])) => Err(DrawError::Extent { axis, low, high }),
+        None => Ok(extent),
+    }
 }
 
 type Field<'a> = (&'a str, &'a dyn Fn(f64, f64) -> Option<f64>);

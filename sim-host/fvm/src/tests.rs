@@ -158,7 +158,10 @@ fn errors_name_the_point_where_a_function_cannot_be_modelled() {
     assert!(refused(&circle, &Grid { nodes: [1, 5], ..grid }, 8).contains("axis 1"));
     assert!(refused(&circle, &Grid { extent: [[0.0, 1.0], [1.0, 1.0]], ..grid }, 8).contains("axis 2"));
     assert!(refused(&circle, &Grid { nodes: [60_000, 60_000], ..grid }, 8).contains("64 MiB"));
+    assert!(refused(&circle, &Grid { extent: [[-3e38, 3e38], [0.0, 1.0]], ..grid }, 8).contains("axis 1"));
+    assert!(refused(&circle, &Grid { extent: [[0.0, 1.0], [1e10, 1e10 + 1.0]], ..grid }, 8).contains("axis 2"));
     assert!(refused(&Function::new(|[x, _]: [f64; 2]| 1.0 / x), &grid, 8).contains("[0.0, -1.0]"));
+    assert!(refused(&Function::new(|[x, _]: [f64; 2]| 1e39 * x), &grid, 8).contains("not finite in 32 bits at [-1.0"));
     let step = Function::new(|[x, _]: [f64; 2]| if x > 0.1 { 1.0 } else { 1e-9 });
     let steep = Grid { extent: [[-1e5, 1e5], [-1.0, 1.0]], nodes: [5, 20_001] };
     assert!(refused(&step, &Grid { nodes: [20_001, 2], ..steep }, 4).contains("too steep"));
@@ -247,6 +250,30 @@ fn pictures_contain_the_components() {
     }
     let ball = space(&Template::Ball([0.0; 3], 1.0), [5, 4, 3], 12);
     assert!(sheet(&ball, "title", Some(7.0)).unwrap_err().to_string().contains("third axis"));
+}
+
+#[test]
+fn pictures_of_absurd_steps_are_small_or_refused() {
+    let steps = [1.2e-38_f32, 1e-10, 1.0, 1e30, 3.4e38];
+    let firsts = [0.0_f32, -1.0, 1e30, -3.4e38];
+    let mut refusals = Vec::new();
+    for number in 0..steps.len() * steps.len() * firsts.len() {
+        let (x, rest) = (steps[number % 5], number / 5);
+        let (y, first) = (steps[rest % 5], firsts[rest / 5]);
+        let (nodes, first, step) = ([2, 3, 1], [first, 0.0, 0.0], [x, y, 0.0]);
+        let header = Header { variables: 2, depth: 8, nodes, first, step, unit: 1.0 };
+        let mut bytes = header.to_bytes().to_vec();
+        bytes.resize(header.model_len(), 7);
+        let sum = staya_voxel::checksum(&bytes).to_le_bytes();
+        bytes[44..48].copy_from_slice(&sum);
+        match sheet(&bytes, "title", None) {
+            Ok(canvas) => assert!((1.0..2000.0).contains(&canvas.width) && (1.0..2000.0).contains(&canvas.height)),
+            Err(error) => refusals.push(error.to_string()),
+        }
+    }
+    let said = |text: &str| refusals.iter().any(|refusal| refusal.starts_with(text));
+    assert!(said("axis 1 of the model goes from -1e0 to -1e0; build it again with different ends"), "{refusals:?}");
+    assert!(said("axis 2 of the model goes from 0e0 to 1.797"), "{refusals:?}");
 }
 
 #[test]

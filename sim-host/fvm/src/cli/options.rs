@@ -3,6 +3,7 @@
 use crate::{Grid, Pair, Room, System, Template, Templated, VelocityForm};
 use anyhow::{Context as _, Result, anyhow};
 use clap::{Args, ValueEnum};
+use staya_sim::file::{TEXT, read_remedy, read_text};
 use std::path::{Path, PathBuf};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -131,7 +132,8 @@ pub fn room(file: Option<&Path>) -> Result<Room> {
     let Some(file) = file else {
         return Ok(Room::default());
     };
-    let text = std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    let text = read_text(file, TEXT)
+        .map_err(|error| anyhow!("cannot read {}: {error}; {}", file.display(), read_remedy(&error)))?;
     Room::read(&text).with_context(|| file.display().to_string())
 }
 

@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 const CONE: Colour = PALETTE[1];
 const DISC: Colour = PALETTE[4];
 const ALLOWED: Colour = PALETTE[2];
+/// Largest distance of the robots, in sums of their radii. Beyond it, axes of pictures near the
+/// disc would consist of rounding errors.
+const FARTHEST: f64 = 1e9;
 
 /// Two robots as in the paper's section "analytic representation".
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +65,8 @@ impl Scene {
     /// Validates the scene and computes the derived values.
     ///
     /// # Errors
-    /// A number is not finite, a radius or horizon is not above 0, or the robots overlap.
+    /// A number is not finite, a radius or horizon is not above 0, or the robots overlap or are too
+    /// far apart.
     pub fn drawing(&self) -> anyhow::Result<Drawing> {
         let vector = |[x, y]: [f64; 2]| V::new(x, y);
         let [place, other_place] = self.places_m.map(vector);
@@ -78,6 +82,12 @@ impl Scene {
         let radii_m = self.radii_m.iter().sum();
         let neighbor = MovingBall { offset_m: other_place - place, velocity_mps: other, radii_m, tie: V::ZERO };
         let apart = neighbor.offset_m.norm();
+        if apart > FARTHEST * radii_m {
+            bail!(
+                "the robots are {apart:e} m apart, more than {FARTHEST:e} times the sum of their radii; \
+                 give places nearer to each other, or greater radii"
+            );
+        }
         let obstacle = VelocityObstacle::new(neighbor.offset_m, radii_m, self.horizon_s);
         let obstacle = obstacle.with_context(|| {
             format!("the robots are {apart} m apart and overlap; give places more than {radii_m} m apart")
@@ -342,6 +352,9 @@ mod tests {
         let thin = Scene { radii_m: [0.0, 1.0], ..base };
         assert!(refusal(thin).contains("above 0"));
         assert!(refusal(Scene { horizon_s: -1.0, ..base }).contains("above 0"));
+        // Axes of such pictures would have a label for each rounding error.
+        let far = Scene { places_m: [[0.0; 2], [1e100, 0.0]], ..base };
+        assert!(refusal(far).contains("1e100 m apart, more than 1e9 times the sum of their radii; give places nearer"));
     }
 
     #[test]

@@ -23,8 +23,8 @@ impl Merged {
     /// Merges the files of shards, in any order.
     ///
     /// # Errors
-    /// A file cannot be read, a row belongs to another plan or version, or two rows of one run
-    /// differ.
+    /// A file cannot be read, a row is damaged or belongs to another plan or version, or two rows
+    /// of one run differ.
     pub fn read(plan: &dyn Design, files: &[PathBuf]) -> Result<Self, SweepError> {
         let mut rows: BTreeMap<u64, (Row, &Path, usize)> = BTreeMap::new();
         let mut doubles = 0;
@@ -66,8 +66,11 @@ impl Merged {
     /// # Errors
     /// As for [`Merged::read`], and if a run is missing, out of order or duplicated.
     pub fn reread(plan: &dyn Design, file: &Path) -> Result<Self, SweepError> {
-        let Rows { rows, .. } = read_rows(plan, file)?;
         let again = "merge the shards again: `staya sweep merge`";
+        let Rows { rows, .. } = read_rows(plan, file).map_err(|error| match error {
+            SweepError::Other { place, what, .. } => SweepError::new(place, what, again),
+            other => other,
+        })?;
         for ((line, row), expected) in rows.iter().zip(0..) {
             if row.run != expected {
                 let place = format!("{}:{line}", file.display());

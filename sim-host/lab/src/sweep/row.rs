@@ -1,8 +1,12 @@
-//! Record of a run: a line of CSV, identical on every machine.
+//! Record of a run: a line of CSV, identical on every machine. The last cell is the CRC-32 of the
+//! cells before it, so that a damaged row is not merged.
 
 use crate::sweep::design::Design;
 use crate::sweep::value::Figure;
 use staya_console::VERSION;
+
+/// Name of the column of checksums.
+const CHECKSUM: &str = "crc32";
 
 /// A completed run.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,8 +47,14 @@ pub fn header(plan: &dyn Design) -> String {
     names.extend(plan.parameters());
     names.extend(["seed", "outcome"].map(own));
     names.extend(plan.figures());
-    names.extend(["trace_hash", "plan", "version"].map(own));
+    names.extend(["trace_hash", "plan", "version", CHECKSUM].map(own));
     names.join(",")
+}
+
+/// Whether `line` is the header of rows without checksums.
+#[must_use]
+pub fn is_older_header(plan: &dyn Design, line: &str) -> bool {
+    header(plan) == format!("{line},{CHECKSUM}")
 }
 
 impl Row {
@@ -55,22 +65,19 @@ impl Row {
         cells.push(self.outcome.name().to_owned());
         cells.extend(self.figures.iter().map(ToString::to_string));
         cells.extend([self.trace_hash.clone(), plan.fingerprint(), VERSION.to_owned()]);
-        cells.join(",")
+        checked(&cells.join(","))
     }
 
     /// Parses a line.
     ///
     /// # Errors
-    /// The line is not a row, or belongs to another plan or version. Returns cause and remedy.
+    /// The line is damaged, or belongs to another plan or version. Returns cause and remedy.
     pub fn read(plan: &dyn Design, line: &str) -> Result<Self, (String, String)> {
-        let cells: Vec<&str> = line.split(',').collect();
+        let cells = line.rsplit_once(',').map(|(cells, _)| cells).filter(|cells| checked(cells) == line);
+        let cells: Vec<&str> = cells.ok_or_else(|| damaged("its checksum is wrong"))?.split(',').collect();
         let [start @ .., hash, fingerprint, version] = &cells[..] else {
             return Err(damaged("it is not a row"));
         };
-        let is_fingerprint = fingerprint.len() == 16 && fingerprint.chars().all(|c| c.is_ascii_hexdigit());
-        if !is_fingerprint || version.is_empty() {
-            return Err(damaged("it is not a row"));
-        }
         if *fingerprint != plan.fingerprint() {
             let what = format!("it is of another plan ({fingerprint}, this one is {})", plan.fingerprint());
             return Err((what, elsewhere()));
@@ -96,6 +103,11 @@ impl Row {
         let figures = figures.ok_or_else(|| damaged("a figure is not a number"))?;
         Ok(Self { run, outcome, figures, trace_hash: (*hash).to_owned() })
     }
+}
+
+/// Appends the checksum of the cells as the last cell.
+pub(super) fn checked(cells: &str) -> String {
+    format!("{cells},{:08x}", crc32fast::hash(cells.as_bytes()))
 }
 
 fn beginning(plan: &dyn Design, run: u64) -> Vec<String> {

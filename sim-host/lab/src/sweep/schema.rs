@@ -16,6 +16,7 @@ pub fn schema(design: &dyn Design) -> String {
         ("trace_hash", "fingerprint of all bytes and movements of the run; empty: there are none"),
         ("plan", "fingerprint of the plan: rows of one plan go together"),
         ("version", "version of the program, and its git commit where that is known"),
+        ("crc32", "CRC-32 (ISO-HDLC) of the line before the last comma, 8 hex digits"),
     ] {
         columns.push(column(name, "string", "", meaning));
     }

@@ -6,7 +6,7 @@
 use crate::sweep::SweepError;
 use crate::sweep::design::Design;
 use crate::sweep::jobs;
-use crate::sweep::row::{Outcome, Row, header};
+use crate::sweep::row::{Outcome, Row, header, is_older_header};
 use crate::sweep::run::Finished;
 use staya_sim::file::{MAP, read};
 use staya_sim::record::{Error, make_dir};
@@ -100,7 +100,8 @@ pub struct Rows {
 /// Reads a file of rows without an incomplete last line.
 ///
 /// # Errors
-/// The file cannot be read, or a line belongs to another plan or version. Names file and line.
+/// The file cannot be read, or a line is damaged or belongs to another plan or version. Names file
+/// and line.
 pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
     let unreadable = |error: std::io::Error| {
         let remedy = staya_sim::file::read_remedy(&error);
@@ -115,14 +116,19 @@ pub fn read_rows(plan: &dyn Design, path: &Path) -> Result<Rows, SweepError> {
         let wrong = |(what, remedy): (String, String)| {
             SweepError::new(format_args!("{}:{number}", path.display()), what, remedy)
         };
-        let line = std::str::from_utf8(line)
-            .map_err(|_| wrong(("it is not text".to_owned(), "the file is of another kind, or damaged".to_owned())))?;
+        // A byte that is not UTF-8 is replaced, which the checksum reveals.
+        let line = String::from_utf8_lossy(line);
         let line = line.trim_end_matches('\n');
         if number > 1 {
             rows.rows.push((number, Row::read(plan, line).map_err(wrong)?));
+        } else if is_older_header(plan, line) {
+            let what = "its rows have no checksums, so an older program wrote them".to_owned();
+            return Err(wrong((what, "choose another folder with --out, or begin again with --restart".to_owned())));
         } else if line != expected {
             let what = "its columns are not those of this plan".to_owned();
-            return Err(wrong((what, "choose another folder with --out, or begin again with --restart".to_owned())));
+            let remedy = "choose another folder with --out, or begin again with --restart; if only this line is \
+                damaged, remove the file, and `--resume` does its runs again";
+            return Err(wrong((what, remedy.to_owned())));
         }
     }
     Ok(rows)

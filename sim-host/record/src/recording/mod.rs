@@ -20,8 +20,9 @@ pub const VERSION: u32 = 1;
 /// Magic number and version.
 const FILE_HEAD: u64 = 12;
 const BLOCK_HEAD: usize = 13;
-/// Largest uncompressed size of a block, bytes.
-pub const MOST_RAW: u32 = 1 << 30;
+/// Largest uncompressed size of a block, bytes: a frame of a million robots has at most 42 MB, a
+/// map of 10,000 by 10,000 cells has 133 MB.
+pub const MOST_RAW: u32 = 1 << 28;
 /// DEFLATE's largest compression ratio (1032), with a margin for its header.
 const MOST_PACKED_BY: u64 = 1040;
 

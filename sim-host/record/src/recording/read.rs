@@ -3,7 +3,7 @@ use super::{
 };
 use crate::frame::{self, FrameData};
 use crate::scene::Scene;
-use miniz_oxide::inflate::decompress_to_vec_with_limit;
+use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_with_limit};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use staya_sim::file::open;
@@ -218,9 +218,14 @@ impl<R: Read + Seek> Reader<R> {
 
     fn raw(&mut self, block: &Block) -> Result<Vec<u8>, RecordingError> {
         let packed = self.packed(block)?;
-        let raw = decompress_to_vec_with_limit(&packed, block.raw as usize).ok();
-        raw.filter(|raw| raw.len() == block.raw as usize)
-            .ok_or_else(|| RecordingError::damage(&self.path, block.at, "this block is damaged (decompression failed)"))
+        let what = match decompress_to_vec_with_limit(&packed, block.raw as usize) {
+            Ok(raw) if raw.len() == block.raw as usize => return Ok(raw),
+            Err(error) if error.status == TINFLStatus::HasMoreOutput => {
+                format!("this block unpacks to more than {} bytes", block.raw)
+            }
+            _ => "this block is damaged (decompression failed)".to_owned(),
+        };
+        Err(RecordingError::damage(&self.path, block.at, what))
     }
 
     fn unpack(&mut self, at: usize) -> Result<&Unpacked, RecordingError> {
@@ -280,7 +285,11 @@ fn index(
         source.seek(SeekFrom::Start(at)).map_err(&io)?;
         source.read_exact(&mut head).map_err(&io)?;
         let (kind, raw, packed) = (head[0], word(&head, 1), word(&head, 5));
-        let is_possible = raw <= MOST_RAW && u64::from(raw) <= u64::from(packed) * MOST_PACKED_BY;
+        if raw > MOST_RAW {
+            let what = format!("this block has {raw} uncompressed bytes of at most {MOST_RAW}");
+            return Err(RecordingError::damage(path, at, what));
+        }
+        let is_possible = u64::from(raw) <= u64::from(packed) * MOST_PACKED_BY;
         if !(SCENE..=END).contains(&kind) || !is_possible {
             let what = format!("invalid block header (kind {kind}, {raw} bytes in {packed})");
             return Err(RecordingError::damage(path, at, what));

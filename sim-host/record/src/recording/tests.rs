@@ -6,7 +6,8 @@ use proptest::prelude::*;
 use serde_json::json;
 use staya_sim::engine::{Operated, operated, simulate};
 use staya_sim::scenario::{Intervention, Overrides, Scenario};
-use std::io::Cursor;
+use std::cell::Cell;
+use std::io::{Cursor, Read, Seek, SeekFrom};
 use std::ops::ControlFlow;
 
 fn scene() -> Scene {
@@ -161,12 +162,67 @@ fn errors_name_the_file_and_byte_of_the_damage() {
     assert!(spoilt(8).contains("byte 8: unsupported version 65"), "{}", spoilt(8));
     let damaged = spoilt(scene_end + 20);
     assert!(damaged.starts_with(&format!("a.rec: byte {scene_end}: this block is damaged")), "{damaged}");
-    assert!(spoilt(scene_end + 4).contains("invalid block header"), "{}", spoilt(scene_end + 4));
+    assert!(spoilt(scene_end + 3).contains("invalid block header"), "{}", spoilt(scene_end + 3));
+    assert!(spoilt(scene_end + 4).contains("bytes of at most 268435456"), "{}", spoilt(scene_end + 4));
     assert!(all(b"").is_err() && all(&good[..12]).is_err());
     // An incomplete file is read up to its end.
     let mut torn = read(&good[..good.len() - 1]).unwrap();
     assert_eq!((torn.ticks(), torn.summary().unwrap()), (Some((0, 3)), None));
     assert!(torn.torn_at().is_some());
+}
+
+/// A recording of one block with this head and these packed bytes.
+fn block(kind: u8, raw: u32, packed: &[u8]) -> Vec<u8> {
+    let mut bytes: Vec<u8> = MAGIC.into_iter().chain(VERSION.to_le_bytes()).chain([kind]).collect();
+    for word in [raw, packed.len() as u32, crc32fast::hash(packed)] {
+        bytes.extend(word.to_le_bytes());
+    }
+    bytes.extend(packed);
+    bytes
+}
+
+#[test]
+fn too_large_blocks_are_refused_by_their_heads() {
+    /// Counts the bytes read.
+    #[derive(Debug)]
+    struct Counted<'a>(Cursor<&'a [u8]>, &'a Cell<usize>);
+    impl Read for Counted<'_> {
+        fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+            let count = self.0.read(to)?;
+            self.1.set(self.1.get() + count);
+            Ok(count)
+        }
+    }
+    impl Seek for Counted<'_> {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+    // A million bytes can unpack to 1 GiB.
+    let packed = vec![0; 1 << 20];
+    for kind in [SCENE, FRAMES, ORDERS, END] {
+        for raw in [MOST_RAW + 1, 1 << 30, u32::MAX] {
+            let (bytes, read) = (block(kind, raw, &packed), Cell::new(0));
+            let error = Reader::new(Counted(Cursor::new(&bytes), &read), Path::new("a.rec")).unwrap_err().to_string();
+            let expected = format!(
+                "a.rec: byte 12: this block has {raw} uncompressed bytes of at most 268435456; make the recording again"
+            );
+            assert_eq!(error, expected);
+            assert_eq!(read.get(), 12 + 13, "the packed bytes were read");
+        }
+    }
+}
+
+#[test]
+fn blocks_are_unpacked_up_to_the_size_in_their_heads() {
+    let packed = miniz_oxide::deflate::compress_to_vec(&vec![b' '; 1 << 24], 9);
+    for raw in [0, 1, 1000, (1 << 24) - 1] {
+        let error = read(&block(SCENE, raw, &packed)).unwrap().scene_text().unwrap_err().to_string();
+        assert!(error.contains(&format!("byte 12: this block unpacks to more than {raw} bytes")), "{error}");
+    }
+    assert_eq!(read(&block(SCENE, 1 << 24, &packed)).unwrap().scene_text().unwrap().len(), 1 << 24);
+    let error = read(&block(SCENE, (1 << 24) + 1, &packed)).unwrap().scene_text().unwrap_err().to_string();
+    assert!(error.contains("this block is damaged (decompression failed)"), "{error}");
 }
 
 #[test]

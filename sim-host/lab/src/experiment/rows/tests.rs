@@ -73,6 +73,13 @@ fn resumed_and_sharded_runs_give_the_rows_of_a_single_run() {
     assert!(refused.contains("--resume does the others, --restart forgets these"), "{refused}");
     command(&out("cut"), &resume).expect("done");
     same("cut");
+    let rows = text(&out("cut"), "shards/1-of-1.csv");
+    fs::write(out("cut/shards/1-of-1.csv"), rows.replacen(",done,", ",done,1", 1)).expect("room");
+    let refused = command(&out("cut"), &resume).expect_err("a damaged row").to_string();
+    assert!(
+        refused.contains("1-of-1.csv:2: its checksum is wrong; the file is damaged: remove this line"),
+        "{refused}"
+    );
     command(&out("cut"), &RowRetention::default()).expect("done");
     same("cut");
     let other = swap::Plan { noise_m: 0.01, ..plan() };

@@ -206,16 +206,12 @@ fn line_of(source: &Source<'_>, span: &Range<usize>) -> usize {
 }
 
 fn range(value: &toml::Value) -> Result<RangeTable, String> {
-    let range: RangeTable = value.clone().try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
-    if !(range.from.is_finite() && range.to.is_finite()) {
-        return Err(format!("{} to {} is not a range", range.from, range.to));
-    }
-    Ok(range)
+    value.clone().try_into().map_err(|error: toml::de::Error| error.message().to_owned())
 }
 
 fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
     let RangeTable { from, to, log, .. } = *range;
-    check_log(range)?;
+    check_ends(range)?;
     let values: Vec<f64> = match (range.count, range.step) {
         (Some(count), None) => {
             if !(2..=MOST).contains(&count) {
@@ -225,7 +221,8 @@ fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
         }
         (None, Some(step)) => {
             let steps = libm::floor((to - from) / step + 1e-9);
-            if log || !(0.0..f64::from(MOST)).contains(&steps) {
+            if log || !step.is_finite() || !(0.0..f64::from(MOST)).contains(&steps) {
+                let [step, from, to] = [step, from, to].map(Value::of);
                 let what = format!("steps of {step} do not lead from {from} to {to}");
                 return Err((what, "give a step towards `to`, at most a million times; for equal ratios give `count`"));
             }
@@ -238,10 +235,16 @@ fn spread(range: &RangeTable) -> Result<Vec<Value>, (String, &'static str)> {
     Ok(values)
 }
 
-fn check_log(range: &RangeTable) -> Result<(), (String, &'static str)> {
-    if range.log && !(range.from > 0.0 && range.to > 0.0) {
-        let what = format!("{} to {} has no equal ratios", range.from, range.to);
-        return Err((what, "give ends above 0, or leave out log"));
+fn check_ends(range: &RangeTable) -> Result<(), (String, &'static str)> {
+    let RangeTable { from, to, log, .. } = *range;
+    let wrong = |what: &str, remedy| Err((format!("{} to {} {what}", Value::of(from), Value::of(to)), remedy));
+    if log && !(from > 0.0 && to > 0.0) {
+        return wrong("has no equal ratios", "give ends above 0, or leave out log");
+    }
+    // Infinite for ends that are infinite or too far apart.
+    let width = if log { to / from } else { to - from };
+    if !width.is_finite() || (log && width == 0.0) {
+        return wrong("is not a range", "give finite ends, nearer to each other");
     }
     Ok(())
 }
@@ -282,7 +285,11 @@ fn sampled(
         if range.count.is_some() || range.step.is_some() {
             return Err(wrong("how many values there are is the sample's".to_owned(), "give { from, to }"));
         }
-        check_log(&range).map_err(|(what, remedy)| wrong(what, remedy))?;
+        check_ends(&range).map_err(|(what, remedy)| wrong(what, remedy))?;
+        if range.from > range.to {
+            let what = format!("{} to {} is a reversed range", Value::of(range.from), Value::of(range.to));
+            return Err(wrong(what, "give the smaller number first"));
+        }
         (shares.iter().map(|&share| rounded(&range, between(&range, share))).collect(), range.log)
     } else {
         let of = axis(source, Entry { field: field.clone(), span: span.clone(), value })?.values;

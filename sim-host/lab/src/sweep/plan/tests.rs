@@ -185,6 +185,28 @@ fn errors_name_the_plan_the_line_and_the_field() {
     ] {
         assert!(said.starts_with(expected), "{said}\n{expected}");
     }
+    let ranges = |range: &str| {
+        let text = format!("[[sample]]\nkind = 'random'\ncount = 3\n[sample.axes]\nradio.range_m = {range}\n");
+        (error(&text), axes(&format!("radio.range_m = {}", range.replace(" }", ", count = 3 }"))))
+    };
+    for (range, expected) in [
+        ("{ from = -1e308, to = 1e308 }", "-1e308 to 1e308 is not a range; give finite ends, nearer to each other"),
+        ("{ from = 1, to = inf }", "1 to inf is not a range; give finite ends"),
+        ("{ from = nan, to = 1 }", "NaN to 1 is not a range; give finite ends"),
+        ("{ from = 1e-300, to = 1e300, log = true }", "1e-300 to 1e300 is not a range; give finite ends"),
+        ("{ from = 1e300, to = 1e-300, log = true }", "1e300 to 1e-300 is not a range; give finite ends"),
+        ("{ from = 0, to = 1, log = true }", "0 to 1 has no equal ratios; give ends above 0"),
+        ("{ from = -2, to = -1, log = true }", "-2 to -1 has no equal ratios; give ends above 0"),
+    ] {
+        let (sample, axis) = ranges(range);
+        assert!(sample.starts_with(&format!("plan.toml:7: radio.range_m: {expected}")), "{sample}");
+        assert!(axis.starts_with(&format!("plan.toml:4: radio.range_m: {expected}")), "{axis}");
+    }
+    let reversed = error("[[sample]]\nkind = 'random'\ncount = 3\n[sample.axes]\nradio.range_m = { from = 9, to = 2 }");
+    let expected = "plan.toml:7: radio.range_m: 9 to 2 is a reversed range; give the smaller number first";
+    assert!(reversed.starts_with(expected), "{reversed}");
+    let step = axes("radio.range_m = { from = 1, to = 2, step = inf }");
+    assert!(step.starts_with("plan.toml:4: radio.range_m: steps of inf do not lead from 1 to 2"), "{step}");
     let huge =
         axes("radio.loss = { from = 0, to = 1, count = 2000 }\nradio.delay_ms = { from = 0, to = 1, count = 2000 }");
     assert!(huge.starts_with("plan.toml:3: axes: more than a million runs"), "{huge}");

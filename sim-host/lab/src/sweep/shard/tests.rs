@@ -2,7 +2,9 @@ use super::*;
 use crate::sweep::aggregate;
 use crate::sweep::merge::Merged;
 use crate::sweep::plan::Plan;
+use crate::sweep::row::checked;
 use crate::sweep::run::perform;
+use proptest::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 use tempfile::TempDir;
 
@@ -170,7 +172,8 @@ fn inconsistent_rows_are_refused() {
     let said = Merged::reread(&plan, &file).expect_err("twice").to_string();
     assert!(said.contains("rows.csv:3: run 0 has two rows, or is out of order; merge the shards again"), "{said}");
     // A different row comes from another version of the program.
-    let other = second.replacen(",done,", ",done,7", 1);
+    let renewed = |line: &str| checked(line.rsplit_once(',').map_or("", |(cells, _)| cells));
+    let other = renewed(&second.replacen(",done,", ",done,7", 1));
     fs::write(&one, format!("{rows}{other}\n")).expect("room");
     let said = read(&[one.clone(), two.clone()]).expect_err("they differ").to_string();
     assert!(
@@ -178,20 +181,88 @@ fn inconsistent_rows_are_refused() {
         "{said}"
     );
     for (cells, what) in [
-        ("1,2,3", "it is not a row"),
-        ("", "it is not a row"),
+        ("1,2,", "it is not a row"),
         (&second.replacen(&format!("{number},"), "77,", 1), "the plan has no such run"),
         (&second.replacen(",done,", ",lost,", 1), "its outcome is unknown"),
         (&second.replacen(",done,", ",done,x", 1), "a figure is not a number"),
         (&second.replacen(",done,", ",done,1,", 1), "it has not as many figures as the plan"),
         (&second.replace(staya_console::VERSION, "9.9.9"), "it is of version 9.9.9"),
     ] {
-        fs::write(&one, format!("{rows}{cells}\n")).expect("room");
+        fs::write(&one, format!("{rows}{}\n", renewed(cells))).expect("room");
         let said = read(std::slice::from_ref(&one)).expect_err(what).to_string();
         assert!(said.contains(&format!("1-of-2.csv:11: {what}")), "{said}");
     }
     fs::write(&one, rows.replacen("run,", "runs,", 1)).expect("room");
     assert!(read(&[one]).expect_err("a header").to_string().contains("1-of-2.csv:1: its columns are not those"));
+}
+
+#[test]
+fn a_damaged_byte_is_refused_or_harmless() {
+    let (folder, plan) = folder();
+    let out = folder.path().join("out");
+    perform_all(&plan, &out, &["1/1"], Existing::Refuse);
+    let (file, whole) = (out.join("shards/1-of-1.csv"), merged(&plan, &out));
+    let bytes = fs::read(&file).expect("rows");
+    proptest!(|(at in 0..bytes.len(), by in 1..=255_u8)| {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= by;
+        fs::write(&file, &damaged).expect("room");
+        let read = Merged::read(&plan, std::slice::from_ref(&file));
+        if at == bytes.len() - 1 {
+            // The last line is incomplete, as after a kill.
+            prop_assert_eq!(read.expect("rows").missing.len(), 1);
+            perform_all(&plan, &out, &["1/1"], Existing::Resume);
+            prop_assert_eq!(merged(&plan, &out), whole.clone());
+        } else {
+            let line = 1 + bytes[..at].iter().filter(|&&byte| byte == b'\n').count();
+            let resumed = done(&plan, Shard::default(), &out, Existing::Resume, &|| true);
+            for refusal in [read.map(drop), resumed.map(drop)] {
+                let said = refusal.expect_err("a damaged byte").to_string();
+                prop_assert!(said.starts_with(&format!("{}:{line}: ", file.display())), "{}", said);
+                prop_assert!(said.contains("--resume"), "{}", said);
+            }
+            prop_assert_eq!(fs::read(&file).expect("rows"), damaged);
+        }
+    });
+}
+
+#[test]
+fn damaged_row_is_made_again_after_its_line_was_removed() {
+    let (folder, plan) = folder();
+    let out = folder.path().join("out");
+    perform_all(&plan, &out, &["1/1"], Existing::Refuse);
+    let (file, whole) = (out.join("shards/1-of-1.csv"), merged(&plan, &out));
+    let rows = fs::read_to_string(&file).expect("rows");
+    let row = rows.lines().nth(4).expect("a row");
+    let damaged = row.replacen(",done,", ",done,6553", 1);
+    fs::write(&file, rows.replacen(row, &damaged, 1)).expect("room");
+    let said = Merged::read(&plan, &files(&out).expect("a folder")).expect_err("a damaged row").to_string();
+    let expected = "1-of-1.csv:5: its checksum is wrong; the file is damaged: remove this line, and `--resume` does \
+        the run again";
+    assert!(said.ends_with(expected), "{said}");
+    fs::write(&file, rows.replacen(&format!("{row}\n"), "", 1)).expect("room");
+    assert_eq!(perform_all(&plan, &out, &["1/1"], Existing::Resume).done, 1);
+    assert_eq!(merged(&plan, &out), whole);
+    // A merged file is written again instead.
+    let merged = out.join("rows.csv");
+    fs::write(&merged, rows.replacen(row, &damaged, 1)).expect("room");
+    let said = Merged::reread(&plan, &merged).expect_err("a damaged row").to_string();
+    assert!(said.ends_with("rows.csv:5: its checksum is wrong; merge the shards again: `staya sweep merge`"), "{said}");
+}
+
+#[test]
+fn rows_without_checksums_are_refused() {
+    let (folder, plan) = folder();
+    let out = folder.path().join("out");
+    perform_all(&plan, &out, &["1/1"], Existing::Refuse);
+    let file = out.join("shards/1-of-1.csv");
+    let rows = fs::read_to_string(&file).expect("rows");
+    let older: Vec<&str> = rows.lines().map(|line| line.rsplit_once(',').map_or(line, |(cells, _)| cells)).collect();
+    fs::write(&file, older.join("\n") + "\n").expect("room");
+    let said = done(&plan, Shard::default(), &out, Existing::Resume, &|| true).expect_err("no checksums").to_string();
+    let expected = "1-of-1.csv:1: its rows have no checksums, so an older program wrote them; choose another folder \
+        with --out, or begin again with --restart";
+    assert!(said.ends_with(expected), "{said}");
 }
 
 #[test]
