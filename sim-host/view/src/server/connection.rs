@@ -235,13 +235,15 @@ fn read_words(socket: &mut WebSocket<TcpStream>, hear: &mut dyn FnMut(String) ->
 
 /// The answer to a request other than for a WebSocket, and whether it is a rejection.
 fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
-    let file = match request {
-        Request::File(name) => files.iter().find(|file| file.name == name),
+    let name = match request {
+        Request::Page => Some(""),
+        Request::File(name) => Some(name.as_str()),
         _ => None,
     };
+    let file = files.iter().find(|file| Some(file.name) == name);
     let (status, kind, text) = match (request, file) {
         (_, Some(file)) => ("200 OK", file.kind, file.text.as_str()),
-        (Request::File(_), None) => ("404 Not Found", "text/plain", "File not found.\n"),
+        (Request::Page | Request::File(_), None) => ("404 Not Found", "text/plain", "File not found.\n"),
         (Request::Live(_), _) => {
             ("503 Service Unavailable", "text/plain", "Too many pages are connected. Close one and reload.\n")
         }
