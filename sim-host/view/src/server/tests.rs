@@ -138,3 +138,5 @@ fn waiting_respects_the_timeout_after_the_thread_ended() {
     assert!(began.elapsed() >= Duration::from_millis(50), "a busy loop");
     assert_eq!(server.next(Duration::ZERO), None);
 }
+
+mod flood;
