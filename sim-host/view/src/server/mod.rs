@@ -31,6 +31,8 @@ const PAGES: usize = 32;
 const ACCEPTED: usize = 64;
 /// Limit of a page's messages that the run has not read, bytes.
 const UNHEARD: usize = 256 << 10;
+/// Events of pages that a run handles before it continues; the server disconnects faster pages.
+pub(crate) const WORDS: usize = 64;
 /// Counted for each message in addition to its text.
 const OVERHEAD: usize = 64;
 /// Timeout of a request, and of its answer.
