@@ -1,6 +1,7 @@
 use crate::channel::OpenError;
 use crate::device::DeviceError;
 use crate::mismatch::Mismatch;
+use crate::printable::printable;
 use staya_controller::robot::RobotId;
 use staya_link::fit::WindowTooLarge;
 use staya_link::message::{Hello, StepResult};
@@ -41,14 +42,30 @@ pub enum Cause {
     Name(#[from] DeviceError),
     #[error("cannot start the thread that reads: {0}")]
     Thread(std::io::Error),
-    #[error(transparent)]
+    #[error("{}", printable(.0))]
     Device(PortError),
+    #[error(
+        "{error}; {bytes} bytes arrived, and no message: check the baud rate and the cable, and that the board runs \
+         Staya's firmware"
+    )]
+    Junk { error: PortError, bytes: u64 },
+    #[error(
+        "{error}; other messages arrived ({messages}): the device restarts again and again, or does not receive; check its \
+         power supply and the line to it"
+    )]
+    Unheard { error: PortError, messages: u32 },
+    #[error(
+        "the device restarts again and again: {restarts} times after it was greeted; check its power supply, and its log \
+         for a panic"
+    )]
+    Restarts { restarts: u32 },
     #[error("{0}")]
     Gone(String),
-    #[error("the firmware is for `{said}`, not for `{expected}`")]
+    #[error("the firmware is for `{}`, not for `{expected}`", printable(.said))]
     OtherPart { expected: &'static str, said: String },
     #[error(
-        "it runs `{said}`, this program steps `{expected}`: build firmware and program from the same source, and flash the firmware again"
+        "it runs `{}`, this program steps `{expected}`: build firmware and program from the same source, and flash the firmware again",
+        printable(.said)
     )]
     OtherProgram { expected: String, said: String },
     #[error(

@@ -4,6 +4,7 @@
 
 use crate::note::{Note, NoteError};
 use crate::part::Part;
+use crate::printable::printable;
 use std::fs::File;
 use std::io::{self, Read};
 use std::os::fd::OwnedFd;
@@ -130,7 +131,8 @@ impl Emulator {
         for _ in 0..50 {
             if let Ok(Some(status)) = self.child.try_wait() {
                 let complaints = self.complaints.lock().unwrap_or_else(PoisonError::into_inner);
-                return Some(format!("the emulator ended ({status}) {}", complaints.trim()));
+                let lines: Vec<String> = complaints.trim().lines().map(printable).collect();
+                return Some(format!("the emulator ended ({status}) {}", lines.join("\n")));
             }
             std::thread::sleep(std::time::Duration::from_millis(10));
         }

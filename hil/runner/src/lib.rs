@@ -42,6 +42,8 @@ mod line;
 mod mismatch;
 mod note;
 mod part;
+mod printable;
+mod start;
 mod statistics;
 mod unit;
 

@@ -1,4 +1,5 @@
 use crate::part::Part;
+use crate::printable::printable;
 use staya_link::frame::VERSION;
 use std::path::{Path, PathBuf};
 
@@ -31,7 +32,7 @@ pub enum NoteError {
         .path.display()
     )]
     NoSession { path: PathBuf },
-    #[error("{} is for `{said}`, not for `{expected}`", .path.display())]
+    #[error("{} is for `{}`, not for `{expected}`", .path.display(), printable(.said))]
     OtherPart { path: PathBuf, said: String, expected: &'static str },
     #[error(
         "{} speaks version {said} of the link, this program version {VERSION}: build firmware and program from the same source",
@@ -39,8 +40,9 @@ pub enum NoteError {
     )]
     OtherVersion { path: PathBuf, said: u8 },
     #[error(
-        "{} is `{said}`, and this program steps `{expected}`: build or install both from the same source",
-        .path.display()
+        "{} is `{}`, and this program steps `{expected}`: build or install both from the same source",
+        .path.display(),
+        printable(.said)
     )]
     OtherProgram { path: PathBuf, said: String, expected: String },
 }

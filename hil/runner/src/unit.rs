@@ -3,13 +3,15 @@ use crate::channel::Channel;
 use crate::config::{DeviceConfig, Options, Shadows};
 use crate::line::{Line, micros};
 use crate::mismatch::Mismatch;
+use crate::printable::printable;
+use crate::start::Start;
 use crate::statistics::{Collector, Load, Spread, Statistics};
 use staya_controller::agent::{AnyInputs, Setup, Task};
 use staya_controller::time::Instant;
 use staya_link::capacities::Capacities;
 use staya_link::frame::TooLong;
 use staya_link::message::{Hello, MAX_ANSWER, StepResult, Stepped};
-use staya_link::port::{Event, Limits, Next, Port};
+use staya_link::port::{Asked, Counts, Event, Limits, Next, Port, PortError};
 use staya_link::robot::Controller;
 use staya_link::surroundings::OBSTACLE_BYTES;
 use staya_mavlink::any::AnyWire;
@@ -48,6 +50,10 @@ pub struct Unit {
     there: Line,
     back: Line,
     phase: Phase,
+    /// The present start, or the last one.
+    start: Start,
+    /// Traffic before the outstanding request.
+    before: Counts,
     /// Steps for which the robot stays down after a reset.
     down: u32,
     answer: Option<Answer>,
@@ -72,6 +78,8 @@ impl Unit {
             there: Line::new(faults, 0, robot),
             back: Line::new(faults, 1, robot),
             phase: Phase::Ready,
+            start: Start::new(now_us),
+            before: Counts::default(),
             down: 0,
             answer: None,
             gone: None,
@@ -96,13 +104,18 @@ impl Unit {
         self.channel.emulator.as_ref().map(|emulator| emulator.id())
     }
 
+    /// Sets the timeouts of the request that was just made.
     fn set_limits(&mut self, bytes: usize, limit: Duration) {
+        self.before = self.port.counts();
         let bytes = u32::try_from(bytes + MAX_ANSWER).unwrap_or(u32::MAX);
         let line = self.channel.per_byte.saturating_mul(bytes);
         self.port.set_limits(limits(self.resend_after + line, limit));
     }
 
     fn greet(&mut self, now_us: u64) {
+        if !matches!(self.phase, Phase::Greeting | Phase::Configuring) {
+            self.start = Start::new(now_us);
+        }
         self.port.greet(now_us);
         self.set_limits(0, self.start_limit);
         self.phase = Phase::Greeting;
@@ -207,13 +220,22 @@ impl Unit {
 
     /// Returns when to call again; `None` without an outstanding request.
     fn pump(&mut self, now_us: u64) -> Option<u64> {
+        let is_greeting = self.port.asked() == Some(Asked::Hello);
         let due = loop {
+            if is_greeting && now_us < self.start.next_us() {
+                break Some(self.start.next_us());
+            }
             match self.port.poll(now_us) {
-                Ok(Next::Send(frame)) => self.there.push(frame, now_us),
+                Ok(Next::Send(frame)) => {
+                    self.there.push(frame, now_us);
+                    if is_greeting {
+                        self.start.greeted(now_us, micros(self.resend_after));
+                    }
+                }
                 Ok(Next::WaitUntil(due_us)) => break Some(due_us),
                 Ok(Next::Idle) => break None,
                 Err(error) => {
-                    self.fail(Cause::Device(error));
+                    self.fail(self.silence(error));
                     break None;
                 }
             }
@@ -226,7 +248,23 @@ impl Unit {
         due
     }
 
+    /// Says more about a device that does not answer.
+    fn silence(&self, error: PortError) -> Cause {
+        let (before, now) = (self.before, self.port.counts());
+        let bytes = now.received_bytes.wrapping_sub(before.received_bytes);
+        let stale = now.stale.wrapping_sub(before.stale);
+        let is_greeting = matches!(error, PortError::Silent { asked: Asked::Hello, .. });
+        match stale {
+            0 if bytes > 0 => Cause::Junk { error, bytes },
+            1.. if is_greeting => Cause::Unheard { error, messages: stale },
+            _ => Cause::Device(error),
+        }
+    }
+
     fn take(&mut self, event: Event, at_us: u64) {
+        if matches!(self.phase, Phase::Failed) {
+            return;
+        }
         match event {
             Event::Hello(hello) => {
                 if let Err(cause) = self.meet(hello, at_us) {
@@ -259,7 +297,13 @@ impl Unit {
                         self.down = self.down.max(1);
                     }
                     // Already counted: a scheduled reset, or one whose recovery was interrupted.
-                    Phase::Restarting | Phase::Greeting | Phase::Configuring | Phase::Failed => {}
+                    Phase::Restarting | Phase::Failed => {}
+                    Phase::Greeting | Phase::Configuring => {
+                        self.start.restarts = self.start.restarts.saturating_add(1);
+                        if at_us.saturating_sub(self.start.since_us) > micros(self.start_limit) {
+                            return self.fail(Cause::Restarts { restarts: self.start.restarts });
+                        }
+                    }
                 }
                 self.config.setup.agent.boot = self.config.setup.agent.boot.wrapping_add(1);
                 self.greet(at_us);
@@ -357,7 +401,7 @@ impl Unit {
     pub fn statistics(&self) -> Statistics {
         let tally = &self.tally;
         let counts = self.port.counts();
-        let text = |of: fn(&Hello) -> &str| self.hello.as_ref().map_or("", of).to_owned();
+        let text = |of: fn(&Hello) -> &str| printable(self.hello.as_ref().map_or("", of));
         let ticks_per_second = self.hello.as_ref().map_or(0, |hello| hello.ticks_per_second);
         let is_emulated = self.channel.part.is_some();
         Statistics {

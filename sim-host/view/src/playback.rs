@@ -3,7 +3,7 @@
 use crate::frame::FrameData;
 use crate::pace::Pace;
 use crate::recording::{Reader, RecordingError};
-use crate::server::{Client, FromPage, Server};
+use crate::server::{Client, FromPage, Server, WORDS};
 use serde::Deserialize;
 use serde_json::json;
 use std::collections::BTreeSet;
@@ -101,10 +101,11 @@ impl Playback {
     pub fn run(mut self, server: &Server, stop: &dyn Fn() -> bool) -> Result<(), RecordingError> {
         while !stop() {
             let patience = self.pace.until_due(Instant::now()).unwrap_or(STATE).min(STATE / 10);
-            let mut word = server.next(patience.max(Duration::from_millis(1)));
-            while let Some(what) = word {
-                self.hear(what, server);
-                word = server.next(Duration::ZERO);
+            let mut patience = patience.max(Duration::from_millis(1));
+            for _ in 0..WORDS {
+                let Some(word) = server.next(patience) else { break };
+                self.hear(word, server);
+                patience = Duration::ZERO;
             }
             let start = Instant::now();
             while self.pace.until_due(start) == Some(Duration::ZERO) {

@@ -5,7 +5,7 @@
 use crate::frame::{FrameData, Framer, NO_WAIT, NONE};
 use crate::page;
 use crate::scene::{Mode, Scene};
-use crate::server::{Client, FromPage, Server};
+use crate::server::{Client, FromPage, Server, WORDS};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Deserialize, Serialize};
@@ -18,8 +18,6 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 const FRAME: Duration = Duration::from_millis(16);
-/// Messages per poll; the server disconnects faster pages.
-const WORDS: usize = 64;
 const LONGEST: usize = 256;
 
 /// Other requests are ignored.

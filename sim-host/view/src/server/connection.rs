@@ -1,3 +1,4 @@
+use super::metered::{Metered, TURN};
 use super::request::{LONGEST, Refused, Request, Rules};
 use crate::page::File;
 use mio::Registry;
@@ -6,15 +7,22 @@ use std::collections::VecDeque;
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::time::Instant;
 use tungstenite::handshake::derive_accept_key;
-use tungstenite::protocol::frame::coding::CloseCode;
+use tungstenite::protocol::frame::Frame;
+use tungstenite::protocol::frame::coding::{CloseCode, Data, OpCode};
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, Utf8Bytes, WebSocket};
 
 const LONGEST_MESSAGE: usize = 64 << 10;
-/// Limit of queued texts, beyond which a page is disconnected.
+/// Limits of queued texts, beyond which a page is disconnected. The bytes do not include the
+/// longest text, since a scene of a million robots has hundreds of megabytes.
 const UNREAD: usize = 512;
-/// A scene and a frame of a million robots.
-const MOST_BYTES: usize = 256 << 20;
+const UNREAD_BYTES: usize = 8 << 20;
+/// Longer messages are sent in pieces of this size, since a page's write buffer holds a copy.
+const PIECE: usize = 64 << 10;
+/// Bytes sent to a page in one turn.
+const MOST_SENT: usize = 1 << 20;
+/// A piece, and answers to pings.
+const WRITE_BUFFER: usize = 2 * PIECE;
 
 /// Frames in transit to a page that confirms them.
 const AHEAD: u64 = 3;
@@ -27,6 +35,8 @@ pub(super) enum Outcome {
     /// The answer is being sent.
     Refused,
     Ended,
+    /// It has sent more than it may.
+    Exceeded,
 }
 
 enum State {
@@ -35,10 +45,17 @@ enum State {
     Live(Box<Live>),
 }
 
+#[derive(Default)]
 struct Live {
     texts: VecDeque<Utf8Bytes>,
+    unread_bytes: usize,
     frame: Option<Bytes>,
+    /// The rest of a message that is being sent, and how its next piece begins.
+    rest: Option<(Data, Bytes)>,
+    /// The write buffer is not empty.
     is_behind: bool,
+    /// The bound of a turn is reached.
+    has_more: bool,
     sent: u64,
     /// `None` if it confirms none.
     seen: Option<u64>,
@@ -51,13 +68,76 @@ pub(super) struct Connection {
 }
 
 enum Stream {
-    Plain(TcpStream),
-    Socket(Box<WebSocket<TcpStream>>),
+    Plain(Metered),
+    Socket(Box<WebSocket<Metered>>),
+}
+
+impl Stream {
+    fn metered(&self) -> &Metered {
+        match self {
+            Self::Plain(stream) => stream,
+            Self::Socket(socket) => socket.get_ref(),
+        }
+    }
+
+    fn metered_mut(&mut self) -> &mut Metered {
+        match self {
+            Self::Plain(stream) => stream,
+            Self::Socket(socket) => socket.get_mut(),
+        }
+    }
+}
+
+impl Live {
+    fn is_late(&self, stream: Option<&Stream>, now: Instant) -> bool {
+        let is_stalled = self.is_behind && stream.is_some_and(|stream| stream.metered().is_stalled(now));
+        let longest = || self.texts.iter().map(|text| text.len()).max().unwrap_or_default();
+        let has_too_many_bytes = self.unread_bytes > UNREAD_BYTES && self.unread_bytes - longest() > UNREAD_BYTES;
+        is_stalled || self.texts.len() > UNREAD || has_too_many_bytes
+    }
+
+    /// The next piece of the present message, or the first one of the next message.
+    fn next_piece(&mut self) -> Option<Frame> {
+        let (kind, mut left) = self.rest.take().or_else(|| self.next_message())?;
+        let piece = left.split_to(left.len().min(PIECE));
+        let is_last = left.is_empty();
+        self.rest = (!is_last).then_some((Data::Continue, left));
+        Some(Frame::message(piece, OpCode::Data(kind), is_last))
+    }
+
+    fn next_message(&mut self) -> Option<(Data, Bytes)> {
+        if let Some(text) = self.texts.pop_front() {
+            self.unread_bytes -= text.len();
+            return Some((Data::Text, text.into()));
+        }
+        let is_ready = self.seen.is_none_or(|seen| self.sent < seen + AHEAD);
+        let frame = self.frame.take_if(|_| is_ready)?;
+        self.sent += 1;
+        Some((Data::Binary, frame))
+    }
 }
 
 impl Connection {
     pub fn new(stream: TcpStream, until: Instant) -> Self {
-        Self { stream: Some(Stream::Plain(stream)), state: State::Asking { heard: Vec::new(), until } }
+        let stream = Some(Stream::Plain(Metered::new(stream)));
+        Self { stream, state: State::Asking { heard: Vec::new(), until } }
+    }
+
+    pub fn input_arrived(&mut self) {
+        if let Some(stream) = &mut self.stream {
+            stream.metered_mut().input_arrived();
+        }
+    }
+
+    /// Whether there may be input to read. During an answer there is none.
+    pub fn has_input(&self) -> bool {
+        let is_answering = matches!(self.state, State::Answering { .. });
+        !is_answering && self.stream.as_ref().is_some_and(|stream| stream.metered().has_input())
+    }
+
+    /// Whether it has work that no event reports.
+    pub fn has_more(&self) -> bool {
+        self.has_input() || matches!(&self.state, State::Live(live) if live.has_more)
     }
 
     pub const fn is_live(&self) -> bool {
@@ -67,25 +147,26 @@ impl Connection {
     pub fn is_late(&self, now: Instant) -> bool {
         match &self.state {
             State::Asking { until, .. } | State::Answering { until, .. } => now > *until,
-            State::Live(live) => live.texts.len() > UNREAD,
+            State::Live(live) => live.is_late(self.stream.as_ref(), now),
         }
     }
 
     /// With `is_over` a page gets the message that the server ends.
     pub fn end(self, registry: &Registry, is_over: bool) {
         match self.stream {
-            Some(Stream::Plain(mut stream)) => drop(registry.deregister(&mut stream)),
+            Some(Stream::Plain(mut stream)) => drop(registry.deregister(stream.stream())),
             Some(Stream::Socket(mut socket)) => {
                 let farewell = CloseFrame { code: CloseCode::Away, reason: "over".into() };
                 let _ = socket.close(is_over.then_some(farewell));
                 let _ = socket.flush();
-                drop(registry.deregister(socket.get_mut()));
+                drop(registry.deregister(socket.get_mut().stream()));
             }
             None => {}
         }
     }
 
-    /// `has_room`: another page is allowed. `hear` returns whether it had room for a message.
+    /// Reads at most [`TURN`] bytes. `has_room`: another page is allowed. `hear` returns whether it
+    /// had room for a message.
     pub fn read(
         &mut self,
         rules: &Rules,
@@ -93,6 +174,9 @@ impl Connection {
         has_room: bool,
         hear: &mut dyn FnMut(String) -> bool,
     ) -> Outcome {
+        if let Some(stream) = &mut self.stream {
+            stream.metered_mut().begin_turn();
+        }
         match (&mut self.stream, &mut self.state) {
             (Some(Stream::Socket(socket)), State::Live(_)) => read_words(socket, hear),
             (Some(Stream::Plain(stream)), State::Asking { heard, until }) => {
@@ -140,16 +224,18 @@ impl Connection {
         let config = WebSocketConfig::default()
             .max_message_size(Some(LONGEST_MESSAGE))
             .max_frame_size(Some(LONGEST_MESSAGE))
-            .max_write_buffer_size(MOST_BYTES);
+            .read_buffer_size(TURN)
+            .write_buffer_size(0)
+            .max_write_buffer_size(WRITE_BUFFER);
         let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
         self.stream = Some(Stream::Socket(Box::new(socket)));
-        self.state =
-            State::Live(Box::new(Live { texts: VecDeque::new(), frame: None, is_behind: false, sent: 0, seen: None }));
+        self.state = State::Live(Box::default());
         Outcome::Opened
     }
 
     pub fn say(&mut self, text: Utf8Bytes) {
         if let State::Live(live) = &mut self.state {
+            live.unread_bytes += text.len();
             live.texts.push_back(text);
         }
     }
@@ -167,6 +253,7 @@ impl Connection {
         }
     }
 
+    /// Sends a little more than [`MOST_SENT`] at most.
     pub fn write(&mut self) -> Outcome {
         match (&mut self.stream, &mut self.state) {
             (Some(Stream::Plain(stream)), State::Answering { left, at, .. }) => {
@@ -180,33 +267,38 @@ impl Connection {
                     }
                 }
                 // Unread input would make the system reset the connection and cut off the answer.
-                let _ = stream.shutdown(std::net::Shutdown::Write);
+                let _ = stream.stream().shutdown(std::net::Shutdown::Write);
                 let mut rest = [0; 2048];
+                stream.begin_turn();
                 while stream.read(&mut rest).is_ok_and(|count| count > 0) {}
                 Outcome::Ended
             }
-            (Some(Stream::Socket(socket)), State::Live(live)) => loop {
-                if live.is_behind {
-                    match socket.flush() {
-                        Ok(()) => live.is_behind = false,
-                        Err(error) if would_block(&error) => return Outcome::Goes,
+            (Some(Stream::Socket(socket)), State::Live(live)) => {
+                live.has_more = false;
+                let mut sent = 0;
+                while sent < MOST_SENT {
+                    if live.is_behind {
+                        match socket.flush() {
+                            Ok(()) => live.is_behind = false,
+                            Err(error) if would_block(&error) => return Outcome::Goes,
+                            Err(_) => return Outcome::Ended,
+                        }
+                    }
+                    let Some(piece) = live.next_piece() else {
+                        return Outcome::Goes;
+                    };
+                    live.is_behind = true;
+                    sent += piece.len();
+                    socket.get_mut().begin_message();
+                    match socket.write(Message::Frame(piece)) {
+                        Ok(()) => {}
+                        Err(error) if would_block(&error) => {}
                         Err(_) => return Outcome::Ended,
                     }
                 }
-                let next = live.texts.pop_front().map(Message::Text);
-                let is_ready = live.seen.is_none_or(|seen| live.sent < seen + AHEAD);
-                let frame = || live.frame.take_if(|_| is_ready).map(Message::Binary);
-                let Some(message) = next.or_else(frame) else {
-                    return Outcome::Goes;
-                };
-                live.sent += u64::from(message.is_binary());
-                live.is_behind = true;
-                match socket.write(message) {
-                    Ok(()) => {}
-                    Err(error) if would_block(&error) => {}
-                    Err(_) => return Outcome::Ended,
-                }
-            },
+                live.has_more = true;
+                Outcome::Goes
+            }
             _ => Outcome::Goes,
         }
     }
@@ -216,12 +308,20 @@ fn would_block(error: &Error) -> bool {
     matches!(error, Error::Io(error) if error.kind() == ErrorKind::WouldBlock)
 }
 
-fn read_words(socket: &mut WebSocket<TcpStream>, hear: &mut dyn FnMut(String) -> bool) -> Outcome {
+fn read_words(socket: &mut WebSocket<Metered>, hear: &mut dyn FnMut(String) -> bool) -> Outcome {
     loop {
-        match socket.read() {
+        let read = socket.read();
+        let stream = socket.get_mut();
+        if read.is_ok() {
+            stream.count_message();
+        }
+        if stream.is_exceeded() {
+            return Outcome::Exceeded;
+        }
+        match read {
             Ok(Message::Text(text)) => {
                 if !hear(text.as_str().to_owned()) {
-                    return Outcome::Ended;
+                    return Outcome::Exceeded;
                 }
             }
             // Pages send no binary messages. The library answers pings.
@@ -235,13 +335,15 @@ fn read_words(socket: &mut WebSocket<TcpStream>, hear: &mut dyn FnMut(String) ->
 
 /// The answer to a request other than for a WebSocket, and whether it is a rejection.
 fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
-    let file = match request {
-        Request::File(name) => files.iter().find(|file| file.name == name),
+    let name = match request {
+        Request::Page => Some(""),
+        Request::File(name) => Some(name.as_str()),
         _ => None,
     };
+    let file = files.iter().find(|file| Some(file.name) == name);
     let (status, kind, text) = match (request, file) {
         (_, Some(file)) => ("200 OK", file.kind, file.text.as_str()),
-        (Request::File(_), None) => ("404 Not Found", "text/plain", "File not found.\n"),
+        (Request::Page | Request::File(_), None) => ("404 Not Found", "text/plain", "File not found.\n"),
         (Request::Live(_), _) => {
             ("503 Service Unavailable", "text/plain", "Too many pages are connected. Close one and reload.\n")
         }
@@ -267,4 +369,34 @@ fn answer(request: &Request, files: &[File]) -> (Vec<u8>, bool) {
     .into_bytes();
     answer.extend(text.into_bytes());
     (answer, file.is_none())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::server::metered::STALLED;
+    use std::time::Duration;
+
+    #[test]
+    fn a_page_is_late_once_it_took_nothing_for_half_a_minute() {
+        let listener = std::net::TcpListener::bind("127.0.0.1:0").expect("a port is free");
+        let _other = std::net::TcpStream::connect(listener.local_addr().expect("an address")).expect("it listens");
+        let (stream, _) = listener.accept().expect("it connects");
+        stream.set_nonblocking(true).expect("a socket");
+        let mut page = Connection::new(TcpStream::from_std(stream), Instant::now());
+        assert_eq!(page.upgrade("key"), Outcome::Opened);
+        let later = || Instant::now() + STALLED + Duration::from_secs(1);
+        assert_eq!((page.write(), page.is_late(later())), (Outcome::Goes, false), "nothing waits");
+        page.show(vec![0; 64 << 20].into());
+        let mut turns = 0;
+        loop {
+            assert_eq!(page.write(), Outcome::Goes);
+            turns += 1;
+            if !page.has_more() {
+                break;
+            }
+        }
+        assert!((2..64).contains(&turns), "{turns}");
+        assert!(!page.is_late(Instant::now()) && page.is_late(later()));
+    }
 }

@@ -2,23 +2,24 @@
 //! wait.
 //!
 //! The run sends texts ([`Server::say`]) and frames ([`Server::show`]) and polls the requests of
-//! pages ([`Server::next`]). A slow page gets fewer frames; a page that does not read is
-//! disconnected. The connections and the memory of each are limited; a new connection replaces the
-//! oldest one without a complete request.
+//! pages ([`Server::next`]). A slow page gets fewer frames; a page that does not read, or exceeds
+//! the limits in PROTOCOL.md, is disconnected. The connections are limited, and so are the memory
+//! of each and its work per turn; a new connection replaces the oldest one without a complete
+//! request.
 
 mod connection;
+mod metered;
 mod request;
 
 use crate::page::File;
 use connection::{Connection, Outcome};
-use mio::event::Event;
 use mio::net::TcpListener;
 use mio::{Events, Interest, Poll, Token, Waker};
 use request::Rules;
 use std::collections::BTreeMap;
 use std::io;
 use std::net::SocketAddr;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -26,9 +27,18 @@ use tungstenite::{Bytes, Utf8Bytes};
 
 const CONNECTIONS: usize = 256;
 const PAGES: usize = 32;
-const UNHEARD: usize = 1024;
+/// Connections accepted in one turn.
+const ACCEPTED: usize = 64;
+/// Limit of a page's messages that the run has not read, bytes.
+const UNHEARD: usize = 256 << 10;
+/// Events of pages that a run handles before it continues; the server disconnects faster pages.
+pub(crate) const WORDS: usize = 64;
+/// Counted for each message in addition to its text.
+const OVERHEAD: usize = 64;
 /// Timeout of a request, and of its answer.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// Time that the thread has to tell the pages that the server ends.
+const FAREWELL: Duration = Duration::from_secs(1);
 
 const LISTENER: Token = Token(0);
 const WAKER: Token = Token(1);
@@ -85,12 +95,17 @@ pub enum ServeError {
     Ended,
 }
 
-/// A server of live pages, which ends on drop.
+/// Bytes of the messages that the run has not read, for each page. A page is in it until the run
+/// has read that it disconnected, which bounds the number of events.
+type Unheard = BTreeMap<Client, usize>;
+
+/// A server of live pages, which ends on drop within a second.
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
     token: String,
     heard: Receiver<FromPage>,
+    unheard: Arc<Mutex<Unheard>>,
     outgoing: Sender<ToPages>,
     latest: Arc<Mutex<Option<Bytes>>>,
     counts: Arc<Mutex<Counts>>,
@@ -111,7 +126,8 @@ impl Server {
         let registry = poll.registry();
         registry.register(&mut listener, LISTENER, Interest::READABLE).map_err(ServeError::System)?;
         let waker = Arc::new(Waker::new(registry, WAKER).map_err(ServeError::System)?);
-        let (heard_in, heard) = sync_channel(UNHEARD);
+        let (heard_in, heard) = channel();
+        let unheard = Arc::default();
         let (outgoing, out) = channel();
         let latest = Arc::new(Mutex::new(None));
         let counts = Arc::new(Mutex::new(Counts::default()));
@@ -123,14 +139,16 @@ impl Server {
             files,
             connections: BTreeMap::new(),
             next: WAKER.0 + 1,
+            is_accepting: false,
             heard: heard_in,
+            unheard: Arc::clone(&unheard),
             out,
             latest: Arc::clone(&latest),
             counts: Arc::clone(&counts),
         };
         let thread = std::thread::Builder::new().name("pages".to_owned()).spawn(move || pages.run());
         let thread = Some(thread.map_err(ServeError::System)?);
-        Ok(Self { address, token, heard, outgoing, latest, counts, waker, thread })
+        Ok(Self { address, token, heard, unheard, outgoing, latest, counts, waker, thread })
     }
 
     /// The address that the server listens on.
@@ -154,17 +172,25 @@ impl Server {
     /// The next event of a page; waits for at most `patience`, even if the server thread has ended.
     #[must_use]
     pub fn next(&self, patience: Duration) -> Option<FromPage> {
-        if patience.is_zero() {
-            return self.heard.try_recv().ok();
-        }
-        match self.heard.recv_timeout(patience) {
-            Ok(what) => Some(what),
-            Err(RecvTimeoutError::Timeout) => None,
+        let what = match self.heard.recv_timeout(patience) {
+            Ok(what) => what,
+            Err(RecvTimeoutError::Timeout) => return None,
             Err(RecvTimeoutError::Disconnected) => {
                 std::thread::sleep(patience);
-                None
+                return None;
             }
+        };
+        let mut unheard = lock(&self.unheard);
+        match &what {
+            FromPage::Opened(_) => {}
+            FromPage::Said(client, text) => {
+                if let Some(bytes) = unheard.get_mut(client) {
+                    *bytes = bytes.saturating_sub(text.len() + OVERHEAD);
+                }
+            }
+            FromPage::Closed(client) => drop(unheard.remove(client)),
         }
+        Some(what)
     }
 
     /// Whether the server thread runs. It never restarts.
@@ -211,8 +237,13 @@ impl Server {
 impl Drop for Server {
     fn drop(&mut self) {
         self.send(ToPages::End);
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
+        let until = Instant::now() + FAREWELL;
+        // The thread drops its end of the channel when it ends. It is not joined: a command must
+        // end even if the thread does not.
+        while self.heard.recv_timeout(until.saturating_duration_since(Instant::now())).is_ok() {
+            if Instant::now() > until {
+                return;
+            }
         }
     }
 }
@@ -236,7 +267,10 @@ struct Pages {
     /// Keys are tokens, which rise: the oldest connection is first.
     connections: BTreeMap<usize, Connection>,
     next: usize,
-    heard: SyncSender<FromPage>,
+    /// Connections may wait. The system reports each once.
+    is_accepting: bool,
+    heard: Sender<FromPage>,
+    unheard: Arc<Mutex<Unheard>>,
     out: Receiver<ToPages>,
     latest: Arc<Mutex<Option<Bytes>>>,
     counts: Arc<Mutex<Counts>>,
@@ -246,22 +280,30 @@ impl Pages {
     fn run(mut self) {
         let mut events = Events::with_capacity(CONNECTIONS);
         loop {
-            let _ = self.poll.poll(&mut events, Some(Duration::from_secs(1)));
+            let has_more = self.is_accepting || self.connections.values().any(Connection::has_more);
+            let patience = if has_more { Duration::ZERO } else { Duration::from_secs(1) };
+            let _ = self.poll.poll(&mut events, Some(patience));
             for event in &events {
                 match event.token() {
-                    LISTENER => self.accept(),
+                    LISTENER => self.is_accepting = true,
                     WAKER => {}
-                    Token(number) => self.serve(number, event),
+                    Token(number) => {
+                        if let Some(connection) = self.connections.get_mut(&number).filter(|_| event.is_readable()) {
+                            connection.input_arrived();
+                        }
+                    }
                 }
             }
+            self.accept();
+            let with_input: Vec<usize> = self.of(Connection::has_input).collect();
+            with_input.into_iter().for_each(|number| self.read(number));
             if self.pass_on() {
                 let registry = self.poll.registry();
                 return self.connections.into_values().for_each(|connection| connection.end(registry, true));
             }
             let now = Instant::now();
             let late: Vec<usize> = self.of(|connection| connection.is_late(now)).collect();
-            lock(&self.counts).left += late.len() as u64;
-            late.into_iter().for_each(|number| self.close(number));
+            late.into_iter().for_each(|number| self.expel(number));
         }
     }
 
@@ -270,13 +312,17 @@ impl Pages {
     }
 
     fn accept(&mut self) {
-        while let Ok((mut stream, _)) = self.listener.accept() {
+        for _ in 0..ACCEPTED {
+            let accepted = if self.is_accepting { self.listener.accept().ok() } else { None };
+            let Some((mut stream, _)) = accepted else {
+                self.is_accepting = false;
+                return;
+            };
             lock(&self.counts).connections += 1;
             if self.connections.len() >= CONNECTIONS {
                 let oldest = self.of(|connection| !connection.is_live()).next();
                 let Some(oldest) = oldest else { continue };
-                lock(&self.counts).left += 1;
-                self.close(oldest);
+                self.expel(oldest);
             }
             let number = self.next;
             self.next += 1;
@@ -288,25 +334,29 @@ impl Pages {
         }
     }
 
-    fn serve(&mut self, number: usize, event: &Event) {
-        let has_room = self.of(Connection::is_live).count() < PAGES;
+    fn read(&mut self, number: usize) {
         let Some(connection) = self.connections.get_mut(&number) else {
             return;
         };
-        let mut is_done = false;
-        if event.is_readable() {
-            let heard = &self.heard;
-            // A page that sends faster than the run reads is disconnected.
-            let mut hear = |text: String| heard.try_send(FromPage::Said(Client(number), text)).is_ok();
-            match connection.read(&self.rules, &self.files, has_room, &mut hear) {
-                Outcome::Goes => {}
-                Outcome::Refused => lock(&self.counts).refused += 1,
-                Outcome::Opened => is_done = self.heard.try_send(FromPage::Opened(Client(number))).is_err(),
-                Outcome::Ended => is_done = true,
+        let (client, heard, unheard) = (Client(number), &self.heard, &self.unheard);
+        let has_room = lock(unheard).len() < PAGES;
+        let mut hear = |text: String| {
+            let mut unheard = lock(unheard);
+            let bytes = unheard.entry(client).or_default();
+            let cost = text.len() + OVERHEAD;
+            let is_heard = *bytes + cost <= UNHEARD && heard.send(FromPage::Said(client, text)).is_ok();
+            *bytes += if is_heard { cost } else { 0 };
+            is_heard
+        };
+        match connection.read(&self.rules, &self.files, has_room, &mut hear) {
+            Outcome::Goes => {}
+            Outcome::Refused => lock(&self.counts).refused += 1,
+            Outcome::Opened => {
+                lock(unheard).insert(client, 0);
+                let _ = heard.send(FromPage::Opened(client));
             }
-        }
-        if is_done || connection.write() == Outcome::Ended {
-            self.close(number);
+            Outcome::Ended => self.close(number),
+            Outcome::Exceeded => self.expel(number),
         }
     }
 
@@ -343,12 +393,17 @@ impl Pages {
         false
     }
 
+    fn expel(&mut self, number: usize) {
+        lock(&self.counts).left += 1;
+        self.close(number);
+    }
+
     fn close(&mut self, number: usize) {
         if let Some(connection) = self.connections.remove(&number) {
             let was_live = connection.is_live();
             connection.end(self.poll.registry(), false);
             if was_live {
-                let _ = self.heard.try_send(FromPage::Closed(Client(number)));
+                let _ = self.heard.send(FromPage::Closed(Client(number)));
             }
         }
     }

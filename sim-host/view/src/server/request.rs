@@ -12,7 +12,8 @@ const HEADERS: usize = 64;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Request {
     Partial,
-    /// Empty for the page itself.
+    Page,
+    /// Never empty.
     File(String),
     /// With the key of its handshake.
     Live(String),
@@ -93,11 +94,20 @@ impl Rules {
                     None => Request::Refused(Refused::Malformed),
                 }
             }
-            "/" if !has_token => Request::Refused(Refused::Forbidden),
+            "/" if has_token => Request::Page,
             // The other files contain no secrets, and module imports cannot pass the token.
-            path => Request::File(path.trim_start_matches('/').to_owned()),
+            path => match path.strip_prefix('/').filter(|name| is_name(name)) {
+                Some(name) => Request::File(name.to_owned()),
+                None => Request::Refused(Refused::Forbidden),
+            },
         }
     }
+}
+
+/// Whether a path names a file. Other spellings of the page's own path do not.
+fn is_name(name: &str) -> bool {
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'.' | b'-' | b'_');
+    !name.is_empty() && !name.starts_with('.') && name.bytes().all(is_plain)
 }
 
 #[cfg(test)]
@@ -118,7 +128,7 @@ mod tests {
 
     #[test]
     fn the_printed_address_gets_the_page_and_its_socket() {
-        let page = Request::File(String::new());
+        let page = Request::Page;
         for host in ["127.0.0.1:8123", "localhost:8123", "LOCALHOST:8123"] {
             assert_eq!(ask("/?token=0123abcd", host, ""), page);
         }
@@ -148,10 +158,28 @@ mod tests {
     }
 
     #[test]
+    fn other_spellings_of_the_page_do_not_replace_its_token() {
+        let spellings =
+            ["//", "///", "/./", "/.", "/..", "/../", "/%2f", "/%2F", "/%", "/\\", "/;", "/#", "/a/", "/a//"];
+        let absolute = ["http://127.0.0.1:8123/", "http://127.0.0.1:8123", "https://x/", "*", "127.0.0.1:8123", "?"];
+        let tokens = ["", "?token=wrong", "?token=0123abcd", "?token=0123abcd&token=wrong"];
+        for target in spellings.into_iter().chain(absolute) {
+            for token in tokens {
+                let target = format!("{target}{token}");
+                assert_eq!(ask(&target, "127.0.0.1:8123", ""), FORBIDDEN, "{target}");
+            }
+        }
+        for target in ["/", "/?", "/??token=0123abcd", "/?token=wrong", "/?a&token", "/?TOKEN=0123abcd"] {
+            assert_eq!(ask(target, "127.0.0.1:8123", ""), FORBIDDEN, "{target}");
+        }
+        assert_eq!(ask("/?a=b&token=0123abcd", "127.0.0.1:8123", ""), Request::Page);
+    }
+
+    #[test]
     fn beyond_loopback_the_host_must_be_a_number() {
         let rules = rules("0.0.0.0");
         let ask = |host: &str| rules.read(format!("GET /?token=0123abcd HTTP/1.1\r\nHost: {host}\r\n\r\n").as_bytes());
-        assert_eq!(ask("192.168.1.7:8123"), Request::File(String::new()));
+        assert_eq!(ask("192.168.1.7:8123"), Request::Page);
         assert_eq!(ask("evil.example:8123"), FORBIDDEN);
     }
 

@@ -41,7 +41,9 @@ fn files_are_whole_and_each_answer_has_its_own_nonce() {
     );
     assert_ne!(nonce(&one), nonce(&other));
     assert!(get(&server, "/app.js").ends_with(&"x".repeat(300_000)));
-    assert!(get(&server, "/").starts_with("HTTP/1.1 403 "));
+    for target in ["/", "//", "/./", "/%2f", &format!("/{page}")] {
+        assert!(get(&server, target).starts_with("HTTP/1.1 403 "), "{target}");
+    }
     assert!(get(&server, "/secret.js").starts_with("HTTP/1.1 404 "));
 }
 
@@ -136,3 +138,5 @@ fn waiting_respects_the_timeout_after_the_thread_ended() {
     assert!(began.elapsed() >= Duration::from_millis(50), "a busy loop");
     assert_eq!(server.next(Duration::ZERO), None);
 }
+
+mod flood;

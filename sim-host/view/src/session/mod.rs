@@ -12,7 +12,7 @@ pub use text::Configuration;
 
 use crate::frame::{FrameData, Framer};
 use crate::pace::{Pace, SLICE};
-use crate::server::{Client, FromPage, Server};
+use crate::server::{Client, FromPage, Server, WORDS};
 use memory::Memory;
 use message::Wanted;
 use staya_sim::engine::{Operated, operated};
@@ -28,6 +28,8 @@ const STATE: Duration = Duration::from_millis(500);
 const SCENE: Duration = Duration::from_millis(250);
 const EVENTS: usize = 20;
 const ROWS: usize = 2000;
+/// Limit of deferred requests; the page that sends another one is disconnected.
+const DEFERRED: usize = 256;
 
 /// Why a session cannot start.
 #[derive(Debug, thiserror::Error)]
@@ -137,11 +139,14 @@ impl Session {
         while !stop() {
             let now = Instant::now();
             let rest = if self.catches_up_to.is_some() { Some(Duration::ZERO) } else { self.pace.until_due(now) };
-            let patience = rest.unwrap_or(STATE).min(STATE / 10);
-            let mut word = server.next(patience);
-            while let Some(what) = word {
-                self.hear(what, server);
-                word = server.next(Duration::ZERO);
+            let mut patience = rest.unwrap_or(STATE).min(STATE / 10);
+            for _ in 0..WORDS {
+                let Some(word) = server.next(patience) else { break };
+                self.hear(word, server);
+                patience = Duration::ZERO;
+                if stop() {
+                    return;
+                }
             }
             self.work(server);
             self.show(server);
@@ -297,7 +302,11 @@ impl Session {
             }
             FromPage::Said(client, text) => match Wanted::read(&text) {
                 Ok(asked) if self.catches_up_to.is_some() && asked.needs_the_run() => {
-                    self.deferred.push_back((client, asked));
+                    if self.deferred.len() < DEFERRED {
+                        self.deferred.push_back((client, asked));
+                    } else {
+                        server.dismiss(client);
+                    }
                 }
                 Ok(asked) => self.answer(client, asked, server),
                 Err(error) if error.is_json => server.say(Some(client), message::error(&error.text)),

@@ -265,3 +265,23 @@ fn a_run_without_goals_continues_until_a_robot_gets_one() {
     assert_eq!(state["paused"], true);
     assert!(state["tick"].as_u64() < Some(100_000), "{state}");
 }
+
+#[test]
+fn a_page_with_too_many_deferred_requests_is_disconnected() {
+    let session = Session::new(IN_PLANE.to_owned(), Path::new("t.toml"), &Overrides::default(), true);
+    let mut session = session.expect("a good scenario");
+    let server = Server::start(SocketAddr::from(([127, 0, 0, 1], 0)), Vec::new()).expect("a port is free");
+    let url = server.url().replace("http:", "ws:").replace("/?", "/live?");
+    let _page = tungstenite::connect(url).expect("it lets its pages in");
+    let Some(FromPage::Opened(client)) = server.next(Duration::from_secs(10)) else {
+        panic!("no page has connected");
+    };
+    session.catches_up_to = Some(1000);
+    for _ in 0..DEFERRED {
+        session.hear(FromPage::Said(client, "{\"do\": \"save\"}".to_owned()), &server);
+    }
+    assert_eq!(server.next(Duration::from_millis(50)), None);
+    session.hear(FromPage::Said(client, "{\"do\": \"save\"}".to_owned()), &server);
+    assert_eq!(server.next(Duration::from_secs(10)), Some(FromPage::Closed(client)));
+    assert_eq!(session.deferred.len(), DEFERRED);
+}
