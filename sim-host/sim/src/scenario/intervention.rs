@@ -1,6 +1,7 @@
 //! Interventions: changes to a running simulation, made by hand in the viewer or listed as
 //! `[[intervention]]` in a scenario.
 
+use super::de::table;
 use super::ranges::{micros, short};
 use super::source::{ScenarioError, Source};
 use super::{Robot, ScenarioFile};
@@ -55,6 +56,7 @@ pub enum Intervention {
     /// Adds an obstacle to the plane.
     Solid {
         /// Shape of the obstacle.
+        #[serde(deserialize_with = "table")]
         solid: Shape,
     },
     /// Moves an obstacle instantly.
@@ -85,7 +87,7 @@ pub struct InterventionTable {
     /// Time after the start, seconds.
     pub at_s: f64,
     /// The intervention, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
-    #[serde(rename = "do")]
+    #[serde(rename = "do", deserialize_with = "table")]
     pub what: Intervention,
 }
 
