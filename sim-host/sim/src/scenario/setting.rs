@@ -40,7 +40,7 @@ impl Scenario {
         Self::parse_with(&read(path)?, path, overrides, settings)
     }
 
-    /// Parses text like [`Scenario::parse`], with settings applied.
+    /// Like [`Scenario::load_with`], for the text of a file `path` that need not exist.
     ///
     /// # Errors
     /// See [`Scenario::load_with`].
@@ -51,10 +51,12 @@ impl Scenario {
         settings: &[Setting],
     ) -> Result<Self, ScenarioError> {
         if settings.is_empty() {
-            return Self::parse(text, path, overrides);
+            return Self::build(text, path, overrides, 0);
         }
         let source = Source::new(path, text)?;
-        Self::parse(&set(&source, settings)?, path, overrides).map_err(|error| match error {
+        let ticks = source.root().get("ticks").and_then(|ticks| ticks.get_ref().as_integer());
+        let ticks = ticks.and_then(|ticks| u32::from_str_radix(ticks.as_str(), ticks.radix()).ok());
+        Self::build(&set(&source, settings)?, path, overrides, ticks.unwrap_or_default()).map_err(|error| match error {
             ScenarioError::Field { field, what, remedy, .. } => {
                 let is_set = settings.iter().any(|setting| is_about(&field, setting.field.name()));
                 let by = if is_set { " (by --set)" } else { "" };
