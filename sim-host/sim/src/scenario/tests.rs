@@ -1,3 +1,4 @@
+mod mutants;
 mod nonsense;
 mod readme;
 
