@@ -144,6 +144,40 @@ fn errors_name_line_field_and_remedy() {
 }
 
 #[test]
+fn errors_about_a_value_of_another_kind_name_no_rust_type() {
+    let all = "link_key = \"k\"\n[air]\nmulticast = \"239.1.2.3:5\"\ninterface = \"10.0.0.2\"\nbind = \"0.0.0.0:5\"\n\
+               peers = [\"10.0.0.2:5\"]\ntunnel = true\nkey = \"k\"\noverlap_s = 9\n[rules]\nentry = \"once\"\narm = true\n\
+               takeoff = true\naltitude_m = 9\nstale_s = 1\nlink_lost_s = 3\nsetpoint_hz = 20\nposition_hz = 9\nlag_s = 1\n\
+               reach_m = 900\nerror_m = 2";
+    let text = text(all, "system = 3\ngoal_deg = [55.7, 37.6]\naltitude_m = 5");
+    let values = ["7", "-1.5", "1e99", "\"word\"", "true", "[]", "[[1]]", "{}", "{ once = 1 }", "1979-05-27T07:32:00Z"];
+    let lines: Vec<&str> = text.lines().collect();
+    let words = ["u8", "u16", "u32", "f64", "struct", "enum", "variant", "identifier", "tuple", "sequence", "Option"];
+    let is_camel_case = |word: &str| {
+        let mut parts = word.as_bytes().windows(3);
+        parts.any(|part| part[0].is_ascii_lowercase() && part[1].is_ascii_uppercase() && part[2].is_ascii_lowercase())
+    };
+    let mut refusals = 0;
+    // The first line names the scenario, whose errors name another file.
+    for (index, line) in lines.iter().enumerate().skip(1) {
+        let Some((name, _)) = line.split_once(" = ") else { continue };
+        for value in values {
+            let line = format!("{name} = {value}");
+            let mutant = [&lines[..index], &[&line], &lines[index + 1..]].concat().join("\n");
+            let Err(error) = parse(&mutant) else { continue };
+            let message = error.to_string();
+            let (_, message) =
+                message.rsplit_once("test.toml").unwrap_or_else(|| panic!("{line} has no place: {message}"));
+            let mut all = message.split(|c: char| !c.is_ascii_alphanumeric());
+            let word = all.find(|word| words.contains(word) || is_camel_case(word));
+            assert_eq!(word, None, "{line}: {message}");
+            refusals += 1;
+        }
+    }
+    assert!(refusals > 200, "only {refusals}");
+}
+
+#[test]
 fn documentation_lists_every_field() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let text = std::fs::read_to_string(folder.join("docs/autopilots.md")).unwrap();
