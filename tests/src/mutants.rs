@@ -91,5 +91,5 @@ pub fn type_name(message: &str) -> Option<&str> {
         parts.any(|part| part[0].is_ascii_lowercase() && part[1].is_ascii_uppercase() && part[2].is_ascii_lowercase())
     };
     let mut words = message.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-    words.find(|word| NAMES.contains(word) || is_camel_case(word))
+    words.find(|word| NAMES.contains(word) || is_camel_case(word) && *word != "ImageMagick")
 }

@@ -1,5 +1,7 @@
 //! Damaged files of each kind: a reader refuses them in words of the file, or what it accepts runs.
 
+mod fields;
+
 use rayon::prelude::*;
 use staya_lab::sweep::Plan;
 use staya_lab::sweep::merge::Merged;
@@ -121,9 +123,13 @@ fn plans(count: u32) {
 }
 
 fn companions(count: u32) {
-    check("companions", &seeds("companions", &["toml"], &[]), count, 0.3, &|path, bytes| {
-        Config::parse(&text(bytes), path).map(drop).map_err(|error| error.to_string())
-    });
+    check(
+        "companions",
+        &seeds("companions", &["toml"], &["crossing", "formation", "one-rover"]),
+        count,
+        0.3,
+        &|path, bytes| Config::parse(&text(bytes), path).map(drop).map_err(|error| error.to_string()),
+    );
 }
 
 /// Everything in an accepted recording is read.
@@ -192,7 +198,7 @@ fn rows(count: u32) {
     let job = |_: &mut (), number| perform(&plan, number, || true);
     perform_shard(&plan, Shard::default(), folder.path(), Existing::Refuse, job, |_, _| {}).expect("rows");
     let whole = files(folder.path()).expect("a folder");
-    check("rows", &whole, count, 0.7, &|path, bytes| {
+    check("rows", &whole, count, 0.3, &|path, bytes| {
         let own = TempDir::new().expect("a folder");
         let file = own.path().join(path.file_name().expect("a name"));
         fs::write(&file, bytes).expect("room");

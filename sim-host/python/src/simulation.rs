@@ -332,7 +332,8 @@ impl Run {
     fn scenario_text(&self, py: Python<'_>) -> PyResult<String> {
         let inner = self.lock(py);
         let Scenario { seed, ticks, tick_us, .. } = inner.scenario;
-        let last = [format!("seed={seed}"), format!("ticks={}", ticks.max(inner.tick))];
+        let last =
+            [format!("seed={seed}"), format!("ticks={}", ticks.max(inner.tick).max(inner.scenario.last_event()))];
         let settings: Result<Vec<Setting>, String> = last.iter().map(|setting| setting.parse()).collect();
         let settings = settings.map_err(ScenarioError::new_err)?;
         let path = Path::new(&inner.scenario.name);

@@ -105,7 +105,7 @@ impl<'a> Reader<'a> {
                 let what = format!("{what} is cut off");
                 Err(StateError::new(self.all.len(), what, REMEDY))
             }
-            Err(error) => Err(StateError::new(stopped_at, format!("{what} makes no sense: {error}"), REMEDY)),
+            Err(_) => Err(StateError::new(stopped_at, format!("{what} makes no sense"), REMEDY)),
         }
     }
 }

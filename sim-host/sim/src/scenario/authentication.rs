@@ -187,11 +187,17 @@ fn attack(
             remedy,
         ));
     }
+    let from_tick = tick("from_s", table.from_s)?;
+    let to_tick = table.to_s.map_or(Ok(u32::MAX), |s| tick("to_s", s))?;
+    if to_tick <= from_tick {
+        let remedy = "give a tick or more after from_s";
+        return Err(source.error(&format!("{field}.to_s"), "the attack is over before its first tick", remedy));
+    }
     Ok(Attack {
         kind: table.kind,
         place_m: table.place_m,
-        from_tick: tick("from_s", table.from_s)?,
-        to_tick: table.to_s.map_or(Ok(u32::MAX), |s| tick("to_s", s))?,
+        from_tick,
+        to_tick,
         lure_m,
         claims,
         delay_ticks: tick("delay_s", table.delay_s.unwrap_or(10.0))?,

@@ -1,5 +1,6 @@
 //! Checks that involve more than one field.
 
+use super::intervention::tick;
 use super::ranges::{micros, short, within};
 use super::source::Source;
 use super::{Crop, Fault, Robot, ScenarioError, ScenarioFile, TerrainTable};
@@ -26,6 +27,30 @@ pub(super) fn general(source: &Source<'_>, file: &ScenarioFile) -> Result<(), Sc
         return Err(source.error("ticks", "a run needs at least one tick", "give 1 or more"));
     }
     within(source, "tick_s", file.tick_s, 0.001, 60.0, "seconds")
+}
+
+/// Refuses events after the last of `ticks`.
+pub(super) fn times(source: &Source<'_>, file: &ScenarioFile, ticks: u32) -> Result<(), ScenarioError> {
+    let orders = file.plane.iter().flat_map(|plane| &plane.order);
+    let changes = file.terrain.iter().flat_map(|terrain| &terrain.change);
+    let rolls = file.authentication.iter().flat_map(|table| &table.roll);
+    let lists: [(_, _, Vec<f64>); 6] = [
+        ("fault", "at_s", file.fault.iter().map(|fault| fault.at_s).collect()),
+        ("intervention", "at_s", file.intervention.iter().map(|table| table.at_s).collect()),
+        ("attack", "from_s", file.attack.iter().map(|attack| attack.from_s).collect()),
+        ("plane.order", "at_s", orders.map(|order| order.at_s).collect()),
+        ("terrain.change", "at_s", changes.map(|change| change.at_s).collect()),
+        ("authentication.roll", "at_s", rolls.map(|roll| roll.at_s).collect()),
+    ];
+    for (list, name, times_s) in lists {
+        if let Some(index) = times_s.iter().position(|&at_s| tick(at_s, file.tick_s) > ticks) {
+            let end_s = f64::from(ticks) * file.tick_s;
+            let what = format!("{} s is after the end of the run at {} s", short(times_s[index]), short(end_s));
+            let remedy = "give an earlier time or more ticks, or leave it out";
+            return Err(source.error(&format!("{list}[{index}].{name}"), what, remedy));
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn numbers(
@@ -135,6 +160,11 @@ pub(super) fn terrain(source: &Source<'_>, file: &ScenarioFile) -> Result<Terrai
     let Some(table) = &file.terrain else {
         return Err(source.error("terrain", "it is missing", "say what land is meant"));
     };
+    let has_map = table.file.is_some() || file.scouting.as_ref().is_some_and(|scouting| scouting.map.is_some());
+    if !has_map && source.stands("terrain.load") {
+        let remedy = "give terrain.file, or leave it out";
+        return Err(source.error("terrain.load", "only map files are converted", remedy));
+    }
     let plan = |width, height, classes, seed: Option<u64>| LandPlan {
         width,
         height,

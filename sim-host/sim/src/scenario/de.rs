@@ -2,7 +2,7 @@
 //! any source of events; its generic layers produce three times as much machine code for the
 //! scenario tables.
 
-use serde::de::value::StrDeserializer;
+use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{
     DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, IntoDeserializer as _, MapAccess, SeqAccess,
     Unexpected, VariantAccess, Visitor,
@@ -10,6 +10,7 @@ use serde::de::{
 use serde::{Deserialize, forward_to_deserialize_any};
 use std::borrow::Cow;
 use std::fmt;
+use std::marker::PhantomData;
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -52,8 +53,9 @@ impl serde::de::Error for Error {
     }
 
     fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
+        // "an array of length 3", or "3 elements in sequence".
         let expected = expected.to_string();
-        let wanted = expected.rsplit(' ').next().unwrap_or(&expected);
+        let wanted = expected.split(' ').find(|word| word.parse::<usize>().is_ok()).unwrap_or("other numbers");
         Self::custom(format!("the list has {length} values, {wanted} are needed"))
     }
 
@@ -110,7 +112,7 @@ pub(super) fn short(value: f64) -> String {
     if has_few_digits { value.to_string() } else { format!("{value:e}") }
 }
 
-/// What a type accepts, without its Rust name.
+/// Names the values that a type accepts, without the name of the Rust type.
 fn needed(expected: &str) -> &str {
     match expected {
         "f64" | "f32" => "a number",
@@ -122,13 +124,32 @@ fn needed(expected: &str) -> &str {
         "i32" | "i64" => "a whole number",
         "a boolean" => "true or false",
         "path string" => "a file name in quotes",
+        "string" | "a string" => "a text in quotes",
+        "any value" => "a value of any field",
         "a sequence" => "a list",
         "a map" => "a table",
         _ if expected.starts_with("struct ") => "a table",
-        _ if expected.starts_with("enum ") => "a name in quotes",
+        _ if expected.starts_with("enum ") || expected.ends_with(" identifier") => "a name in quotes",
         _ if expected.starts_with("tuple ") || expected.starts_with("an array of length ") => "a list",
         _ => expected,
     }
+}
+
+/// Reads a type with a derived reader that would accept its fields as a list, by their order.
+pub fn table<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<T, D::Error> {
+    struct OnlyTable<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for OnlyTable<T> {
+        type Value = T;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
+            T::deserialize(MapAccessDeserializer::new(map))
+        }
+    }
+    from.deserialize_map(OnlyTable(PhantomData))
 }
 
 pub fn read<'a, 'de: 'a, T: Deserialize<'a>>(root: &'a Spanned<DeTable<'de>>) -> Result<T, Error> {
@@ -316,8 +337,8 @@ impl<'a> VariantAccess<'a> for Variant<'a, '_> {
         self.content()?.deserialize_any(visitor)
     }
 
-    fn struct_variant<V: Visitor<'a>>(self, _: &'static [&'static str], visitor: V) -> Result<V::Value, Error> {
-        self.content()?.deserialize_any(visitor)
+    fn struct_variant<V: Visitor<'a>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Error> {
+        self.content()?.deserialize_struct("", fields, visitor)
     }
 }
 

@@ -19,7 +19,7 @@ impl Field {
             let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
             let places = places.split_inclusive(']').map(|place| {
                 let digits = place.strip_prefix('[')?.strip_suffix(']')?;
-                if digits.starts_with('+') { None } else { digits.parse().ok() }
+                digits.parse().ok().filter(|place: &usize| place.to_string() == digits)
             });
             let places = places.collect::<Option<Vec<usize>>>()?;
             (!name.is_empty() && name.chars().all(is_name)).then(|| (name.to_owned(), places))
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn malformed_paths_are_refused() {
-        for bad in ["", ".", "a.", "a[", "a[]", "a[-1]", "a[+1]", "a]0[", "a b", "[0]", "a[0]b", "a..b"] {
+        for bad in ["", ".", "a.", "a[", "a[]", "a[-1]", "a[+1]", "a[01]", "a]0[", "a b", "[0]", "a[0]b", "a..b"] {
             assert_eq!(Field::read(bad), None, "{bad:?}");
         }
     }

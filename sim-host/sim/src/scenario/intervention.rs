@@ -1,9 +1,10 @@
 //! Interventions: changes to a running simulation, made by hand in the viewer or listed as
 //! `[[intervention]]` in a scenario.
 
+use super::de::table;
 use super::ranges::{micros, short};
 use super::source::{ScenarioError, Source};
-use super::{Robot, ScenarioFile};
+use super::{Robot, Scenario, ScenarioFile};
 use crate::world::Refusal;
 use crate::world::plane::{FAR_M, Shape};
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,7 @@ pub enum Intervention {
     /// Adds an obstacle to the plane.
     Solid {
         /// Shape of the obstacle.
+        #[serde(deserialize_with = "table")]
         solid: Shape,
     },
     /// Moves an obstacle instantly.
@@ -85,7 +87,7 @@ pub struct InterventionTable {
     /// Time after the start, seconds.
     pub at_s: f64,
     /// The intervention, such as `{ kind = "goal", robot = 3, place_m = [4, 5, 0] }`.
-    #[serde(rename = "do")]
+    #[serde(rename = "do", deserialize_with = "table")]
     pub what: Intervention,
 }
 
@@ -179,6 +181,22 @@ pub(super) fn interventions(
 pub(super) fn tick(at_s: f64, tick_s: f64) -> u32 {
     let tick_us = f64::from(micros(tick_s).max(1));
     libm::ceil(libm::round(at_s * 1e6) / tick_us) as u32
+}
+
+impl Scenario {
+    /// Tick of the last event that begins at a given time: fault, intervention, order, change of
+    /// the terrain, key rotation, attack. 0 without any. O(events).
+    #[must_use]
+    pub fn last_event(&self) -> u32 {
+        let faults = self.faults.iter().map(|fault| fault.from_tick);
+        let interventions = self.interventions.iter().map(|(tick, _)| *tick);
+        let orders = self.plane.iter().flat_map(|plane| &plane.orders).map(|order| order.tick);
+        let changes = self.changes.iter().map(|change| change.first);
+        let rolls = self.keeping.iter().flat_map(|keeping| &keeping.rolls).map(|roll| roll.tick);
+        let attacks = self.attacks.iter().map(|attack| attack.from_tick);
+        let all = faults.chain(interventions).chain(orders).chain(changes).chain(rolls).chain(attacks);
+        all.max().unwrap_or_default()
+    }
 }
 
 /// Appends the applied interventions to a scenario's text, so that parsing it reproduces the run.

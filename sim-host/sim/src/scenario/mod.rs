@@ -45,7 +45,6 @@ pub use setting::{Setting, text_with, with_settings};
 pub use source::ScenarioError;
 pub use source::Source;
 
-use crate::file::{TEXT, read_text};
 use crate::radio::RadioParams;
 use crate::terrain::Terrain;
 use crate::terrain::change::LandChange;
@@ -208,21 +207,28 @@ impl Scenario {
     /// # Errors
     /// A [`ScenarioError`] that names file, line, field and remedy.
     pub fn load(path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
-        let text = read_text(path, TEXT).map_err(|source| ScenarioError::Io { path: path.to_owned(), source })?;
-        Self::parse(&text, path, overrides)
+        Self::load_with(path, overrides, &[])
     }
 
     /// Parses and checks the text of a scenario. `path` appears in errors and resolves relative
-    /// file names; the file does not have to exist.
+    /// file names; the file does not have to exist. Unlike [`Scenario::load`], this accepts events
+    /// after the end, since the text may belong to a run that was shortened.
     ///
     /// # Errors
     /// See [`Scenario::load`].
     pub fn parse(text: &str, path: &Path, overrides: &Overrides) -> Result<Self, ScenarioError> {
+        Self::build(text, path, overrides, u32::MAX)
+    }
+
+    /// Refuses events that are later than `ticks`, than the text's ticks, and than the override's.
+    fn build(text: &str, path: &Path, overrides: &Overrides, ticks: u32) -> Result<Self, ScenarioError> {
         let source = Source::new(path, text)?;
         let mut file: ScenarioFile = source.read(LIST)?;
+        let ticks = ticks.max(file.ticks);
         file.seed = overrides.seed.unwrap_or(file.seed);
         file.ticks = overrides.ticks.unwrap_or(file.ticks);
         check::general(&source, &file)?;
+        check::times(&source, &file, ticks.max(file.ticks))?;
         check::radio(&source, &file)?;
         let (terrain, robots, formations, parts, plane) = match &file.plane {
             None => {

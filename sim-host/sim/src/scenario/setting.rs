@@ -32,15 +32,16 @@ impl FromStr for Setting {
 }
 
 impl Scenario {
-    /// Like [`Scenario::load`], with settings applied; the last setting of a field wins.
+    /// Like [`Scenario::load`], with settings applied.
     ///
     /// # Errors
-    /// See [`Scenario::load`]. The line is that of the field in the file, if it is there.
+    /// See [`Scenario::load`]; also two settings of one field. The line is that of the field in the
+    /// file, if it is there.
     pub fn load_with(path: &Path, overrides: &Overrides, settings: &[Setting]) -> Result<Self, ScenarioError> {
         Self::parse_with(&read(path)?, path, overrides, settings)
     }
 
-    /// Parses text like [`Scenario::parse`], with settings applied.
+    /// Like [`Scenario::load_with`], for the text of a file `path` that need not exist.
     ///
     /// # Errors
     /// See [`Scenario::load_with`].
@@ -51,10 +52,12 @@ impl Scenario {
         settings: &[Setting],
     ) -> Result<Self, ScenarioError> {
         if settings.is_empty() {
-            return Self::parse(text, path, overrides);
+            return Self::build(text, path, overrides, 0);
         }
         let source = Source::new(path, text)?;
-        Self::parse(&set(&source, settings)?, path, overrides).map_err(|error| match error {
+        let ticks = source.root().get("ticks").and_then(|ticks| ticks.get_ref().as_integer());
+        let ticks = ticks.and_then(|ticks| u32::from_str_radix(ticks.as_str(), ticks.radix()).ok());
+        Self::build(&set(&source, settings)?, path, overrides, ticks.unwrap_or_default()).map_err(|error| match error {
             ScenarioError::Field { field, what, remedy, .. } => {
                 let is_set = settings.iter().any(|setting| is_about(&field, setting.field.name()));
                 let by = if is_set { " (by --set)" } else { "" };
@@ -89,7 +92,10 @@ fn read(path: &Path) -> Result<String, ScenarioError> {
 fn set(source: &Source<'_>, settings: &[Setting]) -> Result<String, ScenarioError> {
     let mut table: toml::Table =
         source.text().parse().map_err(|error: toml::de::Error| source.error("", error.message(), "check the file"))?;
-    for Setting { field, value } in settings {
+    for (index, Setting { field, value }) in settings.iter().enumerate() {
+        if settings[index + 1..].iter().any(|later| is_below(field.name(), later.field.name())) {
+            return Err(source.error(field.name(), "it is set twice (by --set)", "give one --set of this field"));
+        }
         field.set(&mut table, value.clone()).map_err(|what| {
             source.error(field.name(), format!("{what} (by --set)"), "name a field as the scenario's file has it")
         })?;
@@ -97,9 +103,12 @@ fn set(source: &Source<'_>, settings: &[Setting]) -> Result<String, ScenarioErro
     Ok(toml::to_string(&table).unwrap_or_default())
 }
 
+/// Whether `field` is `above`, or a part of it.
+fn is_below(field: &str, above: &str) -> bool {
+    field.strip_prefix(above).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
 fn is_about(field: &str, set: &str) -> bool {
-    let is_below =
-        |a: &str, b: &str| a.strip_prefix(b).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
     !field.is_empty() && (is_below(field, set) || is_below(set, field))
 }
 
@@ -120,12 +129,18 @@ mod tests {
     }
 
     #[test]
-    fn the_last_setting_of_a_field_wins() {
+    fn a_field_is_set_once() {
         assert_eq!(load(&[]).expect("sound").ticks, 5);
-        let set = load(&["ticks=7", "radio.range_m = 3.5", "ticks=8", "name=other", "robots.list[0].goal=[6, 5]"]);
+        let set = load(&["ticks=7", "radio.range_m = 3.5", "name=other", "robots.list[0].goal=[6, 5]"]);
         let set = set.expect("sound");
-        assert_eq!((set.ticks, set.radio.range_m, &*set.name), (8, 3.5, "other"));
+        assert_eq!((set.ticks, set.radio.range_m, &*set.name), (7, 3.5, "other"));
         assert_eq!((set.robots[0].goal.x, set.radio.loss), (6, 0.1));
+        let part = load(&["radio={ loss = 0.3 }", "radio.range_m=2"]).expect("a table, then a field of it");
+        assert_eq!((part.radio.loss, part.radio.range_m), (0.3, 2.0));
+        for settings in [["radio.loss=0.2", " radio.loss = 0.2"], ["radio.loss=0.2", "radio={ loss = 0.3 }"]] {
+            let error = load(&settings).expect_err("twice");
+            assert_eq!(error, "t.toml:8: radio.loss: it is set twice (by --set); give one --set of this field");
+        }
     }
 
     #[test]

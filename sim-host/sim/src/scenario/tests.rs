@@ -1,3 +1,4 @@
+mod nonsense;
 mod readme;
 
 use super::*;

@@ -361,9 +361,12 @@ impl Session {
                 }
             }
             Wanted::New { robots, goals, obstacles, seed } => {
+                let (path, none) = (Path::new("new-run.toml"), Overrides::default());
                 let text = Configuration { robots, goals, obstacles, seed }.scenario();
-                if let Err(wrong) = self.replace(text, Path::new("new-run.toml"), &Overrides::default(), server) {
-                    error(&wrong.to_string());
+                let replaced =
+                    text.and_then(|text| self.replace(text, path, &none, server).map_err(|wrong| wrong.to_string()));
+                if let Err(wrong) = replaced {
+                    error(&wrong);
                 }
             }
             Wanted::Order { order } => match order.intervention(&self.scenario, self.framer.origin_m()) {

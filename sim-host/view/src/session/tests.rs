@@ -211,6 +211,8 @@ fn invalid_requests_are_answered_and_other_data_disconnect() {
         json!({ "do": "order", "order": { "kind": "cell", "cell": [0, 0], "class": 0 } }),
         json!({ "do": "order", "order": { "kind": "parameter", "name": "share", "value": 7 } }),
         json!({ "do": "seek", "tick": -1 }),
+        json!({ "do": "new", "robots": 0, "goals": 1, "obstacles": 0, "seed": 1 }),
+        json!({ "do": "new", "robots": u32::MAX, "goals": 1, "obstacles": 0, "seed": 1 }),
     ];
     for word in wrong {
         run.say(&word);

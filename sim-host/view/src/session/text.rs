@@ -18,7 +18,9 @@ pub(super) fn with_top_field(text: &str, name: &str, value: &str) -> String {
 
 pub(super) fn saved(text: &str, scenario: &Scenario, done: &[(u32, Intervention)], tick: u32, hash: &str) -> String {
     let text = with_top_field(text, "seed", &scenario.seed.to_string());
-    let text = with_top_field(&text, "ticks", &scenario.ticks.max(tick).to_string());
+    // No event of the file may be after the end.
+    let ticks = scenario.ticks.max(tick).max(scenario.last_event());
+    let text = with_top_field(&text, "ticks", &ticks.to_string());
     let head = format!(
         "# Saved from a view. Relative paths refer to the folder of the original scenario.\n\
          # Trace hash after tick {tick}: {hash}\n"
@@ -40,17 +42,19 @@ pub struct Configuration {
 }
 
 impl Configuration {
-    /// Limits all numbers to their ranges.
-    #[must_use]
-    pub fn clamped(self) -> Self {
-        let Self { robots, goals, obstacles, seed } = self;
-        Self { robots: robots.clamp(1, 2000), goals: goals.clamp(1, 4), obstacles: obstacles.min(200), seed }
-    }
-
     /// Generates the scenario: starts in the west, goals in the east, obstacles between.
-    #[must_use]
-    pub fn scenario(self) -> String {
-        let Self { robots, goals, obstacles, seed } = self.clamped();
+    ///
+    /// # Errors
+    /// Names the number that is out of its range, and the range.
+    pub fn scenario(self) -> Result<String, String> {
+        let Self { robots, goals, obstacles, seed } = self;
+        for (what, count, least, most) in
+            [("robots", robots, 1, 2000), ("goals", goals, 1, 4), ("obstacles", obstacles, 0, 200)]
+        {
+            if !(least..=most).contains(&count) {
+                return Err(format!("{count} {what} are out of range; give {least} to {most}"));
+            }
+        }
         let side_m = libm::ceil(libm::sqrt(f64::from(robots))) * 1.2 + 3.0;
         let width_m = side_m * 2.0 + 16.0;
         let mut draws = Rng::keyed(seed, RANDOM, robots, obstacles);
@@ -76,7 +80,7 @@ impl Configuration {
             text.push_str(&ball);
         }
         let _ = writeln!(text, "# {robots} robots, {goals} goals, {obstacles} obstacles.");
-        text
+        Ok(text)
     }
 }
 
@@ -94,14 +98,41 @@ mod tests {
     }
 
     #[test]
+    fn a_saved_run_that_was_shortened_ends_after_its_events() {
+        let text = "name = \"t\"\nticks = 90\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n[[plane.robots.list]]\n\
+                    start_m = [0, 0]\ngoal_m = [6, 0]\n[[fault]]\nrobot = 1\nat_s = 70\n";
+        let (path, shorter) = (Path::new("t.toml"), Overrides { seed: None, ticks: Some(20) });
+        let scenario = Scenario::parse_with(text, path, &shorter, &[]).expect("good");
+        let saved = saved(text, &scenario, &[], 30, "");
+        let read = Scenario::parse_with(&saved, path, &Overrides::default(), &[]).expect("good");
+        assert_eq!(read.ticks, 70);
+    }
+
+    #[test]
     fn every_configuration_is_a_valid_scenario() {
-        for (robots, goals, obstacles) in [(1, 1, 0), (20, 3, 12), (0, 9, 999), (600, 4, 60), (u32::MAX, 0, 5)] {
+        for (robots, goals, obstacles) in [(1, 1, 0), (20, 3, 12), (600, 4, 60), (2000, 1, 200)] {
             for seed in 0..4 {
                 let configuration = Configuration { robots, goals, obstacles, seed };
-                let scenario = Scenario::parse(&configuration.scenario(), Path::new("new.toml"), &Overrides::default());
+                let text = configuration.scenario().expect("numbers in range");
+                let scenario = Scenario::parse(&text, Path::new("new.toml"), &Overrides::default());
                 let scenario = scenario.unwrap_or_else(|error| panic!("{configuration:?}: {error}"));
-                assert_eq!(scenario.robots.len(), configuration.clamped().robots as usize);
+                assert_eq!(scenario.robots.len(), robots as usize);
             }
+        }
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        for (robots, goals, obstacles, expected) in [
+            (0, 1, 0, "0 robots are out of range; give 1 to 2000"),
+            (2001, 1, 0, "2001 robots are out of range; give 1 to 2000"),
+            (u32::MAX, 1, 0, "4294967295 robots are out of range; give 1 to 2000"),
+            (9, 0, 0, "0 goals are out of range; give 1 to 4"),
+            (9, 5, 0, "5 goals are out of range; give 1 to 4"),
+            (9, 1, 201, "201 obstacles are out of range; give 0 to 200"),
+        ] {
+            let configuration = Configuration { robots, goals, obstacles, seed: 1 };
+            assert_eq!(configuration.scenario(), Err(expected.to_owned()));
         }
     }
 }

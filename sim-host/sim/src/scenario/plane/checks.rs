@@ -1,6 +1,7 @@
 //! Checks of `[plane]`: positions, speeds, and combinations of tables.
 
 use super::super::ScenarioError;
+use super::super::ranges::short;
 use super::super::source::Source;
 use super::spec::Spec;
 use super::table::{CloudEntry, Place, PlaneRobotEntry};
@@ -30,6 +31,17 @@ pub(super) fn velocity(source: &Source<'_>, field: &str, velocity: Place) -> Res
     }
     let remedy = "give at most 32 m/s along each axis";
     Err(source.error(field, "this is too fast", remedy))
+}
+
+/// Checks a velocity at the start of the run against the highest speed.
+fn start_velocity(source: &Source<'_>, field: &str, at: Place, most_mps: f64) -> Result<(), ScenarioError> {
+    velocity(source, field, at)?;
+    let speed_mps = at.0.iter().map(|v| v * v).sum::<f64>().sqrt();
+    if speed_mps <= most_mps * (1.0 + 1e-9) {
+        return Ok(());
+    }
+    let what = format!("{} m/s exceeds the highest speed", short(speed_mps));
+    Err(source.error(field, what, format!("give at most {} m/s in all", short(most_mps))))
 }
 
 pub(crate) const fn goals(guidance: GuidanceKind) -> u8 {
@@ -104,7 +116,8 @@ pub(super) fn list(source: &Source<'_>, spec: &Spec, list: &[PlaneRobotEntry]) -
     for (index, robot) in list.iter().enumerate() {
         let field = |name| format!("{field}[{index}].{name}");
         place(source, &field("start_m"), robot.start_m)?;
-        velocity(source, &field("velocity_mps"), robot.velocity_mps)?;
+        let most_mps = robot.max_speed_mps.unwrap_or(spec.max_speed_mps);
+        start_velocity(source, &field("velocity_mps"), robot.velocity_mps, most_mps)?;
         if let Some(goal_m) = robot.goal_m {
             goal_count(source, &field("goal_m"), spec.guidance, 1)?;
             place(source, &field("goal_m"), goal_m)?;
@@ -140,7 +153,9 @@ pub(super) fn cloud(source: &Source<'_>, spec: &Spec, cloud: &CloudEntry) -> Res
     place(source, &field("to_m"), cloud.to_m)?;
     let (from, to) = (cloud.velocity_from_mps, cloud.velocity_to_mps);
     velocity(source, &field("velocity_from_mps"), from)?;
-    velocity(source, &field("velocity_to_mps"), to)?;
+    let fastest = Place(std::array::from_fn(|axis| from.0[axis].abs().max(to.0[axis].abs())));
+    let name = if source.stands(&field("velocity_to_mps")) { "velocity_to_mps" } else { "velocity_from_mps" };
+    start_velocity(source, &field(name), fastest, spec.max_speed_mps)?;
     goal_count(source, &field("goals_m"), spec.guidance, cloud.goals_m.len())?;
     for (index, goal) in cloud.goals_m.iter().enumerate() {
         place(source, &format!("{}[{index}]", field("goals_m")), *goal)?;

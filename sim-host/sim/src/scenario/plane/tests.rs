@@ -422,7 +422,7 @@ proptest! {
         let robots = [
             TWO,
             "[plane.robots.circle]\ncount = 9\nradius_m = 4\nnoise_m = 0.1\n",
-            "[plane.robots.cloud]\ncount = 9\nfrom_m = [-4, 3]\nto_m = [9, 9]\nvelocity_to_mps = [1, 0.5]\n\
+            "[plane.robots.cloud]\ncount = 9\nfrom_m = [-4, 3]\nto_m = [9, 9]\nvelocity_to_mps = [0.8, 0.5]\n\
              goals_m = [[1, 2]]\ngoal_velocity_mps = [0.1, 0]\n",
             "[robots]\nlist = [{ start = [0, 0], goal = [3, 2] }]\n",
         ][which];
