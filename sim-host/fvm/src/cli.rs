@@ -15,7 +15,7 @@ use options::{TemplateArgs, grid, numbers};
 use serde::Serialize;
 use staya_console::{Ended, Global, print, print_json};
 use staya_sim::file::read_remedy;
-use staya_sim::record::prepare_dir;
+use staya_sim::record::{Files, prepare_dir, write_atomically};
 use staya_voxel::{Header, Local, Model, VoxelNeighbor};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -207,7 +207,8 @@ impl About {
 impl BuildArgs {
     fn run(&self, global: &Global) -> Result<()> {
         let bytes = made(&self.template.templated()?, self.resolution, self.depth)?;
-        std::fs::write(&self.out, &bytes).with_context(|| format!("cannot write {}", self.out.display()))?;
+        Files::reading(&self.template.room).claim(&self.out)?;
+        write_atomically(&self.out, &bytes)?;
         let about = About::of(&self.out, &bytes)?;
         if global.json {
             return print_json(&about);

@@ -3,6 +3,7 @@
 use staya_controller::scalar::Scalar;
 use staya_plot::canvas::{Anchor, Canvas, Pixels, Shape, Stroke, Text};
 use staya_plot::colour::{Colour, INK, MUTED, PALETTE, WHITE};
+use staya_sim::record::write_atomically;
 use staya_voxel::{FileError, HEADER_LEN, Header, Model};
 use std::path::{Path, PathBuf};
 
@@ -80,7 +81,7 @@ pub fn m_images(bytes: &[u8], stem: &Path) -> Result<Vec<PathBuf>, DrawError> {
         let mut writer = encoder.write_header().map_err(|error| failed(&error))?;
         writer.write_image_data(&grey).map_err(|error| failed(&error))?;
         writer.finish().map_err(|error| failed(&error))?;
-        std::fs::write(&path, picture).map_err(|error| failed(&error))?;
+        write_atomically(&path, &picture).map_err(|error| failed(&error))?;
         files.push(path);
     }
     Ok(files)

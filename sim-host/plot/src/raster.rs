@@ -62,9 +62,13 @@ fn draw(canvas: &Canvas, scale: f64, ground: Option<Colour>) -> io::Result<Pixma
     Ok(onto(pixmap, canvas, scale))
 }
 
+/// Of 4 bytes each.
+const MOST_PIXELS: u64 = 1 << 28;
+
 fn empty(canvas: &Canvas, scale: f64) -> io::Result<Pixmap> {
     let [width, height] = [canvas.width, canvas.height].map(|side| libm::ceil(side * scale) as u32);
-    Pixmap::new(width, height).ok_or_else(|| {
+    let is_small = u64::from(width) * u64::from(height) <= MOST_PIXELS;
+    is_small.then(|| Pixmap::new(width, height)).flatten().ok_or_else(|| {
         io::Error::other(format!("a picture of {width} x {height} pixels is not possible; choose another size"))
     })
 }

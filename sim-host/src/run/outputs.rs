@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Additional files; docs/tour.md")]
 pub struct OutputArgs {
-    /// Record positions in each tick, for `staya page`; replaces the file.
+    /// Record positions in each tick, for `staya page`; replaces the file when it is complete.
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Record the run as MCAP, for Foxglove, Lichtblick and Rerun.

@@ -53,7 +53,7 @@ pub struct TemplateArgs {
     /// A room as TOML: `outline = [[x, y], ...]`, `[[circle]]` with `center` and `radius`,
     /// `[[polygon]]` with `corners` [default: the documentation's].
     #[arg(long, value_name = "FILE")]
-    room: Option<PathBuf>,
+    pub room: Option<PathBuf>,
     /// R-functions for rooms and `--form r-function`: r0, r1 (minimum and maximum), or an alpha.
     #[arg(long, default_value = "r1", value_parser = |text: &str| text.parse::<System>())]
     system: System,

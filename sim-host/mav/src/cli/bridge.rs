@@ -53,7 +53,8 @@ pub struct BridgeArgs {
     /// clock.
     #[arg(long, value_name = "S", default_value_t = 60.0, requires = "key", value_parser = lead)]
     lead: f64,
-    /// Write sent and accepted messages to a log for MAVExplorer and mavlogdump.
+    /// Write sent and accepted messages to a log for MAVExplorer and mavlogdump; an older file, and
+    /// each file at 256 MiB, is renamed to FILE.1.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
     /// Seed of all random numbers, instead of the scenario's.

@@ -31,7 +31,7 @@ pub struct CompanionArgs {
     #[arg(long, value_name = "N", value_parser = seconds)]
     seconds: Option<f64>,
     /// Write sent and accepted messages of all links to a log for mavlogdump, MAVExplorer or
-    /// QGroundControl; at 256 MiB the file is renamed to FILE.1 and a new one begins.
+    /// QGroundControl; an older file, and each file at 256 MiB, is renamed to FILE.1.
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
     /// Encrypt packets between companions with the key in this file, and accept only encrypted
