@@ -343,7 +343,7 @@ def test_a_full_disk_does_not_end_control(one):
     vehicle, fleet, start = one(goal=(40.0, 0.0), mode=GUIDED, armed=True)
     with fleet:
         process = start("--tlog", "/dev/full")
-        process.wait_for("cannot write the log /dev/full")
+        process.wait_for("cannot write /dev/full")
         wait_until(lambda: vehicle.velocity[0] > 1.0, what="motion")
         since = time.monotonic()
         time.sleep(1.0)

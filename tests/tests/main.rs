@@ -13,5 +13,6 @@ mod frames;
 mod golden;
 mod matrix;
 mod movingai;
+mod parameters;
 mod programs;
 mod threads;

@@ -1,7 +1,7 @@
-//! Prints the table that every target must reproduce: `case number hash steps`.
+//! Prints the table that every target must reproduce: `case number commands bytes digest steps`.
 
 fn main() {
     staya_cases::every(|name, number, summary| {
-        println!("{name} {number} {:016x} {}", summary.hash, summary.steps);
+        println!("{name} {number} {summary}");
     });
 }

@@ -1,4 +1,4 @@
-use crate::hash::Hash;
+use crate::hash::Hashes;
 use crate::land::{Land, WINDOW};
 use crate::medium::{Faults, INBOX, Medium};
 use crate::{Probe, Summary};
@@ -68,7 +68,7 @@ where
 {
     let mut medium = Medium::<W, { ROBOTS + 1 }>::new(wire, scene.faults);
     let mut workspace = workspace();
-    let (mut hash, mut course) = (Hash::new(), Hash::new());
+    let mut hashes = Hashes::new();
     let mut summary = Summary::of::<GridAgent<S, G, W>, G::Workspace>();
     let mut commands: [Command<S>; ROBOTS] = [const { Command::Hold }; ROBOTS];
     for tick in 0..scene.ticks {
@@ -78,11 +78,7 @@ where
         for (index, (walker, command)) in walkers.iter_mut().zip(&mut commands).enumerate() {
             medium.hear(index, tick, &mut inbox);
             let out = step(scene, walker, tick, &inbox, &mut workspace, probe);
-            let digest = walker.agent.digest();
-            hash.outputs(&out);
-            hash.word(digest);
-            course.command(&out.command);
-            course.word(digest);
+            hashes.step(&out, walker.agent.digest());
             summary.count(&out);
             medium.send(index, &out.outbox);
             *command = out.command;
@@ -94,10 +90,8 @@ where
             }
         }
         for walker in walkers.iter() {
-            for hash in [&mut hash, &mut course] {
-                hash.bytes(&walker.cell.x.to_le_bytes());
-                hash.bytes(&walker.cell.y.to_le_bytes());
-            }
+            hashes.commands.bytes(&walker.cell.x.to_le_bytes());
+            hashes.commands.bytes(&walker.cell.y.to_le_bytes());
         }
         summary.ticks = tick.saturating_add(1);
         let arrived = walkers.iter().filter(|w| w.agent.mode() == Mode::Arrived);
@@ -107,8 +101,7 @@ where
             break;
         }
     }
-    summary.hash = hash.value();
-    summary.course = course.value();
+    hashes.put(&mut summary);
     summary
 }
 

@@ -1,17 +1,48 @@
+use crate::Summary;
 use staya_controller::agent::{Command, Outputs};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::scalar::Scalar;
+
+/// Hashes of what agents do, of what they send and accept, and of their state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hashes {
+    pub(crate) commands: Hash,
+    bytes: Hash,
+    digest: Hash,
+}
+
+impl Hashes {
+    pub(crate) const fn new() -> Self {
+        Self { commands: Hash::new(), bytes: Hash::new(), digest: Hash::new() }
+    }
+
+    /// Adds a step: its outputs without events, which follow from the rest, and the agent's digest.
+    pub(crate) fn step<S: Scalar>(&mut self, out: &Outputs<S>, digest: u64) {
+        self.commands.command(&out.command);
+        self.commands.word(out.call_again.as_micros().into());
+        self.bytes.bytes(&out.received.to_le_bytes());
+        self.bytes.bytes(&out.rejected.to_le_bytes());
+        self.bytes.bytes(&out.outbox);
+        self.digest.word(digest);
+    }
+
+    pub(crate) const fn put(self, summary: &mut Summary) {
+        summary.commands = self.commands.value();
+        summary.bytes = self.bytes.value();
+        summary.digest = self.digest.value();
+    }
+}
 
 /// 64-bit FNV-1a: cheap without a wide multiplier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hash(u64);
 
 impl Hash {
-    pub(crate) const fn new() -> Self {
+    const fn new() -> Self {
         Self(0xCBF2_9CE4_8422_2325)
     }
 
-    pub(crate) const fn value(self) -> u64 {
+    const fn value(self) -> u64 {
         self.0
     }
 
@@ -21,11 +52,11 @@ impl Hash {
         }
     }
 
-    pub(crate) fn word(&mut self, word: u64) {
+    fn word(&mut self, word: u64) {
         self.bytes(&word.to_le_bytes());
     }
 
-    pub(crate) fn vector<S: Scalar>(&mut self, v: Vec3<S>) {
+    fn vector<S: Scalar>(&mut self, v: Vec3<S>) {
         for component in [v.x, v.y, v.z] {
             self.word(component.to_bits());
         }
@@ -37,16 +68,7 @@ impl Hash {
         }
     }
 
-    /// Hashes all outputs except events, which follow from the rest of the state.
-    pub(crate) fn outputs<S: Scalar>(&mut self, out: &Outputs<S>) {
-        self.command(&out.command);
-        self.bytes(&out.received.to_le_bytes());
-        self.bytes(&out.rejected.to_le_bytes());
-        self.bytes(&out.outbox);
-        self.word(out.call_again.as_micros().into());
-    }
-
-    pub(crate) fn command<S: Scalar>(&mut self, command: &Command<S>) {
+    fn command<S: Scalar>(&mut self, command: &Command<S>) {
         match command {
             Command::Hold => self.bytes(&[0]),
             Command::Move(moves) => {

@@ -1,7 +1,7 @@
 //! Bodies that follow their commands at once.
 
 use crate::grid::KNOWN;
-use crate::hash::Hash;
+use crate::hash::Hashes;
 use crate::land::{Land, WINDOW};
 use crate::medium::{Faults, INBOX, Medium};
 use crate::{Probe, Summary};
@@ -69,7 +69,7 @@ where
     P: Probe<S>,
 {
     let mut medium = Medium::<_, R>::new(Postcard, scene.faults);
-    let mut hash = Hash::new();
+    let mut hashes = Hashes::new();
     let mut summary = Summary::of::<PlaneAgent<S, G, A>, G::Workspace>();
     let mut inbox = Vec::<u8, INBOX>::new();
     for tick in 0..scene.ticks {
@@ -77,8 +77,7 @@ where
         for (index, mover) in movers.iter_mut().enumerate() {
             medium.hear(index, tick, &mut inbox);
             let out = step(scene, mover, tick, &inbox, workspace, probe);
-            hash.outputs(&out);
-            hash.word(mover.agent.digest());
+            hashes.step(&out, mover.agent.digest());
             summary.count(&out);
             medium.send(index, &out.outbox);
             mover.velocity_mps = match out.command {
@@ -91,7 +90,7 @@ where
         for mover in movers.iter_mut() {
             let way = mover.velocity_mps * step_s;
             mover.position = mover.position.moved(way).unwrap_or(mover.position);
-            hash.position(mover.position);
+            hashes.commands.position(mover.position);
         }
         summary.ticks = tick.saturating_add(1);
         let arrived = movers.iter().filter(|m| m.agent.mode() == Mode::Arrived);
@@ -101,7 +100,7 @@ where
             break;
         }
     }
-    summary.hash = hash.value();
+    hashes.put(&mut summary);
     summary.apart_mm = apart(movers);
     summary
 }

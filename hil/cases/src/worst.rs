@@ -1,7 +1,7 @@
 //! One agent of full size under heavy load: a full table of near neighbours with random velocities,
 //! other ones in each step. Not a proof of the worst case.
 
-use crate::hash::Hash;
+use crate::hash::Hashes;
 use crate::land::WINDOW;
 use crate::plane::STEP;
 use crate::{Probe, Summary};
@@ -188,7 +188,7 @@ where
     let _ = law.assign_waypoint(0, &Waypoint::fixed(Position::from_mm([9000, 500, 0])));
     let mut agent = Agent::<S, G, N, A>::new(&config, law, safety, Postcard);
     let mut summary = Summary::of::<Agent<S, G, N, A>, ()>();
-    let (mut hash, mut inbox) = (Hash::new(), Inbox::new());
+    let (mut hashes, mut inbox) = (Hashes::new(), Inbox::new());
     for step in 0..STEPS {
         say::<N>(step, &mut inbox, |_, rng| Beacon {
             position_mm: [about(rng, 900), about(rng, 900), about(rng, 300)],
@@ -213,11 +213,12 @@ where
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
         let out = probe.step(&mut agent, &inputs, now, &mut ());
-        hash.outputs(&out);
-        hash.word(agent.digest());
+        hashes.step(&out, agent.digest());
         summary.count(&out);
     }
-    summary.finish(hash, STEPS)
+    summary.ticks = STEPS;
+    hashes.put(&mut summary);
+    summary
 }
 
 const PLACES: [Cell; 9] = [
@@ -259,7 +260,7 @@ where
     agent.assign_goal(GOAL + (cell - TOP));
     let mut workspace = GridWorkspace::new();
     let mut summary = Summary::of::<Agent<S, G, N>, GridWorkspace<CELLS>>();
-    let (mut hash, mut inbox) = (Hash::new(), Inbox::new());
+    let (mut hashes, mut inbox) = (Hashes::new(), Inbox::new());
     for step in 0..STEPS {
         let mut rng = Rng::keyed(2, PURPOSE, 0, step);
         let mut land = Vec::<u8, WINDOW>::new();
@@ -290,9 +291,10 @@ where
         };
         let now = Instant::from_micros(0) + STEP.saturating_mul(step.cast_signed());
         let out = probe.step(&mut agent, &inputs, now, &mut workspace);
-        hash.outputs(&out);
-        hash.word(agent.digest());
+        hashes.step(&out, agent.digest());
         summary.count(&out);
     }
-    summary.finish(hash, STEPS)
+    summary.ticks = STEPS;
+    hashes.put(&mut summary);
+    summary
 }

@@ -21,12 +21,11 @@ mod program {
             print(case.name(), "Q16", &summary);
         }
         #[cfg(part = "nrf51")]
-        staya_cases::in_each_format::<staya_controller::scalar::Q16>("Q16", &mut print);
+        staya_cases::in_mavlink::<staya_controller::scalar::Q16>("Q16", &mut print);
         runtime::exit(0)
     }
 
     fn print(name: &str, number: &str, summary: &Summary) {
-        let Summary { hash, steps, .. } = summary;
-        runtime::print(format_args!("{name} {number} {hash:016x} {steps}\n"));
+        runtime::print(format_args!("{name} {number} {summary}\n"));
     }
 }

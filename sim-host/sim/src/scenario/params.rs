@@ -1,11 +1,11 @@
 //! `[route]` and `[formation]`: route planning and formation keeping. The defaults are the
 //! controller's; a test compares them with the list in scenarios/README.md.
 
-use super::ranges::within;
+use super::ranges::{range, within};
 use super::source::Source;
 use super::{ScenarioError, ScenarioFile};
 use serde::Deserialize;
-use staya_controller::agent::RouteSetup;
+use staya_controller::agent::{Parameter, RouteSetup};
 use staya_controller::cost::Gain;
 use staya_controller::formation::published::{FormationLaw, PublishedParams};
 use staya_controller::formation::{FormationParams, NEVER, Prediction, Recovery};
@@ -89,9 +89,9 @@ pub(super) fn sight(file: &ScenarioFile) -> u8 {
 pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteSetup, ScenarioError> {
     let (table, grid) = (&file.route, &file.grid);
     let usual = RouteParams::default();
-    let gain = |name: &str, value: Option<f64>, usual: Gain| match value {
+    let gain = |name: &str, value: Option<f64>, usual: Gain, most: f64| match value {
         None => Ok(usual),
-        Some(value) => gain(source, &format!("route.{name}"), value),
+        Some(value) => gain(source, &format!("route.{name}"), value, most),
     };
     let mut radius = sight(file);
     if !(1..=MAX_RADIUS).contains(&radius) {
@@ -111,12 +111,12 @@ pub(super) fn routing(source: &Source<'_>, file: &ScenarioFile) -> Result<RouteS
         exit: table.exit.unwrap_or(usual.exit),
         norm: grid.norm,
         corner_cutting: grid.corner_cutting,
-        a0: gain("a0", table.a0, usual.a0)?,
-        a1: gain("a1", table.a1, usual.a1)?,
-        a2: gain("a2", table.a2, usual.a2)?,
-        a3: gain("a3", table.a3, usual.a3)?,
+        a0: gain("a0", table.a0, usual.a0, range(Parameter::TimeGain)[1])?,
+        a1: gain("a1", table.a1, usual.a1, range(Parameter::OthersGain)[1])?,
+        a2: gain("a2", table.a2, usual.a2, range(Parameter::VisitsGain)[1])?,
+        a3: gain("a3", table.a3, usual.a3, range(Parameter::WayGain)[1])?,
     };
-    let halving = gain("halved_per_ticks", table.halved_per_ticks, Gain::ZERO)?;
+    let halving = gain("halved_per_ticks", table.halved_per_ticks, Gain::ZERO, 4095.0)?;
     let sharpness = match halving {
         Gain::ZERO => Sharpness::Greedy,
         halving => Sharpness::HalvedPer(halving),
@@ -129,10 +129,10 @@ pub(super) fn formation(source: &Source<'_>, table: &FormationTable) -> Result<F
     params.eps = table.eps.unwrap_or(params.eps);
     params.lead = table.lead.unwrap_or(params.lead);
     if let Some(value) = table.gain {
-        params.gain = gain(source, "formation.gain", value)?;
+        params.gain = gain(source, "formation.gain", value, range(Parameter::PlaceGain)[1])?;
     }
     if let Some(cells) = table.halt_cells {
-        within(source, "formation.halt_cells", cells, 0.0, 900.0, "cells")?;
+        within(source, "formation.halt_cells", cells, 0.0, range(Parameter::HaltLag)[1], "cells")?;
         params.halt_lag = units(cells);
         params.resume_lag = params.resume_lag.min(params.halt_lag);
     }
@@ -165,14 +165,13 @@ pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<O
     let mut params = PublishedParams::default();
     params.eps = table.eps.unwrap_or(params.eps);
     if let Some(value) = table.gain {
-        params.gain = gain(source, "formation.gain", value)?;
+        params.gain = gain(source, "formation.gain", value, range(Parameter::PlaceGain)[1])?;
     }
-    for (field, value, most, param) in [
-        ("halt_cells", table.halt_cells, 900.0, &mut params.halt),
-        ("resume_cells", table.resume_cells, 900.0, &mut params.resume),
-    ] {
+    for (field, value, param) in
+        [("halt_cells", table.halt_cells, &mut params.halt), ("resume_cells", table.resume_cells, &mut params.resume)]
+    {
         if let Some(cells) = value {
-            within(source, &format!("formation.{field}"), cells, 0.0, most, "cells")?;
+            within(source, &format!("formation.{field}"), cells, 0.0, range(Parameter::HaltLag)[1], "cells")?;
             *param = units(cells);
         }
     }
@@ -182,8 +181,8 @@ pub(super) fn published(source: &Source<'_>, table: &FormationTable) -> Result<O
     Ok(Some(params))
 }
 
-fn gain(source: &Source<'_>, field: &str, value: f64) -> Result<Gain, ScenarioError> {
-    within(source, field, value, 0.0, 4095.0, "")?;
+fn gain(source: &Source<'_>, field: &str, value: f64, most: f64) -> Result<Gain, ScenarioError> {
+    within(source, field, value, 0.0, most, "")?;
     Ok(Gain::from_sixteenths(libm::round(value * 16.0) as u16))
 }
 

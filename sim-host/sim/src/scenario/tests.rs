@@ -329,7 +329,7 @@ fn a_formation_has_the_law_of_its_file() {
         ("law = \"lookahead\"\ncrowd = 2\n", "crowd: the law \"lookahead\" has no use for it; leave it out"),
         ("law = \"lookahead\"\nresume_cells = 3.1\n", "resume_cells: 3.1 is out of range; give 0 to 3"),
         ("waits = false\nhalt_cells = 3\n", "halt_cells: with waits = false no robot waits"),
-        ("law = \"paper\"\nhalt_cells = 901\n", "halt_cells: 901 is out of range"),
+        ("law = \"paper\"\nhalt_cells = 938\n", "halt_cells: 938 is out of range"),
     ] {
         let refusal = refusal(&with(rest));
         assert!(refusal.contains(&format!("formation.{expected}")), "{refusal}");

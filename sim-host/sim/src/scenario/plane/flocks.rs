@@ -1,10 +1,11 @@
 //! `[plane.lattice]`, `[plane.goal_flock]` and `[plane.boids]`.
 
+use super::super::ranges::range;
 use super::super::source::Source;
 use super::super::{ScenarioError, ScenarioFile};
 use super::spec::Spec;
 use crate::radio::RadioParams;
-use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup};
+use staya_controller::agent::{BoidsSetup, GuidanceKind, GuidanceSetup, Parameter};
 use staya_controller::flock::goal::GoalParams;
 use staya_controller::flock::lattice::{Algorithm, Gain, LatticeParams, ReferenceMotion};
 
@@ -68,7 +69,7 @@ pub(super) fn lattice(
     let Some(given) = given else {
         return Ok(None);
     };
-    spec.within(source, "lattice.spacing_m", given.spacing_m, [0.01, 100.0], "metres")?;
+    spec.within(source, "lattice.spacing_m", given.spacing_m, range(Parameter::Spacing), "metres")?;
     let mut params = LatticeParams::new(given.spacing_m as f32);
     params.algorithm = match given.algorithm {
         Some(1) => Algorithm::One,
@@ -94,18 +95,18 @@ pub(super) fn lattice(
         let (delay_s, rate_hz) = file.radio.news(file.tick_s);
         params = params.stable_for(delay_s as f32, rate_hz as f32);
     }
-    for (field, gain, param) in [
-        ("c_alpha", given.c_alpha, &mut params.alpha),
-        ("c_beta", given.c_beta, &mut params.beta),
-        ("c_gamma", given.c_gamma, &mut params.gamma),
+    for (field, gain, parameter, param) in [
+        ("c_alpha", given.c_alpha, Parameter::AlphaPosition, &mut params.alpha),
+        ("c_beta", given.c_beta, Parameter::BetaPosition, &mut params.beta),
+        ("c_gamma", given.c_gamma, Parameter::GammaPosition, &mut params.gamma),
     ] {
         if let Some(gain) = gain {
-            spec.within(source, &format!("lattice.{field}"), gain, [0.0, 1e6], "1/s^2")?;
+            spec.within(source, &format!("lattice.{field}"), gain, range(parameter), "1/s^2")?;
             *param = Gain::critical(gain as f32);
         }
     }
     if let Some(ratio) = given.obstacle_ratio {
-        spec.within(source, "lattice.obstacle_ratio", ratio, [0.01, 4.0], "spacings")?;
+        spec.within(source, "lattice.obstacle_ratio", ratio, range(Parameter::ObstacleRatio), "spacings")?;
         params.obstacle_ratio = ratio as f32;
     }
     let motion = match (given.goal_moves, given.goal_rest_m) {
@@ -154,20 +155,20 @@ pub(super) fn goal_flock(
         return Ok(None);
     };
     let least = given.min_distance_m;
-    spec.within(source, "goal_flock.min_distance_m", least, [0.001, 10_000.0], "metres")?;
+    spec.within(source, "goal_flock.min_distance_m", least, range(Parameter::MinDistance), "metres")?;
     let seen = given.neighborhood_m.unwrap_or(4.0 * least);
-    spec.within(source, "goal_flock.neighborhood_m", seen, [2.0 * least, 100_000.0], "metres")?;
+    spec.within(source, "goal_flock.neighborhood_m", seen, [2.0 * least, range(Parameter::Neighborhood)[1]], "metres")?;
     let arrival_m = given.arrival_m.unwrap_or(seen);
-    spec.within(source, "goal_flock.arrival_m", arrival_m, [0.001, 1e6], "metres")?;
+    spec.within(source, "goal_flock.arrival_m", arrival_m, range(Parameter::Tolerance), "metres")?;
     let mut params = GoalParams::new(least as f32, cruise_mps as f32);
     params.neighborhood_m = seen as f32;
-    for (field, gain, param) in [
-        ("k1", given.k1, &mut params.goal_gain),
-        ("k2", given.k2, &mut params.center_gain),
-        ("k3", given.k3, &mut params.repulsion_gain),
+    for (field, gain, parameter, param) in [
+        ("k1", given.k1, Parameter::GoalGain, &mut params.goal_gain),
+        ("k2", given.k2, Parameter::CenterGain, &mut params.center_gain),
+        ("k3", given.k3, Parameter::RepulsionGain, &mut params.repulsion_gain),
     ] {
         if let Some(gain) = gain {
-            spec.within(source, &format!("goal_flock.{field}"), gain, [-1e6, 1e6], "")?;
+            spec.within(source, &format!("goal_flock.{field}"), gain, range(parameter), "")?;
             *param = gain as f32;
         }
     }
@@ -179,12 +180,12 @@ pub(super) fn boids(source: &Source<'_>, spec: &Spec, cruise_mps: f64) -> Result
     let Some(given) = given else {
         return Ok(None);
     };
-    spec.within(source, "boids.crowded_m", given.crowded_m, [0.0, 1e5], "metres")?;
-    spec.within(source, "boids.closest_m", given.closest_m, [0.0, 1e5], "metres")?;
+    spec.within(source, "boids.crowded_m", given.crowded_m, range(Parameter::Crowded), "metres")?;
+    spec.within(source, "boids.closest_m", given.closest_m, range(Parameter::Closest), "metres")?;
     let max_turn = given.max_turn.unwrap_or(0.05);
     let max_turn_away = given.max_turn_away.unwrap_or(0.02);
-    spec.within(source, "boids.max_turn", max_turn, [0.0, 3.15], "radians")?;
-    spec.within(source, "boids.max_turn_away", max_turn_away, [0.0, 3.15], "radians")?;
+    spec.within(source, "boids.max_turn", max_turn, range(Parameter::MaxTurn), "radians")?;
+    spec.within(source, "boids.max_turn_away", max_turn_away, range(Parameter::MaxTurnAway), "radians")?;
     let [crowded, closest, turn, away] = [given.crowded_m, given.closest_m, max_turn, max_turn_away].map(|x| x as f32);
     let params = BoidsSetup { crowded_m: crowded, closest_m: closest, max_turn: turn, max_turn_away: away };
     Ok(Some(GuidanceSetup::Boids { params, speed_mps: cruise_mps as f32 }))

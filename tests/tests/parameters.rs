@@ -1,0 +1,71 @@
+//! The parameters of a running robot: what a scenario starts with, an operator may set.
+
+use staya_controller::agent::Parameter;
+use staya_controller::names::Named as _;
+use staya_sim::engine::operated;
+use staya_sim::scenario::{Overrides, Scenario};
+use staya_tests::root;
+use std::fs;
+
+fn accepts_its_own_values(scenario: &Scenario) -> usize {
+    let mut swarm = operated(scenario).unwrap_or_else(|error| panic!("{}: {error}", scenario.name));
+    let mut tried = 0;
+    for index in 0..scenario.robots.len().min(60) {
+        for &(_, parameter) in Parameter::NAMES {
+            let Some(value) = swarm.parameter(index, parameter) else { continue };
+            if matches!(parameter, Parameter::Radius | Parameter::Tolerance) && value == 0.0 {
+                // Robots in cells have neither.
+                continue;
+            }
+            let place = format!("{}: robot {index}: {parameter:?} = {value}", scenario.name);
+            assert!(swarm.set_parameter(index, parameter, value), "{place}");
+            assert_eq!(swarm.parameter(index, parameter), Some(value), "{place}");
+            tried += 1;
+        }
+    }
+    tried
+}
+
+#[test]
+fn an_operator_can_set_each_value_of_each_scenario() {
+    let files = fs::read_dir(root().join("scenarios")).expect("scenarios").map(|file| file.expect("a file").path());
+    let mut tried = 0;
+    for path in files.filter(|path| path.extension().is_some_and(|is| is == "toml")) {
+        if ["million", "scale", "scale-plane"].iter().any(|name| path.file_stem().is_some_and(|stem| stem == *name)) {
+            continue;
+        }
+        let overrides = Overrides { seed: None, ticks: Some(1) };
+        let scenario = Scenario::load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"));
+        tried += accepts_its_own_values(&scenario);
+    }
+    assert!(tried > 5_000, "only {tried}");
+}
+
+/// The ends of the ranges that a file accepts.
+#[test]
+fn an_operator_can_set_the_ends_of_a_files_ranges() {
+    let plane = "name = \"t\"\nticks = 1\ntick_s = 0.1\n[plane]\nradius_m = 0.2\nmax_speed_mps = 1\n\
+        robots = { list = [{ start_m = [0, 0] }] }\n";
+    let cells = "name = \"t\"\nticks = 1\ntick_s = 1\n[terrain]\nuniform = { width = 90, height = 90, classes = 1 }\n\
+        [robots]\nformation = { rows = 2, columns = 2, start = [5, 5], goal = [50, 50] }\n";
+    let of = |base: &str, rest: &str| {
+        let scenario = Scenario::parse(&format!("{base}{rest}"), root().as_path(), &Overrides::default());
+        let tried = accepts_its_own_values(&scenario.unwrap_or_else(|error| panic!("{rest}: {error}")));
+        assert!(tried > 3, "{rest}");
+    };
+    for rest in [
+        "tolerance_m = 10000\norca = { horizon_s = 60, wall_horizon_s = 60, share = 1, margin_m = 10 }\n",
+        "tolerance_m = 0.001\norca = { horizon_s = 2, wall_horizon_s = 0.01, share = 0, margin_m = 0 }\n",
+        "guidance = \"boids\"\nboids = { crowded_m = 1000, closest_m = 10000, max_turn = 3.15, max_turn_away = 3.15 }\n",
+        "guidance = \"goal_flock\"\ngoal_flock = { min_distance_m = 1000, neighborhood_m = 10000, k1 = 1000, k2 = -1000 }\n",
+        "guidance = \"lattice\"\nlattice = { spacing_m = 100, c_alpha = 1000, c_beta = 10000, c_gamma = 1000, obstacle_ratio = 4 }\n",
+    ] {
+        of(plane, rest);
+    }
+    for rest in [
+        "[formation]\nhalt_cells = 937\nresume_cells = 936\ngain = 4095\n[route]\na0 = 4095\na3 = 4095\n",
+        "[formation]\nwaits = false\n",
+    ] {
+        of(cells, rest);
+    }
+}
