@@ -7,8 +7,8 @@ use crate::firmware::Profile;
 use crate::repo::{Repo, output_of, run as run_command, shown};
 use crate::session::Session;
 
-/// The golden rows: `case number commands bytes digest steps` in each line. The tests on the host compare it too,
-/// and write it.
+/// The golden rows: `case number commands bytes digest steps` in each line. The tests on the host
+/// compare it too, and write it.
 const TABLE: &str = "tests/golden/cases.txt";
 /// Steps of one agent in the worst company, with more neighbours than the small part has room for.
 const WORST: &str = "worst_";
