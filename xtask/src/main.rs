@@ -15,6 +15,7 @@ mod documents;
 mod emulate;
 mod emulated;
 mod extent;
+mod figures;
 mod files;
 mod firmware;
 mod fuzz;
@@ -49,7 +50,7 @@ type Command = (&'static str, &'static str, fn(&mut Session, &Options<'_>));
 
 /// The commands. Of lines that begin with the same word, the first that fits counts.
 #[rustfmt::skip]
-const COMMANDS: [Command; 29] = [
+const COMMANDS: [Command; 30] = [
     ("check", "what can be judged without running the code; warnings are errors", |s, _| check::run(s)),
     ("test", "tests on the host, by MAVLink clients, on two emulated parts", |s, _| test::run(s, Short)),
     ("test [--all]", "also long tests, all parts and programs, sweeps, peers, goals", |s, _| test::run(s, All)),
@@ -64,6 +65,8 @@ const COMMANDS: [Command; 29] = [
     ("cluster", "sweeps on Slurm and GNU parallel, on this machine", |s, _| python::cluster(s)),
     ("example", "the example firmware of examples/stm32f4", |s, _| firmware::example(s)),
     ("faults [stm32f405|nrf51|riscv32...]", "firmware that fails restarts", |s, o| swarms::faults(s, &o.names)),
+    ("figures [--out FILE] [--against FILE]", "figures of all scenarios: target/figures.csv, or as before a change",
+        figures::run_command),
     ("firmware [--debug] [--bin NAME] [stm32f405|nrf51|riscv32...]", "programs of hil/firmware: target/firmware/PART",
         firmware::run_command),
     ("firmware [--crate DIR] [stm32f405|nrf51|riscv32...]", "firmware of a crate with a law of its own",
