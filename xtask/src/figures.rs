@@ -143,10 +143,11 @@ fn interval(before: &[String], now: &[String]) -> Option<bool> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let error = |values: &[f64]| {
         let mean = mean(values);
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         squares / ((values.len() - 1) * values.len()) as f64
     };
-    Some((mean(&before) - mean(&now)).abs() <= T * (error(&before) + error(&now)).sqrt())
+    let difference = mean(&before) - mean(&now);
+    Some(difference * difference <= T * T * (error(&before) + error(&now)))
 }
 
 #[cfg(test)]
