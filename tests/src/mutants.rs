@@ -1,4 +1,4 @@
-//! Damaged files, and what an error message must not say.
+//! Damages files, and finds words that an error message must not contain.
 
 use staya_controller::rand::Rng;
 

@@ -1,4 +1,4 @@
-//! Damaged files of each kind: a reader refuses them in words of the file, or what it accepts runs.
+//! A reader refuses damaged files in words of the file; an accepted file runs.
 
 mod fields;
 
@@ -23,7 +23,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// What a reader said about a mutant of the file `path`: an error, or nothing.
+/// Reads a mutant of the file `path`.
 type Read<'a> = dyn Fn(&Path, &[u8]) -> Result<(), String> + Sync + 'a;
 
 /// Files of a folder with one of these endings, without some names.
@@ -158,7 +158,7 @@ fn recordings(count: u32) {
     });
 }
 
-/// Checkpoints, and their states behind valid checksums. A run continues from what is accepted.
+/// Checkpoints, and their states behind valid checksums. A run continues from an accepted one.
 fn checkpoints(count: u32) {
     for name in ["six-discs", "six-robots"] {
         let folder = TempDir::new().expect("a folder");

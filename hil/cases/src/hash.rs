@@ -3,7 +3,7 @@ use staya_controller::agent::{Command, Outputs};
 use staya_controller::geom::{Position, Vec3};
 use staya_controller::scalar::Scalar;
 
-/// Hashes of what agents do, of what they send and accept, and of their state.
+/// Hashes of agents' commands, of their packets, and of their state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hashes {
     pub(crate) commands: Hash,

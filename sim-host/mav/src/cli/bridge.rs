@@ -117,7 +117,8 @@ impl BridgeArgs {
     /// The scenario or key is invalid, a link cannot be opened, or a log cannot be written.
     pub fn run(&self, global: &Global) -> Result<Ended> {
         let overrides = Overrides { seed: self.seed, ticks: None };
-        let scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
+        let mut scenario = Scenario::load_with(&self.scenario, &overrides, &self.settings)?;
+        scenario.files.extend(self.key.clone());
         for remark in scenario.remarks() {
             say(Some(&remark));
         }

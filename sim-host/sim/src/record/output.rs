@@ -83,10 +83,10 @@ impl Files {
     }
 }
 
-/// Who can read a new file.
+/// Readers of a new file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// Whoever the system's settings allow; the readers of a file that it replaces.
+    /// Those of the system's settings, or of the file that it replaces.
     Usual,
     /// Only its owner.
     Private,
