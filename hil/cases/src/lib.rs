@@ -2,8 +2,8 @@
 //!
 //! A case runs a few agents that receive each other's packets and move simulated bodies on terrain
 //! from a formula. The same code runs on a host and on a microcontroller; equal hashes of commands,
-//! of transmitted bytes and of agents' states show that both computed the same, and tell the effects
-//! of a change apart. Nothing here allocates or panics. `inline(never)` keeps the cases from
+//! of transmitted bytes and of agents' states show that both computed the same, and tell apart what
+//! a change affects. Nothing here allocates or panics. `inline(never)` keeps the cases from
 //! sharing one large stack frame: the largest runs in 16 KiB of RAM.
 #![no_std]
 
